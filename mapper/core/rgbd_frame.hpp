@@ -1,0 +1,21 @@
+#pragma once
+
+#include <cstdint>
+
+#include <opencv2/core.hpp>
+
+#include "lcmtypes/geometry.hpp"
+
+namespace kintsugi::mapper {
+
+/// One frame as the tracker and the volume want it: undistorted, in metres, colour registered to
+/// depth.
+struct RgbdFrame {
+  std::int64_t utime = 0;         ///< device time of the depth image, microseconds
+  std::int64_t frame_index = 0;   ///< as the device counts
+  Intrinsics intrinsics;          ///< without distortion
+  cv::Mat_<float> depth_m;        ///< height x width, along C's z; invalid is NaN
+  cv::Mat_<cv::Vec3b> color_rgb;  ///< height x width, or empty: no colour for this frame
+};
+
+}  // namespace kintsugi::mapper
