@@ -1,0 +1,22 @@
+#pragma once
+
+#include <filesystem>
+
+#include "lcmtypes/geometry.hpp"
+
+namespace kintsugi::mapper {
+
+/// What a camera.txt says.
+struct Calibration {
+  Intrinsics intrinsics;
+  double depth_units_per_m = 1000.0;  ///< raw depth value / this = metres, > 0
+};
+
+/// Reads a camera.txt: blank lines, `#` comments, and one line
+///   fx fy cx cy width height depth_scale [k1 k2 p1 p2 k3]
+/// in pixels, with depth_scale in raw units per metre; without the last five the lens has no
+/// distortion.
+/// @throws std::runtime_error naming file, line, field, its value and what was expected.
+Calibration read_calibration(const std::filesystem::path& file);
+
+}  // namespace kintsugi::mapper

@@ -1,0 +1,62 @@
+#pragma once
+// What a device of our OpenNI2 driver plays back.
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <opencv2/core.hpp>
+
+#include "lcmtypes/geometry.hpp"
+
+namespace kintsugi::mapper {
+
+/// Unit of a raw depth value; both are pixel formats of OpenNI2. Raw 0 is always "no measurement".
+enum class DepthUnit {
+  k1mm,    ///< reaches 65.535 m
+  k100um,  ///< reaches 6.5535 m; what lies beyond is 0
+};
+
+/// A finite sequence of depth images and one of colour images, each with its own times, seen by one
+/// pinhole camera (colour is registered to depth).
+///
+/// Frames are numbered from 0 and their times ascend strictly within each sequence; the two
+/// sequences need not have the same length or the same times. Reading a frame is deterministic and
+/// may be repeated in any order. The object is used by one thread at a time.
+class Recording {
+ public:
+  virtual ~Recording() = default;
+
+  /// For people, such as the scheme and the last part of the path.
+  [[nodiscard]] virtual std::string name() const = 0;
+
+  /// Of both sequences; `distortion` is the lens's own, the images are as the lens made them.
+  [[nodiscard]] virtual const Intrinsics& intrinsics() const = 0;
+
+  /// Nominal, at least 1.
+  [[nodiscard]] virtual int frame_rate_hz() const = 0;
+
+  /// The unit that loses nothing within its reach. A k100um recording is readable as k1mm too.
+  [[nodiscard]] virtual DepthUnit finest_depth_unit() const = 0;
+
+  [[nodiscard]] virtual int num_depth_frames() const = 0;  ///< > 0
+  [[nodiscard]] virtual int num_color_frames() const = 0;  ///< 0: no colour
+
+  /// Device time, microseconds, >= 0. The index must be in range.
+  [[nodiscard]] virtual std::int64_t depth_utime(int index) const = 0;
+  [[nodiscard]] virtual std::int64_t color_utime(int index) const = 0;
+
+  /// height x width along C's z, in `unit`; 0 is invalid.
+  /// @throws std::runtime_error naming the file when it cannot be read.
+  [[nodiscard]] virtual cv::Mat_<std::uint16_t> depth(int index, DepthUnit unit) = 0;
+
+  /// height x width, red first.
+  /// @throws std::runtime_error naming the file when it cannot be read.
+  [[nodiscard]] virtual cv::Mat_<cv::Vec3b> color(int index) = 0;
+
+  /// True pose of the camera at a depth frame, where it is known.
+  [[nodiscard]] virtual std::optional<Pose> depth_X_WC(int /*index*/) const { return std::nullopt; }
+};
+
+}  // namespace kintsugi::mapper
