@@ -1,0 +1,151 @@
+#include "mapper/core/icp.hpp"
+
+#include <cmath>
+#include <vector>
+
+#include <tbb/parallel_for.h>
+
+namespace kintsugi::mapper {
+namespace {
+
+constexpr int kRowsPerBand = 8;
+
+/// What one band of rows contributes; the upper triangle of [A b; . E], row by row.
+struct BandSum {
+  double system[28] = {};
+  double squared_residuals_m2 = 0.0;
+  std::int64_t inliers = 0;
+  std::int64_t measured = 0;
+
+  /// Adds a row of the Jacobian with its residual in the last place.
+  void add(const double (&row)[7], double weight) {
+    int k = 0;
+    for (int i = 0; i < 7; ++i) {
+      const double weighted = weight * row[i];
+      for (int j = i; j < 7; ++j) system[k++] += weighted * row[j];
+    }
+    squared_residuals_m2 += row[6] * row[6];
+    ++inliers;
+  }
+};
+
+class Linearizer {
+ public:
+  Linearizer(const SurfaceMap& frame_C, const SurfaceMap& model_V, const Pose& X_VC,
+             const IcpGates& gates)
+      : frame_(frame_C),
+        model_(model_V),
+        R_VC_(X_VC.linear().cast<float>()),
+        p_VC_(X_VC.translation().cast<float>()),
+        max_squared_distance_(static_cast<float>(gates.max_distance_m * gates.max_distance_m)),
+        min_cosine_(static_cast<float>(gates.min_normal_cosine)),
+        fx_(static_cast<float>(model_V.intrinsics.fx)),
+        fy_(static_cast<float>(model_V.intrinsics.fy)),
+        cx_(static_cast<float>(model_V.intrinsics.cx)),
+        cy_(static_cast<float>(model_V.intrinsics.cy)) {}
+
+  BandSum sum_rows(int first, int last) const {
+    BandSum sum;
+    for (int v = first; v < last; ++v) {
+      for (int u = 0; u < frame_.points_C.cols; ++u) add_pixel(v, u, sum);
+    }
+    return sum;
+  }
+
+ private:
+  void add_pixel(int v, int u, BandSum& sum) const {
+    const cv::Vec3f& point_C = frame_.points_C(v, u);
+    if (std::isnan(point_C[2])) return;
+    ++sum.measured;
+    const cv::Vec3f& normal_C = frame_.normals_C(v, u);
+    if (std::isnan(normal_C[2])) return;
+
+    const Eigen::Vector3f p = R_VC_ * Eigen::Vector3f(point_C.val) + p_VC_;
+    if (!(p.z() > 0.0F)) return;
+    const float model_u = fx_ * p.x() / p.z() + cx_ + 0.5F;
+    const float model_v = fy_ * p.y() / p.z() + cy_ + 0.5F;
+    if (!(model_u >= 0.0F && model_v >= 0.0F && model_u < model_.points_C.cols &&
+          model_v < model_.points_C.rows)) {
+      return;
+    }
+    const int row = static_cast<int>(model_v);
+    const int col = static_cast<int>(model_u);
+    const Eigen::Vector3f m(model_.points_C(row, col).val);
+    const Eigen::Vector3f n(model_.normals_C(row, col).val);
+    const Eigen::Vector3f difference = m - p;
+    // Written so that a NaN on the model's side fails them.
+    if (!(difference.squaredNorm() < max_squared_distance_)) return;
+    if (!((R_VC_ * Eigen::Vector3f(normal_C.val)).dot(n) > min_cosine_)) return;
+
+    // d(se3_retract(xi) p)/dxi = [I, -[p]x], so the prediction n . p changes by n for the
+    // translation and by p x n for the rotation.
+    const Eigen::Vector3d p_d = p.cast<double>();
+    const Eigen::Vector3d n_d = n.cast<double>();
+    const Eigen::Vector3d moment = p_d.cross(n_d);
+    const double residual_m = n_d.dot(difference.cast<double>());
+    const double sigma = depth_sigma_m(point_C[2]);
+    sum.add({n_d.x(), n_d.y(), n_d.z(), moment.x(), moment.y(), moment.z(), residual_m},
+            1.0 / (sigma * sigma));
+  }
+
+  const SurfaceMap& frame_;
+  const SurfaceMap& model_;
+  Eigen::Matrix3f R_VC_;
+  Eigen::Vector3f p_VC_;
+  float max_squared_distance_;
+  float min_cosine_;
+  float fx_, fy_, cx_, cy_;
+};
+
+NormalEquations unpack(const BandSum& sum) {
+  NormalEquations equations;
+  int k = 0;
+  for (int i = 0; i < 7; ++i) {
+    for (int j = i; j < 7; ++j, ++k) {
+      if (j < 6) {
+        equations.A(i, j) = equations.A(j, i) = sum.system[k];
+      } else if (i < 6) {
+        equations.b(i) = sum.system[k];
+      } else {
+        equations.weighted_squares = sum.system[k];
+      }
+    }
+  }
+  equations.squared_residuals_m2 = sum.squared_residuals_m2;
+  equations.inliers = sum.inliers;
+  equations.measured = sum.measured;
+  return equations;
+}
+
+}  // namespace
+
+Pose se3_retract(const Vector6d& xi) {
+  Pose X = Pose::Identity();
+  X.translation() = xi.head<3>();
+  const double angle_rad = xi.tail<3>().norm();
+  if (angle_rad > 1e-12) {
+    X.linear() = Eigen::AngleAxisd(angle_rad, xi.tail<3>() / angle_rad).toRotationMatrix();
+  }
+  return X;
+}
+
+NormalEquations linearize(const SurfaceMap& frame_C, const SurfaceMap& model_V, const Pose& X_VC,
+                          const IcpGates& gates) {
+  const Linearizer linearizer(frame_C, model_V, X_VC, gates);
+  const int rows = frame_C.points_C.rows;
+  std::vector<BandSum> bands((rows + kRowsPerBand - 1) / kRowsPerBand);
+  tbb::parallel_for(std::size_t{0}, bands.size(), [&](std::size_t band) {
+    const int first = static_cast<int>(band) * kRowsPerBand;
+    bands[band] = linearizer.sum_rows(first, std::min(first + kRowsPerBand, rows));
+  });
+  BandSum total;
+  for (const BandSum& band : bands) {  // in order: floating-point addition does not commute freely
+    for (int k = 0; k < 28; ++k) total.system[k] += band.system[k];
+    total.squared_residuals_m2 += band.squared_residuals_m2;
+    total.inliers += band.inliers;
+    total.measured += band.measured;
+  }
+  return unpack(total);
+}
+
+}  // namespace kintsugi::mapper

@@ -1,0 +1,50 @@
+#pragma once
+// One linearisation of frame-to-model registration: point-to-plane ICP with projective association.
+//
+// Frames: C the camera of the new frame, V the virtual camera from which the model was raycast.
+
+#include <Eigen/Core>
+#include <cstdint>
+
+#include "lcmtypes/geometry.hpp"
+#include "mapper/core/surface_map.hpp"
+
+namespace kintsugi::mapper {
+
+using Vector6d = Eigen::Matrix<double, 6, 1>;
+using Matrix6d = Eigen::Matrix<double, 6, 6>;
+
+/// Which pairs of a frame point and a model point are believed.
+struct IcpGates {
+  double max_distance_m = 0.1;     ///< between the two points
+  double min_normal_cosine = 0.8;  ///< between the two normals
+};
+
+/// Gauss-Newton system of the weighted point-to-plane error
+///   E(X_VC) = sum_i w_i (n_i . (m_i - X_VC p_i))^2,   w_i = 1 / sigma(z_i)^2
+/// for the left increment X_VC <- se3_exp(xi) X_VC with xi = (translation m, rotation rad):
+/// A xi = b.
+struct NormalEquations {
+  Matrix6d A = Matrix6d::Zero();
+  Vector6d b = Vector6d::Zero();
+  double weighted_squares = 0.0;    ///< E, dimensionless
+  double squared_residuals_m2 = 0;  ///< sum of r_i^2 without weights
+  std::int64_t inliers = 0;         ///< pairs that passed the gates
+  std::int64_t measured = 0;        ///< frame pixels with a point
+};
+
+/// Standard deviation of a structured-light camera's depth at depth z (metres), after Nguyen et al.
+/// 2012: 0.0012 + 0.0019 (z - 0.4)^2 metres.
+inline double depth_sigma_m(double z_m) { return 0.0012 + 0.0019 * (z_m - 0.4) * (z_m - 0.4); }
+
+/// exp of the twist (translation, rotation vector) up to the translation, which is taken as it is:
+/// a retraction with the exponential map's first derivative at zero.
+Pose se3_retract(const Vector6d& xi);
+
+/// Associates each point of `frame_C` with the model pixel it projects to under `X_VC` and sums up
+/// the system. The sum is taken over fixed bands of rows in fixed order, in double: it does not
+/// depend on the number of threads. Pixels that are NaN on either side take no part.
+NormalEquations linearize(const SurfaceMap& frame_C, const SurfaceMap& model_V, const Pose& X_VC,
+                          const IcpGates& gates);
+
+}  // namespace kintsugi::mapper

@@ -1,0 +1,168 @@
+#include "mapper/core/surface_pyramid.hpp"
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+namespace kintsugi::mapper {
+namespace {
+
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+constexpr float kSameSurface_m = 0.05F;  ///< pixels averaged by a halving lie this close
+constexpr float kNormalReach_m = 0.10F;  ///< depth step across which no normal is taken
+constexpr int kRowsPerTask = 16;
+
+template <typename Row>
+void for_each_row(int rows, const Row& row) {
+  tbb::parallel_for(tbb::blocked_range<int>(0, rows, kRowsPerTask),
+                    [&](const tbb::blocked_range<int>& range) {
+                      for (int v = range.begin(); v != range.end(); ++v) row(v);
+                    });
+}
+
+/// Mean of those of four depths that lie near the smallest; NaN if none is valid.
+float mean_of_nearest(const float (&depths_m)[4]) {
+  float nearest = std::numeric_limits<float>::infinity();
+  for (const float z : depths_m) nearest = z < nearest ? z : nearest;
+  float sum = 0.0F;
+  int count = 0;
+  for (const float z : depths_m) {
+    if (z - nearest < kSameSurface_m) {
+      sum += z;
+      ++count;
+    }
+  }
+  return count > 0 ? sum / static_cast<float>(count) : kNaN;
+}
+
+/// Normal at the middle of four neighbours, towards the camera; NaN where they are no one surface.
+cv::Vec3f normal_from_neighbours(const cv::Vec3f& left, const cv::Vec3f& right,
+                                 const cv::Vec3f& above, const cv::Vec3f& below) {
+  const cv::Vec3f du = right - left;
+  const cv::Vec3f dv = below - above;
+  // A NaN among the neighbours makes these comparisons false.
+  if (!(std::abs(du[2]) < kNormalReach_m && std::abs(dv[2]) < kNormalReach_m)) {
+    return {kNaN, kNaN, kNaN};
+  }
+  const cv::Vec3f n = dv.cross(du);  // v points down and u right: this one looks at the camera
+  const float length = std::sqrt(n.dot(n));
+  return length > 0.0F ? n * (1.0F / length) : cv::Vec3f(kNaN, kNaN, kNaN);
+}
+
+SurfaceMap half_size_surface(const SurfaceMap& fine) {
+  SurfaceMap half;
+  half.intrinsics = half_size(fine.intrinsics);
+  half.points_C.create(half.intrinsics.height, half.intrinsics.width);
+  half.normals_C.create(half.points_C.size());
+  for_each_row(half.points_C.rows, [&](int v) {
+    for (int u = 0; u < half.points_C.cols; ++u) {
+      cv::Vec3f point(0, 0, 0);
+      cv::Vec3f normal(0, 0, 0);
+      float first_z = kNaN;
+      int count = 0;
+      for (int k = 0; k < 4; ++k) {
+        const cv::Vec3f& p = fine.points_C(2 * v + k / 2, 2 * u + k % 2);
+        const cv::Vec3f& n = fine.normals_C(2 * v + k / 2, 2 * u + k % 2);
+        if (std::isnan(p[2]) || std::isnan(n[2])) continue;
+        if (count == 0) first_z = p[2];
+        if (std::abs(p[2] - first_z) > kSameSurface_m) continue;
+        point += p;
+        normal += n;
+        ++count;
+      }
+      const float length = std::sqrt(normal.dot(normal));
+      const bool valid = count > 0 && length > 0.0F;
+      half.points_C(v, u) = valid ? point / static_cast<float>(count) : cv::Vec3f::all(kNaN);
+      half.normals_C(v, u) = valid ? normal / length : cv::Vec3f::all(kNaN);
+    }
+  });
+  return half;
+}
+
+}  // namespace
+
+Intrinsics half_size(const Intrinsics& intrinsics) {
+  Intrinsics half = intrinsics;
+  half.fx /= 2.0;
+  half.fy /= 2.0;
+  half.cx = (intrinsics.cx + 0.5) / 2.0 - 0.5;
+  half.cy = (intrinsics.cy + 0.5) / 2.0 - 0.5;
+  half.width /= 2;
+  half.height /= 2;
+  return half;
+}
+
+cv::Mat_<float> half_size(const cv::Mat_<float>& depth_m) {
+  cv::Mat_<float> half(depth_m.rows / 2, depth_m.cols / 2);
+  for_each_row(half.rows, [&](int v) {
+    const float* upper = depth_m[2 * v];
+    const float* lower = depth_m[2 * v + 1];
+    for (int u = 0; u < half.cols; ++u) {
+      half(v, u) =
+          mean_of_nearest({upper[2 * u], upper[2 * u + 1], lower[2 * u], lower[2 * u + 1]});
+    }
+  });
+  return half;
+}
+
+SurfaceMap surface_from_depth(const cv::Mat_<float>& depth_m, const Intrinsics& intrinsics) {
+  if (depth_m.cols != intrinsics.width || depth_m.rows != intrinsics.height) {
+    throw std::invalid_argument("depth image is " + std::to_string(depth_m.cols) + "x" +
+                                std::to_string(depth_m.rows) + ", its intrinsics are for " +
+                                std::to_string(intrinsics.width) + "x" +
+                                std::to_string(intrinsics.height));
+  }
+  SurfaceMap surface;
+  surface.intrinsics = intrinsics;
+  surface.points_C.create(depth_m.size());
+  surface.normals_C.create(depth_m.size());
+  for_each_row(depth_m.rows, [&](int v) {
+    const auto y = static_cast<float>((v - intrinsics.cy) / intrinsics.fy);
+    for (int u = 0; u < depth_m.cols; ++u) {
+      const auto x = static_cast<float>((u - intrinsics.cx) / intrinsics.fx);
+      const float z = depth_m(v, u);
+      surface.points_C(v, u) = {z * x, z * y, z};  // NaN in every coordinate when z is NaN
+    }
+  });
+  const cv::Mat_<cv::Vec3f>& points = surface.points_C;
+  for_each_row(depth_m.rows, [&](int v) {
+    const bool inside_v = v > 0 && v + 1 < points.rows;
+    for (int u = 0; u < points.cols; ++u) {
+      const bool inside = inside_v && u > 0 && u + 1 < points.cols;
+      surface.normals_C(v, u) = inside && !std::isnan(points(v, u)[2])
+                                    ? normal_from_neighbours(points(v, u - 1), points(v, u + 1),
+                                                             points(v - 1, u), points(v + 1, u))
+                                    : cv::Vec3f::all(kNaN);
+    }
+  });
+  return surface;
+}
+
+SurfacePyramid pyramid_from_depth(const cv::Mat_<float>& depth_m, const Intrinsics& intrinsics,
+                                  int skip, int levels, float max_depth_m) {
+  cv::Mat_<float> depth = depth_m.clone();
+  depth.setTo(kNaN, depth > max_depth_m);
+  Intrinsics camera = intrinsics;
+  SurfacePyramid pyramid;
+  for (int level = 0; level < skip + levels; ++level) {
+    if (level > 0) {
+      depth = half_size(depth);
+      camera = half_size(camera);
+    }
+    if (level >= skip) pyramid.push_back(surface_from_depth(depth, camera));
+  }
+  return pyramid;
+}
+
+SurfacePyramid pyramid_from_surface(SurfaceMap finest, int levels) {
+  SurfacePyramid pyramid{std::move(finest)};
+  while (static_cast<int>(pyramid.size()) < levels)
+    pyramid.push_back(half_size_surface(pyramid.back()));
+  return pyramid;
+}
+
+}  // namespace kintsugi::mapper

@@ -1,0 +1,41 @@
+#pragma once
+// Surfaces from depth images, at several levels of detail.
+
+#include <vector>
+
+#include <opencv2/core.hpp>
+
+#include "lcmtypes/geometry.hpp"
+#include "mapper/core/surface_map.hpp"
+
+namespace kintsugi::mapper {
+
+/// One surface at several sizes, finest first; each level has half the width and height of the one
+/// before it.
+using SurfacePyramid = std::vector<SurfaceMap>;
+
+/// The camera of an image half the size (rounded down): one pixel covers 2x2 of the larger image,
+/// so its centre lies between theirs, cx' = (cx + 1/2) / 2 - 1/2.
+Intrinsics half_size(const Intrinsics& intrinsics);
+
+/// Halves a depth image (metres, invalid is NaN): each pixel is the mean of those of its 2x2 that
+/// lie within 5 cm of the nearest, so that no pixel hangs in the air between two surfaces.
+cv::Mat_<float> half_size(const cv::Mat_<float>& depth_m);
+
+/// Back-projects a depth image (metres along C's z, invalid is NaN; `intrinsics` without distortion
+/// and of the image's size) and takes normals from central differences. A pixel at the border, or
+/// with a neighbour that is invalid or more than 10 cm away in depth, keeps its point but has no
+/// normal (NaN).
+/// @throws std::invalid_argument if the size of the image is not that of the intrinsics
+SurfaceMap surface_from_depth(const cv::Mat_<float>& depth_m, const Intrinsics& intrinsics);
+
+/// The pyramid of a measured depth image: `skip` halvings (1: a 640x480 image starts at 320x240),
+/// then `levels` surfaces. Depths beyond `max_depth_m` are invalid.
+SurfacePyramid pyramid_from_depth(const cv::Mat_<float>& depth_m, const Intrinsics& intrinsics,
+                                  int skip, int levels, float max_depth_m);
+
+/// The pyramid below a raycast surface: points and normals are averaged over 2x2 pixels where they
+/// lie within 5 cm of the first valid one.
+SurfacePyramid pyramid_from_surface(SurfaceMap finest, int levels);
+
+}  // namespace kintsugi::mapper

@@ -1,0 +1,166 @@
+#include "mapper/core/tracker.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <cmath>
+#include <string>
+
+#include "mapper/core/check.hpp"
+
+namespace kintsugi::mapper {
+namespace {
+
+constexpr std::int64_t kMinInliers = 100;  ///< fewer pairs than this determine no pose worth having
+
+/// Twist per second that carries `X_WA` to `X_WB` in `seconds`.
+Vector6d velocity_between(const Pose& X_WA, const Pose& X_WB, double seconds) {
+  const Pose X_AB = X_WA.inverse() * X_WB;
+  const Eigen::AngleAxisd rotation(X_AB.linear());
+  Vector6d twist;
+  twist << X_AB.translation(), rotation.angle() * rotation.axis();
+  return twist / seconds;
+}
+
+/// The product of many rotations drifts off SO(3); this is the nearest one to rounding.
+Pose orthonormal(const Pose& X) {
+  Pose clean = X;
+  clean.linear() = Eigen::Quaterniond(X.linear()).normalized().toRotationMatrix();
+  return clean;
+}
+
+std::optional<Vector6d> solve(const NormalEquations& equations) {
+  if (equations.inliers < kMinInliers) return std::nullopt;
+  const Vector6d xi = equations.A.ldlt().solve(equations.b);
+  if (!xi.allFinite()) return std::nullopt;
+  return xi;
+}
+
+RegistrationQuality quality_of(const NormalEquations& equations, const SurfaceMap& frame,
+                               bool solved) {
+  RegistrationQuality quality;
+  quality.solved = solved;
+  quality.valid_share =
+      static_cast<double>(equations.measured) / static_cast<double>(frame.points_C.total());
+  if (equations.measured > 0) {
+    quality.inlier_share =
+        static_cast<double>(equations.inliers) / static_cast<double>(equations.measured);
+  }
+  if (equations.inliers > 0) {
+    quality.rms_m =
+        std::sqrt(equations.squared_residuals_m2 / static_cast<double>(equations.inliers));
+  }
+  return quality;
+}
+
+}  // namespace
+
+void Tracker::Config::validate() const {
+  check_range<std::size_t>("number of ICP levels", iterations.size(), 1, 8);
+  for (const int count : iterations) check_range("ICP iterations", count, 1, 1000);
+  check_range("max_distance_m", gates.max_distance_m, 1e-3, 10.0);
+  check_range("min_normal_cosine", gates.min_normal_cosine, -1.0, 1.0);
+  check_range("early_exit", early_exit, 0.0, 1.0);
+  check_range("retry_gate_factor", retry_gate_factor, 1.0, 100.0);
+  check_range("retry_iteration_factor", retry_iteration_factor, 1, 100);
+  check_range<std::int64_t>("max_prediction_us", max_prediction_us, 0, 60'000'000);
+  loss.validate();
+}
+
+Tracker::Tracker(const Config& config) : config_(config), loss_rule_(config.loss) {
+  config_.validate();
+}
+
+void Tracker::start_at(const Pose& X_WC, std::int64_t utime, double valid_share) {
+  X_WC_ = X_WC;
+  utime_ = utime;
+  velocity_C_.setZero();
+  lost_ = false;
+  loss_rule_.remember(valid_share, true);
+}
+
+Pose Tracker::predict(std::int64_t utime) const {
+  const std::int64_t gap_us = utime - utime_;
+  if (lost_ || gap_us <= 0 || gap_us > config_.max_prediction_us) return X_WC_;
+  return X_WC_ * se3_retract(velocity_C_ * (1e-6 * static_cast<double>(gap_us)));
+}
+
+TrackingResult Tracker::track(const SurfacePyramid& frame_C, std::int64_t utime,
+                              const Model& model) {
+  Registration registration = register_frame(frame_C, model, predict(utime), false);
+  auto loss = loss_rule_.judge(registration.quality);
+  if (loss) {
+    registration = register_frame(frame_C, model, X_WC_, true);
+    loss = loss_rule_.judge(registration.quality);
+  }
+  loss_rule_.remember(registration.quality.valid_share, !loss);
+  return loss ? lose(registration, *loss) : accept(registration, utime);
+}
+
+Tracker::Registration Tracker::register_frame(const SurfacePyramid& frame_C, const Model& model,
+                                              const Pose& X_WC_start, bool wide) const {
+  const Pose X_VW = model.X_WV.inverse();
+  Pose X_VC = X_VW * X_WC_start;
+  Registration registration;
+  bool solved = true;
+  const int coarsest = static_cast<int>(config_.iterations.size()) - 1;
+  for (int level = coarsest; level >= 0 && solved; --level) {
+    const bool widened = wide && level == coarsest;
+    IcpGates gates = config_.gates;
+    if (widened) gates.max_distance_m *= config_.retry_gate_factor;
+    const int steps = config_.iterations[level] * (widened ? config_.retry_iteration_factor : 1);
+    const double small_enough = config_.early_exit * std::exp2(level);
+    for (int step = 0; step < steps && solved; ++step) {
+      registration.equations = linearize(frame_C[level], model.surface_V[level], X_VC, gates);
+      const auto xi = solve(registration.equations);
+      solved = xi.has_value();
+      if (!solved) break;
+      X_VC = se3_retract(*xi) * X_VC;
+      ++registration.iterations;
+      if (xi->norm() < small_enough) break;
+    }
+    registration.quality = quality_of(registration.equations, frame_C[level], solved);
+  }
+  registration.X_WC = orthonormal(model.X_WV * X_VC);
+  return registration;
+}
+
+TrackingResult Tracker::accept(const Registration& registration, std::int64_t utime) {
+  const double seconds = 1e-6 * static_cast<double>(utime - utime_);
+  const bool continuous = !lost_ && seconds > 0.0;
+  velocity_C_ = continuous ? velocity_between(X_WC_, registration.X_WC, seconds) : Vector6d::Zero();
+  X_WC_ = registration.X_WC;
+  utime_ = utime;
+  lost_ = false;
+
+  TrackingResult result;
+  result.state = TrackingState::kTracking;
+  result.X_WC = X_WC_;
+  result.quality = registration.quality;
+  result.iterations = registration.iterations;
+  const double unit = depth_sigma_m(1.0) * depth_sigma_m(1.0);
+  const Matrix6d per_inlier =
+      registration.equations.A * (unit / static_cast<double>(registration.equations.inliers));
+  result.eigenvalues =
+      Eigen::SelfAdjointEigenSolver<Matrix6d>(per_inlier, Eigen::EigenvaluesOnly).eigenvalues();
+  return result;
+}
+
+TrackingResult Tracker::lose(const Registration& registration, LossReason reason) {
+  lost_ = true;
+  velocity_C_.setZero();
+  TrackingResult result;
+  result.state = TrackingState::kLost;
+  result.X_WC = X_WC_;
+  result.quality = registration.quality;
+  result.iterations = registration.iterations;
+  result.loss_reason = reason;
+  return result;
+}
+
+double valid_share(const SurfaceMap& surface) {
+  std::size_t valid = 0;
+  for (const cv::Vec3f& point : surface.points_C) valid += std::isnan(point[2]) ? 0 : 1;
+  return static_cast<double>(valid) / static_cast<double>(surface.points_C.total());
+}
+
+}  // namespace kintsugi::mapper

@@ -1,0 +1,94 @@
+#pragma once
+// Frame-to-model tracking.
+//
+// Frames: W map, C camera of the new frame, V virtual camera from which the model was raycast.
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "lcmtypes/geometry.hpp"
+#include "lcmtypes/messages.hpp"
+#include "mapper/core/icp.hpp"
+#include "mapper/core/loss_rule.hpp"
+#include "mapper/core/surface_pyramid.hpp"
+
+namespace kintsugi::mapper {
+
+/// What is known of the map: its surface as seen from a pose near the camera's.
+struct Model {
+  SurfacePyramid surface_V;
+  Pose X_WV = Pose::Identity();
+};
+
+struct TrackingResult {
+  TrackingState state = TrackingState::kStarting;
+  Pose X_WC = Pose::Identity();  ///< the last good pose when state is kLost
+  RegistrationQuality quality;
+  int iterations = 0;
+  /// Of the Hessian, ascending, as information per inlier at unit weight (translation in metres,
+  /// rotation in radians): a value near zero is a direction the view does not determine.
+  Vector6d eigenvalues = Vector6d::Zero();
+  std::optional<LossReason> loss_reason;  ///< set when state is kLost
+};
+
+/// Follows the camera by registering each frame with the model: point-to-plane ICP, coarse to fine,
+/// from a constant-velocity prediction. A frame that the loss rule does not believe is tried again
+/// from the last good pose with wider gates; then the state is kLost and the last pose stands.
+///
+/// Depth only. The photometric term for degenerate views and the relocaliser attach here: the first
+/// to the normal equations of each step, the second to what is tried when a frame is lost.
+class Tracker {
+ public:
+  struct Config {
+    std::vector<int> iterations = {4, 5, 5};  ///< at most, per level, finest first
+    IcpGates gates;
+    double early_exit = 3e-5;  ///< norm of the increment (m, rad) at the finest level, x2 a level
+    double retry_gate_factor = 3.0;  ///< on max_distance_m, at the coarsest level of a retry
+    int retry_iteration_factor = 3;  ///< on the coarsest level's iterations in a retry
+    std::int64_t max_prediction_us = 500'000;  ///< no constant velocity across a longer gap
+    LossRule::Config loss;
+
+    /// @throws std::invalid_argument naming field, value and bound
+    void validate() const;
+  };
+
+  /// @throws std::invalid_argument if the configuration is not valid
+  explicit Tracker(const Config& config);
+
+  /// The camera is known to be at `X_WC` at `utime`: the first frame, or a relocalised one. Motion
+  /// starts anew. `valid_share` is that of the frame.
+  void start_at(const Pose& X_WC, std::int64_t utime, double valid_share);
+
+  /// Registers a frame with the model. Both pyramids have as many levels as the configuration.
+  /// After a loss the tracker keeps the last good pose and may be called with the next frame.
+  TrackingResult track(const SurfacePyramid& frame_C, std::int64_t utime, const Model& model);
+
+  /// Where constant velocity (device time in microseconds) puts the camera.
+  Pose predict(std::int64_t utime) const;
+
+ private:
+  struct Registration {
+    Pose X_WC = Pose::Identity();
+    RegistrationQuality quality;
+    NormalEquations equations;
+    int iterations = 0;
+  };
+
+  Registration register_frame(const SurfacePyramid& frame_C, const Model& model,
+                              const Pose& X_WC_start, bool wide) const;
+  TrackingResult accept(const Registration& registration, std::int64_t utime);
+  TrackingResult lose(const Registration& registration, LossReason reason);
+
+  Config config_;
+  LossRule loss_rule_;
+  Pose X_WC_ = Pose::Identity();            ///< last good
+  std::int64_t utime_ = 0;                  ///< of the last good pose
+  Vector6d velocity_C_ = Vector6d::Zero();  ///< m/s, rad/s: X_WC(t + dt) = X_WC retract(v dt)
+  bool lost_ = false;
+};
+
+/// Pixels with a depth / all pixels.
+double valid_share(const SurfaceMap& surface);
+
+}  // namespace kintsugi::mapper
