@@ -1,0 +1,124 @@
+#include "lcmtypes/bus.hpp"
+
+#include <cerrno>
+#include <cstdlib>
+#include <fstream>
+#include <stdexcept>
+#include <utility>
+
+#include <arpa/inet.h>
+#include <lcm/lcm-cpp.hpp>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+namespace kintsugi {
+namespace {
+
+// Holds 0.4 s of a stream at its default rate while the receiver is busy.
+constexpr int kReceiveBufferBytes = 4'194'304;
+constexpr char kGroup[] = "239.255.76.67";
+constexpr char kReceiveBufferLimit[] = "/proc/sys/net/core/rmem_max";
+
+/// LCM prints pages about a missing route and then fails without a reason; this asks first.
+/// Connecting a datagram socket sends nothing, and fails just when there is no route.
+bool has_multicast_route() {
+  const int socket = ::socket(AF_INET, SOCK_DGRAM, 0);
+  if (socket < 0) return true;  // let LCM say what is wrong
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(7667);
+  inet_pton(AF_INET, kGroup, &address.sin_addr);
+  const int result = connect(socket, reinterpret_cast<sockaddr*>(&address), sizeof(address));
+  const bool unreachable = result != 0 && errno == ENETUNREACH;
+  close(socket);
+  return !unreachable;
+}
+
+std::string with_receive_buffer(std::string url) {
+  if (!url.starts_with("udpm://") || url.find("recv_buf_size=") != std::string::npos) return url;
+  url += url.find('?') == std::string::npos ? '?' : '&';
+  return url + "recv_buf_size=" + std::to_string(kReceiveBufferBytes);
+}
+
+}  // namespace
+
+struct Bus::Subscriber {
+  Bus& bus;
+  Handler handler;
+
+  // Called through C code, which an exception must not cross: handle() throws it.
+  void on_message(const lcm::ReceiveBuffer* buffer, const std::string& /*channel*/) {
+    try {
+      handler({static_cast<const std::uint8_t*>(buffer->data), buffer->data_size});
+    } catch (...) {
+      if (!bus.failure_) bus.failure_ = std::current_exception();
+    }
+  }
+};
+
+std::int64_t wall_clock_us() {
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  return std::chrono::duration_cast<std::chrono::microseconds>(now).count();
+}
+
+std::int64_t new_session() { return wall_clock_us(); }
+
+std::string default_bus_url() {
+  const char* url = std::getenv("LCM_DEFAULT_URL");
+  if (url != nullptr && *url != '\0') return url;
+  return std::string("udpm://") + kGroup + ":7667?ttl=0";
+}
+
+std::optional<std::string> receive_buffer_advice() {
+  std::int64_t limit = 0;
+  if (!(std::ifstream(kReceiveBufferLimit) >> limit) || limit >= kReceiveBufferBytes) return {};
+  const std::string wanted = std::to_string(kReceiveBufferBytes);
+  return "the kernel limits receive buffers to " + std::to_string(limit) + " bytes, " + wanted +
+         " are wanted: bursts may be lost. One command cures it: sysctl -w net.core.rmem_max=" +
+         wanted;
+}
+
+Bus::Bus(std::string url) : url_(with_receive_buffer(url.empty() ? default_bus_url() : url)) {
+  if (url_.starts_with("udpm://") && !has_multicast_route()) {
+    throw std::runtime_error("cannot open the bus " + url_ +
+                             ": no route for 224.0.0.0/4. One command cures it: "
+                             "ip route add 224.0.0.0/4 dev lo");
+  }
+  lcm_ = std::make_unique<lcm::LCM>(url_);
+  if (!lcm_->good()) {
+    throw std::runtime_error("cannot open the bus " + url_ +
+                             ": expected an LCM URL such as udpm://" + kGroup + ":7667?ttl=0");
+  }
+}
+
+Bus::~Bus() = default;
+
+void Bus::publish(const std::string& channel, ByteView message) {
+  if (lcm_->publish(channel, message.data(), static_cast<unsigned>(message.size())) != 0) {
+    throw std::runtime_error("cannot publish " + std::to_string(message.size()) + " bytes on " +
+                             channel + " of the bus " + url_);
+  }
+}
+
+void Bus::subscribe(const std::string& channel, Handler handler) {
+  subscribers_.push_back(std::make_unique<Subscriber>(Subscriber{*this, std::move(handler)}));
+  lcm::Subscription* subscription =
+      lcm_->subscribe(channel, &Subscriber::on_message, subscribers_.back().get());
+  if (subscription == nullptr) {
+    throw std::runtime_error("cannot subscribe to " + channel + " of the bus " + url_);
+  }
+  subscription->setQueueCapacity(0);  // without limit; the default drops beyond 30, in silence
+}
+
+bool Bus::handle(std::chrono::milliseconds timeout) {
+  errno = 0;
+  const int handled = lcm_->handleTimeout(static_cast<int>(timeout.count()));
+  const bool interrupted = handled < 0 && errno == EINTR;  // by a signal
+  if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
+  if (handled < 0 && !interrupted)
+    throw std::runtime_error("the connection to the bus " + url_ + " is gone");
+  return handled > 0;
+}
+
+}  // namespace kintsugi

@@ -1,0 +1,36 @@
+#pragma once
+// The one thread that receives from a Bus.
+
+#include <atomic>
+#include <exception>
+#include <thread>
+
+#include "lcmtypes/bus.hpp"
+
+namespace kintsugi {
+
+/// Runs bus.handle() until stopped. Subscribe before; handlers run in this thread.
+class BusThread {
+ public:
+  explicit BusThread(Bus& bus);
+  /// Stops; a failure that stop() has not reported is lost.
+  ~BusThread();
+  BusThread(const BusThread&) = delete;
+  BusThread& operator=(const BusThread&) = delete;
+
+  /// True when a handler threw: the thread has ended, and stop() throws it.
+  bool failed() const { return failed_; }
+
+  /// Ends the thread, and throws what a handler threw. May be called again.
+  void stop();
+
+ private:
+  void join();
+
+  std::atomic<bool> stopping_{false};
+  std::atomic<bool> failed_{false};
+  std::exception_ptr failure_;
+  std::thread thread_;
+};
+
+}  // namespace kintsugi

@@ -1,0 +1,17 @@
+#pragma once
+// The channels of the bus: name, type and direction of each are in README.md.
+
+namespace kintsugi::channels {
+
+inline constexpr char kCloudSlice[] = "CLOUD_SLICE";
+inline constexpr char kCameraPose[] = "CAMERA_POSE";
+inline constexpr char kRgbdFrame[] = "RGBD_FRAME";
+inline constexpr char kSegmentUpdate[] = "SEGMENT_UPDATE";
+inline constexpr char kSnapshot[] = "SNAPSHOT";
+inline constexpr char kMapperStatus[] = "MAPPER_STATUS";
+inline constexpr char kSegmenterStatus[] = "SEGMENTER_STATUS";
+inline constexpr char kViewerStatus[] = "VIEWER_STATUS";
+inline constexpr char kHeartbeat[] = "HEARTBEAT";
+inline constexpr char kResendRequest[] = "RESEND_REQUEST";
+
+}  // namespace kintsugi::channels
