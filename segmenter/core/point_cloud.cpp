@@ -1,22 +1,14 @@
 #include "segmenter/core/point_cloud.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
+#include "segmenter/core/admission.hpp"
+
 namespace kintsugi::segmenter {
-namespace {
-
-bool is_finite(const CloudPoint& p) {
-  return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z) && std::isfinite(p.nx) &&
-         std::isfinite(p.ny) && std::isfinite(p.nz);
-}
-
-}  // namespace
-
 const SliceRecord& PointCloud::add_slice(std::int32_t slice_id,
                                          std::span<const CloudPoint> points_W) {
   if (slice_id < 0) {
@@ -42,7 +34,7 @@ const SliceRecord& PointCloud::add_slice(std::int32_t slice_id,
   slice.num_points = static_cast<std::int32_t>(points_W.size());
   slice.first = size();
   for (std::size_t index = 0; index < points_W.size(); ++index) {
-    if (is_finite(points_W[index])) {
+    if (!reason_to_reject(points_W[index])) {
       points_W_.push_back(points_W[index]);
     } else {
       slice.rejected.push_back(static_cast<std::int32_t>(index));

@@ -30,8 +30,8 @@ struct SliceRecord {
 
 /// All points of the map that can be segmented, slice after slice, frame W.
 ///
-/// A point whose position or normal is not finite is rejected: it is recorded in its slice and
-/// never gets a PointIndex.
+/// A point that reason_to_reject() (admission.hpp) names one for, for instance one that is not
+/// finite, is recorded in its slice and never gets a PointIndex.
 class PointCloud {
  public:
   /// Appends the points of a slice and returns its record (valid until the next call).
