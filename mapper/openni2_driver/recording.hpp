@@ -2,7 +2,6 @@
 // What a device of our OpenNI2 driver plays back.
 
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <string>
 
@@ -14,9 +13,14 @@ namespace kintsugi::mapper {
 
 /// Unit of a raw depth value; both are pixel formats of OpenNI2. Raw 0 is always "no measurement".
 enum class DepthUnit {
-  k1mm,    ///< reaches 65.535 m
-  k100um,  ///< reaches 6.5535 m; what lies beyond is 0
+  k1mm,    ///< reaches 32.767 m: a .oni file of OpenNI2 keeps no greater value
+  k100um,  ///< reaches 6.5534 m
 };
+
+constexpr double units_per_m(DepthUnit unit) { return unit == DepthUnit::k1mm ? 1000.0 : 10000.0; }
+
+/// The greatest valid raw value; depth beyond it is 0. 65535 stays free, some mean "invalid" by it.
+constexpr int max_depth_value(DepthUnit unit) { return unit == DepthUnit::k1mm ? 32767 : 65534; }
 
 /// A finite sequence of depth images and one of colour images, each with its own times, seen by one
 /// pinhole camera (colour is registered to depth).

@@ -1,0 +1,99 @@
+#include "mapper/openni2_driver/image_decoder.hpp"
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+#include <string_view>
+
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+namespace kintsugi::mapper {
+namespace {
+
+using Bytes = std::span<const std::uint8_t>;
+
+bool contains(Bytes bytes, std::string_view text) {
+  return std::search(bytes.begin(), bytes.end(), text.begin(), text.end(),
+                     [](std::uint8_t byte, char c) {
+                       return byte == static_cast<std::uint8_t>(c);
+                     }) != bytes.end();
+}
+
+bool starts_with(Bytes bytes, std::string_view text) {
+  return bytes.size() >= text.size() && contains(bytes.first(text.size()), text);
+}
+
+/// libjpeg fills what is missing of a cut-off file with grey and says nothing to us; libpng keeps
+/// the rows it has. Both formats have an end mark, near the end of the file.
+bool is_cut_off(Bytes bytes) {
+  constexpr std::size_t kTail = 64;
+  const Bytes tail = bytes.last(std::min(kTail, bytes.size()));
+  if (starts_with(bytes, "\x89PNG")) return !contains(tail, "IEND");
+  if (starts_with(bytes, "\xff\xd8")) return !contains(tail, "\xff\xd9");
+  return false;
+}
+
+std::string describe(const cv::Mat& image) {
+  return std::to_string(image.cols) + "x" + std::to_string(image.rows) + ", " +
+         std::to_string(8 * image.elemSize1()) + " bit, " + std::to_string(image.channels()) +
+         (image.channels() == 1 ? " channel" : " channels");
+}
+
+cv::Mat decode(Bytes bytes, const std::string& what) {
+  if (bytes.empty()) throw std::runtime_error(what + ": is empty, expected an image");
+  if (is_cut_off(bytes)) {
+    throw std::runtime_error(what + ": is cut off after " + std::to_string(bytes.size()) +
+                             " bytes");
+  }
+  cv::Mat image;
+  try {
+    const cv::Mat buffer(1, static_cast<int>(bytes.size()), CV_8UC1,
+                         const_cast<std::uint8_t*>(bytes.data()));
+    image = cv::imdecode(buffer, cv::IMREAD_UNCHANGED);
+  } catch (const cv::Exception& error) {
+    throw std::runtime_error(what + ": cannot be decoded: " + error.what());
+  }
+  if (image.empty()) throw std::runtime_error(what + ": cannot be decoded as an image");
+  return image;
+}
+
+void require(bool right, const cv::Mat& image, cv::Size size, const char* type,
+             const std::string& what) {
+  if (right && image.size() == size) return;
+  throw std::runtime_error(what + ": is " + describe(image) + ", expected " +
+                           std::to_string(size.width) + "x" + std::to_string(size.height) + ", " +
+                           type);
+}
+
+}  // namespace
+
+cv::Mat_<std::uint16_t> decode_depth(Bytes bytes, cv::Size expected, const std::string& what) {
+  const cv::Mat image = decode(bytes, what);
+  require(image.type() == CV_16UC1, image, expected, "16 bit, 1 channel", what);
+  return image;
+}
+
+cv::Mat_<cv::Vec3b> decode_color(Bytes bytes, cv::Size expected, const std::string& what) {
+  const cv::Mat image = decode(bytes, what);
+  const int channels = image.channels();
+  require(image.depth() == CV_8U && (channels == 1 || channels == 3 || channels == 4), image,
+          expected, "8 bit, 1, 3 or 4 channels", what);
+  constexpr std::array<int, 5> kToRgb = {0, cv::COLOR_GRAY2RGB, 0, cv::COLOR_BGR2RGB,
+                                         cv::COLOR_BGRA2RGB};
+  cv::Mat_<cv::Vec3b> rgb;
+  cv::cvtColor(image, rgb, kToRgb.at(static_cast<std::size_t>(channels)));
+  return rgb;
+}
+
+std::vector<std::uint8_t> read_bytes(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw std::runtime_error(file.string() + ": cannot be read");
+  std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(stream), {}};
+  if (stream.bad()) throw std::runtime_error(file.string() + ": reading it failed");
+  return bytes;
+}
+
+}  // namespace kintsugi::mapper
