@@ -1,0 +1,14 @@
+#pragma once
+// One function per scene of scenes.hpp.
+
+#include <cstdint>
+
+#include "mapper/synthetic/scenes.hpp"
+
+namespace kintsugi::synthetic {
+
+SceneWithPath sphere_scene(std::uint32_t seed);
+SceneWithPath plane_scene(std::uint32_t seed);
+SceneWithPath box_room_scene(std::uint32_t seed);
+
+}  // namespace kintsugi::synthetic

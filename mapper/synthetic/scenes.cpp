@@ -1,0 +1,47 @@
+#include "mapper/synthetic/scenes.hpp"
+
+#include <functional>
+#include <map>
+#include <stdexcept>
+
+#include "mapper/synthetic/room_plans.hpp"
+
+namespace kintsugi::synthetic {
+
+namespace {
+
+using Maker = std::function<SceneWithPath(std::uint32_t)>;
+
+const std::map<std::string, Maker>& makers() {
+  static const std::map<std::string, Maker> kMakers = {
+      {"sphere", sphere_scene},
+      {"plane", plane_scene},
+      {"box-room", box_room_scene},
+  };
+  return kMakers;
+}
+
+}  // namespace
+
+const std::vector<std::string>& scene_names() {
+  static const std::vector<std::string> kNames = [] {
+    std::vector<std::string> names;
+    for (const auto& [name, maker] : makers()) names.push_back(name);
+    return names;
+  }();
+  return kNames;
+}
+
+SceneWithPath make_scene_with_path(const std::string& name, std::uint32_t seed) {
+  const auto maker = makers().find(name);
+  if (maker == makers().end()) {
+    std::string message = "no synthetic scene \"" + name + "\"; there are:";
+    for (const std::string& known : scene_names()) message += " " + known;
+    throw std::invalid_argument(message);
+  }
+  return maker->second(seed);
+}
+
+Scene make_scene(const std::string& name) { return make_scene_with_path(name).scene; }
+
+}  // namespace kintsugi::synthetic
