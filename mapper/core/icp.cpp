@@ -15,7 +15,6 @@ struct BandSum {
   double system[28] = {};
   double squared_residuals_m2 = 0.0;
   std::int64_t inliers = 0;
-  std::int64_t measured = 0;
 
   /// Adds a row of the Jacobian with its residual in the last place.
   void add(const double (&row)[7], double weight) {
@@ -56,7 +55,6 @@ class Linearizer {
   void add_pixel(int v, int u, BandSum& sum) const {
     const cv::Vec3f& point_C = frame_.points_C(v, u);
     if (std::isnan(point_C[2])) return;
-    ++sum.measured;
     const cv::Vec3f& normal_C = frame_.normals_C(v, u);
     if (std::isnan(normal_C[2])) return;
 
@@ -113,7 +111,6 @@ NormalEquations unpack(const BandSum& sum) {
   }
   equations.squared_residuals_m2 = sum.squared_residuals_m2;
   equations.inliers = sum.inliers;
-  equations.measured = sum.measured;
   return equations;
 }
 
@@ -143,7 +140,6 @@ NormalEquations linearize(const SurfaceMap& frame_C, const SurfaceMap& model_V, 
     for (int k = 0; k < 28; ++k) total.system[k] += band.system[k];
     total.squared_residuals_m2 += band.squared_residuals_m2;
     total.inliers += band.inliers;
-    total.measured += band.measured;
   }
   return unpack(total);
 }

@@ -30,7 +30,6 @@ struct NormalEquations {
   double weighted_squares = 0.0;    ///< E, dimensionless
   double squared_residuals_m2 = 0;  ///< sum of r_i^2 without weights
   std::int64_t inliers = 0;         ///< pairs that passed the gates
-  std::int64_t measured = 0;        ///< frame pixels with a point
 };
 
 /// Standard deviation of a structured-light camera's depth at depth z (metres), after Nguyen et al.

@@ -7,8 +7,8 @@
 namespace kintsugi::mapper {
 
 void LossRule::Config::validate() const {
-  check_range("min_valid_share", min_valid_share, 0.0, 1.0);
-  check_range("max_valid_drop", max_valid_drop, 0.0, 1.0);
+  check_range("min_covered_share", min_covered_share, 0.0, 1.0);
+  check_range("max_covered_drop", max_covered_drop, 0.0, 1.0);
   check_range("recent_view_decay", recent_view_decay, 0.0, 1.0);
   check_range("min_inlier_share", min_inlier_share, 0.0, 1.0);
   check_range("max_rms_m", max_rms_m, 1e-6, 1.0);
@@ -18,7 +18,7 @@ void LossRule::Config::validate() const {
 std::string_view to_string(LossReason reason) {
   switch (reason) {
     case LossReason::kTooFewPixels:
-      return "too few valid pixels";
+      return "too few pixels with a depth in the volume";
     case LossReason::kViewCutOff:
       return "most of the view vanished";
     case LossReason::kNotSolved:
@@ -34,8 +34,8 @@ std::string_view to_string(LossReason reason) {
 LossRule::LossRule(const Config& config) : config_(config) { config_.validate(); }
 
 std::optional<LossReason> LossRule::judge(const RegistrationQuality& quality) const {
-  if (quality.valid_share < config_.min_valid_share) return LossReason::kTooFewPixels;
-  if (quality.valid_share < (1.0 - config_.max_valid_drop) * recent_valid_share_) {
+  if (quality.covered_share < config_.min_covered_share) return LossReason::kTooFewPixels;
+  if (quality.covered_share < (1.0 - config_.max_covered_drop) * recent_covered_share_) {
     return LossReason::kViewCutOff;
   }
   if (!quality.solved) return LossReason::kNotSolved;
@@ -46,8 +46,9 @@ std::optional<LossReason> LossRule::judge(const RegistrationQuality& quality) co
   return std::nullopt;
 }
 
-void LossRule::remember(double valid_share, bool believed) {
-  recent_valid_share_ = std::max(valid_share, config_.recent_view_decay * recent_valid_share_);
+void LossRule::remember(double covered_share, bool believed) {
+  recent_covered_share_ =
+      std::max(covered_share, config_.recent_view_decay * recent_covered_share_);
   if (believed) ++believed_frames_;
 }
 

@@ -8,24 +8,24 @@ namespace kintsugi::mapper {
 
 /// What a registration reports about itself.
 struct RegistrationQuality {
-  double valid_share = 0.0;   ///< frame pixels with a depth / all pixels
-  double inlier_share = 0.0;  ///< pairs that passed the gates / frame pixels with a depth
-  double rms_m = 0.0;         ///< of the point-to-plane residuals of those pairs
-  bool solved = false;        ///< the normal equations had a solution at every step
+  double covered_share = 0.0;  ///< frame pixels whose point lies where the map can be / all pixels
+  double inlier_share = 0.0;   ///< pairs that passed the gates / the pixels above
+  double rms_m = 0.0;          ///< of the point-to-plane residuals of those pairs
+  bool solved = false;         ///< the normal equations had a solution at every step
 };
 
 enum class LossReason { kTooFewPixels, kViewCutOff, kNotSolved, kTooFewInliers, kLargeResidual };
 
 std::string_view to_string(LossReason reason);
 
-/// Judges frames one after another. It remembers how much of the view was valid.
+/// Judges frames one after another. It remembers how much of the view was covered.
 class LossRule {
  public:
   struct Config {
-    double min_valid_share = 0.02;   ///< of all pixels
-    double max_valid_drop = 0.6;     ///< valid share may fall by this much of the recent one
-    double recent_view_decay = 0.9;  ///< per frame: a view that stays small is accepted
-    double min_inlier_share = 0.45;  ///< of the valid pixels
+    double min_covered_share = 0.02;  ///< of all pixels
+    double max_covered_drop = 0.6;    ///< may fall by this much of the recent one
+    double recent_view_decay = 0.9;   ///< per frame: a view that stays small is accepted
+    double min_inlier_share = 0.45;   ///< of the covered pixels
     double max_rms_m = 0.014;
     int grace_frames = 10;  ///< believed frames before min_inlier_share applies: the model is thin
 
@@ -39,11 +39,11 @@ class LossRule {
   std::optional<LossReason> judge(const RegistrationQuality& quality) const;
 
   /// To be called once for each frame, after judging it.
-  void remember(double valid_share, bool believed);
+  void remember(double covered_share, bool believed);
 
  private:
   Config config_;
-  double recent_valid_share_ = 0.0;
+  double recent_covered_share_ = 0.0;
   int believed_frames_ = 0;
 };
 

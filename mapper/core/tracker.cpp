@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -36,14 +37,13 @@ std::optional<Vector6d> solve(const NormalEquations& equations) {
 }
 
 RegistrationQuality quality_of(const NormalEquations& equations, const SurfaceMap& frame,
-                               bool solved) {
+                               double covered, bool solved) {
   RegistrationQuality quality;
   quality.solved = solved;
-  quality.valid_share =
-      static_cast<double>(equations.measured) / static_cast<double>(frame.points_C.total());
-  if (equations.measured > 0) {
-    quality.inlier_share =
-        static_cast<double>(equations.inliers) / static_cast<double>(equations.measured);
+  quality.covered_share = covered;
+  const double candidates = covered * static_cast<double>(frame.points_C.total());
+  if (candidates > 0.0) {
+    quality.inlier_share = std::min(1.0, static_cast<double>(equations.inliers) / candidates);
   }
   if (equations.inliers > 0) {
     quality.rms_m =
@@ -70,12 +70,12 @@ Tracker::Tracker(const Config& config) : config_(config), loss_rule_(config.loss
   config_.validate();
 }
 
-void Tracker::start_at(const Pose& X_WC, std::int64_t utime, double valid_share) {
+void Tracker::start_at(const Pose& X_WC, std::int64_t utime, double covered_share) {
   X_WC_ = X_WC;
   utime_ = utime;
   velocity_C_.setZero();
   lost_ = false;
-  loss_rule_.remember(valid_share, true);
+  loss_rule_.remember(covered_share, true);
 }
 
 Pose Tracker::predict(std::int64_t utime) const {
@@ -92,24 +92,25 @@ TrackingResult Tracker::track(const SurfacePyramid& frame_C, std::int64_t utime,
     registration = register_frame(frame_C, model, X_WC_, true);
     loss = loss_rule_.judge(registration.quality);
   }
-  loss_rule_.remember(registration.quality.valid_share, !loss);
+  loss_rule_.remember(registration.quality.covered_share, !loss);
   return loss ? lose(registration, *loss) : accept(registration, utime);
 }
 
 Tracker::Registration Tracker::register_frame(const SurfacePyramid& frame_C, const Model& model,
                                               const Pose& X_WC_start, bool wide) const {
-  const Pose X_VW = model.X_WV.inverse();
-  Pose X_VC = X_VW * X_WC_start;
   Registration registration;
+  Pose X_VC = model.X_WV.inverse() * X_WC_start;
   bool solved = true;
   const int coarsest = static_cast<int>(config_.iterations.size()) - 1;
-  for (int level = coarsest; level >= 0 && solved; --level) {
+  int level = coarsest + 1;
+  while (level > 0 && solved) {
+    --level;
     const bool widened = wide && level == coarsest;
     IcpGates gates = config_.gates;
     if (widened) gates.max_distance_m *= config_.retry_gate_factor;
     const int steps = config_.iterations[level] * (widened ? config_.retry_iteration_factor : 1);
     const double small_enough = config_.early_exit * std::exp2(level);
-    for (int step = 0; step < steps && solved; ++step) {
+    for (int step = 0; step < steps; ++step) {
       registration.equations = linearize(frame_C[level], model.surface_V[level], X_VC, gates);
       const auto xi = solve(registration.equations);
       solved = xi.has_value();
@@ -118,9 +119,11 @@ Tracker::Registration Tracker::register_frame(const SurfacePyramid& frame_C, con
       ++registration.iterations;
       if (xi->norm() < small_enough) break;
     }
-    registration.quality = quality_of(registration.equations, frame_C[level], solved);
   }
   registration.X_WC = orthonormal(model.X_WV * X_VC);
+  registration.quality =
+      quality_of(registration.equations, frame_C[level],
+                 covered_share(frame_C.front(), registration.X_WC, model.region_W), solved);
   return registration;
 }
 
@@ -157,10 +160,16 @@ TrackingResult Tracker::lose(const Registration& registration, LossReason reason
   return result;
 }
 
-double valid_share(const SurfaceMap& surface) {
-  std::size_t valid = 0;
-  for (const cv::Vec3f& point : surface.points_C) valid += std::isnan(point[2]) ? 0 : 1;
-  return static_cast<double>(valid) / static_cast<double>(surface.points_C.total());
+double covered_share(const SurfaceMap& frame_C, const Pose& X_WC,
+                     const Eigen::AlignedBox3d& region_W) {
+  std::size_t covered = 0;
+  for (const cv::Vec3f& point : frame_C.points_C) {
+    if (std::isnan(point[2])) continue;
+    const Eigen::Vector3d point_W =
+        X_WC * Eigen::Map<const Eigen::Vector3f>(point.val).cast<double>();
+    covered += region_W.contains(point_W) ? 1 : 0;
+  }
+  return static_cast<double>(covered) / static_cast<double>(frame_C.points_C.total());
 }
 
 }  // namespace kintsugi::mapper

@@ -3,7 +3,9 @@
 //
 // Frames: W map, C camera of the new frame, V virtual camera from which the model was raycast.
 
+#include <Eigen/Geometry>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -19,6 +21,9 @@ namespace kintsugi::mapper {
 struct Model {
   SurfacePyramid surface_V;
   Pose X_WV = Pose::Identity();
+  /// Where the map can be at all, metres: frame points outside are no evidence for or against.
+  Eigen::AlignedBox3d region_W{Eigen::Vector3d::Constant(-std::numeric_limits<double>::infinity()),
+                               Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity())};
 };
 
 struct TrackingResult {
@@ -57,8 +62,8 @@ class Tracker {
   explicit Tracker(const Config& config);
 
   /// The camera is known to be at `X_WC` at `utime`: the first frame, or a relocalised one. Motion
-  /// starts anew. `valid_share` is that of the frame.
-  void start_at(const Pose& X_WC, std::int64_t utime, double valid_share);
+  /// starts anew. `covered_share` is that of the frame.
+  void start_at(const Pose& X_WC, std::int64_t utime, double covered_share);
 
   /// Registers a frame with the model. Both pyramids have as many levels as the configuration.
   /// After a loss the tracker keeps the last good pose and may be called with the next frame.
@@ -88,7 +93,8 @@ class Tracker {
   bool lost_ = false;
 };
 
-/// Pixels with a depth / all pixels.
-double valid_share(const SurfaceMap& surface);
+/// Pixels whose point lies in the region / all pixels.
+double covered_share(const SurfaceMap& frame_C, const Pose& X_WC,
+                     const Eigen::AlignedBox3d& region_W);
 
 }  // namespace kintsugi::mapper

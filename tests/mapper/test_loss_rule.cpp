@@ -19,10 +19,10 @@ TEST(LossRule, BelievesAGoodRegistration) { EXPECT_EQ(settled().judge(good()), s
 TEST(LossRule, NamesWhatIsWrong) {
   const LossRule rule = settled();
   RegistrationQuality quality = good();
-  quality.valid_share = 0.019;
+  quality.covered_share = 0.019;
   EXPECT_EQ(rule.judge(quality), LossReason::kTooFewPixels);
   quality = good();
-  quality.valid_share = 0.25;  // three quarters of the width wiped
+  quality.covered_share = 0.25;  // three quarters of the width wiped
   EXPECT_EQ(rule.judge(quality), LossReason::kViewCutOff);
   quality = good();
   quality.solved = false;
@@ -41,7 +41,7 @@ TEST(LossRule, ForgivesFewInliersWhileTheModelIsThin) {
   quality.inlier_share = 0.2;
   for (int i = 0; i < LossRule::Config{}.grace_frames; ++i) {
     EXPECT_EQ(rule.judge(quality), std::nullopt) << i;
-    rule.remember(quality.valid_share, true);
+    rule.remember(quality.covered_share, true);
   }
   EXPECT_EQ(rule.judge(quality), LossReason::kTooFewInliers);
 }
@@ -49,10 +49,10 @@ TEST(LossRule, ForgivesFewInliersWhileTheModelIsThin) {
 TEST(LossRule, GetsUsedToAViewThatStaysSmall) {
   LossRule rule = settled();
   RegistrationQuality quality = good();
-  quality.valid_share = 0.25;
+  quality.covered_share = 0.25;
   int frames = 0;
   while (rule.judge(quality) && frames < 100) {
-    rule.remember(quality.valid_share, false);
+    rule.remember(quality.covered_share, false);
     ++frames;
   }
   // 0.25 >= 0.4 * 0.9 * 0.9^n from n = 4 on.
