@@ -1,0 +1,90 @@
+#pragma once
+// From depth and colour frames to the camera's path and the slices of the map.
+//
+// Frames: W map (the camera at the first frame, or that of the given poses), C depth camera.
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "lcmtypes/messages.hpp"
+#include "mapper/core/integrator.hpp"
+#include "mapper/core/raycaster.hpp"
+#include "mapper/core/rgbd_frame.hpp"
+#include "mapper/core/slice_worker.hpp"
+#include "mapper/core/tracker.hpp"
+#include "mapper/core/trajectory.hpp"
+#include "mapper/core/tsdf_volume.hpp"
+
+namespace kintsugi::mapper {
+
+/// Wall time of the stages of one frame, milliseconds.
+struct StageTimes {
+  double track_ms = 0.0;      ///< pyramid and registration
+  double integrate_ms = 0.0;  ///< shift, allocation and fusion
+  double raycast_ms = 0.0;    ///< the model for the next frame
+};
+
+/// What became of one frame.
+struct FrameResult {
+  TrackingResult tracking;
+  std::vector<CloudSlice> slices;  ///< finished since the frame before; of any earlier frame
+  StageTimes times;
+};
+
+/// Tracks the camera, fuses what it sees into a volume that moves with it, and hands out what
+/// leaves the volume as slices, numbered from 0 without gaps.
+///
+/// The same frames give the same poses and the same slices, bit by bit, whatever the number of
+/// threads; only with which frame a finished slice is handed out depends on timing. A frame that is
+/// lost changes nothing: the map and the last good pose stay. `session` and `map_name` of the
+/// slices are left for who publishes them.
+class MapperPipeline {
+ public:
+  struct Config {
+    TsdfVolume::Config volume;
+    Integrator::Config integrator;
+    Raycaster::Config raycaster;
+    Tracker::Config tracker;
+    SliceWorker::Config slices;
+    int finest_tracking_width_px = 320;  ///< images are halved while at least this remains
+    Trajectory given_path;  ///< if not empty, replaces tracking; a frame without a pose is lost
+
+    /// @throws std::invalid_argument naming field, value and bound
+    void validate() const;
+  };
+
+  /// @throws std::invalid_argument if the configuration is not valid
+  explicit MapperPipeline(const Config& config);
+
+  /// Frames come in order of time, with the same intrinsics.
+  /// @throws std::invalid_argument if an image and the intrinsics disagree; nothing changed then
+  FrameResult process(const RgbdFrame& frame);
+
+  /// The end of the run: the slices still being extracted and, last, the final slice with what is
+  /// in the volume. The pipeline takes no more frames.
+  std::vector<CloudSlice> finish();
+
+  std::int64_t num_blocks() const { return static_cast<std::int64_t>(volume_.num_blocks()); }
+  double extraction_ms() const { return slice_worker_.busy_ms(); }
+
+ private:
+  TrackingResult locate(const RgbdFrame& frame);
+  TrackingResult locate_on_given_path(const RgbdFrame& frame) const;
+  TrackingResult start(const SurfacePyramid& frame_C, std::int64_t utime);
+  void shift(const RgbdFrame& frame, const Pose& X_WC);
+  void render_model(const RgbdFrame& frame, const Pose& X_WC);
+  int halvings(const Intrinsics& intrinsics) const;
+
+  Config config_;
+  TsdfVolume volume_;
+  Integrator integrator_;
+  Raycaster raycaster_;
+  Tracker tracker_;
+  SliceWorker slice_worker_;
+  std::optional<Model> model_;    ///< none before the first fused frame
+  Pose X_WC_ = Pose::Identity();  ///< of the last fused frame
+  std::int64_t utime_ = 0;        ///< of the last frame
+};
+
+}  // namespace kintsugi::mapper

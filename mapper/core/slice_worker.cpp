@@ -1,0 +1,89 @@
+#include "mapper/core/slice_worker.hpp"
+
+#include <utility>
+
+#include "mapper/core/check.hpp"
+#include "mapper/core/stopwatch.hpp"
+
+namespace kintsugi::mapper {
+
+void SliceWorker::Config::validate() const {
+  extractor.validate();
+  check_range<std::size_t>("max_queued", max_queued, 1, 1'000'000);
+}
+
+SliceWorker::SliceWorker(const Config& config)
+    : config_((config.validate(), config)),
+      extractor_(config.extractor),
+      thread_([this] { run(); }) {}
+
+SliceWorker::~SliceWorker() {
+  {
+    const std::scoped_lock lock(mutex_);
+    stop_ = true;
+  }
+  work_.notify_all();
+  thread_.join();
+}
+
+void SliceWorker::submit(DetachedBlocks blocks, std::int64_t utime, const Pose& X_WC) {
+  std::unique_lock lock(mutex_);
+  done_.wait(lock, [this] { return failure_ || queue_.size() < config_.max_queued; });
+  if (failure_) std::rethrow_exception(failure_);
+  CloudSlice slice;
+  slice.utime = utime;
+  slice.id = next_id_++;
+  slice.kind = blocks.kind;
+  slice.resolution_m = blocks.resolution_m;
+  slice.X_WC = X_WC;
+  queue_.push_back({std::move(blocks), std::move(slice)});
+  work_.notify_one();
+}
+
+std::vector<CloudSlice> SliceWorker::take_finished() {
+  std::unique_lock lock(mutex_);
+  return take(lock);
+}
+
+std::vector<CloudSlice> SliceWorker::drain() {
+  std::unique_lock lock(mutex_);
+  done_.wait(lock, [this] { return failure_ || queue_.empty(); });
+  return take(lock);
+}
+
+double SliceWorker::busy_ms() const {
+  const std::scoped_lock lock(mutex_);
+  return busy_ms_;
+}
+
+std::vector<CloudSlice> SliceWorker::take(std::unique_lock<std::mutex>& /*held*/) {
+  if (failure_) std::rethrow_exception(failure_);
+  return std::exchange(finished_, {});
+}
+
+void SliceWorker::run() {
+  std::unique_lock lock(mutex_);
+  while (true) {
+    work_.wait(lock, [this] { return stop_ || !queue_.empty(); });
+    if (stop_) return;
+    Job& job = queue_.front();  // others only append: the reference stays
+    lock.unlock();
+    const Stopwatch stopwatch;
+    std::exception_ptr failure;
+    try {
+      job.slice.points_W = extractor_.extract(job.blocks);
+    } catch (...) {
+      failure = std::current_exception();
+    }
+    const double elapsed_ms = stopwatch.elapsed_ms();
+    lock.lock();
+    busy_ms_ += elapsed_ms;
+    failure_ = failure;
+    if (!failure_) finished_.push_back(std::move(job.slice));
+    queue_.pop_front();
+    done_.notify_all();
+    if (failure_) return;
+  }
+}
+
+}  // namespace kintsugi::mapper
