@@ -41,6 +41,7 @@ concept BulkMessage = std::same_as<T, CloudSlice> || std::same_as<T, SegmentUpda
 
 // Bounds that both sides agree on. A message outside them is refused, sent or received.
 inline constexpr std::int64_t kMaxPayloadBytes = std::int64_t{1} << 30;  ///< of a bulk message
+inline constexpr std::int64_t kMaxSequence = std::int64_t{1} << 48;
 inline constexpr std::size_t kMaxStringBytes = 1024;
 inline constexpr std::size_t kMaxResendRanges = 1024;
 inline constexpr float kMinResolution_m = 1e-4F;
@@ -74,6 +75,10 @@ struct Chunk {
   Bytes part;                    ///< this part of the payload
   Bytes identity;                ///< the encoded header: equal in all chunks of one message
 };
+
+/// Bytes of all bulk data of `message`.
+template <BulkMessage Message>
+std::int64_t payload_bytes(const Message& message);
 
 /// Number of chunks of `message` when no chunk may be larger than `max_chunk_bytes`; >= 1.
 /// Throws std::invalid_argument when a field of `message`, or the limit, is out of its bounds.

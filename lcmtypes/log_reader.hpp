@@ -3,15 +3,11 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <memory>
+#include <fstream>
 #include <optional>
 #include <string>
 
 #include "lcmtypes/codec.hpp"
-
-namespace lcm {
-class LogFile;
-}
 
 namespace kintsugi {
 
@@ -23,13 +19,12 @@ struct LogEvent {
   ByteView data;
 };
 
+/// Reads the format itself: lcm::LogFile allocates whatever an event claims to hold, searches for
+/// the next event after damage, and does not say where or why it ended.
 class LogReader {
  public:
   /// Throws std::runtime_error when `path` cannot be read, is empty or is no LCM log.
   explicit LogReader(const std::filesystem::path& path);
-  ~LogReader();
-  LogReader(const LogReader&) = delete;
-  LogReader& operator=(const LogReader&) = delete;
 
   /// The next event; nothing at the end of what can be read.
   std::optional<LogEvent> next();
@@ -41,13 +36,14 @@ class LogReader {
   std::int64_t bytes_total() const { return size_; }
 
  private:
-  bool next_event_is_whole();
+  std::nullopt_t stop(const std::string& what);
 
   std::filesystem::path path_;
-  std::unique_ptr<lcm::LogFile> log_;
+  std::ifstream file_;
   std::int64_t size_ = 0;
   std::int64_t position_ = 0;  // of the next event
   std::int64_t index_ = 0;
+  Bytes data_;  // of the last event
   std::optional<std::string> damage_;
 };
 

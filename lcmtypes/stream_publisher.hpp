@@ -77,21 +77,21 @@ class StreamPublisher {
     std::function<Bytes(std::int64_t sequence, std::int32_t index)> encode;
   };
 
-  void enqueue(Job job, std::int64_t session);
+  void enqueue(Job job);
+  // The thread. What takes the lock gives it up while it encodes, waits and sends.
   void run();
-  void send(const Job& job, std::unique_lock<std::mutex>& lock);
+  void send_message(std::unique_lock<std::mutex>& lock);
   void send_heartbeat(std::unique_lock<std::mutex>& lock);
-  void pace(std::size_t bytes, std::unique_lock<std::mutex>& lock);
-  double now_s() const;
+  void pace(std::size_t bytes);
 
   const Transmit transmit_;
   const std::string channel_;
   const std::int64_t session_;
   const Config config_;
   SentStore* const store_;
-  TokenBucket bucket_;  // used by the thread alone
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-  std::chrono::steady_clock::time_point next_heartbeat_ = start_;
+  TokenBucket bucket_;  // this and the next are used by the thread alone
+  std::chrono::steady_clock::time_point next_heartbeat_ = std::chrono::steady_clock::now();
+  const std::chrono::steady_clock::time_point start_ = next_heartbeat_;
 
   mutable std::mutex mutex_;  // guards what follows
   std::condition_variable wake_;

@@ -33,24 +33,26 @@ struct StreamGap {
   std::vector<SequenceRange> ranges;  ///< lowest first, at most kMaxResendRanges
 };
 
+struct StreamSubscriberConfig {
+  /// Chunks of incomplete messages, bytes; beyond it the oldest incomplete message is dropped and
+  /// its chunks count as missing.
+  std::size_t max_pending_bytes = std::size_t{1} << 30U;
+  std::size_t max_sessions = 64;              ///< beyond it the one longest silent is forgotten
+  std::size_t max_gaps_per_session = 65'536;  ///< beyond it the oldest gap is given up
+
+  void validate() const;
+};
+
 /// Puts the chunks of one channel together, per session; no matter in which order, how often or
 /// between which others they come. Memory holds only what arrived, up to a bound.
 ///
-/// handle() and handle_heartbeat() belong to one thread; counts() and gaps() may be called from
-/// any. `on_message` gets each message once, when its last chunk arrives; a slice that is sent
-/// again with a higher revision is another message.
+/// handle() belongs to one thread; counts() and gaps() may be called from any. `on_message` gets
+/// each message once, when its last chunk arrives; a slice that is sent again with a higher
+/// revision is another message. `on_bad` (may be empty) gets the reason why something was dropped.
 template <BulkMessage Message>
 class StreamSubscriber {
  public:
-  struct Config {
-    /// Chunks of incomplete messages, bytes; beyond it the oldest incomplete message is dropped
-    /// and its chunks count as missing.
-    std::size_t max_pending_bytes = std::size_t{1} << 30;
-    std::size_t max_sessions = 64;              ///< beyond it the one longest silent is forgotten
-    std::size_t max_gaps_per_session = 65'536;  ///< beyond it the oldest gap is given up
-
-    void validate() const;
-  };
+  using Config = StreamSubscriberConfig;
   using OnMessage = std::function<void(Message message)>;
   using OnBad = std::function<void(const DecodeError& reason)>;
 
@@ -61,7 +63,7 @@ class StreamSubscriber {
   void subscribe(Bus& bus);
 
   /// One LCM message, from a log for instance; true when it was on the stream's channel or a
-  /// heartbeat. Never throws for what is in it.
+  /// heartbeat. Whatever is in it, only the callbacks may throw.
   bool handle(const std::string& channel, ByteView message);
 
   StreamCounts counts() const;
@@ -81,14 +83,18 @@ class StreamSubscriber {
     std::int64_t last_heard = 0;
     std::map<std::int64_t, Pending> pending;  // by the sequence number of the message's chunk 0
   };
+  struct PendingKey {
+    std::int64_t session = 0;
+    std::int64_t first_sequence = 0;
+  };
 
-  void handle_chunk(ByteView message);
-  void handle_heartbeat(ByteView message);
   std::vector<Chunk<Message>> add(Chunk<Message> chunk);
-  Session& session(std::int64_t id);
-  void drop(Session& session, typename std::map<std::int64_t, Pending>::iterator message);
-  void stay_within_bounds();
-  void bad(const DecodeError& reason);
+  void add(const Heartbeat& heartbeat);
+  // With the lock held:
+  Session& heard_of(std::int64_t session);
+  void forget_silent_session();
+  std::vector<Chunk<Message>> take(PendingKey key);
+  void stay_within_bounds(Session& session);
 
   const std::string channel_;
   const OnMessage on_message_;
@@ -97,6 +103,7 @@ class StreamSubscriber {
 
   mutable std::mutex mutex_;  // guards what follows; not held in callbacks
   std::map<std::int64_t, Session> sessions_;
+  std::map<std::int64_t, PendingKey> pending_by_age_;
   std::size_t pending_bytes_ = 0;
   std::int64_t clock_ = 0;  // counts messages
   StreamCounts counts_;

@@ -1,0 +1,65 @@
+#pragma once
+// Bounds of message fields. Each failure names type, field, value and what was expected.
+
+#include <sstream>
+#include <stdexcept>
+#include <string>
+
+#include "lcmtypes/codec.hpp"
+
+namespace kintsugi::codec {
+
+/// Checks fields of one message; throws std::invalid_argument.
+class Check {
+ public:
+  explicit Check(const char* type) : type_(type) {}
+
+  template <class Value>
+  [[noreturn]] void fail(const char* field, const Value& value, const std::string& expected) const {
+    std::ostringstream text;
+    text << type_ << '.' << field << " is " << value << ", expected " << expected;
+    throw std::invalid_argument(text.str());
+  }
+
+  /// `low` <= `value` <= `high`; not a number is outside every range.
+  template <class Value>
+  void range(const char* field, Value value, Value low, Value high) const {
+    if (value >= low && value <= high) return;
+    std::ostringstream bounds;
+    bounds << low << " .. " << high;
+    fail(field, +value, bounds.str());
+  }
+
+  void not_negative(const char* field, std::int64_t value) const {
+    if (value < 0) fail(field, value, ">= 0");
+  }
+  void positive(const char* field, std::int64_t value) const {
+    if (value <= 0) fail(field, value, "> 0");
+  }
+  void finite(const char* field, double value) const;
+
+  /// Bounded, and without control characters: names are printed in terminals.
+  void text(const char* field, const std::string& value) const;
+
+  /// Finite, and its linear part a rotation.
+  void pose(const char* field, const Pose& value) const;
+
+ private:
+  const char* type_;
+};
+
+/// The rows of [R | t], and back.
+void pose_to_wire(const Pose& X, double (&rows)[12]);
+Pose pose_from_wire(const double (&rows)[12]);
+
+/// Runs `decode`, and says DecodeError where it says std::invalid_argument.
+template <class Decode>
+auto as_decode_error(const Decode& decode) {
+  try {
+    return decode();
+  } catch (const std::invalid_argument& error) {
+    throw DecodeError(error.what());
+  }
+}
+
+}  // namespace kintsugi::codec

@@ -1,0 +1,87 @@
+#include <kintsugi/cloud_slice_t.hpp>
+
+#include "lcmtypes/codec/bulk.hpp"
+
+namespace kintsugi {
+namespace codec {
+
+static_assert(cloud_slice_t::KIND_FINAL == static_cast<int>(SliceKind::kFinal));
+static_assert(cloud_slice_t::KIND_SHIFT_PLUS_X == static_cast<int>(SliceKind::kShiftPlusX));
+static_assert(cloud_slice_t::KIND_SHIFT_MINUS_X == static_cast<int>(SliceKind::kShiftMinusX));
+static_assert(cloud_slice_t::KIND_SHIFT_PLUS_Y == static_cast<int>(SliceKind::kShiftPlusY));
+static_assert(cloud_slice_t::KIND_SHIFT_MINUS_Y == static_cast<int>(SliceKind::kShiftMinusY));
+static_assert(cloud_slice_t::KIND_SHIFT_PLUS_Z == static_cast<int>(SliceKind::kShiftPlusZ));
+static_assert(cloud_slice_t::KIND_SHIFT_MINUS_Z == static_cast<int>(SliceKind::kShiftMinusZ));
+
+template <>
+struct Bulk<CloudSlice> {
+  using WireType = cloud_slice_t;
+  static constexpr int kNumStrings = 1;
+  static constexpr std::size_t kAlignment = sizeof(CloudPoint);  // whole points in each chunk
+
+  template <class From, class To>
+  static void copy(const From& from, To& to) {
+    to.utime = from.utime;
+    to.session = from.session;
+    to.revision = from.revision;
+    to.kind = static_cast<decltype(to.kind)>(from.kind);
+    to.resolution_m = from.resolution_m;
+    to.map_name = from.map_name;
+  }
+  static void header_to_wire(const CloudSlice& slice, cloud_slice_t& wire) {
+    copy(slice, wire);
+    wire.slice_id = slice.id;
+    pose_to_wire(slice.X_WC, wire.X_WC);
+  }
+  static void header_from_wire(const cloud_slice_t& wire, CloudSlice& slice) {
+    copy(wire, slice);
+    slice.id = wire.slice_id;
+    slice.X_WC = pose_from_wire(wire.X_WC);
+  }
+  static void set_counts(cloud_slice_t& wire, const Counts& counts) {
+    wire.total_points = counts[0];
+  }
+  static Counts counts(const cloud_slice_t& wire) { return {wire.total_points, 0, 0, 0}; }
+
+  static void set_part(cloud_slice_t& wire, std::int64_t first_byte, std::size_t num_bytes) {
+    wire.first_point = static_cast<std::int32_t>(first_byte / kAlignment);
+    wire.num_points = static_cast<std::int32_t>(num_bytes / kAlignment);
+    wire.num_bytes = static_cast<std::int32_t>(num_bytes);
+  }
+  static std::int64_t first_byte(const Check& check, const cloud_slice_t& wire) {
+    check.not_negative("num_points", wire.num_points);
+    if (static_cast<std::size_t>(wire.num_points) * kAlignment != wire.data.size()) {
+      check.fail("num_bytes", wire.num_bytes,
+                 "32 * num_points, which is " + std::to_string(wire.num_points));
+    }
+    return std::int64_t{wire.first_point} * static_cast<std::int64_t>(kAlignment);
+  }
+
+  static void check_header(const Check& check, const CloudSlice& slice, const Counts& /*counts*/) {
+    check.not_negative("utime", slice.utime);
+    check.positive("session", slice.session);
+    check.not_negative("slice_id", slice.id);
+    check.not_negative("revision", slice.revision);
+    check.range("kind", static_cast<int>(slice.kind), 0, static_cast<int>(SliceKind::kShiftMinusZ));
+    check.range("resolution_m", slice.resolution_m, kMinResolution_m, kMaxResolution_m);
+    check.pose("X_WC", slice.X_WC);
+    check.text("map_name", slice.map_name);
+  }
+  /// Points may hold anything: who uses them rejects and counts the unusable ones.
+  static void check_records(const Check& /*check*/, const CloudSlice& /*slice*/) {}
+
+  template <class Slice, class Function>
+  static void for_each_vector(Slice& slice, const Function& function) {
+    function(slice.points_W);
+  }
+};
+
+}  // namespace codec
+
+template std::int64_t payload_bytes(const CloudSlice&);
+template std::int32_t num_chunks(const CloudSlice&, std::size_t);
+template Bytes encode_chunk(const CloudSlice&, std::int64_t, std::int32_t, std::size_t);
+template Chunk<CloudSlice> decode_chunk(ByteView);
+template CloudSlice join(const std::vector<Chunk<CloudSlice>>&);
+
+}  // namespace kintsugi

@@ -1,0 +1,131 @@
+// The messages that carry compressed images.
+
+#include <kintsugi/rgbd_frame_t.hpp>
+#include <kintsugi/snapshot_t.hpp>
+
+#include "lcmtypes/codec/bulk.hpp"
+
+namespace kintsugi {
+namespace codec {
+
+template <>
+struct Bulk<RgbdFrameMessage> : PlacedByByte<rgbd_frame_t> {
+  static constexpr int kNumStrings = 0;
+
+  template <class From, class To>
+  static void copy(const From& from, To& to) {
+    to.utime = from.utime;
+    to.color_utime = from.color_utime;
+    to.session = from.session;
+    to.frame_index = from.frame_index;
+    to.depth_units_per_m = from.depth_units_per_m;
+  }
+  template <class From, class To>
+  static void copy_intrinsics(const From& from, To& to) {
+    to.fx = from.fx;
+    to.fy = from.fy;
+    to.cx = from.cx;
+    to.cy = from.cy;
+    to.width = from.width;
+    to.height = from.height;
+    for (std::size_t i = 0; i < 5; ++i) to.distortion[i] = from.distortion[i];
+  }
+  static void header_to_wire(const RgbdFrameMessage& frame, rgbd_frame_t& wire) {
+    copy(frame, wire);
+    copy_intrinsics(frame.intrinsics, wire);
+  }
+  static void header_from_wire(const rgbd_frame_t& wire, RgbdFrameMessage& frame) {
+    copy(wire, frame);
+    copy_intrinsics(wire, frame.intrinsics);
+  }
+  static void set_counts(rgbd_frame_t& wire, const Counts& counts) {
+    wire.depth_bytes = counts[0];
+    wire.color_bytes = counts[1];
+  }
+  static Counts counts(const rgbd_frame_t& wire) {
+    return {wire.depth_bytes, wire.color_bytes, 0, 0};
+  }
+
+  static void check_header(const Check& check, const RgbdFrameMessage& frame,
+                           const Counts& counts) {
+    check.not_negative("utime", frame.utime);
+    check.not_negative("color_utime", frame.color_utime);
+    check.positive("session", frame.session);
+    check.not_negative("frame_index", frame.frame_index);
+    check.range("depth_units_per_m", frame.depth_units_per_m, 1.0, 1e6);
+    check.positive("depth_bytes", counts[0]);
+    check_intrinsics(check, frame.intrinsics);
+  }
+  /// Whoever decodes the images finds out whether they are images.
+  static void check_records(const Check& /*check*/, const RgbdFrameMessage& /*frame*/) {}
+
+  template <class Frame, class Function>
+  static void for_each_vector(Frame& frame, const Function& function) {
+    function(frame.depth_png);
+    function(frame.color_jpeg);
+  }
+
+ private:
+  static void check_intrinsics(const Check& check, const Intrinsics& intrinsics) {
+    constexpr double kMax_px = kMaxImageSide_px;
+    check.range("width", intrinsics.width, 1, kMaxImageSide_px);
+    check.range("height", intrinsics.height, 1, kMaxImageSide_px);
+    // A focal length below a pixel, or a principal point far outside, is no camera.
+    check.range("fx", intrinsics.fx, 1.0, 10.0 * kMax_px);
+    check.range("fy", intrinsics.fy, 1.0, 10.0 * kMax_px);
+    check.range("cx", intrinsics.cx, -kMax_px, 2.0 * kMax_px);
+    check.range("cy", intrinsics.cy, -kMax_px, 2.0 * kMax_px);
+    for (const double coefficient : intrinsics.distortion) {
+      check.range("distortion", coefficient, -1e3, 1e3);
+    }
+  }
+};
+
+template <>
+struct Bulk<Snapshot> : PlacedByByte<snapshot_t> {
+  static constexpr int kNumStrings = 1;
+
+  template <class From, class To>
+  static void copy(const From& from, To& to) {
+    to.utime = from.utime;
+    to.session = from.session;
+    to.caption = from.caption;
+    to.width = from.width;
+    to.height = from.height;
+  }
+  static void header_to_wire(const Snapshot& snapshot, snapshot_t& wire) { copy(snapshot, wire); }
+  static void header_from_wire(const snapshot_t& wire, Snapshot& snapshot) { copy(wire, snapshot); }
+  static void set_counts(snapshot_t& wire, const Counts& counts) { wire.image_bytes = counts[0]; }
+  static Counts counts(const snapshot_t& wire) { return {wire.image_bytes, 0, 0, 0}; }
+
+  static void check_header(const Check& check, const Snapshot& snapshot, const Counts& counts) {
+    check.not_negative("utime", snapshot.utime);
+    check.positive("session", snapshot.session);
+    check.range("width", snapshot.width, 1, kMaxImageSide_px);
+    check.range("height", snapshot.height, 1, kMaxImageSide_px);
+    check.positive("image_bytes", counts[0]);
+    check.text("caption", snapshot.caption);
+  }
+  static void check_records(const Check& /*check*/, const Snapshot& /*snapshot*/) {}
+
+  template <class Picture, class Function>
+  static void for_each_vector(Picture& snapshot, const Function& function) {
+    function(snapshot.image_jpeg);
+  }
+};
+
+}  // namespace codec
+
+template std::int64_t payload_bytes(const RgbdFrameMessage&);
+template std::int32_t num_chunks(const RgbdFrameMessage&, std::size_t);
+template Bytes encode_chunk(const RgbdFrameMessage&, std::int64_t, std::int32_t, std::size_t);
+template Chunk<RgbdFrameMessage> decode_chunk(ByteView);
+template RgbdFrameMessage join(const std::vector<Chunk<RgbdFrameMessage>>&);
+
+template std::int64_t payload_bytes(const Snapshot&);
+template std::int32_t num_chunks(const Snapshot&, std::size_t);
+template Bytes encode_chunk(const Snapshot&, std::int64_t, std::int32_t, std::size_t);
+template Chunk<Snapshot> decode_chunk(ByteView);
+template Snapshot join(const std::vector<Chunk<Snapshot>>&);
+
+}  // namespace kintsugi

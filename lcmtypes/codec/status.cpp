@@ -1,0 +1,163 @@
+// What a person watches.
+
+#include <kintsugi/mapper_status_t.hpp>
+#include <kintsugi/segmenter_status_t.hpp>
+#include <kintsugi/viewer_status_t.hpp>
+
+#include "lcmtypes/codec/small.hpp"
+
+namespace kintsugi {
+namespace codec {
+
+template <>
+struct Small<MapperStatus> : Copied<MapperStatus, mapper_status_t> {
+  static constexpr int kNumStrings = 2;
+
+  template <class From, class To>
+  static void copy(const From& from, To& to) {
+    to.utime = from.utime;
+    to.session = from.session;
+    to.state = static_cast<decltype(to.state)>(from.state);
+    to.finished = from.finished != 0;
+    to.frames_read = from.frames_read;
+    to.frames_total = from.frames_total;
+    to.frames_tracked = from.frames_tracked;
+    to.frames_lost = from.frames_lost;
+    to.frames_dropped = from.frames_dropped;
+    to.slices_published = from.slices_published;
+    to.points_published = from.points_published;
+    to.chunks_published = from.chunks_published;
+    to.blocks = from.blocks;
+    to.memory_bytes = from.memory_bytes;
+    to.frame_rate_hz = from.frame_rate_hz;
+    to.read_ms = from.read_ms;
+    to.track_ms = from.track_ms;
+    to.integrate_ms = from.integrate_ms;
+    to.raycast_ms = from.raycast_ms;
+    to.extract_ms = from.extract_ms;
+    to.publish_ms = from.publish_ms;
+    to.map_name = from.map_name;
+    to.device = from.device;
+  }
+  static void check(const Check& check, const MapperStatus& m) {
+    check.not_negative("utime", m.utime);
+    check.positive("session", m.session);
+    check_state(check, m.state);
+    if (m.frames_total < -1) check.fail("frames_total", m.frames_total, ">= -1");
+    check.not_negative("frames_read", m.frames_read);
+    check.not_negative("frames_tracked", m.frames_tracked);
+    check.not_negative("frames_lost", m.frames_lost);
+    check.not_negative("frames_dropped", m.frames_dropped);
+    check.not_negative("slices_published", m.slices_published);
+    check.not_negative("points_published", m.points_published);
+    check.not_negative("chunks_published", m.chunks_published);
+    check.not_negative("blocks", m.blocks);
+    check.not_negative("memory_bytes", m.memory_bytes);
+    check.finite("frame_rate_hz", m.frame_rate_hz);
+    check.finite("read_ms", m.read_ms);
+    check.finite("track_ms", m.track_ms);
+    check.finite("integrate_ms", m.integrate_ms);
+    check.finite("raycast_ms", m.raycast_ms);
+    check.finite("extract_ms", m.extract_ms);
+    check.finite("publish_ms", m.publish_ms);
+    check.text("map_name", m.map_name);
+    check.text("device", m.device);
+  }
+};
+
+template <>
+struct Small<SegmenterStatus> : Copied<SegmenterStatus, segmenter_status_t> {
+  static constexpr int kNumStrings = 2;
+
+  template <class From, class To>
+  static void copy(const From& from, To& to) {
+    to.utime = from.utime;
+    to.session = from.session;
+    to.map_session = from.map_session;
+    to.finished = from.finished != 0;
+    to.slices_received = from.slices_received;
+    to.slices_segmented = from.slices_segmented;
+    to.lag_slices = from.lag_slices;
+    to.points = from.points;
+    to.points_rejected = from.points_rejected;
+    to.segments = from.segments;
+    to.chunks_received = from.chunks_received;
+    to.chunks_duplicate = from.chunks_duplicate;
+    to.chunks_missing = from.chunks_missing;
+    to.messages_bad = from.messages_bad;
+    to.memory_bytes = from.memory_bytes;
+    to.slice_ms = from.slice_ms;
+    to.slice_mean_ms = from.slice_mean_ms;
+    to.slice_max_ms = from.slice_max_ms;
+    to.map_name = from.map_name;
+    to.mode = from.mode;
+  }
+  static void check(const Check& check, const SegmenterStatus& m) {
+    check.not_negative("utime", m.utime);
+    check.positive("session", m.session);
+    check.not_negative("map_session", m.map_session);
+    check.not_negative("slices_received", m.slices_received);
+    check.not_negative("slices_segmented", m.slices_segmented);
+    check.not_negative("lag_slices", m.lag_slices);
+    check.not_negative("points", m.points);
+    check.not_negative("points_rejected", m.points_rejected);
+    check.not_negative("segments", m.segments);
+    check.not_negative("chunks_received", m.chunks_received);
+    check.not_negative("chunks_duplicate", m.chunks_duplicate);
+    check.not_negative("chunks_missing", m.chunks_missing);
+    check.not_negative("messages_bad", m.messages_bad);
+    check.not_negative("memory_bytes", m.memory_bytes);
+    check.finite("slice_ms", m.slice_ms);
+    check.finite("slice_mean_ms", m.slice_mean_ms);
+    check.finite("slice_max_ms", m.slice_max_ms);
+    check.text("map_name", m.map_name);
+    check.text("mode", m.mode);
+  }
+};
+
+template <>
+struct Small<ViewerStatus> : Copied<ViewerStatus, viewer_status_t> {
+  static constexpr int kNumStrings = 0;
+
+  template <class From, class To>
+  static void copy(const From& from, To& to) {
+    to.utime = from.utime;
+    to.session = from.session;
+    to.finished = from.finished != 0;
+    to.slices_received = from.slices_received;
+    to.updates_applied = from.updates_applied;
+    to.lag_slices = from.lag_slices;
+    to.points = from.points;
+    to.segments = from.segments;
+    to.snapshots_written = from.snapshots_written;
+    to.chunks_missing = from.chunks_missing;
+    to.messages_bad = from.messages_bad;
+    to.memory_bytes = from.memory_bytes;
+    to.render_ms = from.render_ms;
+  }
+  static void check(const Check& check, const ViewerStatus& m) {
+    check.not_negative("utime", m.utime);
+    check.positive("session", m.session);
+    check.not_negative("slices_received", m.slices_received);
+    check.not_negative("updates_applied", m.updates_applied);
+    check.not_negative("lag_slices", m.lag_slices);
+    check.not_negative("points", m.points);
+    check.not_negative("segments", m.segments);
+    check.not_negative("snapshots_written", m.snapshots_written);
+    check.not_negative("chunks_missing", m.chunks_missing);
+    check.not_negative("messages_bad", m.messages_bad);
+    check.not_negative("memory_bytes", m.memory_bytes);
+    check.finite("render_ms", m.render_ms);
+  }
+};
+
+}  // namespace codec
+
+template Bytes encode(const MapperStatus&);
+template MapperStatus decode(ByteView);
+template Bytes encode(const SegmenterStatus&);
+template SegmenterStatus decode(ByteView);
+template Bytes encode(const ViewerStatus&);
+template ViewerStatus decode(ByteView);
+
+}  // namespace kintsugi
