@@ -1,0 +1,50 @@
+#pragma once
+
+#include <string>
+
+#include <opencv2/core.hpp>
+
+#include "viewer/core/scene.hpp"
+#include "viewer/core/shade.hpp"
+#include "viewer/core/splat.hpp"
+#include "viewer/core/view.hpp"
+
+namespace kintsugi::viewer {
+
+/// Draws a Scene. Pure functions of the scene, the view and the configuration: the same picture,
+/// byte for byte, on any number of threads.
+class Renderer {
+ public:
+  struct Config {
+    int width_px = 1280;      ///< of a picture
+    int height_px = 720;      ///< of a picture
+    int supersampling = 2;    ///< each pixel is the mean of this many squared
+    double frustum_m = 0.35;  ///< depth of the pyramid that stands for the camera
+    SplatConfig splat;
+    ViewConfig view;
+
+    /// Throws std::invalid_argument naming the field, its value and the bound.
+    void validate() const;
+  };
+
+  explicit Renderer(const Config& config);
+
+  /// The paper's Fig. 1 in one picture: the map in true colour and its segments side by side, the
+  /// newest slice below each on its own, the camera's path, and a caption.
+  cv::Mat3b draw_figure(const Scene& scene, const FollowedCamera& followed, const View& view,
+                        const std::string& caption) const;
+
+  /// The map alone in one coloring, filling the picture.
+  cv::Mat3b draw_map(const Scene& scene, const FollowedCamera& followed, const View& view,
+                     Coloring coloring) const;
+
+  const Config& config() const { return config_; }
+
+ private:
+  Config config_;
+};
+
+/// What the caption says: time, points, segments, slices, lag.
+std::string caption(const Scene& scene);
+
+}  // namespace kintsugi::viewer

@@ -1,0 +1,233 @@
+#include "viewer/core/scene.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace kintsugi::viewer {
+namespace {
+
+/// Boxes of each kChunkPoints consecutive points.
+std::vector<Eigen::AlignedBox3f> chunk_boxes(std::span<const CloudPoint> points_W) {
+  std::vector<Eigen::AlignedBox3f> boxes;
+  for (std::size_t first = 0; first < points_W.size(); first += Scene::kChunkPoints) {
+    Eigen::AlignedBox3f box;
+    const std::size_t count = std::min(Scene::kChunkPoints, points_W.size() - first);
+    for (const CloudPoint& p : points_W.subspan(first, count)) {
+      box.extend(Eigen::Vector3f(p.x, p.y, p.z));
+    }
+    boxes.push_back(box);
+  }
+  return boxes;
+}
+
+void append_chunks(const SceneSlice& slice, std::vector<PointChunk>& chunks) {
+  const std::span points_W(slice.points_W);
+  const std::span labels(slice.labels);
+  for (std::size_t i = 0; i < slice.chunk_boxes.size(); ++i) {
+    const std::size_t first = i * Scene::kChunkPoints;
+    const std::size_t count = std::min(Scene::kChunkPoints, points_W.size() - first);
+    chunks.push_back({points_W.subspan(first, count), labels.subspan(first, count),
+                      slice.chunk_boxes[i], slice.resolution_m});
+  }
+}
+
+}  // namespace
+
+void Scene::add_slice(CloudSlice message) {
+  SceneSlice* slice = nullptr;
+  if (const auto found = slices_.find(message.id); found != slices_.end()) {
+    slice = &found->second;
+    if (message.revision <= slice->revision) {
+      ++counts_.ignored_slices;
+      return;
+    }
+    counts_.points -= static_cast<std::int64_t>(slice->points_W.size());
+    if (slice->labelled) --counts_.labelled_slices;
+  } else {
+    slice = &slices_[message.id];
+    ++counts_.slices;
+  }
+
+  *slice = {.utime = message.utime,
+            .id = message.id,
+            .revision = message.revision,
+            .resolution_m = message.resolution_m,
+            .X_WC = message.X_WC,
+            .points_W = std::move(message.points_W)};
+  slice->labels.assign(slice->points_W.size(), kNoSegment);
+  slice->label_updates.assign(slice->points_W.size(), 0);
+  slice->chunk_boxes = chunk_boxes(slice->points_W);
+
+  counts_.points += static_cast<std::int64_t>(slice->points_W.size());
+  advance_time(slice->utime);
+  up_.add(slice->points_W);
+  apply_pending(*slice);
+}
+
+bool Scene::accept_segmenter(std::int64_t session) {
+  if (session == segmenter_session_) return true;
+  if (std::ranges::count(superseded_segmenters_, session) > 0) return false;
+  if (segmenter_session_ != 0) {
+    superseded_segmenters_.push_back(segmenter_session_);
+    discard_labels();
+  }
+  segmenter_session_ = session;
+  return true;
+}
+
+void Scene::discard_labels() {
+  for (auto& [id, slice] : slices_) {
+    std::ranges::fill(slice.labels, kNoSegment);
+    std::ranges::fill(slice.label_updates, 0U);
+    slice.labelled = false;
+  }
+  counts_.labelled_slices = 0;
+  counts_.segments = 0;
+  pending_.clear();
+  pending_runs_ = 0;
+  newest_update_.reset();
+  newest_labelled_id_ = -1;
+  announced_slices_ = 0;
+  final_update_seen_ = false;
+}
+
+void Scene::apply_update(const SegmentUpdate& update, std::uint32_t number) {
+  if (update.map_session != map_session_ || !accept_segmenter(update.session)) {
+    ++counts_.ignored_updates;
+    return;
+  }
+  ++counts_.updates;
+  if (!newest_update_ || number >= *newest_update_) {
+    newest_update_ = number;
+    counts_.segments = update.num_segments;
+    announced_slices_ = update.num_slices;
+  }
+  final_update_seen_ = final_update_seen_ || update.is_final;
+
+  PendingLabels labels{update.labels, update.slice_revision, number};
+  const auto found = slices_.find(update.slice_id);
+  if (found != slices_.end() && found->second.revision >= update.slice_revision) {
+    apply_labels(found->second, labels);
+  } else {
+    Pending& pending = pending_[update.slice_id];
+    if (!pending.labels || pending.labels->number <= number) pending.labels = std::move(labels);
+  }
+  for (const LabelRun& run : update.runs) {
+    if (const auto slice = slices_.find(run.slice_id); slice != slices_.end()) {
+      apply_run(slice->second, {run, number});
+    } else if (pending_runs_ < kMaxPendingRuns) {
+      pending_[run.slice_id].runs.push_back({run, number});
+      ++pending_runs_;
+    } else {
+      ++counts_.ignored_runs;
+    }
+  }
+}
+
+void Scene::apply_pending(SceneSlice& slice) {
+  const auto found = pending_.find(slice.id);
+  if (found == pending_.end()) return;
+  Pending pending = std::move(found->second);
+  pending_.erase(found);
+  pending_runs_ -= pending.runs.size();
+  for (const PendingRun& run : pending.runs) apply_run(slice, run);
+  if (!pending.labels) return;
+  if (pending.labels->revision > slice.revision) {
+    pending_[slice.id].labels = std::move(pending.labels);
+  } else {
+    apply_labels(slice, *pending.labels);
+  }
+}
+
+void Scene::apply_labels(SceneSlice& slice, const PendingLabels& pending) {
+  if (pending.revision != slice.revision || pending.labels.size() != slice.labels.size()) {
+    ++counts_.ignored_updates;
+    --counts_.updates;
+    return;
+  }
+  for (std::size_t i = 0; i < slice.labels.size(); ++i) {
+    if (slice.label_updates[i] > pending.number + 1) continue;
+    slice.labels[i] = pending.labels[i];
+    slice.label_updates[i] = pending.number + 1;
+  }
+  if (!slice.labelled) ++counts_.labelled_slices;
+  slice.labelled = true;
+  if (!slice.points_W.empty()) newest_labelled_id_ = std::max(newest_labelled_id_, slice.id);
+}
+
+void Scene::apply_run(SceneSlice& slice, const PendingRun& pending) {
+  const LabelRun& run = pending.run;
+  const auto size = static_cast<std::int64_t>(slice.labels.size());
+  if (run.first < 0 || run.count <= 0 || std::int64_t{run.first} + run.count > size) {
+    ++counts_.ignored_runs;
+    return;
+  }
+  const auto first = static_cast<std::size_t>(run.first);
+  for (std::size_t i = first; i < first + static_cast<std::size_t>(run.count); ++i) {
+    if (slice.label_updates[i] > pending.number + 1) continue;
+    slice.labels[i] = run.segment_id;
+    slice.label_updates[i] = pending.number + 1;
+  }
+}
+
+void Scene::add_pose(const CameraPose& pose) {
+  if (pose.state == TrackingState::kStarting || pose.state == TrackingState::kLost) return;
+  advance_time(pose.utime);
+  X_WC_ = pose.X_WC;
+  const Eigen::Vector3f position_W = pose.X_WC.translation().cast<float>();
+  if (path_W_.empty() || (position_W - path_W_.back()).norm() >= kPathStep_m) {
+    path_W_.push_back(position_W);
+  }
+}
+
+void Scene::advance_time(std::int64_t utime) {
+  if (utime_ == 0) first_utime_ = utime;
+  utime_ = std::max(utime_, utime);
+}
+
+std::int64_t Scene::lag_slices() const {
+  const std::int64_t known = std::max(counts_.slices, announced_slices_);
+  return known - counts_.labelled_slices;
+}
+
+const SceneSlice* Scene::slice(std::int32_t id) const {
+  const auto found = slices_.find(id);
+  return found == slices_.end() ? nullptr : &found->second;
+}
+
+const SceneSlice* Scene::newest_slice() const {
+  if (newest_labelled_id_ >= 0) return slice(newest_labelled_id_);
+  for (auto it = slices_.rbegin(); it != slices_.rend(); ++it) {
+    if (!it->second.points_W.empty()) return &it->second;
+  }
+  return nullptr;
+}
+
+std::vector<PointChunk> Scene::chunks() const {
+  std::vector<PointChunk> chunks;
+  for (const auto& [id, slice] : slices_) append_chunks(slice, chunks);
+  return chunks;
+}
+
+std::vector<PointChunk> Scene::chunks(const SceneSlice& slice) const {
+  std::vector<PointChunk> chunks;
+  append_chunks(slice, chunks);
+  return chunks;
+}
+
+Eigen::AlignedBox3f Scene::box_W() const {
+  Eigen::AlignedBox3f box;
+  for (const auto& [id, slice] : slices_) {
+    for (const Eigen::AlignedBox3f& chunk_box : slice.chunk_boxes) box.extend(chunk_box);
+  }
+  return box;
+}
+
+std::int64_t Scene::memory_bytes() const {
+  constexpr std::int64_t kBytesPerPoint = sizeof(CloudPoint) + 2 * sizeof(std::uint32_t);
+  return counts_.points * kBytesPerPoint +
+         static_cast<std::int64_t>(pending_runs_ * sizeof(PendingRun)) +
+         static_cast<std::int64_t>(path_W_.capacity() * sizeof(Eigen::Vector3f));
+}
+
+}  // namespace kintsugi::viewer

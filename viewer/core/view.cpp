@@ -1,0 +1,115 @@
+#include "viewer/core/view.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <optional>
+#include <stdexcept>
+#include <vector>
+
+namespace kintsugi::viewer {
+namespace {
+
+/// Six finite numbers with commas between them and nothing else.
+std::optional<std::array<double, 6>> parse_six_numbers(const std::string& text) {
+  std::array<double, 6> numbers{};
+  const char* at = text.data();
+  const char* const end = text.data() + text.size();
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    if (i > 0 && (at == end || *at++ != ',')) return std::nullopt;
+    const auto [next, error] = std::from_chars(at, end, numbers[i]);
+    if (error != std::errc() || !std::isfinite(numbers[i])) return std::nullopt;
+    at = next;
+  }
+  return at == end ? std::optional(numbers) : std::nullopt;
+}
+
+VirtualCamera overview(const Scene& scene, const Intrinsics& intrinsics, const ViewConfig& config) {
+  const Eigen::Matrix3d R_WV =
+      look_down(scene.up().up_W(), config.overview_yaw_rad, config.overview_pitch_rad);
+  return camera_around(scene.chunks(), R_WV, intrinsics, config);
+}
+
+VirtualCamera follow(const Scene& scene, const FollowedCamera& followed,
+                     const Intrinsics& intrinsics, const ViewConfig& config) {
+  const Eigen::Vector3d up_W = scene.up().up_W();
+  const Eigen::Vector3d eye_W = followed.position_W() -
+                                config.follow_distance_m * followed.heading_W() +
+                                config.follow_height_m * up_W;
+  return {intrinsics, look_at(eye_W, followed.position_W(), up_W)};
+}
+
+/// Some hundred thousand points of even a large map, evenly spread over it.
+std::vector<Eigen::Vector3d> sample(std::span<const PointChunk> chunks) {
+  constexpr std::size_t kStep = 64;
+  std::vector<Eigen::Vector3d> points_W;
+  for (const PointChunk& chunk : chunks) {
+    for (std::size_t i = 0; i < chunk.points_W.size(); i += kStep) {
+      const CloudPoint& p = chunk.points_W[i];
+      points_W.emplace_back(p.x, p.y, p.z);
+    }
+  }
+  return points_W;
+}
+
+}  // namespace
+
+View parse_view(const std::string& text) {
+  if (text == "follow") return FollowView{};
+  if (text == "overview") return OverviewView{};
+  const auto numbers = parse_six_numbers(text);
+  if (!numbers) {
+    throw std::invalid_argument(
+        "view is \"" + text + "\", expected follow, overview or x,y,z,lookx,looky,lookz (metres)");
+  }
+  const FixedView view{Eigen::Vector3d(numbers->data()), Eigen::Vector3d(numbers->data() + 3)};
+  if ((view.target_W - view.eye_W).norm() < 1e-6) {
+    throw std::invalid_argument("view is \"" + text + "\": it looks at the point where it stands");
+  }
+  return view;
+}
+
+void FollowedCamera::update(const CameraPose& pose, const Eigen::Vector3d& up_W) {
+  if (pose.state == TrackingState::kStarting || pose.state == TrackingState::kLost) return;
+  constexpr double kTimeConstant_s = 1.0;
+  const Eigen::Vector3d position_W = pose.X_WC.translation();
+  const Eigen::Vector3d forward_W = pose.X_WC.linear().col(2);
+  Eigen::Vector3d heading_W = forward_W - forward_W.dot(up_W) * up_W;
+
+  const bool first = !has_pose();
+  const double elapsed_s = std::max(1e-6 * static_cast<double>(pose.utime - utime_), 0.0);
+  const double gain = first ? 1.0 : 1.0 - std::exp(-elapsed_s / kTimeConstant_s);
+  utime_ = std::max<std::int64_t>(pose.utime, 1);
+  position_W_ += gain * (position_W - position_W_);
+  if (heading_W.norm() < 0.1) return;  // looks up or down: no heading to speak of
+  heading_W.normalize();
+  const Eigen::Vector3d turned_W = heading_W_ + gain * (heading_W - heading_W_);
+  heading_W_ = turned_W.norm() > 1e-3 ? Eigen::Vector3d(turned_W.normalized()) : heading_W;
+}
+
+VirtualCamera camera_around(std::span<const PointChunk> chunks, const Eigen::Matrix3d& R_WV,
+                            const Intrinsics& intrinsics, const ViewConfig& config) {
+  constexpr double kOutliers = 0.002;
+  const std::vector<Eigen::Vector3d> points_W = sample(chunks);
+  if (points_W.empty()) {
+    VirtualCamera camera{intrinsics, Pose::Identity()};
+    camera.X_WV.linear() = R_WV;
+    return camera;
+  }
+  return fit_points(points_W, kOutliers, R_WV, intrinsics, config.margin_px);
+}
+
+VirtualCamera camera_for(const View& view, const Scene& scene, const FollowedCamera& followed,
+                         int width, int height, const ViewConfig& config) {
+  const Intrinsics intrinsics = pinhole(width, height, config.field_of_view_rad);
+  if (const auto* fixed = std::get_if<FixedView>(&view)) {
+    return {intrinsics, look_at(fixed->eye_W, fixed->target_W, scene.up().up_W())};
+  }
+  if (std::holds_alternative<FollowView>(view) && followed.has_pose()) {
+    return follow(scene, followed, intrinsics, config);
+  }
+  return overview(scene, intrinsics, config);
+}
+
+}  // namespace kintsugi::viewer
