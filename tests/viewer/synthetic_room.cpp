@@ -110,8 +110,8 @@ std::vector<LabelledPoint> sample_room(double length_m, double resolution_m) {
   const Eigen::Vector3d high(kHalfWidth_m, kFloor_m, length_m);
 
   Sampler room(resolution_m);
-  room.plane(high - x - z, z, x, {150, 118, 84}, 1);  // floor, normal up
-  room.plane(low, x, z, {235, 235, 230}, 2);          // ceiling, normal down
+  room.plane(high - x - z, x, z, {150, 118, 84}, 1);  // floor, normal up
+  room.plane(low, z, x, {235, 235, 230}, 2);          // ceiling, normal down
   room.plane(low, y, z, {205, 196, 178}, 3);          // left wall
   room.plane(low + x, z, y, {205, 196, 178}, 4);      // right wall
   room.plane(low, x, y, {188, 200, 205}, 5);          // wall behind the start, normal along +z

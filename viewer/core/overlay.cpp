@@ -72,7 +72,7 @@ void draw_caption(cv::Mat3b& image, const cv::Rect& bar, const std::string& text
   cv::rectangle(image, bar, kBarColor, cv::FILLED);
   int baseline = 0;
   const cv::Size unit = cv::getTextSize(text, kFont, 1.0, 1, &baseline);
-  const double scale = std::min(0.026 * bar.height, (bar.width - 20.0) / std::max(unit.width, 1));
+  const double scale = std::min(0.018 * bar.height, (bar.width - 20.0) / std::max(unit.width, 1));
   const int y = bar.y + (bar.height + static_cast<int>(scale * unit.height)) / 2;
   cv::putText(image, text, {bar.x + 10, y}, kFont, scale, kTextColor, scale > 0.9 ? 2 : 1,
               cv::LINE_AA);

@@ -81,7 +81,7 @@ Layout layout_of(int width, int height) {
 std::string with_thousands(std::int64_t number) {
   std::string text = std::to_string(number);
   for (auto i = static_cast<std::ptrdiff_t>(text.size()) - 3; i > 0; i -= 3) {
-    text.insert(static_cast<std::size_t>(i), " ");
+    text.insert(static_cast<std::size_t>(i), 1, ' ');
   }
   return text;
 }

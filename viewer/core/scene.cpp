@@ -48,12 +48,13 @@ void Scene::add_slice(CloudSlice message) {
     ++counts_.slices;
   }
 
-  *slice = {.utime = message.utime,
-            .id = message.id,
-            .revision = message.revision,
-            .resolution_m = message.resolution_m,
-            .X_WC = message.X_WC,
-            .points_W = std::move(message.points_W)};
+  *slice = SceneSlice();
+  slice->utime = message.utime;
+  slice->id = message.id;
+  slice->revision = message.revision;
+  slice->resolution_m = message.resolution_m;
+  slice->X_WC = message.X_WC;
+  slice->points_W = std::move(message.points_W);
   slice->labels.assign(slice->points_W.size(), kNoSegment);
   slice->label_updates.assign(slice->points_W.size(), 0);
   slice->chunk_boxes = chunk_boxes(slice->points_W);

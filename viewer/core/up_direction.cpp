@@ -28,7 +28,7 @@ Eigen::Vector4d sum_in_cone(std::span<const Eigen::Vector4d> bins, const Eigen::
     if (length == 0.0) continue;
     // A normal n and -n count alike; each bin is taken on the side of the axis.
     if (std::abs(along) >= cos_half_angle * length) {
-      sum.head<3>() += along < 0.0 ? -bin.head<3>() : bin.head<3>();
+      sum.head<3>() += std::copysign(1.0, along) * bin.head<3>();
       sum.w() += bin.w();
     }
   }

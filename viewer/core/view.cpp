@@ -40,13 +40,16 @@ VirtualCamera follow(const Scene& scene, const FollowedCamera& followed,
   return {intrinsics, look_at(eye_W, followed.position_W(), up_W)};
 }
 
-/// Some hundred thousand points of even a large map, evenly spread over it.
-std::vector<Eigen::Vector3d> sample(std::span<const PointChunk> chunks) {
-  constexpr std::size_t kStep = 64;
+/// Points spread evenly over the map, of those whose normals do not face along `forward_W`: what a
+/// camera looking there can see.
+std::vector<Eigen::Vector3d> sample(std::span<const PointChunk> chunks,
+                                    const Eigen::Vector3d& forward_W) {
+  constexpr std::size_t kStep = 61;
   std::vector<Eigen::Vector3d> points_W;
   for (const PointChunk& chunk : chunks) {
     for (std::size_t i = 0; i < chunk.points_W.size(); i += kStep) {
       const CloudPoint& p = chunk.points_W[i];
+      if (forward_W.dot(Eigen::Vector3d(p.nx, p.ny, p.nz)) > 0.0) continue;
       points_W.emplace_back(p.x, p.y, p.z);
     }
   }
@@ -90,8 +93,8 @@ void FollowedCamera::update(const CameraPose& pose, const Eigen::Vector3d& up_W)
 
 VirtualCamera camera_around(std::span<const PointChunk> chunks, const Eigen::Matrix3d& R_WV,
                             const Intrinsics& intrinsics, const ViewConfig& config) {
-  constexpr double kOutliers = 0.002;
-  const std::vector<Eigen::Vector3d> points_W = sample(chunks);
+  constexpr double kOutliers = 0.0002;
+  const std::vector<Eigen::Vector3d> points_W = sample(chunks, R_WV.col(2));
   if (points_W.empty()) {
     VirtualCamera camera{intrinsics, Pose::Identity()};
     camera.X_WV.linear() = R_WV;

@@ -51,8 +51,8 @@ struct ViewConfig {
   double margin_px = 12.0;  ///< left free around what is fitted into a picture
 };
 
-/// The camera with this orientation that fits the points, but for a few, into the picture; without
-/// points, at W's origin.
+/// The camera with this orientation that fits the points that face it, but for a few, into the
+/// picture; without any, at W's origin.
 VirtualCamera camera_around(std::span<const PointChunk> chunks, const Eigen::Matrix3d& R_WV,
                             const Intrinsics& intrinsics, const ViewConfig& config);
 
