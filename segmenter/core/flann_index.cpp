@@ -1,0 +1,130 @@
+#include "segmenter/core/flann_index.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <numeric>
+
+#include <flann/flann.hpp>
+#include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/parallel_for.h>
+
+namespace kintsugi::segmenter {
+namespace {
+
+constexpr double kTile_m = 1.0;
+constexpr std::size_t kPointsPerTask = 2048;
+
+// FLANN prunes with its own float32 sums, off by a few 2^-24 of r^2 at each level of the tree; it
+// is asked for more than r^2 by far more than that, and every candidate is tested exactly.
+constexpr float kSlack = 1.0F + 1e-4F;
+
+using KdTree = flann::KDTreeSingleIndex<flann::L2_3D<float>>;
+
+/// Takes what FLANN finds, without the allocations of its own result sets.
+class Candidates final : public flann::ResultSet<float> {
+ public:
+  Candidates(float squared_radius_m2, std::vector<std::size_t>& found)
+      : squared_radius_m2_(squared_radius_m2), found_(found) {}
+
+  bool full() const override { return true; }
+  void addPoint(float /*squared_distance*/, std::size_t index) override { found_.push_back(index); }
+  float worstDist() const override { return squared_radius_m2_; }
+
+ private:
+  float squared_radius_m2_;
+  std::vector<std::size_t>& found_;
+};
+
+}  // namespace
+
+struct FlannIndex::Tile {
+  std::vector<PointIndex> points;
+  std::vector<float> positions_W;  ///< three for each point: FLANN keeps a pointer to them
+  std::unique_ptr<KdTree> tree;
+  bool is_dirty = true;
+
+  void build(const PointCloud& cloud) {
+    for (std::size_t k = positions_W.size() / 3; k < points.size(); ++k) {
+      const CloudPoint& p = cloud[points[k]];
+      positions_W.insert(positions_W.end(), {p.x, p.y, p.z});
+    }
+    tree = std::make_unique<KdTree>(flann::Matrix<float>(positions_W.data(), points.size(), 3));
+    tree->buildIndex();
+    is_dirty = false;
+  }
+};
+
+FlannIndex::FlannIndex(const PointCloud& cloud, float radius_m)
+    : cloud_(cloud), radius_m_(radius_m) {}
+
+FlannIndex::~FlannIndex() = default;
+
+void FlannIndex::update() {
+  std::vector<Tile*> dirty;
+  for (PointIndex i = num_indexed_; i < cloud_.size(); ++i) {
+    const CloudPoint& p = cloud_[i];
+    std::unique_ptr<Tile>& tile =
+        tiles_[{cell_coordinate(p.x, kTile_m), cell_coordinate(p.y, kTile_m),
+                cell_coordinate(p.z, kTile_m)}];
+    if (!tile) tile = std::make_unique<Tile>();
+    if (tile->points.empty() || !tile->is_dirty) dirty.push_back(tile.get());
+    tile->is_dirty = true;
+    tile->points.push_back(i);
+  }
+  num_indexed_ = cloud_.size();
+  oneapi::tbb::parallel_for(std::size_t{0}, dirty.size(),
+                            [&](std::size_t k) { dirty[k]->build(cloud_); });
+}
+
+void FlannIndex::find_neighbours(PointIndex query, std::vector<PointIndex>& neighbours) const {
+  const CloudPoint& p = cloud_[query];
+  const float position_W[3] = {p.x, p.y, p.z};
+  const double reach_m = static_cast<double>(radius_m_) * static_cast<double>(kSlack);
+  Cell first;
+  Cell last;
+  std::int32_t* const firsts[3] = {&first.x, &first.y, &first.z};
+  std::int32_t* const lasts[3] = {&last.x, &last.y, &last.z};
+  for (int axis = 0; axis < 3; ++axis) {
+    *firsts[axis] = cell_coordinate(position_W[axis] - reach_m, kTile_m);
+    *lasts[axis] = cell_coordinate(position_W[axis] + reach_m, kTile_m);
+  }
+
+  neighbours.clear();
+  std::vector<std::size_t> found;
+  Candidates candidates(radius_m_ * radius_m_ * kSlack, found);
+  for (Cell at = first; at.z <= last.z; ++at.z) {
+    for (at.y = first.y; at.y <= last.y; ++at.y) {
+      for (at.x = first.x; at.x <= last.x; ++at.x) {
+        const auto tile = tiles_.find(at);
+        if (tile == tiles_.end()) continue;
+        found.clear();
+        tile->second->tree->findNeighbors(candidates, position_W, flann::SearchParams(-1));
+        for (const std::size_t k : found) {
+          const PointIndex candidate = tile->second->points[k];
+          if (candidate != query && are_neighbours(p, cloud_[candidate], radius_m_)) {
+            neighbours.push_back(candidate);
+          }
+        }
+      }
+    }
+  }
+}
+
+void FlannIndex::visit(std::span<const PointIndex> points, const Visit& visit_point) const {
+  using Range = oneapi::tbb::blocked_range<std::size_t>;
+  oneapi::tbb::parallel_for(Range(0, points.size(), kPointsPerTask), [&](const Range& range) {
+    std::vector<PointIndex> neighbours;
+    for (std::size_t k = range.begin(); k != range.end(); ++k) {
+      find_neighbours(points[k], neighbours);
+      visit_point(points[k], neighbours);
+    }
+  });
+}
+
+void FlannIndex::visit_all(const Visit& visit_point) const {
+  std::vector<PointIndex> points(num_indexed_);
+  std::iota(points.begin(), points.end(), PointIndex{0});
+  visit(points, visit_point);
+}
+
+}  // namespace kintsugi::segmenter

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include "segmenter/core/cell.hpp"
+#include "segmenter/core/neighbour_index.hpp"
+
+namespace kintsugi::segmenter {
+
+/// Neighbours by FLANN: one kd-tree for each tile of 1 m. FLANN's single kd-tree cannot take points
+/// in, so the tiles that a slice touches are built again, and only those.
+class FlannIndex final : public NeighbourIndex {
+ public:
+  FlannIndex(const PointCloud& cloud, float radius_m);
+  ~FlannIndex() override;
+
+  void update() override;
+  void visit(std::span<const PointIndex> points, const Visit& visit_point) const override;
+  void visit_all(const Visit& visit_point) const override;
+
+ private:
+  struct Tile;
+
+  void find_neighbours(PointIndex query, std::vector<PointIndex>& neighbours) const;
+
+  const PointCloud& cloud_;
+  float radius_m_;
+  PointIndex num_indexed_ = 0;
+  std::unordered_map<Cell, std::unique_ptr<Tile>, CellHash> tiles_;
+};
+
+}  // namespace kintsugi::segmenter
