@@ -1,0 +1,77 @@
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "segmenter/core/edge_weight.hpp"
+#include "tests/segmenter/random_clouds.hpp"
+
+namespace kintsugi::segmenter {
+namespace {
+
+using testing::make_point;
+
+// Two faces that meet at the y axis with normals 60 degrees apart: 1 - n_i . n_j = 1/2 up to the
+// rounding of the normals to float32 (2^-24 each) and of the weight.
+constexpr float kRounding = 4e-7F;
+const double kTilt = std::acos(-1.0) / 6.0;
+const CloudPoint kLeft = make_point(-0.01, 0, 0, -std::sin(kTilt), 0, std::cos(kTilt));
+const CloudPoint kRight = make_point(0.01, 0, 0, std::sin(kTilt), 0, std::cos(kTilt));
+
+TEST(EdgeWeight, ConvexEdgeIsSquared) {
+  EXPECT_NEAR(directed_edge_weight(kLeft, kRight), 0.25F, kRounding);
+  EXPECT_NEAR(directed_edge_weight(kRight, kLeft), 0.25F, kRounding);
+}
+
+TEST(EdgeWeight, ConcaveEdgeIsNot) {
+  CloudPoint left = kLeft;
+  CloudPoint right = kRight;
+  std::swap(left.x, right.x);  // the same normals, leaning towards each other
+  EXPECT_NEAR(directed_edge_weight(left, right), 0.5F, kRounding);
+  EXPECT_NEAR(edge_weight(left, right), 0.5F, kRounding);
+}
+
+TEST(EdgeWeight, DirectionDecidesByTheNormalOfTheFarEnd) {
+  // n_j rises from i to j, so that edge is convex; n_i is level with it, so the way back is not.
+  const CloudPoint i = make_point(0, 0, 0, 1, 0, 0);
+  const CloudPoint j = make_point(0, 0, 0.01, 1, 0, 1);
+  const float c = static_cast<float>(1.0 - std::sqrt(0.5));
+  EXPECT_NEAR(directed_edge_weight(i, j), c * c, kRounding);
+  EXPECT_NEAR(directed_edge_weight(j, i), c, kRounding);
+  EXPECT_EQ(edge_weight(i, j), directed_edge_weight(i, j));
+  EXPECT_EQ(edge_weight(j, i), directed_edge_weight(i, j));
+}
+
+TEST(EdgeWeight, LevelIsNotConvex) {
+  // (p_j - p_i) . n_j = 0 exactly, in both directions.
+  const CloudPoint i = make_point(0, 0, 0, 0, 0, 1);
+  CloudPoint j = make_point(0.01, 0, 0, 0, 0, 1);
+  j.nz = 0.75F;
+  EXPECT_EQ(directed_edge_weight(i, j), 0.25F);
+}
+
+TEST(EdgeWeight, NormalsTooLongByARoundingDoNotMakeItNegative) {
+  CloudPoint i = make_point(0, 0, 0, 0, 0, 1);
+  i.nz = std::nextafter(1.0F, 2.0F);
+  const CloudPoint j = i;
+  EXPECT_EQ(directed_edge_weight(i, j), 0.0F);
+  EXPECT_FALSE(std::signbit(directed_edge_weight(i, j)));
+}
+
+TEST(EdgeWeight, OppositeNormalsWeighTwo) {
+  const CloudPoint i = make_point(0, 0, 0, 0, 0, 1);
+  const CloudPoint j = make_point(0.01, 0, 0, 0, 0, -1);
+  EXPECT_EQ(edge_weight(i, j), 2.0F);
+}
+
+TEST(EdgeWeight, IsComputedInDoubleAndRoundedOnce) {
+  // In float32 this c would be lost: n_i . n_j rounds to 1.
+  CloudPoint i = make_point(0, 0, 0, 0, 0, 1);
+  i.nx = 1e-5F;
+  CloudPoint j = make_point(0, 0, -1, 0, 0, 1);
+  j.nx = -1e-5F;
+  const double nx = 1e-5F;
+  EXPECT_EQ(directed_edge_weight(i, j), static_cast<float>(1.0 - (1.0 - nx * nx)));
+}
+
+}  // namespace
+}  // namespace kintsugi::segmenter
