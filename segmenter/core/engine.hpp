@@ -7,11 +7,10 @@
 #include <string_view>
 #include <vector>
 
+#include "segmenter/core/neighbour_index.hpp"
 #include "segmenter/core/point_cloud.hpp"
 
 namespace kintsugi::segmenter {
-
-enum class NeighbourSearch { kGrid, kFlann };
 
 /// Parameters of the segmentation; the defaults are the paper's.
 struct EngineConfig {

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "segmenter/core/engine.hpp"
+#include "segmenter/core/segment_forest.hpp"
+
+namespace kintsugi::segmenter {
+
+/// Mode `batch`: Algorithm 1 over all points so far, from scratch at each update. The reference.
+class BatchEngine final : public SegmentationEngine {
+ public:
+  BatchEngine(const PointCloud& cloud, const EngineConfig& config);
+
+  RunStatistics update() override;
+  std::span<const PointIndex> components() const override { return components_; }
+  std::span<const PointIndex> changed() const override { return changed_; }
+  double theta(PointIndex representative) const override;
+
+ private:
+  const PointCloud& cloud_;
+  EngineConfig config_;
+  std::unique_ptr<NeighbourIndex> index_;
+  SegmentForest forest_;
+  std::vector<PointIndex> components_;
+  std::vector<PointIndex> changed_;
+};
+
+}  // namespace kintsugi::segmenter

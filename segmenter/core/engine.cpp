@@ -1,0 +1,66 @@
+#include "segmenter/core/engine.hpp"
+
+#include <array>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+#include "segmenter/core/batch_engine.hpp"
+#include "segmenter/core/voting_engine.hpp"
+
+namespace kintsugi::segmenter {
+namespace {
+
+constexpr std::array<std::string_view, 2> kModes = {"batch", "voting"};
+
+[[noreturn]] void throw_invalid(const char* field, double value, const char* bound) {
+  std::ostringstream message;
+  message << field << " is " << value << ", must be " << bound;
+  throw std::invalid_argument(message.str());
+}
+
+void require_positive(const char* field, double value) {
+  if (!(value > 0.0) || !std::isfinite(value)) throw_invalid(field, value, "> 0 and finite");
+}
+
+}  // namespace
+
+void EngineConfig::validate() const {
+  require_positive("threshold", threshold);
+  require_positive("scale", scale);
+  if (!(beta > 0.0 && beta < 1.0)) throw_invalid("beta", beta, "in (0, 1)");
+  require_positive("resolution_m", resolution_m);
+  require_positive("radius_factor", radius_factor);
+  // A float32 whose square vanishes or overflows compares with no distance.
+  const float squared_radius_m2 = radius_m() * radius_m();
+  if (!std::isnormal(squared_radius_m2)) {
+    throw_invalid("radius_factor * resolution_m", radius_factor * resolution_m,
+                  "a radius whose square is a normal float32");
+  }
+}
+
+std::span<const std::string_view> engine_modes() { return kModes; }
+
+std::unique_ptr<SegmentationEngine> make_engine(std::string_view mode, const PointCloud& cloud,
+                                                const EngineConfig& config) {
+  config.validate();
+  if (mode == "batch") return std::make_unique<BatchEngine>(cloud, config);
+  if (mode == "voting") return std::make_unique<VotingEngine>(cloud, config);
+  std::string known;
+  for (const std::string_view name : kModes) known.append(" ").append(name);
+  throw std::invalid_argument("mode is \"" + std::string(mode) + "\", must be one of:" + known);
+}
+
+std::vector<PointIndex> canonical_labels(std::span<const PointIndex> components) {
+  constexpr PointIndex kNone = UINT32_MAX;
+  std::vector<PointIndex> smallest(components.size(), kNone);
+  std::vector<PointIndex> labels(components.size());
+  for (PointIndex i = 0; i < components.size(); ++i) {
+    PointIndex& label = smallest[components[i]];
+    if (label == kNone) label = i;
+    labels[i] = label;
+  }
+  return labels;
+}
+
+}  // namespace kintsugi::segmenter

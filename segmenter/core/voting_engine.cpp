@@ -1,0 +1,177 @@
+#include "segmenter/core/voting_engine.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include <oneapi/tbb/enumerable_thread_specific.h>
+#include <oneapi/tbb/parallel_sort.h>
+
+#include "segmenter/core/edge_weight.hpp"
+
+namespace kintsugi::segmenter {
+namespace {
+
+constexpr PointIndex kNoPoint = UINT32_MAX;
+
+/// Sorts `added` into `edges`, which are sorted.
+void merge_edges(std::vector<Edge>& edges, std::vector<Edge> added) {
+  oneapi::tbb::parallel_sort(added.begin(), added.end(), AscendingWeight());
+  const auto middle = static_cast<std::ptrdiff_t>(edges.size());
+  edges.insert(edges.end(), added.begin(), added.end());
+  std::inplace_merge(edges.begin(), edges.begin() + middle, edges.end(), AscendingWeight());
+}
+
+}  // namespace
+
+double vote_threshold(double beta, int c) { return 1.0 - std::pow(beta, c); }
+
+VotingEngine::VotingEngine(const PointCloud& cloud, const EngineConfig& config)
+    : cloud_(cloud),
+      config_(config),
+      index_(make_neighbour_index(config.neighbour_search, cloud, config.radius_m())),
+      forest_(config.threshold, config.scale) {}
+
+/// Algorithm 3.
+RunStatistics VotingEngine::update() {
+  RunStatistics statistics;
+  first_round_ = round_;
+  std::vector<PointIndex> added = add_new_points();
+  for (int c = 0; c == 0 || !added.empty(); ++c, ++round_) {
+    add_to_D(added);
+    extend_graph(added);
+    statistics.num_joins = segment_graph();
+    added = vote(c);
+    statistics.num_iterations = c + 1;
+  }
+  statistics.num_points = static_cast<std::int64_t>(D_.size());
+  statistics.num_edges = static_cast<std::int64_t>(inner_edges_.size() + border_edges_.size());
+  commit();
+  return statistics;
+}
+
+std::vector<PointIndex> VotingEngine::add_new_points() {
+  index_->update();
+  const PointIndex first = forest_.size();
+  forest_.grow(cloud_.size());
+  components_.resize(cloud_.size());
+  next_.resize(cloud_.size());
+  round_added_.resize(cloud_.size(), 0);
+  round_discrepant_.resize(cloud_.size(), 0);
+  ballots_.resize(cloud_.size());
+  std::vector<PointIndex> points(cloud_.size() - first);
+  std::iota(points.begin(), points.end(), first);
+  for (const PointIndex i : points) components_[i] = i;
+  return points;
+}
+
+void VotingEngine::add_to_D(std::span<const PointIndex> points) {
+  D_.insert(D_.end(), points.begin(), points.end());
+  for (const PointIndex i : points) round_added_[i] = round_;
+}
+
+/// Algorithm 2 for D and D^B. The edges among points that were in D before stay as they are.
+void VotingEngine::extend_graph(std::span<const PointIndex> added) {
+  struct Found {
+    std::vector<Edge> inner;
+    std::vector<Edge> border;
+  };
+  const double max_weight = config_.threshold + config_.scale;
+  oneapi::tbb::enumerable_thread_specific<Found> found;
+  index_->visit(added, [&](PointIndex i, std::span<const PointIndex> neighbours) {
+    Found& edges = found.local();
+    for (const PointIndex j : neighbours) {
+      if (!is_in_D(j)) {
+        // Every edge counts in the vote, also one that is too heavy to join anything.
+        edges.border.push_back({directed_edge_weight(cloud_[i], cloud_[j]), i, j});
+      } else if (round_added_[j] < round_ || i < j) {
+        const float weight = edge_weight(cloud_[i], cloud_[j]);
+        if (weight < max_weight) edges.inner.push_back({weight, std::min(i, j), std::max(i, j)});
+      }
+    }
+  });
+  std::erase_if(border_edges_, [&](const Edge& edge) { return is_in_D(edge.j); });
+  for (Found& edges : found) {
+    merge_edges(inner_edges_, std::move(edges.inner));
+    merge_edges(border_edges_, std::move(edges.border));
+  }
+}
+
+/// Algorithm 4: segments D; border edges that would have joined mark discrepant points.
+std::int64_t VotingEngine::segment_graph() {
+  for (const PointIndex i : D_) forest_.reset(i);
+  std::int64_t num_joins = 0;
+  auto inner = inner_edges_.begin();
+  const auto join_up_to = [&](float weight) {
+    for (; inner != inner_edges_.end() && inner->weight < weight; ++inner) {
+      num_joins += forest_.join(inner->i, inner->j, inner->weight);
+    }
+  };
+  for (const Edge& edge : border_edges_) {
+    join_up_to(edge.weight);
+    const double w = edge.weight;
+    if (w < forest_.theta_at(forest_.find(edge.i)) && w < forest_.theta_at(forest_.find(edge.j))) {
+      round_discrepant_[edge.j] = round_;
+    }
+  }
+  join_up_to(INFINITY);
+  return num_joins;
+}
+
+/// Algorithm 5: the points of the segments S^Delta to segment again.
+std::vector<PointIndex> VotingEngine::vote(int c) {
+  std::vector<PointIndex> candidates;
+  for (const Edge& edge : border_edges_) {
+    Ballot& ballot = ballots_[components_[edge.j]];
+    if (ballot.num_edges++ == 0) candidates.push_back(components_[edge.j]);
+    ballot.num_discrepant_edges += round_discrepant_[edge.j] == round_;
+  }
+  std::sort(candidates.begin(), candidates.end());
+
+  std::vector<PointIndex> points;
+  const double alpha = vote_threshold(config_.beta, c);
+  for (const PointIndex segment : candidates) {
+    const Ballot ballot = std::exchange(ballots_[segment], {});
+    const double share = static_cast<double>(ballot.num_discrepant_edges) / ballot.num_edges;
+    if (share > alpha) append_segment(segment, points);
+  }
+  return points;
+}
+
+void VotingEngine::append_segment(PointIndex representative,
+                                  std::vector<PointIndex>& points) const {
+  PointIndex i = representative;
+  do {
+    points.push_back(i);
+    i = next_[i];
+  } while (i != representative);
+}
+
+/// Algorithm 3, line 10: the segments of D become part of S.
+void VotingEngine::commit() {
+  const PointIndex first_new = static_cast<PointIndex>(representative_at_.size());
+  representative_at_.resize(cloud_.size());
+  for (const PointIndex i : D_) representative_at_[i] = kNoPoint;
+  std::sort(D_.begin(), D_.end());
+  changed_.clear();
+  for (const PointIndex i : D_) {
+    PointIndex& representative = representative_at_[forest_.find(i)];
+    if (representative == kNoPoint) {
+      representative = i;
+      next_[i] = i;
+    } else {
+      next_[i] = std::exchange(next_[representative], i);
+    }
+    if (i >= first_new || components_[i] != representative) changed_.push_back(i);
+    components_[i] = representative;
+  }
+  D_.clear();
+  inner_edges_.clear();
+  border_edges_.clear();
+}
+
+double VotingEngine::theta(PointIndex representative) const {
+  return forest_.theta_at(forest_.root(representative));
+}
+
+}  // namespace kintsugi::segmenter
