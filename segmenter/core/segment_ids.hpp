@@ -50,21 +50,15 @@ class SegmentIds {
   /// Segments there are now.
   std::int64_t num_segments() const { return num_segments_; }
   /// Every id handed out so far is smaller.
-  std::uint32_t next_id() const { return static_cast<std::uint32_t>(segments_.size()); }
+  std::uint32_t next_id() const { return static_cast<std::uint32_t>(points_.size()); }
 
  private:
-  struct Segment {
-    PointIndex representative = 0;   ///< names its component in the engine
-    std::vector<PointIndex> points;  ///< empty: gone
-  };
-  struct Overlap;
-
   void detach(PointIndex point);
   void attach(PointIndex point, std::uint32_t segment_id);
 
-  std::vector<std::uint32_t> ids_;            ///< of each point
-  std::vector<std::uint32_t> slot_;           ///< where in its segment's points each point stands
-  std::vector<Segment> segments_{Segment{}};  ///< by id; id 0 is kNoSegment
+  std::vector<std::uint32_t> ids_;                  ///< of each point
+  std::vector<std::uint32_t> slot_;                 ///< where each point stands in its segment
+  std::vector<std::vector<PointIndex>> points_{1};  ///< of each segment by id; empty: gone
   std::int64_t num_segments_ = 0;
 };
 
