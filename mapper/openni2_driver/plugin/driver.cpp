@@ -1,0 +1,81 @@
+// The OpenNI2 driver plugin: `folder://PATH` and `synthetic://NAME?key=value`.
+// OpenNI2 loads it as lib*.so.0 from OpenNI2/Drivers beside its own library.
+
+#include <cstdio>
+#include <exception>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "mapper/openni2_driver/plugin/oni_driver_api.hpp"
+#include "mapper/openni2_driver/plugin/recording_device.hpp"
+#include "mapper/openni2_driver/recording_uri.hpp"
+
+namespace kintsugi::mapper {
+namespace {
+
+OniDeviceInfo device_info(const std::string& uri, const std::string& name) {
+  OniDeviceInfo info{};
+  std::snprintf(info.uri, sizeof(info.uri), "%s", uri.c_str());
+  std::snprintf(info.vendor, sizeof(info.vendor), "Kintsugi");
+  std::snprintf(info.name, sizeof(info.name), "%s", name.c_str());
+  return info;
+}
+
+class Driver : public oni::driver::DriverBase {
+ public:
+  explicit Driver(OniDriverServices* services) : DriverBase(services) {}
+
+  /// OpenNI2 asks every driver about an address it has not seen yet.
+  OniStatus tryDevice(const char* uri) override {
+    try {
+      const auto parsed = parse_recording_uri(uri);
+      if (!parsed) return ONI_STATUS_NO_DEVICE;
+      if (std::string(uri).size() >= ONI_MAX_STR) {
+        throw std::invalid_argument(std::string(uri) + ": longer than the 255 bytes of OpenNI2");
+      }
+      const OniDeviceInfo info = device_info(uri, open_recording(*parsed)->name());
+      deviceConnected(&info);
+      return ONI_STATUS_OK;
+    } catch (const std::exception& error) {
+      report_error(error.what());
+      return ONI_STATUS_NO_DEVICE;
+    }
+  }
+
+  oni::driver::DeviceBase* deviceOpen(const char* uri, const char* /*mode*/) override {
+    try {
+      auto recording = open_recording(parse_recording_uri(uri).value());
+      const OniDeviceInfo info = device_info(uri, recording->name());
+      return new RecordingDevice(
+          std::move(recording),
+          {.state_changed = [this,
+                             info](OniDeviceState state) { deviceStateChanged(&info, state); },
+           .report_error = [this](const std::string& text) { report_error(text); }});
+    } catch (const std::exception& error) {
+      report_error(error.what());
+      return nullptr;
+    }
+  }
+
+  void deviceClose(oni::driver::DeviceBase* device) override { delete device; }
+
+  void shutdown() override {}
+
+  /// Nothing to do: depth and colour carry the times they were recorded with. The group's handle
+  /// must not be null.
+  void* enableFrameSync(oni::driver::StreamBase** /*streams*/, int /*num_streams*/) override {
+    return this;
+  }
+
+ private:
+  void report_error(const std::string& text) {
+    getServices().errorLoggerAppend("%s\n", text.c_str());
+  }
+};
+
+}  // namespace
+}  // namespace kintsugi::mapper
+
+ONI_EXPORT_DRIVER(kintsugi::mapper::Driver)

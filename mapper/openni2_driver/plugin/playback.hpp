@@ -1,0 +1,114 @@
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "mapper/openni2_driver/recording.hpp"
+
+namespace kintsugi::mapper {
+
+enum class StreamKind : std::uint8_t { kDepth = 0, kColor = 1 };
+inline constexpr std::size_t kNumStreamKinds = 2;
+
+struct PlayedFrame {
+  StreamKind kind = StreamKind::kDepth;
+  int number = 0;  ///< in its stream, from 1, also counting past repeats
+  std::int64_t utime = 0;
+  cv::Mat image;  ///< CV_16UC1 or CV_8UC3 (red first)
+};
+
+/// Plays the frames of a recording, one after the other in the order of their times, from a thread
+/// of its own.
+///
+/// Speed: 1 is the recording's own pace, 2 twice as fast, 0 as fast as possible, and any negative
+/// value one frame for each trigger(): the way in which OpenNI2 reads a file without loss, for its
+/// core triggers when a reader waits and no frame is there. The next frame is decoded ahead.
+class Playback {
+ public:
+  struct Callbacks {
+    std::function<void(const PlayedFrame&)> frame;
+    /// The last frame has been played, or reading failed: then the reason, else empty.
+    std::function<void(const std::string&)> end;
+  };
+
+  /// The recording must outlive the playback. Callbacks come from the playback's thread.
+  Playback(Recording& recording, Callbacks callbacks);
+  ~Playback();
+  Playback(const Playback&) = delete;
+  Playback& operator=(const Playback&) = delete;
+
+  /// Frames of a stream that is not started are passed over. Starting the first stream after the
+  /// end plays the recording again from its beginning.
+  void start(StreamKind kind);
+
+  /// Returns when no frame of this stream is in flight any more.
+  void stop(StreamKind kind);
+
+  void trigger();
+
+  void set_speed(float speed);
+  [[nodiscard]] float speed() const;
+  void set_repeat(bool repeat);
+  [[nodiscard]] bool repeat() const;
+  void set_depth_unit(DepthUnit unit);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  /// One frame of the recording.
+  struct Item {
+    std::int64_t utime = 0;
+    StreamKind kind = StreamKind::kDepth;
+    int index = 0;
+
+    bool operator==(const Item&) const = default;
+  };
+  struct Decoded {
+    Item item;
+    DepthUnit unit = DepthUnit::k1mm;
+    cv::Mat image;
+  };
+  using Lock = std::unique_lock<std::mutex>;
+
+  void run();
+  void play_next(Lock& lock);
+  bool wait_for_turn(Lock& lock);
+  [[nodiscard]] std::optional<std::size_t> next_position() const;
+  [[nodiscard]] bool any_running() const;
+  [[nodiscard]] Clock::time_point due_time(const Item& item);
+  [[nodiscard]] cv::Mat decode(const Item& item, DepthUnit unit);
+  void decode_ahead(Lock& lock);
+  void finish(Lock& lock, const std::string& error);
+  void rewind();
+
+  Recording& recording_;
+  const Callbacks callbacks_;
+  const std::vector<Item> items_;  ///< by time; colour first where equal
+  std::optional<Decoded> ahead_;   ///< touched by the playing thread only
+
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;  ///< any of the state below
+  std::array<bool, kNumStreamKinds> running_{};
+  float speed_ = 1.0F;
+  bool repeat_ = true;
+  DepthUnit unit_ = DepthUnit::k1mm;
+  bool triggered_ = false;
+  bool in_flight_ = false;
+  bool ended_ = false;
+  bool quit_ = false;
+  std::size_t position_ = 0;  ///< of the next item to consider
+  std::int64_t repeats_ = 0;
+  std::optional<Clock::time_point> time_zero_;  ///< when the item with utime_zero_ was due
+  std::int64_t utime_zero_ = 0;
+  std::thread thread_;
+};
+
+}  // namespace kintsugi::mapper

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <array>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "mapper/openni2_driver/plugin/oni_driver_api.hpp"
+#include "mapper/openni2_driver/plugin/playback.hpp"
+#include "mapper/openni2_driver/plugin/recording_stream.hpp"
+
+namespace kintsugi::mapper {
+
+/// A recording as an OpenNI2 device. To a client it is a file (isFile() is true): it has a playback
+/// speed, repeats (as OpenNI2's own files do at first), and says how many frames it has. At the end
+/// the device's state becomes EOF, after a failed read ERROR.
+class RecordingDevice : public oni::driver::DeviceBase {
+ public:
+  struct Callbacks {
+    std::function<void(OniDeviceState)> state_changed;
+    std::function<void(const std::string&)> report_error;  ///< for getExtendedError()
+  };
+
+  RecordingDevice(std::unique_ptr<Recording> recording, Callbacks callbacks);
+  ~RecordingDevice() override = default;
+  RecordingDevice(const RecordingDevice&) = delete;
+  RecordingDevice& operator=(const RecordingDevice&) = delete;
+
+  OniStatus getSensorInfoList(OniSensorInfo** infos, int* num_infos) override;
+  oni::driver::StreamBase* createStream(OniSensorType type) override;
+  void destroyStream(oni::driver::StreamBase* stream) override;
+  OniStatus getProperty(int id, void* data, int* size) override;
+  OniStatus setProperty(int id, const void* data, int size) override;
+  OniBool isPropertySupported(int id) override;
+  OniStatus invoke(int command, void* data, int size) override;
+  OniBool isCommandSupported(int command) override;
+  OniStatus tryManualTrigger() override;
+  OniBool isImageRegistrationModeSupported(OniImageRegistrationMode mode) override;
+
+ private:
+  void on_frame(const PlayedFrame& frame);
+  void on_end(const std::string& error);
+  OniStatus give_playback_error(void* data, int* size);
+
+  const std::unique_ptr<Recording> recording_;
+  const Callbacks callbacks_;
+  std::array<std::vector<OniVideoMode>, kNumStreamKinds> modes_;
+  std::vector<OniSensorInfo> sensors_;
+  std::mutex mutex_;  ///< guards what follows
+  std::array<RecordingStream*, kNumStreamKinds> streams_{};
+  std::string playback_error_;
+  Playback playback_;  ///< last: its thread uses all of the above
+};
+
+}  // namespace kintsugi::mapper
