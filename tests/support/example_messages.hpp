@@ -1,0 +1,170 @@
+#pragma once
+// One filled example of each message of the contract; every field differs from its default.
+
+#include <cstdint>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "lcmtypes/messages.hpp"
+
+namespace kintsugi::testing {
+
+inline Pose example_pose() {
+  Pose X_WC = Pose::Identity();
+  X_WC.linear() = Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 3).normalized()).matrix();
+  X_WC.translation() << 1.25, -2.5, 0.125;
+  return X_WC;
+}
+
+inline CloudSlice example_slice(int num_points, std::int32_t id = 7) {
+  std::mt19937 random(static_cast<unsigned>(num_points + id));
+  std::uniform_real_distribution<float> coordinate(-5.0F, 5.0F);
+  CloudSlice slice;
+  slice.utime = 1'700'000'000'123'456;
+  slice.session = 42;
+  slice.map_name = "office";
+  slice.id = id;
+  slice.revision = 1;
+  slice.kind = SliceKind::kShiftMinusZ;
+  slice.resolution_m = 0.01F;
+  slice.X_WC = example_pose();
+  for (int i = 0; i < num_points; ++i) {
+    CloudPoint point;
+    point.x = coordinate(random);
+    point.y = coordinate(random);
+    point.z = coordinate(random);
+    point.ny = 1.0F;
+    point.red = static_cast<std::uint8_t>(i);
+    point.blue = static_cast<std::uint8_t>(i >> 8);
+    point.weight = static_cast<float>(i);
+    slice.points_W.push_back(point);
+  }
+  return slice;
+}
+
+inline SegmentUpdate example_update(int num_labels, std::int32_t slice_id = 7) {
+  SegmentUpdate update;
+  update.utime = 1'700'000'000'123'456;
+  update.session = 43;
+  update.map_session = 42;
+  update.map_name = "office";
+  update.slice_id = slice_id;
+  update.slice_revision = 1;
+  update.is_final = true;
+  update.num_slices = slice_id + 1;
+  update.num_points = 1'000'000;
+  update.num_segments = 321;
+  for (int i = 0; i < num_labels; ++i) {
+    const auto id = static_cast<std::uint32_t>(i % 97 + 1);
+    update.labels.push_back(id);
+    if (i % 5 == 0) update.runs.push_back({slice_id, i, 5, id});
+    if (i % 7 == 0) update.events.push_back({SegmentEventType::kMerged, id, id + 1});
+    if (i % 11 == 0) {
+      SegmentStatistics statistics;
+      statistics.segment_id = id;
+      statistics.num_points = 500;
+      statistics.box_max_W[1] = 0.5F;
+      statistics.centroid_W[2] = 0.25F;
+      statistics.mean_normal_W[0] = 1.0F;
+      statistics.mean_color[2] = 200;
+      statistics.area_m2 = 0.05F;
+      statistics.first_slice = 1;
+      statistics.last_slice = slice_id;
+      update.statistics.push_back(statistics);
+    }
+  }
+  return update;
+}
+
+inline std::vector<std::uint8_t> example_bytes(int size) {
+  std::vector<std::uint8_t> bytes;
+  for (int i = 0; i < size; ++i) bytes.push_back(static_cast<std::uint8_t>(i * 7 + i / 256));
+  return bytes;
+}
+
+inline RgbdFrameMessage example_frame(int depth_bytes, int color_bytes) {
+  RgbdFrameMessage frame;
+  frame.utime = 5'000'000;
+  frame.color_utime = 5'001'000;
+  frame.session = 44;
+  frame.frame_index = 150;
+  frame.intrinsics = {525.0, 526.0, 319.5, 239.5, 640, 480, {0.1, -0.2, 0.001, 0.002, 0.05}};
+  frame.depth_units_per_m = 5000;
+  frame.depth_png = example_bytes(depth_bytes);
+  frame.color_jpeg = example_bytes(color_bytes);
+  return frame;
+}
+
+inline Snapshot example_snapshot(int image_bytes) {
+  return {6'000'000, 45, "12.5 s, 100 000 points", 1280, 720, example_bytes(image_bytes)};
+}
+
+inline CameraPose example_camera_pose() {
+  return {7'000'000, 42, 210, TrackingState::kTracking, example_pose()};
+}
+
+inline MapperStatus example_mapper_status() {
+  MapperStatus status;
+  status.utime = 1;
+  status.session = 42;
+  status.map_name = "office";
+  status.device = "synthetic://office";
+  status.state = TrackingState::kLost;
+  status.finished = true;
+  status.frames_read = 2;
+  status.frames_total = 3;
+  status.frames_tracked = 4;
+  status.frames_lost = 5;
+  status.frames_dropped = 6;
+  status.slices_published = 7;
+  status.points_published = 8;
+  status.chunks_published = 9;
+  status.blocks = 10;
+  status.memory_bytes = 11;
+  status.frame_rate_hz = 12.5;
+  status.read_ms = 13.5;
+  status.track_ms = 14.5;
+  status.integrate_ms = 15.5;
+  status.raycast_ms = 16.5;
+  status.extract_ms = 17.5;
+  status.publish_ms = 18.5;
+  return status;
+}
+
+inline SegmenterStatus example_segmenter_status() {
+  SegmenterStatus status;
+  status.utime = 1;
+  status.session = 43;
+  status.map_session = 42;
+  status.map_name = "office";
+  status.mode = "voting";
+  status.finished = true;
+  status.slices_received = 2;
+  status.slices_segmented = 3;
+  status.lag_slices = 4;
+  status.points = 5;
+  status.points_rejected = 6;
+  status.segments = 7;
+  status.chunks_received = 8;
+  status.chunks_duplicate = 9;
+  status.chunks_missing = 10;
+  status.messages_bad = 11;
+  status.memory_bytes = 12;
+  status.slice_ms = 13.5;
+  status.slice_mean_ms = 14.5;
+  status.slice_max_ms = 15.5;
+  return status;
+}
+
+inline ViewerStatus example_viewer_status() {
+  return {1, 45, true, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11.5};
+}
+
+inline Heartbeat example_heartbeat() { return {1, 42, "CLOUD_SLICE", 3, 17}; }
+
+inline ResendRequest example_resend_request() {
+  return {1, 42, "CLOUD_SLICE", 99, {{0, 0}, {5, 9}, {12, 1'000'000}}};
+}
+
+}  // namespace kintsugi::testing

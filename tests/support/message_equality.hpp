@@ -1,0 +1,87 @@
+#pragma once
+// Field by field, so that a field the codec forgets makes a test fail.
+
+#include "lcmtypes/messages.hpp"
+
+namespace kintsugi {
+
+// Bit for bit: the codec copies, it does not compute.
+inline bool equal(const Pose& a, const Pose& b) { return a.matrix() == b.matrix(); }
+
+inline bool operator==(const CloudSlice& a, const CloudSlice& b) {
+  return a.utime == b.utime && a.session == b.session && a.map_name == b.map_name && a.id == b.id &&
+         a.revision == b.revision && a.kind == b.kind && a.resolution_m == b.resolution_m &&
+         equal(a.X_WC, b.X_WC) && a.points_W == b.points_W;
+}
+
+inline bool operator==(const SegmentUpdate& a, const SegmentUpdate& b) {
+  return a.utime == b.utime && a.session == b.session && a.map_session == b.map_session &&
+         a.map_name == b.map_name && a.slice_id == b.slice_id &&
+         a.slice_revision == b.slice_revision && a.is_final == b.is_final &&
+         a.num_slices == b.num_slices && a.num_points == b.num_points &&
+         a.num_segments == b.num_segments && a.labels == b.labels && a.runs == b.runs &&
+         a.events == b.events && a.statistics == b.statistics;
+}
+
+inline bool operator==(const RgbdFrameMessage& a, const RgbdFrameMessage& b) {
+  return a.utime == b.utime && a.color_utime == b.color_utime && a.session == b.session &&
+         a.frame_index == b.frame_index && a.intrinsics == b.intrinsics &&
+         a.depth_units_per_m == b.depth_units_per_m && a.depth_png == b.depth_png &&
+         a.color_jpeg == b.color_jpeg;
+}
+
+inline bool operator==(const Snapshot& a, const Snapshot& b) {
+  return a.utime == b.utime && a.session == b.session && a.caption == b.caption &&
+         a.width == b.width && a.height == b.height && a.image_jpeg == b.image_jpeg;
+}
+
+inline bool operator==(const CameraPose& a, const CameraPose& b) {
+  return a.utime == b.utime && a.session == b.session && a.frame_index == b.frame_index &&
+         a.state == b.state && equal(a.X_WC, b.X_WC);
+}
+
+inline bool operator==(const MapperStatus& a, const MapperStatus& b) {
+  return a.utime == b.utime && a.session == b.session && a.map_name == b.map_name &&
+         a.device == b.device && a.state == b.state && a.finished == b.finished &&
+         a.frames_read == b.frames_read && a.frames_total == b.frames_total &&
+         a.frames_tracked == b.frames_tracked && a.frames_lost == b.frames_lost &&
+         a.frames_dropped == b.frames_dropped && a.slices_published == b.slices_published &&
+         a.points_published == b.points_published && a.chunks_published == b.chunks_published &&
+         a.blocks == b.blocks && a.memory_bytes == b.memory_bytes &&
+         a.frame_rate_hz == b.frame_rate_hz && a.read_ms == b.read_ms && a.track_ms == b.track_ms &&
+         a.integrate_ms == b.integrate_ms && a.raycast_ms == b.raycast_ms &&
+         a.extract_ms == b.extract_ms && a.publish_ms == b.publish_ms;
+}
+
+inline bool operator==(const SegmenterStatus& a, const SegmenterStatus& b) {
+  return a.utime == b.utime && a.session == b.session && a.map_session == b.map_session &&
+         a.map_name == b.map_name && a.mode == b.mode && a.finished == b.finished &&
+         a.slices_received == b.slices_received && a.slices_segmented == b.slices_segmented &&
+         a.lag_slices == b.lag_slices && a.points == b.points &&
+         a.points_rejected == b.points_rejected && a.segments == b.segments &&
+         a.chunks_received == b.chunks_received && a.chunks_duplicate == b.chunks_duplicate &&
+         a.chunks_missing == b.chunks_missing && a.messages_bad == b.messages_bad &&
+         a.memory_bytes == b.memory_bytes && a.slice_ms == b.slice_ms &&
+         a.slice_mean_ms == b.slice_mean_ms && a.slice_max_ms == b.slice_max_ms;
+}
+
+inline bool operator==(const ViewerStatus& a, const ViewerStatus& b) {
+  return a.utime == b.utime && a.session == b.session && a.finished == b.finished &&
+         a.slices_received == b.slices_received && a.updates_applied == b.updates_applied &&
+         a.lag_slices == b.lag_slices && a.points == b.points && a.segments == b.segments &&
+         a.snapshots_written == b.snapshots_written && a.chunks_missing == b.chunks_missing &&
+         a.messages_bad == b.messages_bad && a.memory_bytes == b.memory_bytes &&
+         a.render_ms == b.render_ms;
+}
+
+inline bool operator==(const Heartbeat& a, const Heartbeat& b) {
+  return a.utime == b.utime && a.session == b.session && a.channel == b.channel &&
+         a.first_sequence == b.first_sequence && a.next_sequence == b.next_sequence;
+}
+
+inline bool operator==(const ResendRequest& a, const ResendRequest& b) {
+  return a.utime == b.utime && a.session == b.session && a.channel == b.channel &&
+         a.receiver == b.receiver && a.ranges == b.ranges;
+}
+
+}  // namespace kintsugi
