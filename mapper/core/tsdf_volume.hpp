@@ -25,11 +25,11 @@ class TsdfVolume {
     int max_weight = 128;             ///< the running mean forgets older observations beyond this
     int shift_vox = 14;  ///< the cube moves when the camera is further than this from its centre
 
-    /// Throws std::invalid_argument naming the field, its value and the bound.
+    /// @throws std::invalid_argument naming the field, its value and the bound.
     void validate() const;
   };
 
-  /// An empty cube, centred at `center_W` (metres) to the nearest block. Throws as validate() and
+  /// An empty cube, centred at `center_W` (metres) to the nearest block. @throws as validate() and
   /// shift_to() do.
   explicit TsdfVolume(const Config& config,
                       const Eigen::Vector3d& center_W = Eigen::Vector3d::Zero());
@@ -44,12 +44,7 @@ class TsdfVolume {
   const BlockCoord& min_block() const { return min_block_; }
   Eigen::Vector3d center_W() const;  ///< metres
 
-  bool contains(const BlockCoord& coord) const {
-    const auto side = static_cast<unsigned>(side_blocks_);
-    return static_cast<unsigned>(coord.x - min_block_.x) < side &&
-           static_cast<unsigned>(coord.y - min_block_.y) < side &&
-           static_cast<unsigned>(coord.z - min_block_.z) < side;
-  }
+  bool contains(const BlockCoord& coord) const { return is_inside(coord, min_block_); }
   /// The block's slot; kNoBlock where it was not allocated or is outside the cube.
   BlockSlot find(const BlockCoord& coord) const {
     return contains(coord) ? table_[table_index(coord)] : kNoBlock;
@@ -70,8 +65,8 @@ class TsdfVolume {
   /// Moves the cube so that the camera is within half a block of its centre along each axis along
   /// which it was further than shift_vox, and hands out what fell out: one object for each axis (x,
   /// y, z in this order) along which something did. Blocks that enter are empty.
-  /// Throws std::invalid_argument where the position is not finite or further than 100 km away; the
-  /// volume is unchanged then.
+  /// @throws std::invalid_argument where the position is not finite or further than 100 km away;
+  /// the volume is unchanged then.
   std::vector<DetachedBlocks> shift_to(const Eigen::Vector3d& camera_W);
 
   /// What is in the cube, as a final slice; the volume is unchanged.
@@ -83,17 +78,23 @@ class TsdfVolume {
   std::size_t memory_bytes() const;
 
  private:
+  bool is_inside(const BlockCoord& coord, const BlockCoord& min_block) const {
+    const auto side = static_cast<unsigned>(side_blocks_);
+    return static_cast<unsigned>(coord.x - min_block.x) < side &&
+           static_cast<unsigned>(coord.y - min_block.y) < side &&
+           static_cast<unsigned>(coord.z - min_block.z) < side;
+  }
   std::size_t table_index(const BlockCoord& coord) const {
     const auto wrap = [mask = table_side_ - 1](int c) {
       return static_cast<std::size_t>(static_cast<unsigned>(c) & mask);
     };
     return (wrap(coord.z) * table_side_ + wrap(coord.y)) * table_side_ + wrap(coord.x);
   }
-  void move_cube(const BlockCoord& min_block);
   std::vector<BlockSlot> slots_outside(const BlockCoord& min_block) const;
   DetachedBlocks copy_blocks(std::vector<BlockSlot> slots, SliceKind kind) const;
-  void collect_apron(DetachedBlocks& detached) const;
-  void release(const DetachedBlocks& detached);
+  void copy_apron(DetachedBlocks& blocks) const;
+  void release(const DetachedBlocks& blocks);
+  void remember_departed(const DetachedBlocks& blocks);
 
   Config config_;
   int side_blocks_ = 0;
