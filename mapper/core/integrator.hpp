@@ -21,7 +21,7 @@ class Integrator {
     /// None: best_instruction_set().
     std::optional<InstructionSet> instruction_set;
 
-    /// Throws std::invalid_argument naming the field, its value and the bound.
+    /// @throws std::invalid_argument naming the field, its value and the bound.
     void validate() const;
   };
 
@@ -32,8 +32,8 @@ class Integrator {
   /// infinite or outside [min_depth_m, max_depth_m] change nothing. Colour is fused within the
   /// truncation distance; a frame without colour leaves colours as they are. The result does not
   /// depend on the number of threads.
-  /// Throws std::invalid_argument where images and intrinsics disagree in size, the focal length is
-  /// not positive, there is lens distortion or X_WC is not finite; the volume is unchanged then.
+  /// @throws std::invalid_argument where images and intrinsics disagree in size, the focal length
+  /// is not positive, there is lens distortion or X_WC is not finite; the volume is unchanged then.
   void integrate(const RgbdFrame& frame, const Pose& X_WC, TsdfVolume& volume) const;
 
  private:

@@ -1,0 +1,119 @@
+#include "mapper/core/integrator.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+#include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/parallel_for.h>
+#include <opencv2/imgproc.hpp>
+
+#include "mapper/core/block_allocation.hpp"
+#include "mapper/core/block_visibility.hpp"
+#include "mapper/core/camera_view.hpp"
+#include "mapper/core/check.hpp"
+#include "mapper/core/integration_kernel.hpp"
+
+namespace kintsugi::mapper {
+namespace {
+
+void check_image_size(const char* name, cv::Size actual, const Intrinsics& intrinsics) {
+  if (actual.width == intrinsics.width && actual.height == intrinsics.height) return;
+  throw std::invalid_argument(std::string(name) + " is " + std::to_string(actual.width) + " x " +
+                              std::to_string(actual.height) + ", the intrinsics say " +
+                              std::to_string(intrinsics.width) + " x " +
+                              std::to_string(intrinsics.height));
+}
+
+IntegrationKernel kernel_for(InstructionSet instruction_set) {
+#ifdef KINTSUGI_X86_KERNELS
+  if (instruction_set == InstructionSet::kAvx2) return integrate_block_avx2;
+#endif
+  static_cast<void>(instruction_set);
+  return integrate_block_portable;
+}
+
+/// Without padding between rows, as the kernels read them.
+template <typename Image>
+Image continuous(const Image& image) {
+  return image.isContinuous() ? image : image.clone();
+}
+
+KernelFrame make_kernel_frame(const CameraView& view, const TsdfVolume& volume) {
+  KernelFrame frame;
+  frame.width = view.width;
+  frame.height = view.height;
+  frame.fx = view.fx;
+  frame.fy = view.fy;
+  frame.cx_plus_half = view.cx + 0.5F;
+  frame.cy_plus_half = view.cy + 0.5F;
+  for (int axis_W = 0; axis_W < 3; ++axis_W) {
+    for (int axis_C = 0; axis_C < 3; ++axis_C) {
+      frame.step_C[axis_W][axis_C] = view.R_WC(axis_W, axis_C) * volume.resolution_m();
+    }
+  }
+  const int max_weight = volume.config().max_weight;
+  frame.truncation_m = volume.truncation_m();
+  frame.inverse_truncation = 1.0F / frame.truncation_m;
+  frame.max_weight = static_cast<float>(max_weight);
+  frame.max_color_weight = static_cast<float>(std::min(max_weight, 255));
+  return frame;
+}
+
+KernelBlock make_kernel_block(const VisibleBlock& block, const CameraView& view,
+                              TsdfVolume& volume) {
+  constexpr float kHalfBlock_vox = 0.5F * (kBlockSide - 1);
+  const Eigen::Vector3f to_center_W =
+      Eigen::Vector3f::Constant(kHalfBlock_vox * volume.resolution_m());
+  const Eigen::Vector3f origin_C = block.center_C - view.R_WC.transpose() * to_center_W;
+  return {.voxels = volume.voxels(block.slot).voxels.data(),
+          .colors = volume.colors(block.slot).colors.data(),
+          .origin_C = {origin_C.x(), origin_C.y(), origin_C.z()}};
+}
+
+}  // namespace
+
+void Integrator::Config::validate() const {
+  check_range("min_depth_m", min_depth_m, 0.01, 100.0);
+  check_range("max_depth_m", max_depth_m, min_depth_m, 100.0);
+  if (instruction_set && !is_supported(*instruction_set)) {
+    throw std::invalid_argument("instruction_set is " + std::string(name_of(*instruction_set)) +
+                                ", which this processor or this build does not have");
+  }
+}
+
+Integrator::Integrator(const Config& config) : config_(config) {
+  config_.validate();
+  instruction_set_ = config_.instruction_set ? *config_.instruction_set : best_instruction_set();
+}
+
+void Integrator::integrate(const RgbdFrame& frame, const Pose& X_WC, TsdfVolume& volume) const {
+  const CameraView view(frame.intrinsics, X_WC);
+  check_image_size("depth_m", frame.depth_m.size(), frame.intrinsics);
+  const bool has_color = !frame.color_rgb.empty();
+  if (has_color) check_image_size("color_rgb", frame.color_rgb.size(), frame.intrinsics);
+
+  const auto min_depth_m = static_cast<float>(config_.min_depth_m);
+  const auto max_depth_m = static_cast<float>(config_.max_depth_m);
+  allocate_seen_blocks(frame.depth_m, view, min_depth_m, max_depth_m, volume);
+  const std::vector<VisibleBlock> visible =
+      find_visible_blocks(volume, view, max_depth_m + volume.truncation_m());
+
+  const cv::Mat_<float> depth_m = continuous(frame.depth_m);
+  cv::Mat_<cv::Vec4b> color_rgbx;
+  if (has_color) cv::cvtColor(frame.color_rgb, color_rgbx, cv::COLOR_RGB2RGBA);
+  KernelFrame kernel_frame = make_kernel_frame(view, volume);
+  kernel_frame.min_depth_m = min_depth_m;
+  kernel_frame.max_depth_m = max_depth_m;
+  kernel_frame.depth_m = depth_m[0];
+  if (has_color) kernel_frame.color_rgbx = color_rgbx.ptr<std::uint32_t>();
+
+  const IntegrationKernel integrate_block = kernel_for(instruction_set_);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, visible.size(), 32), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i < range.end(); ++i) {
+      integrate_block(kernel_frame, make_kernel_block(visible[i], view, volume));
+    }
+  });
+}
+
+}  // namespace kintsugi::mapper
