@@ -16,7 +16,7 @@ class Raycaster {
     double min_depth_m = 0.3;  ///< rays start here at the earliest
     double max_depth_m = 6.0;  ///< and end here
 
-    /// Throws std::invalid_argument naming the field, its value and the bound.
+    /// @throws std::invalid_argument naming the field, its value and the bound.
     void validate() const;
   };
 
@@ -30,7 +30,7 @@ class Raycaster {
   /// two truncation distances before the guide's depth, which is faster and gives the same surface
   /// where the volume agrees with the guide; where it does not, the whole ray is searched.
   /// `color_rgb`: null, or where to put the surface's colour; pixels without a point are black.
-  /// Throws std::invalid_argument where the intrinsics or the pose are unusable.
+  /// @throws std::invalid_argument where the intrinsics or the pose are unusable.
   SurfaceMap raycast(const TsdfVolume& volume, const Pose& X_WC, const Intrinsics& intrinsics,
                      const cv::Mat_<float>& guide_depth_m = {},
                      cv::Mat_<cv::Vec3b>* color_rgb = nullptr) const;
