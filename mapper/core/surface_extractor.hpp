@@ -20,7 +20,7 @@ class SurfaceExtractor {
     int weight_threshold = 8;        ///< voxels with no more observations than this are ignored
     double normal_radius_vox = 2.0;  ///< normals are averaged over the surface within this, <= 2
 
-    /// Throws std::invalid_argument naming the field, its value and the bound.
+    /// @throws std::invalid_argument naming the field, its value and the bound.
     void validate() const;
   };
 

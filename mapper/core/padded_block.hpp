@@ -1,0 +1,31 @@
+#pragma once
+
+#include <array>
+
+#include "mapper/core/detached_blocks.hpp"
+
+namespace kintsugi::mapper {
+
+/// A block's voxels with those around it: all that the surface in the block depends on.
+class PaddedBlock {
+ public:
+  static constexpr int kPad = 4;
+  static constexpr int kSide = kBlockSide + 2 * kPad;
+
+  /// Voxels of blocks that are not there read as never observed.
+  PaddedBlock(const DetachedBlocks& blocks, const BlockCoord& coord);
+
+  /// Coordinates from the block's first voxel, each in [-kPad, kBlockSide + kPad).
+  static int index(int x, int y, int z) {
+    return ((z + kPad) * kSide + (y + kPad)) * kSide + (x + kPad);
+  }
+  /// From a voxel to the next along x, y or z.
+  static constexpr std::array<int, 3> kStride = {1, kSide, kSide* kSide};
+
+  Voxel operator[](int index) const { return voxels_[index]; }
+
+ private:
+  std::array<Voxel, kSide * kSide * kSide> voxels_{};
+};
+
+}  // namespace kintsugi::mapper
