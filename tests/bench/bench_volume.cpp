@@ -1,0 +1,110 @@
+// Fusion, raycasting and extraction on the office scene: 640 x 480 with colour, 8.8 mm voxels.
+//
+//   build/release/bench/bench_volume --benchmark_repetitions=5 --benchmark_report_aggregates_only
+
+#include <vector>
+
+#include <benchmark/benchmark.h>
+
+#include "mapper/core/integrator.hpp"
+#include "mapper/core/raycaster.hpp"
+#include "mapper/core/rgbd_frame.hpp"
+#include "mapper/core/surface_extractor.hpp"
+#include "mapper/core/tsdf_volume.hpp"
+#include "mapper/synthetic/renderer.hpp"
+#include "mapper/synthetic/scenes.hpp"
+
+namespace kintsugi::mapper {
+namespace {
+
+struct View {
+  RgbdFrame frame;
+  Pose X_WC;
+};
+
+/// Some frames along the office's path, far enough apart to cover it.
+const std::vector<View>& office_views() {
+  static const std::vector<View> views = [] {
+    constexpr int kNumViews = 24;
+    const auto office = synthetic::make_scene_with_path("office");
+    std::vector<View> result;
+    for (int i = 0; i < kNumViews; ++i) {
+      const double t_s = office.trajectory.duration_s() * i / kNumViews;
+      const auto rendered = synthetic::render(office.scene, synthetic::default_intrinsics(),
+                                              office.trajectory.X_WC(t_s));
+      result.push_back({.frame = {.intrinsics = rendered.intrinsics,
+                                  .depth_m = rendered.depth_m,
+                                  .color_rgb = rendered.color_rgb},
+                        .X_WC = rendered.X_WC});
+    }
+    return result;
+  }();
+  return views;
+}
+
+TsdfVolume office_volume() {
+  const std::vector<View>& views = office_views();
+  TsdfVolume volume({}, views.front().X_WC.translation());
+  const Integrator integrator({});
+  for (const View& view : views) {
+    volume.shift_to(view.X_WC.translation());
+    integrator.integrate(view.frame, view.X_WC, volume);
+  }
+  return volume;
+}
+
+void integrate(benchmark::State& state) {
+  TsdfVolume volume = office_volume();
+  const Integrator integrator({.instruction_set = static_cast<InstructionSet>(state.range(0))});
+  std::size_t i = 0;
+  for (auto _ : state) {
+    const View& view = office_views()[i++ % office_views().size()];
+    integrator.integrate(view.frame, view.X_WC, volume);
+  }
+  state.counters["blocks"] = static_cast<double>(volume.num_blocks());
+}
+BENCHMARK(integrate)
+    ->ArgName("instruction_set")
+    ->Arg(static_cast<int>(InstructionSet::kPortable))
+    ->Arg(static_cast<int>(InstructionSet::kAvx2))
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+
+void raycast(benchmark::State& state) {
+  const TsdfVolume volume = office_volume();
+  const bool guided = state.range(0) != 0;
+  const Raycaster raycaster({});
+  std::size_t i = 0;
+  for (auto _ : state) {
+    const View& view = office_views()[i++ % office_views().size()];
+    Intrinsics half = view.frame.intrinsics;
+    half.width /= 2;
+    half.height /= 2;
+    half.fx /= 2;
+    half.fy /= 2;
+    half.cx = (half.cx + 0.5) / 2 - 0.5;
+    half.cy = (half.cy + 0.5) / 2 - 0.5;
+    benchmark::DoNotOptimize(raycaster.raycast(volume, view.X_WC, half,
+                                               guided ? view.frame.depth_m : cv::Mat_<float>()));
+  }
+}
+BENCHMARK(raycast)->ArgName("guided")->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+void extract(benchmark::State& state) {
+  const DetachedBlocks blocks = office_volume().snapshot();
+  const SurfaceExtractor extractor({.weight_threshold = 0});
+  std::size_t num_points = 0;
+  for (auto _ : state) num_points = extractor.extract(blocks).size();
+  state.counters["blocks"] = static_cast<double>(blocks.coords.size());
+  state.counters["points"] = static_cast<double>(num_points);
+}
+BENCHMARK(extract)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+void snapshot(benchmark::State& state) {
+  const TsdfVolume volume = office_volume();
+  for (auto _ : state) benchmark::DoNotOptimize(volume.snapshot());
+}
+BENCHMARK(snapshot)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+}  // namespace
+}  // namespace kintsugi::mapper
