@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "mapper/openni2_driver/folder_recording.hpp"
+#include "mapper/openni2_driver/synthetic_recording.hpp"
 
 namespace kintsugi::mapper {
 namespace {
@@ -60,7 +61,8 @@ std::unique_ptr<Recording> open_recording(const RecordingUri& uri) {
   if (uri.scheme == RecordingUri::Scheme::kFolder) {
     return std::make_unique<FolderRecording>(uri.path);
   }
-  throw std::invalid_argument("synthetic://" + uri.path + ": no such room");
+  return std::make_unique<SyntheticRecording>(
+      synthetic::Sequence::Config::parse(uri.path, uri.options));
 }
 
 }  // namespace kintsugi::mapper

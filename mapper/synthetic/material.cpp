@@ -117,10 +117,10 @@ Color albedo(const Material& m, const BasicShape<float>& shape, const Eigen::Vec
 }
 
 float irradiance(const Eigen::Vector3f& normal_W) {
-  static const Eigen::Vector3f kKey = Eigen::Vector3f(0.45F, 0.30F, 0.84F).normalized();
-  static const Eigen::Vector3f kFill = Eigen::Vector3f(-0.60F, -0.75F, 0.28F).normalized();
-  return std::min(1.0F, 0.52F + 0.40F * std::max(0.0F, normal_W.dot(kKey)) +
-                            0.22F * std::max(0.0F, normal_W.dot(kFill)));
+  static const Eigen::Vector3f kKey = Eigen::Vector3f(0.38F, -0.50F, 0.78F).normalized();
+  static const Eigen::Vector3f kFill = Eigen::Vector3f(-0.70F, 0.65F, 0.30F).normalized();
+  return std::min(1.0F, 0.56F + 0.40F * std::max(0.0F, normal_W.dot(kKey)) +
+                            0.25F * std::max(0.0F, normal_W.dot(kFill)));
 }
 
 }  // namespace kintsugi::synthetic

@@ -10,5 +10,6 @@ namespace kintsugi::synthetic {
 SceneWithPath sphere_scene(std::uint32_t seed);
 SceneWithPath plane_scene(std::uint32_t seed);
 SceneWithPath box_room_scene(std::uint32_t seed);
+SceneWithPath office_scene(std::uint32_t seed);
 
 }  // namespace kintsugi::synthetic

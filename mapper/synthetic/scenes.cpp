@@ -14,6 +14,7 @@ using Maker = std::function<SceneWithPath(std::uint32_t)>;
 
 const std::map<std::string, Maker>& makers() {
   static const std::map<std::string, Maker> kMakers = {
+      {"office", office_scene},
       {"sphere", sphere_scene},
       {"plane", plane_scene},
       {"box-room", box_room_scene},
