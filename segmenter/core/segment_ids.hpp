@@ -9,6 +9,8 @@
 
 namespace kintsugi::segmenter {
 
+struct Overlap;
+
 /// A point that carries another segment id than before.
 struct IdChange {
   PointIndex point = 0;
@@ -53,6 +55,7 @@ class SegmentIds {
   std::uint32_t next_id() const { return static_cast<std::uint32_t>(points_.size()); }
 
  private:
+  std::vector<std::uint32_t> touched_rests(std::span<const Overlap> overlaps) const;
   void detach(PointIndex point);
   void attach(PointIndex point, std::uint32_t segment_id);
 
