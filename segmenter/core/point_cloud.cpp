@@ -54,12 +54,14 @@ const SliceRecord& PointCloud::slice_of(PointIndex i) const {
 
 PointId PointCloud::id_of(PointIndex i) const {
   const SliceRecord& slice = slice_of(i);
-  auto index = static_cast<std::int32_t>(i - slice.first);
-  for (const std::int32_t rejected : slice.rejected) {
-    if (rejected > index) break;
-    ++index;
-  }
-  return {slice.slice_id, index};
+  const auto accepted_before = static_cast<std::int32_t>(i - slice.first);
+  // Rejected point k of the slice has rejected[k] - k accepted points before it.
+  const auto after = std::partition_point(
+      slice.rejected.begin(), slice.rejected.end(), [&](const std::int32_t& rejected) {
+        return rejected - (&rejected - slice.rejected.data()) <= accepted_before;
+      });
+  const auto rejected_before = static_cast<std::int32_t>(after - slice.rejected.begin());
+  return {slice.slice_id, accepted_before + rejected_before};
 }
 
 }  // namespace kintsugi::segmenter
