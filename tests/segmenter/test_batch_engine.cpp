@@ -1,0 +1,146 @@
+#include <algorithm>
+#include <numeric>
+#include <random>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <oneapi/tbb/global_control.h>
+
+#include "segmenter/core/batch_engine.hpp"
+#include "tests/segmenter/expect_partition.hpp"
+#include "tests/segmenter/random_clouds.hpp"
+
+namespace kintsugi::segmenter {
+namespace {
+
+using testing::CloudShape;
+using testing::literal_batch;
+using testing::LiteralParameters;
+using testing::random_cloud;
+
+constexpr CloudShape kShapes[] = {CloudShape::kWaves, CloudShape::kLattice, CloudShape::kUnrelated};
+
+TEST(BatchEngine, EmptyCloud) {
+  const PointCloud cloud;
+  BatchEngine engine(cloud, {});
+  engine.update();
+  EXPECT_TRUE(engine.components().empty());
+  EXPECT_TRUE(engine.changed().empty());
+}
+
+class BatchEngineTest : public ::testing::TestWithParam<NeighbourSearch> {};
+
+TEST_P(BatchEngineTest, EqualsTheLiteralAlgorithms) {
+  std::size_t num_segments = 0;
+  std::size_t num_points = 0;
+  for (const CloudShape shape : kShapes) {
+    for (unsigned seed = 0; seed < 30; ++seed) {
+      const auto points = random_cloud(shape, 100 + 6 * static_cast<int>(seed), seed);
+      PointCloud cloud;
+      cloud.add_slice(0, points);
+      BatchEngine engine(cloud, {.neighbour_search = GetParam()});
+      engine.update();
+      const auto expected = literal_batch(points, {}, seed);
+      testing::expect_partition(engine, expected);
+      num_segments += expected.segments.size();
+      num_points += points.size();
+    }
+  }
+  // The clouds are worth the test: neither one segment each nor all points alone.
+  EXPECT_GT(num_segments, 90U * 4U);
+  EXPECT_LT(num_segments, num_points / 2);
+}
+
+TEST_P(BatchEngineTest, EqualsTheLiteralAlgorithmsForOtherParameters) {
+  const LiteralParameters parameters{.T = 0.01, .k = 0.003, .r = 0.03F};
+  for (unsigned seed = 0; seed < 6; ++seed) {
+    const auto points = random_cloud(CloudShape::kUnrelated, 200, seed);
+    PointCloud cloud;
+    cloud.add_slice(0, points);
+    BatchEngine engine(cloud, {.threshold = parameters.T,
+                               .scale = parameters.k,
+                               .radius_factor = 3.0,
+                               .neighbour_search = GetParam()});
+    engine.update();
+    testing::expect_partition(engine, literal_batch(points, parameters));
+  }
+}
+
+TEST_P(BatchEngineTest, EachUpdateIsAsIfAllPointsCameAtOnce) {
+  const auto points = random_cloud(CloudShape::kWaves, 300, 5);
+  PointCloud cloud;
+  BatchEngine engine(cloud, {.neighbour_search = GetParam()});
+  for (int slice = 0; slice < 5; ++slice) {
+    cloud.add_slice(slice, std::span(points).subspan(static_cast<std::size_t>(slice) * 60, 60));
+    engine.update();
+    testing::expect_partition(engine, literal_batch(cloud.points_W(), {}));
+  }
+}
+
+TEST_P(BatchEngineTest, OrderOfPointsDoesNotMatter) {
+  for (const CloudShape shape : kShapes) {
+    const auto points = random_cloud(shape, 1500, 3);
+    std::vector<PointIndex> order(points.size());
+    std::iota(order.begin(), order.end(), 0U);
+    std::shuffle(order.begin(), order.end(), std::mt19937(9));
+    std::vector<CloudPoint> shuffled;
+    for (const PointIndex i : order) shuffled.push_back(points[i]);
+
+    PointCloud cloud;
+    PointCloud shuffled_cloud;
+    cloud.add_slice(0, points);
+    shuffled_cloud.add_slice(0, shuffled);
+    BatchEngine engine(cloud, {.neighbour_search = GetParam()});
+    BatchEngine shuffled_engine(shuffled_cloud, {.neighbour_search = GetParam()});
+    engine.update();
+    shuffled_engine.update();
+
+    // Back in the order of `points`, each segment by one of its points.
+    std::vector<PointIndex> labels(points.size());
+    for (PointIndex k = 0; k < order.size(); ++k) {
+      const PointIndex representative = shuffled_engine.components()[k];
+      labels[order[k]] = order[representative];
+      EXPECT_EQ(shuffled_engine.theta(representative), engine.theta(engine.components()[order[k]]));
+    }
+    EXPECT_EQ(canonical_labels(labels), canonical_labels(engine.components()));
+  }
+}
+
+TEST_P(BatchEngineTest, NumberOfThreadsDoesNotMatter) {
+  PointCloud cloud;
+  cloud.add_slice(0, random_cloud(CloudShape::kLattice, 20000, 4));
+  std::vector<std::vector<PointIndex>> results;
+  for (const std::size_t num_threads : {1U, 2U, 5U}) {
+    using oneapi::tbb::global_control;
+    const global_control threads(global_control::max_allowed_parallelism, num_threads);
+    BatchEngine engine(cloud, {.neighbour_search = GetParam()});
+    engine.update();
+    results.emplace_back(engine.components().begin(), engine.components().end());
+  }
+  EXPECT_EQ(results[0], results[1]);
+  EXPECT_EQ(results[0], results[2]);
+}
+
+TEST_P(BatchEngineTest, TellsWhichPointsChanged) {
+  const auto points = random_cloud(CloudShape::kWaves, 400, 8);
+  PointCloud cloud;
+  BatchEngine engine(cloud, {.neighbour_search = GetParam()});
+  std::vector<PointIndex> before;
+  for (int slice = 0; slice < 8; ++slice) {
+    cloud.add_slice(slice, std::span(points).subspan(static_cast<std::size_t>(slice) * 50, 50));
+    engine.update();
+    const std::vector<PointIndex> after(engine.components().begin(), engine.components().end());
+    std::vector<PointIndex> expected;
+    for (PointIndex i = 0; i < after.size(); ++i) {
+      if (i >= before.size() || before[i] != after[i]) expected.push_back(i);
+    }
+    EXPECT_THAT(engine.changed(), ::testing::ElementsAreArray(expected));
+    before = after;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Searches, BatchEngineTest,
+                         ::testing::Values(NeighbourSearch::kGrid, NeighbourSearch::kFlann));
+
+}  // namespace
+}  // namespace kintsugi::segmenter
