@@ -17,4 +17,7 @@ inline constexpr float kNormalLengthTolerance = 0.01F;
 /// Why `point` cannot be segmented; nothing when it can.
 std::optional<std::string_view> reason_to_reject(const CloudPoint& point);
 
+/// The same for its position alone: a cloud whose normals are still to be computed.
+std::optional<std::string_view> reason_to_reject_position(const CloudPoint& point);
+
 }  // namespace kintsugi::segmenter

@@ -1,0 +1,75 @@
+#pragma once
+// The segment map of one mapper session: slices in, segment updates out.
+
+#include <cstdint>
+#include <memory>
+#include <set>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "lcmtypes/messages.hpp"
+#include "segmenter/core/engine.hpp"
+#include "segmenter/core/point_cloud.hpp"
+#include "segmenter/core/segment_ids.hpp"
+#include "segmenter/map/segment_statistics.hpp"
+
+namespace kintsugi::segmenter {
+
+struct SegmentMapConfig {
+  std::string mode = "batch";  ///< one of engine_modes()
+  EngineConfig engine;         ///< its resolution_m is replaced by that of the slices
+
+  /// Throws std::invalid_argument naming field, value and bound.
+  void validate() const;
+};
+
+/// Composes cloud, engine, segment ids and statistics. Replaying the updates of a map, labels and
+/// then runs of each, gives the labels that segment_ids() has.
+class SegmentMap {
+ public:
+  /// @param session of this segmenter
+  /// @param first a slice of the map, for its name, mapper session and resolution; it is not added
+  /// @throws std::invalid_argument for an invalid config or a resolution that is not > 0
+  SegmentMap(const SegmentMapConfig& config, std::int64_t session, const CloudSlice& first);
+
+  SegmentMap(const SegmentMap&) = delete;  // the engine refers to the cloud
+  SegmentMap& operator=(const SegmentMap&) = delete;
+
+  /// Adds slices and runs the engine once for all of them. Returns one update for each slice, in
+  /// order: each has the labels of its own points as they are after all of them; relabelled older
+  /// points, events and statistics come with the last.
+  ///
+  /// @throws std::invalid_argument, and adds nothing, when a slice is of another session or
+  ///   resolution, is in the map already, or comes twice
+  std::vector<SegmentUpdate> add(std::span<const CloudSlice> slices);
+
+  /// True when the final slice and every earlier one are in the map.
+  [[nodiscard]] bool is_complete() const;
+
+  [[nodiscard]] const PointCloud& cloud() const { return cloud_; }
+  [[nodiscard]] const SegmentIds& segment_ids() const { return ids_; }
+  [[nodiscard]] const SegmentStatisticsTable& statistics() const { return statistics_; }
+  [[nodiscard]] const SegmentMapConfig& config() const { return config_; }
+  [[nodiscard]] std::int64_t session() const { return session_; }
+  [[nodiscard]] std::int64_t map_session() const { return map_session_; }
+  [[nodiscard]] const std::string& map_name() const { return map_name_; }
+
+ private:
+  void check(const CloudSlice& slice) const;
+  [[nodiscard]] SegmentUpdate make_update(const CloudSlice& slice, const SliceRecord& record,
+                                          std::int32_t num_slices) const;
+
+  SegmentMapConfig config_;
+  std::int64_t session_;
+  std::int64_t map_session_;
+  std::string map_name_;
+  PointCloud cloud_;
+  std::unique_ptr<SegmentationEngine> engine_;
+  SegmentIds ids_;
+  SegmentStatisticsTable statistics_;
+  std::set<std::int32_t> slice_ids_;
+  std::int32_t final_slice_id_ = -1;  // -1: not seen
+};
+
+}  // namespace kintsugi::segmenter

@@ -1,0 +1,130 @@
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "segmenter/map/segment_statistics.hpp"
+
+namespace kintsugi::segmenter {
+namespace {
+
+CloudPoint random_point(std::mt19937& random) {
+  std::uniform_real_distribution<float> coordinate(-3.0F, 3.0F);
+  CloudPoint point;
+  // A coarse lattice: many points on the faces of their segment's box.
+  point.x = std::round(coordinate(random) * 4.0F) / 4.0F;
+  point.y = coordinate(random);
+  point.z = coordinate(random);
+  const float angle = coordinate(random);
+  point.nx = std::cos(angle);
+  point.ny = std::sin(angle);
+  point.red = static_cast<std::uint8_t>(random());
+  point.green = static_cast<std::uint8_t>(random());
+  return point;
+}
+
+// Names the component of each point by its smallest point, as the engines do.
+std::vector<PointIndex> representatives(const std::vector<int>& component) {
+  std::map<int, PointIndex> smallest;
+  std::vector<PointIndex> result;
+  for (PointIndex i = 0; i < component.size(); ++i) {
+    result.push_back(smallest.try_emplace(component[i], i).first->second);
+  }
+  return result;
+}
+
+std::vector<PointIndex> differences(const std::vector<PointIndex>& before,
+                                    const std::vector<PointIndex>& after) {
+  std::vector<PointIndex> changed;
+  for (PointIndex i = 0; i < after.size(); ++i) {
+    if (i >= before.size() || before[i] != after[i]) {
+      changed.push_back(i);
+    }
+  }
+  return changed;
+}
+
+// The table of the same partition, built in one go.
+std::vector<SegmentStatistics> from_scratch(const PointCloud& cloud, const SegmentIds& ids,
+                                            float resolution_m) {
+  SegmentStatisticsTable table(resolution_m);
+  std::vector<IdChange> changes;
+  for (PointIndex i = 0; i < cloud.size(); ++i) {
+    changes.push_back({i, kNoSegment, ids.ids()[i]});
+  }
+  table.apply(cloud, ids, changes);
+  return table.all();
+}
+
+TEST(SegmentStatistics, EqualThoseFromScratchAfterEveryChange) {
+  std::mt19937 random(7);
+  constexpr float kResolution_m = 0.02F;
+  PointCloud cloud;
+  SegmentIds ids;
+  SegmentStatisticsTable table(kResolution_m);
+  std::vector<int> component;
+  std::vector<PointIndex> before;
+  for (int slice = 0; slice < 40; ++slice) {
+    std::vector<CloudPoint> points;
+    for (int i = 0; i < 25; ++i) {
+      points.push_back(random_point(random));
+      component.push_back(static_cast<int>(random() % 12));
+    }
+    cloud.add_slice(slice, points);
+    for (int i = 0; i < 20; ++i) {  // points that change segment
+      component[random() % component.size()] = static_cast<int>(random() % 12);
+    }
+    const auto after = representatives(component);
+    const IdUpdate update = ids.update(after, differences(before, after));
+    table.apply(cloud, ids, update.changes);
+    before = after;
+    EXPECT_EQ(table.all(), from_scratch(cloud, ids, kResolution_m)) << "slice " << slice;
+  }
+}
+
+TEST(SegmentStatistics, HaveTheValuesOfClosedForm) {
+  PointCloud cloud;
+  CloudPoint a{0.5F, -1.0F, 2.0F, 1.0F, 0.0F, 0.0F, 10, 20, 30, 0, 1.0F};
+  CloudPoint b{1.5F, -3.0F, 2.0F, 0.0F, 1.0F, 0.0F, 20, 21, 90, 0, 1.0F};
+  cloud.add_slice(3, std::vector{a});
+  cloud.add_slice(5, std::vector{b});
+  SegmentIds ids;
+  const std::vector<PointIndex> components{0, 0};
+  const IdUpdate update = ids.update(components, std::vector<PointIndex>{0, 1});
+  SegmentStatisticsTable table(0.1F);
+  EXPECT_EQ(table.apply(cloud, ids, update.changes), std::vector<std::uint32_t>{1});
+
+  const SegmentStatistics s = table(1);
+  EXPECT_EQ(s.segment_id, 1U);
+  EXPECT_EQ(s.num_points, 2U);
+  EXPECT_EQ(s.box_min_W[0], 0.5F);
+  EXPECT_EQ(s.box_max_W[1], -1.0F);
+  EXPECT_EQ(s.box_min_W[1], -3.0F);
+  EXPECT_EQ(s.centroid_W[0], 1.0F);
+  EXPECT_EQ(s.centroid_W[1], -2.0F);
+  EXPECT_FLOAT_EQ(s.mean_normal_W[0], std::sqrt(0.5F));
+  EXPECT_FLOAT_EQ(s.mean_normal_W[1], std::sqrt(0.5F));
+  EXPECT_EQ(s.mean_color[0], 15);
+  EXPECT_EQ(s.mean_color[1], 21);  // 20.5, rounded away from zero
+  EXPECT_EQ(s.mean_color[2], 60);
+  EXPECT_FLOAT_EQ(s.area_m2, 0.02F);
+  EXPECT_EQ(s.first_slice, 3);
+  EXPECT_EQ(s.last_slice, 5);
+}
+
+TEST(SegmentStatistics, GiveNoMeanNormalWhereTheNormalsCancelOut) {
+  PointCloud cloud;
+  CloudPoint up{0, 0, 0, 0, 0, 1.0F};
+  CloudPoint down{0, 0, 0, 0, 0, -1.0F};
+  cloud.add_slice(0, std::vector{up, down});
+  SegmentIds ids;
+  const std::vector<PointIndex> components{0, 0};
+  SegmentStatisticsTable table(0.1F);
+  table.apply(cloud, ids, ids.update(components, std::vector<PointIndex>{0, 1}).changes);
+  EXPECT_EQ(table(1).mean_normal_W[2], 0.0F);
+}
+
+}  // namespace
+}  // namespace kintsugi::segmenter
