@@ -1,0 +1,73 @@
+#include "segmenter/preprocess/cloud_preparation.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "segmenter/core/admission.hpp"
+#include "segmenter/preprocess/nearest_neighbours.hpp"
+
+namespace kintsugi::segmenter {
+namespace {
+
+std::vector<CloudPoint> with_usable_position(std::span<const CloudPoint> points_W) {
+  std::vector<CloudPoint> usable_W;
+  std::copy_if(points_W.begin(), points_W.end(), std::back_inserter(usable_W),
+               [](const CloudPoint& p) { return !reason_to_reject_position(p); });
+  return usable_W;
+}
+
+}  // namespace
+
+std::int64_t normalize_normals(std::span<CloudPoint> points_W) {
+  constexpr double kTolerance = 1e-4;  // of a normal written with four decimals
+  constexpr double kMinLength = 1e-6;
+  std::int64_t num_scaled = 0;
+  for (CloudPoint& p : points_W) {
+    const Eigen::Vector3d normal_W(p.nx, p.ny, p.nz);
+    const double length = normal_W.norm();
+    if (!std::isfinite(length) || length < kMinLength || std::abs(length - 1.0) <= kTolerance) {
+      continue;
+    }
+    const Eigen::Vector3f unit_W = (normal_W / length).cast<float>();
+    p.nx = unit_W.x();
+    p.ny = unit_W.y();
+    p.nz = unit_W.z();
+    ++num_scaled;
+  }
+  return num_scaled;
+}
+
+void compute_normals(std::span<CloudPoint> points_W, const NormalsConfig& config,
+                     const std::function<void(double)>& progress) {
+  std::vector<CloudPoint> usable_W = with_usable_position(points_W);
+  estimate_normals(usable_W, config, progress);
+  auto next = usable_W.begin();
+  for (CloudPoint& p : points_W) {
+    if (!reason_to_reject_position(p)) {
+      p = *next++;
+    }
+  }
+}
+
+float usable_spacing_m(std::span<const CloudPoint> points_W) {
+  return median_spacing_m(with_usable_position(points_W));
+}
+
+std::vector<Rejection> count_rejections(std::span<const CloudPoint> points_W) {
+  std::vector<Rejection> rejections;
+  for (std::size_t i = 0; i < points_W.size(); ++i) {
+    const auto reason = reason_to_reject(points_W[i]);
+    if (!reason) {
+      continue;
+    }
+    auto entry = std::find_if(rejections.begin(), rejections.end(),
+                              [&](const Rejection& r) { return r.reason == *reason; });
+    if (entry == rejections.end()) {
+      entry = rejections.insert(entry, {*reason, 0, static_cast<std::int64_t>(i)});
+    }
+    ++entry->count;
+  }
+  return rejections;
+}
+
+}  // namespace kintsugi::segmenter

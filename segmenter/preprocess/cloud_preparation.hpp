@@ -1,0 +1,35 @@
+#pragma once
+// What a cloud of unknown origin needs before it can be segmented.
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "lcmtypes/messages.hpp"
+#include "segmenter/preprocess/normals.hpp"
+
+namespace kintsugi::segmenter {
+
+/// Scales normals whose length differs from 1 by more than 1e-4 to length 1, and returns how many.
+/// Normals that are not finite or shorter than 1e-6 are left: they will be rejected.
+std::int64_t normalize_normals(std::span<CloudPoint> points_W);
+
+/// estimate_normals() over the points whose position can be used.
+void compute_normals(std::span<CloudPoint> points_W, const NormalsConfig& config,
+                     const std::function<void(double)>& progress);
+
+/// median_spacing_m() of the points whose position can be used.
+float usable_spacing_m(std::span<const CloudPoint> points_W);
+
+struct Rejection {
+  std::string_view reason;        ///< as reason_to_reject() has it
+  std::int64_t count = 0;         ///< points rejected for it
+  std::int64_t first_vertex = 0;  ///< index of the first of them
+};
+
+/// What the segment map will reject, by reason, in order of the first point.
+std::vector<Rejection> count_rejections(std::span<const CloudPoint> points_W);
+
+}  // namespace kintsugi::segmenter
