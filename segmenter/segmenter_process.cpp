@@ -1,0 +1,240 @@
+#include "segmenter/segmenter_process.hpp"
+
+#include <fstream>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+#include <spdlog/spdlog.h>
+#include <unistd.h>
+
+#include "lcmtypes/bus_thread.hpp"
+#include "lcmtypes/channels.hpp"
+#include "lcmtypes/log_reader.hpp"
+#include "lcmtypes/stop_signal.hpp"
+#include "segmenter/io/map_files.hpp"
+
+namespace kintsugi::segmenter {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr milliseconds kPollPeriod{50};
+
+std::int64_t resident_memory_bytes() {
+  std::ifstream statm("/proc/self/statm");
+  std::int64_t total_pages = 0;
+  std::int64_t resident_pages = 0;
+  statm >> total_pages >> resident_pages;
+  return resident_pages * sysconf(_SC_PAGESIZE);
+}
+
+}  // namespace
+
+void SegmenterProcess::Config::validate() const {
+  processor.validate();
+  publisher.validate();
+  if (status_period.count() <= 0) {
+    throw std::invalid_argument("status_period is " + std::to_string(status_period.count()) +
+                                " ms, must be > 0");
+  }
+}
+
+SegmenterProcess::SegmenterProcess(const Config& config)
+    : config_((config.validate(), config)),
+      session_(new_session()),
+      subscriber_(
+          channels::kCloudSlice, [this](CloudSlice slice) { queue_.push(std::move(slice)); },
+          [](const DecodeError& error) { spdlog::warn("dropped a message: {}", error.what()); }),
+      processor_(config.processor, session_,
+                 {[this](SegmentUpdate update) {
+                    if (publisher_) publisher_->publish(std::move(update));
+                  },
+                  [this](const SegmentMap& map, SliceProcessor::Save why) { save(map, why); },
+                  [](const std::string& text) { spdlog::warn("{}", text); }}) {
+  if (config_.log.empty() || config_.publish) {
+    bus_ = std::make_unique<Bus>(config_.lcm_url);
+  }
+  if (config_.publish) {
+    publisher_ = std::make_unique<StreamPublisher>(*bus_, channels::kSegmentUpdate, session_,
+                                                   config_.publisher);
+  }
+}
+
+SegmenterProcess::~SegmenterProcess() = default;
+
+int SegmenterProcess::run() {
+  std::thread worker([this] { work(); });
+  try {
+    config_.log.empty() ? receive_from_bus() : receive_from_log();
+  } catch (...) {
+    ending_ = true;
+    worker.join();
+    throw;
+  }
+  worker.join();
+  if (failure_) {
+    std::rethrow_exception(failure_);
+  }
+  if (publisher_) {
+    publisher_->flush();
+    publish_status();
+  }
+  return has_failed_ ? 1 : 0;
+}
+
+void SegmenterProcess::receive_from_bus() {
+  subscriber_.subscribe(*bus_);
+  BusThread receiver(*bus_);
+  spdlog::info("listening on {}", bus_->url());
+  while (working_ && !receiver.failed()) {
+    wait_for_end();
+  }
+  ending_ = true;
+  receiver.stop();
+}
+
+void SegmenterProcess::receive_from_log() {
+  LogReader log(config_.log);
+  std::thread reader([this, &log] {
+    try {
+      while (const auto event = log.next()) {
+        if (ending_) return;
+        subscriber_.handle(event->channel, event->data);
+      }
+    } catch (const std::exception& error) {
+      spdlog::error("{}", error.what());
+      has_failed_ = true;
+    }
+    queue_.close();
+  });
+  while (working_) {
+    wait_for_end();
+  }
+  ending_ = true;
+  reader.join();
+
+  const std::string name = config_.log.string();
+  if (log.damage()) {
+    spdlog::error("{}", *log.damage());
+    has_failed_ = true;
+  }
+  if (counts().segmented == 0) {
+    spdlog::error("{}: holds no slice that could be read on {}", name, channels::kCloudSlice);
+    has_failed_ = true;
+  } else if (counts().missing > 0) {
+    spdlog::error("{}: {} slices are missing", name, counts().missing);
+    has_failed_ = true;
+  } else if (!counts().complete) {
+    spdlog::warn("{}: ends before the final slice", name);
+  }
+}
+
+// One round of what the main thread does meanwhile.
+void SegmenterProcess::wait_for_end() {
+  const auto until = std::chrono::steady_clock::now() + config_.status_period;
+  while (working_ && std::chrono::steady_clock::now() < until) {
+    std::this_thread::sleep_for(kPollPeriod);
+    if (stop_requested() || (config_.exit_on_final && is_finished())) {
+      ending_ = true;
+    }
+  }
+  publish_status();
+}
+
+void SegmenterProcess::work() {
+  try {
+    work_until_end();
+  } catch (...) {
+    const std::lock_guard lock(mutex_);
+    failure_ = std::current_exception();
+  }
+  working_ = false;
+}
+
+void SegmenterProcess::work_until_end() {
+  while (!ending_) {
+    offer_all(queue_.take(kPollPeriod));
+    while (!ending_ && processor_.step(SliceProcessor::Clock::now())) {
+      offer_all(queue_.take(milliseconds(0)));
+    }
+    if (take_write_request()) {
+      processor_.save();
+    }
+    if (queue_.is_exhausted()) {
+      processor_.finish(SliceProcessor::Clock::now());
+      offer_all({});
+      break;
+    }
+  }
+  processor_.save();
+  const std::int64_t num_left = counts().lag + queue_.size();
+  if (num_left > 0) {
+    spdlog::warn("ended with {} slices not segmented", num_left);
+  }
+}
+
+void SegmenterProcess::offer_all(std::vector<CloudSlice> slices) {
+  for (CloudSlice& slice : slices) {
+    processor_.offer(std::move(slice), SliceProcessor::Clock::now());
+  }
+  const std::lock_guard lock(mutex_);
+  counts_ = processor_.counts();
+}
+
+void SegmenterProcess::save(const SegmentMap& map, SliceProcessor::Save why) {
+  const std::string stem = why == SliceProcessor::Save::kCurrent
+                               ? "segments"
+                               : "segments_" + std::to_string(map.map_session());
+  try {
+    write_map_files(map, config_.output_folder, stem);
+    spdlog::info("wrote {}.ply and .json: {} points, {} segments",
+                 (config_.output_folder / stem).string(), map.cloud().size(),
+                 map.segment_ids().num_segments());
+  } catch (const std::exception& error) {
+    spdlog::error("the map is not written: {}", error.what());
+    has_failed_ = true;
+  }
+}
+
+SliceProcessor::Counts SegmenterProcess::counts() const {
+  const std::lock_guard lock(mutex_);
+  return counts_;
+}
+
+bool SegmenterProcess::is_finished() const {
+  return counts().complete && queue_.size() == 0 &&
+         (!publisher_ || publisher_->queued_bytes() == 0);
+}
+
+void SegmenterProcess::publish_status() {
+  if (!publisher_) {
+    return;
+  }
+  const SliceProcessor::Counts counts = this->counts();
+  const StreamCounts stream = subscriber_.counts();
+  SegmenterStatus status;
+  status.utime = wall_clock_us();
+  status.session = session_;
+  status.map_session = counts.map_session;
+  status.map_name = counts.map_name;
+  status.mode = config_.processor.map.mode;
+  status.finished = is_finished();
+  status.slices_received = counts.received + queue_.size();
+  status.slices_segmented = counts.segmented;
+  status.lag_slices = counts.lag + queue_.size();
+  status.points = counts.points;
+  status.points_rejected = counts.rejected;
+  status.segments = counts.segments;
+  status.chunks_received = stream.chunks_received;
+  status.chunks_duplicate = stream.chunks_duplicate;
+  status.chunks_missing = stream.chunks_missing;
+  status.messages_bad = stream.messages_bad + counts.dropped;
+  status.memory_bytes = resident_memory_bytes();
+  status.slice_ms = counts.slice_ms;
+  status.slice_mean_ms = counts.slice_mean_ms;
+  status.slice_max_ms = counts.slice_max_ms;
+  bus_->publish(channels::kSegmenterStatus, status);
+}
+
+}  // namespace kintsugi::segmenter

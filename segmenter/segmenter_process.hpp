@@ -1,0 +1,78 @@
+#pragma once
+// The segmenter between the bus, or a log, and its files.
+
+#include <atomic>
+#include <exception>
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "lcmtypes/bus.hpp"
+#include "lcmtypes/stream_publisher.hpp"
+#include "lcmtypes/stream_subscriber.hpp"
+#include "segmenter/slice_processor.hpp"
+#include "segmenter/slice_queue.hpp"
+
+namespace kintsugi::segmenter {
+
+/// Three threads that do not wait for each other: one receives slices (from the bus, or from a log
+/// as fast as it can be read), one segments and writes files, and the publisher's sends updates at
+/// its pace. run() itself publishes the status and watches for the end.
+class SegmenterProcess {
+ public:
+  struct Config {
+    SliceProcessor::Config processor;
+    std::string lcm_url;        ///< empty: the default bus
+    std::filesystem::path log;  ///< read slices from this log; empty: from the bus
+    bool publish = true;        ///< updates and status on the bus
+    std::filesystem::path output_folder = ".";
+    bool exit_on_final = false;  ///< end when the final slice is segmented and published
+    std::chrono::milliseconds status_period{250};  ///< > 0
+    StreamPublisher::Config publisher;
+
+    /// Throws std::invalid_argument naming field, value and bound.
+    void validate() const;
+  };
+
+  /// Opens bus and log. Throws std::invalid_argument for an invalid config, std::runtime_error
+  /// where they cannot be opened.
+  explicit SegmenterProcess(const Config& config);
+  ~SegmenterProcess();
+
+  /// Works until the end of the log, the final slice (Config::exit_on_final) or a stop signal;
+  /// then writes the map. Returns the exit status: 0, or 1 when a file could not be written, the
+  /// log is damaged or slices are missing from it. Throws what makes going on impossible.
+  int run();
+
+ private:
+  void receive_from_bus();
+  void receive_from_log();
+  void work();
+  void work_until_end();
+  void offer_all(std::vector<CloudSlice> slices);
+  void save(const SegmentMap& map, SliceProcessor::Save why);
+  void publish_status();
+  void wait_for_end();
+  [[nodiscard]] SliceProcessor::Counts counts() const;
+  [[nodiscard]] bool is_finished() const;
+
+  Config config_;
+  std::int64_t session_;
+  std::unique_ptr<Bus> bus_;                    // null: nothing is published
+  std::unique_ptr<StreamPublisher> publisher_;  // null likewise
+  SliceQueue queue_;
+  StreamSubscriber<CloudSlice> subscriber_;
+  SliceProcessor processor_;  // of the working thread
+
+  mutable std::mutex mutex_;  // guards what the working thread tells the others
+  SliceProcessor::Counts counts_;
+  std::exception_ptr failure_;
+
+  std::atomic<bool> ending_{false};
+  std::atomic<bool> working_{true};
+  std::atomic<bool> has_failed_{false};  // in something that did not stop the work
+};
+
+}  // namespace kintsugi::segmenter
