@@ -9,15 +9,10 @@
 #include <opencv2/imgproc.hpp>
 
 #include "viewer/core/overlay.hpp"
+#include "viewer/core/require.hpp"
 
 namespace kintsugi::viewer {
 namespace {
-
-void require(bool ok, const char* field, double value, const char* bound) {
-  if (ok) return;
-  throw std::invalid_argument("Renderer::Config::" + std::string(field) + " is " +
-                              std::to_string(value) + ", expected " + bound);
-}
 
 /// The same view with `factor` times as many pixels along each side.
 VirtualCamera supersampled(VirtualCamera camera, int factor) {
@@ -89,10 +84,13 @@ std::string with_thousands(std::int64_t number) {
 }  // namespace
 
 void Renderer::Config::validate() const {
-  require(width_px >= 160 && width_px <= 16384, "width_px", width_px, "in [160, 16384]");
-  require(height_px >= 120 && height_px <= 16384, "height_px", height_px, "in [120, 16384]");
-  require(supersampling >= 1 && supersampling <= 4, "supersampling", supersampling, "in [1, 4]");
-  require(frustum_m > 0.0, "frustum_m", frustum_m, "> 0");
+  require(width_px >= 160 && width_px <= 16384, "Renderer::Config::width_px", width_px,
+          "in [160, 16384]");
+  require(height_px >= 120 && height_px <= 16384, "Renderer::Config::height_px", height_px,
+          "in [120, 16384]");
+  require(supersampling >= 1 && supersampling <= 4, "Renderer::Config::supersampling",
+          supersampling, "in [1, 4]");
+  require(frustum_m > 0.0, "Renderer::Config::frustum_m", frustum_m, "> 0");
   splat.validate();
 }
 

@@ -9,6 +9,8 @@
 
 #include <oneapi/tbb/parallel_for.h>
 
+#include "viewer/core/require.hpp"
+
 namespace kintsugi::viewer {
 namespace {
 
@@ -19,12 +21,6 @@ constexpr std::size_t kMaxChunks = std::size_t{1} << (32 - kPointBits);
 /// Discs bulge towards the camera by this part of their radius, so that where two of one surface
 /// overlap a pixel shows the point it is nearer to, not whichever plane happens to be in front.
 constexpr float kBulge = 0.25F;
-
-void require(bool ok, const char* field, double value, const char* bound) {
-  if (ok) return;
-  throw std::invalid_argument("SplatConfig::" + std::string(field) + " is " +
-                              std::to_string(value) + ", expected " + bound);
-}
 
 /// The camera in single precision, as the inner loop uses it.
 class Projector {
@@ -128,10 +124,11 @@ void Projector::draw_disc(const Eigen::Vector3f& p_V, const Eigen::Vector3f& n_V
 }  // namespace
 
 void SplatConfig::validate() const {
-  require(radius_vox > 0.0 && radius_vox <= 10.0, "radius_vox", radius_vox, "in (0, 10]");
-  require(max_radius_px >= 1.0 && max_radius_px <= 1000.0, "max_radius_px", max_radius_px,
-          "in [1, 1000]");
-  require(near_m > 0.0 && near_m <= 10.0, "near_m", near_m, "in (0, 10]");
+  require(radius_vox > 0.0 && radius_vox <= 10.0, "SplatConfig::radius_vox", radius_vox,
+          "in (0, 10]");
+  require(max_radius_px >= 1.0 && max_radius_px <= 1000.0, "SplatConfig::max_radius_px",
+          max_radius_px, "in [1, 1000]");
+  require(near_m > 0.0 && near_m <= 10.0, "SplatConfig::near_m", near_m, "in (0, 10]");
 }
 
 VisibilityImage::VisibilityImage(int width, int height)

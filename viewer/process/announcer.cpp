@@ -1,0 +1,36 @@
+#include "viewer/process/announcer.hpp"
+
+#include <utility>
+
+#include "lcmtypes/channels.hpp"
+#include "viewer/output/picture_file.hpp"
+
+namespace kintsugi::viewer {
+
+Announcer::Announcer(Bus& bus)
+    : bus_(bus), session_(new_session()), pictures_(bus, channels::kSnapshot, session_, {}) {}
+
+void Announcer::publish_picture(const cv::Mat3b& picture, const std::string& caption) {
+  constexpr int kJpegQuality = 85;
+  Snapshot snapshot;
+  snapshot.utime = wall_clock_us();
+  snapshot.session = session_;
+  snapshot.caption = caption;
+  snapshot.width = picture.cols;
+  snapshot.height = picture.rows;
+  snapshot.image_jpeg = encode_jpeg(picture, kJpegQuality);
+  pictures_.publish(std::move(snapshot));
+}
+
+void Announcer::publish_status(ViewerStatus status) {
+  status.utime = wall_clock_us();
+  status.session = session_;
+  bus_.publish(channels::kViewerStatus, status);
+  next_status_ = Clock::now() + std::chrono::milliseconds(500);
+}
+
+bool Announcer::status_due() const { return Clock::now() >= next_status_; }
+
+void Announcer::flush() { pictures_.flush(); }
+
+}  // namespace kintsugi::viewer

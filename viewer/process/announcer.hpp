@@ -1,0 +1,38 @@
+#pragma once
+
+#include <chrono>
+#include <string>
+
+#include <opencv2/core.hpp>
+
+#include "lcmtypes/bus.hpp"
+#include "lcmtypes/stream_publisher.hpp"
+
+namespace kintsugi::viewer {
+
+/// Publishes the pictures and the state of one run of the viewer.
+class Announcer {
+ public:
+  explicit Announcer(Bus& bus);
+
+  /// As a JPEG, in chunks.
+  void publish_picture(const cv::Mat3b& picture, const std::string& caption);
+
+  /// Sends `status` with the wall clock and this run's session.
+  void publish_status(ViewerStatus status);
+  /// Half a second has passed since the last status.
+  bool status_due() const;
+
+  /// Waits until all is sent.
+  void flush();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  Bus& bus_;
+  std::int64_t session_;
+  StreamPublisher pictures_;
+  Clock::time_point next_status_ = Clock::now();
+};
+
+}  // namespace kintsugi::viewer
