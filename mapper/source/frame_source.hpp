@@ -55,8 +55,11 @@ struct SourceConfig {
   /// Every frame of a recording, as fast as it is asked for. Otherwise a recording plays at its own
   /// speed and, like a live camera, loses its oldest waiting frame when next() is late.
   bool replay = false;
-  double max_range_m = 8.0;  ///< depth beyond it is invalid, metres, > 0
+  double max_range_m = 6.5;  ///< depth beyond it is invalid, metres, > 0
   std::string lcm_url;       ///< bus of `lcm://CHANNEL`; empty: LCM's default
+  /// `lcm://CHANNEL` ends when nothing has come for so long after its first frame, seconds, >= 0;
+  /// 0: never.
+  double lcm_silence_s = 10.0;
   /// Asked at least ten times a second while next() waits; true ends the source.
   std::function<bool()> stop_requested = [] { return false; };
 

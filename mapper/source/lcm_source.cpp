@@ -1,0 +1,161 @@
+#include "mapper/source/lcm_source.hpp"
+
+#include <chrono>
+#include <condition_variable>
+#include <deque>
+#include <mutex>
+#include <stdexcept>
+#include <utility>
+
+#include <opencv2/core.hpp>
+
+#include "lcmtypes/bus.hpp"
+#include "lcmtypes/bus_thread.hpp"
+#include "lcmtypes/stream_subscriber.hpp"
+#include "mapper/openni2_driver/calibration.hpp"
+#include "mapper/openni2_driver/image_decoder.hpp"
+#include "mapper/source/frame_converter.hpp"
+
+namespace kintsugi::mapper {
+namespace {
+
+constexpr auto kPoll = std::chrono::milliseconds(100);
+constexpr std::size_t kMaxWaitingInReplay = 8192;  // some 2 GB of compressed frames
+
+std::string channel_of(const std::string& device) {
+  std::string channel = device.substr(kLcmScheme.size());
+  if (channel.empty()) {
+    throw std::invalid_argument("device '" + device + "' names no channel, expected lcm://CHANNEL");
+  }
+  return channel;
+}
+
+}  // namespace
+
+/// Takes messages off the bus, in a thread of its own, into a queue.
+struct LcmSource::Receiver {
+  Receiver(const std::string& channel, const SourceConfig& config)
+      : max_waiting(config.replay ? kMaxWaitingInReplay : 1),
+        bus(config.lcm_url),
+        subscriber(channel, [this](RgbdFrameMessage message) { push(std::move(message)); }) {
+    subscriber.subscribe(bus);
+    thread.emplace(bus);
+  }
+
+  void push(RgbdFrameMessage message) {
+    {
+      const std::lock_guard lock(mutex);
+      queue.push_back(std::move(message));
+      if (queue.size() > max_waiting) {
+        queue.pop_front();
+        ++dropped;
+      }
+    }
+    arrived.notify_one();
+  }
+
+  std::optional<RgbdFrameMessage> pop(std::chrono::milliseconds timeout) {
+    std::unique_lock lock(mutex);
+    if (!arrived.wait_for(lock, timeout, [this] { return !queue.empty(); })) return std::nullopt;
+    RgbdFrameMessage message = std::move(queue.front());
+    queue.pop_front();
+    return message;
+  }
+
+  const std::size_t max_waiting;
+  std::mutex mutex;  ///< guards the next three
+  std::condition_variable arrived;
+  std::deque<RgbdFrameMessage> queue;
+  std::int64_t dropped = 0;
+  Bus bus;
+  StreamSubscriber<RgbdFrameMessage> subscriber;
+  std::optional<BusThread> thread;  ///< last: stops before the rest goes
+};
+
+struct LcmSource::Conversion {
+  Intrinsics intrinsics;
+  double depth_units_per_m;
+  FrameConverter converter;
+};
+
+LcmSource::LcmSource(const SourceConfig& config) : config_(config) {
+  if (!config.calibration_file.empty()) {
+    calibration_ = read_calibration(config.calibration_file).intrinsics;
+  }
+  receiver_ = std::make_unique<Receiver>(channel_of(config.device), config);
+}
+
+LcmSource::~LcmSource() = default;
+
+std::optional<RgbdFrame> LcmSource::next() {
+  while (const auto message = wait_for_message()) {
+    if (auto frame = convert(*message)) return frame;
+  }
+  return std::nullopt;
+}
+
+SourceCounts LcmSource::counts() const {
+  SourceCounts counts = counts_;
+  const std::lock_guard lock(receiver_->mutex);
+  counts.frames_dropped += receiver_->dropped;
+  counts.frames_bad += receiver_->subscriber.counts().messages_bad;
+  return counts;
+}
+
+std::optional<RgbdFrameMessage> LcmSource::wait_for_message() {
+  const auto begin = std::chrono::steady_clock::now();
+  const auto max_silence = std::chrono::duration<double>(config_.lcm_silence_s);
+  while (end_reason_.empty()) {
+    if (auto message = receiver_->pop(kPoll)) return message;
+    const bool silent = session_ != 0 && config_.lcm_silence_s > 0.0 &&
+                        std::chrono::steady_clock::now() - begin > max_silence;
+    if (config_.stop_requested()) {
+      end(true, "stopped on request");
+    } else if (receiver_->thread->failed()) {
+      end(false, "the connection to the bus failed");
+    } else if (silent) {
+      end(true, "nothing came on " + config_.device + " for " +
+                    std::to_string(config_.lcm_silence_s) + " s");
+    }
+  }
+  return std::nullopt;
+}
+
+/// nullopt for a frame that is refused.
+std::optional<RgbdFrame> LcmSource::convert(const RgbdFrameMessage& message) {
+  if (session_ == 0) session_ = message.session;
+  const bool next_in_session = message.session == session_ && message.utime > last_utime_;
+  try {
+    if (!next_in_session) throw std::runtime_error("another session, or out of order");
+    const Intrinsics& intrinsics = calibration_.value_or(message.intrinsics);
+    const cv::Size size(intrinsics.width, intrinsics.height);
+    RawFrame raw{.utime = message.utime,
+                 .frame_index = message.frame_index,
+                 .depth_raw = decode_depth(message.depth_png, size, "depth of a message"),
+                 .color_rgb = {}};
+    if (!message.color_jpeg.empty()) {
+      raw.color_rgb = decode_color(message.color_jpeg, size, "colour of a message");
+    }
+    const double units_per_m = message.depth_units_per_m;
+    if (!conversion_ || conversion_->intrinsics != intrinsics ||
+        conversion_->depth_units_per_m != units_per_m) {
+      conversion_ = std::make_unique<Conversion>(
+          intrinsics, units_per_m, FrameConverter(intrinsics, units_per_m, config_.max_range_m));
+    }
+    RgbdFrame frame = conversion_->converter.convert(raw);
+    last_utime_ = message.utime;
+    ++counts_.frames_delivered;
+    if (raw.color_rgb.empty()) ++counts_.depth_unpaired;
+    return frame;
+  } catch (const std::exception&) {
+    ++counts_.frames_bad;
+    return std::nullopt;
+  }
+}
+
+void LcmSource::end(bool well, const std::string& reason) {
+  ended_well_ = well;
+  end_reason_ = reason;
+}
+
+}  // namespace kintsugi::mapper

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+
+namespace kintsugi::mapper {
+
+/// What a .oni file holds, by its records and not by what it announces.
+///
+/// OpenNI2's file driver refuses a file that is cut off (it reads the seek tables at the end first)
+/// with no reason, and would announce frames that are not there.
+struct OniFile {
+  struct Node {
+    enum class Kind { kDepth, kColor, kOther };
+    Kind kind = Kind::kOther;
+    std::uint64_t fields_position = 0;  ///< of its number of frames, in the file
+    std::uint32_t frames_announced = 0;
+    int frames = 0;  ///< that are there in whole
+  };
+
+  std::map<std::uint32_t, Node> nodes;  ///< by id
+  std::uint64_t good_bytes = 0;         ///< up to the end of the last whole record
+  std::string damage;                   ///< what is wrong, and where; empty: nothing
+  bool can_be_mended = true;            ///< its version is 1.0.1 or later
+
+  [[nodiscard]] int frames(Node::Kind kind) const;
+  /// As announced when the recording was finished; 0 when it never was.
+  [[nodiscard]] std::uint32_t frames_announced(Node::Kind kind) const;
+};
+
+/// Walks through the records of a .oni file (NI10, versions 1.0.0.4 to 1.0.1.0).
+/// @throws std::runtime_error naming the file and what was expected, when it is missing, empty, no
+/// .oni file, of an unknown version, or holds no depth image.
+OniFile scan_oni_file(const std::filesystem::path& file);
+
+/// Writes a copy of a damaged file that OpenNI2 reads up to the damage: only whole records, the
+/// right number of frames, no seek tables, an end.
+/// @throws std::runtime_error when it cannot be written, or `file` is of a version before 1.0.1.
+void write_mended_copy(const std::filesystem::path& file, const OniFile& contents,
+                       const std::filesystem::path& copy);
+
+}  // namespace kintsugi::mapper
