@@ -16,10 +16,9 @@ namespace kintsugi::mapper {
 class Integrator {
  public:
   struct Config {
-    double min_depth_m = 0.3;  ///< nearer measurements are ignored
-    double max_depth_m = 5.0;  ///< farther measurements are ignored
-    /// None: best_instruction_set().
-    std::optional<InstructionSet> instruction_set;
+    double min_depth_m = 0.3;                            ///< nearer measurements are ignored
+    double max_depth_m = 5.0;                            ///< farther measurements are ignored
+    std::optional<InstructionSet> instruction_set = {};  ///< none: best_instruction_set()
 
     /// @throws std::invalid_argument naming the field, its value and the bound.
     void validate() const;

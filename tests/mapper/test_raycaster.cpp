@@ -1,0 +1,261 @@
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <stdexcept>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <oneapi/tbb/global_control.h>
+#include <opencv2/imgproc.hpp>
+
+#include "mapper/core/raycaster.hpp"
+#include "tests/mapper/scene_fusion.hpp"
+
+namespace kintsugi::mapper {
+namespace {
+
+using testing::fuse;
+using ::testing::HasSubstr;
+using testing::percentile;
+using ::testing::ThrowsMessage;
+using testing::View;
+
+constexpr double kResolution_m = 0.01;
+
+TsdfVolume::Config volume_of(double size_m) {
+  return {.volume_size_m = size_m, .resolution_m = kResolution_m};
+}
+
+Intrinsics camera_of(int width, int height) {
+  const double f = 0.82 * width;
+  return {.fx = f,
+          .fy = f,
+          .cx = 0.5 * width - 0.5,
+          .cy = 0.5 * height - 0.5,
+          .width = width,
+          .height = height};
+}
+
+cv::Mat_<float> depth_of(const SurfaceMap& surface) {
+  cv::Mat_<float> depth_m;
+  cv::extractChannel(surface.points_C, depth_m, 2);
+  return depth_m;
+}
+
+bool same_bytes(const cv::Mat& a, const cv::Mat& b) {
+  return a.size() == b.size() && a.type() == b.type() &&
+         std::memcmp(a.data, b.data, a.total() * a.elemSize()) == 0;
+}
+
+/// A raycast against a rendered picture of the same view, over the pixels that are away from
+/// silhouettes and see their surface at less than 75 degrees from its normal.
+struct Comparison {
+  double hole_share = 0.0;
+  std::vector<double> depth_error_vox;
+  std::vector<double> normal_error_deg;
+};
+
+Comparison compare(const SurfaceMap& surface, const synthetic::RenderedFrame& truth) {
+  cv::Mat_<float> lowest;
+  cv::Mat_<float> highest;
+  const cv::Mat kernel = cv::Mat::ones(5, 5, CV_8U);
+  cv::erode(truth.depth_m, lowest, kernel);
+  cv::dilate(truth.depth_m, highest, kernel);
+  Comparison result;
+  int num_compared = 0;
+  int num_holes = 0;
+  const Eigen::Matrix3d R_CW = truth.X_WC.linear().transpose();
+  for (int v = 2; v < truth.depth_m.rows - 2; ++v) {
+    for (int u = 2; u < truth.depth_m.cols - 2; ++u) {
+      const cv::Vec3f& n_W = truth.normals_W(v, u);
+      const Eigen::Vector3d normal_C = R_CW * Eigen::Vector3d(n_W[0], n_W[1], n_W[2]);
+      const Eigen::Vector3d ray_C((u - truth.intrinsics.cx) / truth.intrinsics.fx,
+                                  (v - truth.intrinsics.cy) / truth.intrinsics.fy, 1.0);
+      const bool is_smooth = highest(v, u) - lowest(v, u) < 0.1F;
+      if (!is_smooth || -normal_C.dot(ray_C.normalized()) < std::cos(75 * M_PI / 180)) continue;
+      ++num_compared;
+      const cv::Vec3f& p_C = surface.points_C(v, u);
+      const cv::Vec3f& n_C = surface.normals_C(v, u);
+      if (std::isnan(p_C[2]) || std::isnan(n_C[2])) {
+        ++num_holes;
+        continue;
+      }
+      result.depth_error_vox.push_back(std::abs(p_C[2] - truth.depth_m(v, u)) / kResolution_m);
+      const double cosine = normal_C.dot(Eigen::Vector3d(n_C[0], n_C[1], n_C[2]));
+      result.normal_error_deg.push_back(std::acos(std::min(cosine, 1.0)) * 180.0 / M_PI);
+    }
+  }
+  result.hole_share = static_cast<double>(num_holes) / num_compared;
+  return result;
+}
+
+/// The box room, fused along a path.
+class RaycastRoom : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    scene_ = new synthetic::SceneWithPath(synthetic::make_scene_with_path("box-room"));
+    const std::vector<View> views = testing::views_along_path(*scene_, 40);
+    volume_ = new TsdfVolume(volume_of(4.8), {0.0, 0.0, 1.25});  // holds the whole room
+    fuse(views, *volume_);
+  }
+  static void TearDownTestSuite() {
+    delete volume_;
+    delete scene_;
+  }
+  /// On the path, not where a frame was fused.
+  static Pose X_WC() { return scene_->trajectory.X_WC(0.37 * scene_->trajectory.duration_s()); }
+  static synthetic::RenderedFrame truth(const Intrinsics& camera) {
+    return synthetic::render(scene_->scene, camera, X_WC());
+  }
+
+  static synthetic::SceneWithPath* scene_;
+  static TsdfVolume* volume_;
+};
+synthetic::SceneWithPath* RaycastRoom::scene_ = nullptr;
+TsdfVolume* RaycastRoom::volume_ = nullptr;
+
+TEST_F(RaycastRoom, SeesWhatTheRendererSees) {
+  for (const Intrinsics& camera : {camera_of(320, 240), camera_of(161, 119)}) {
+    const auto c = compare(Raycaster({}).raycast(*volume_, X_WC(), camera), truth(camera));
+    EXPECT_LT(c.hole_share, 0.001);
+    // Along a ray that meets a wall at 60 degrees an error of a tenth of a voxel doubles.
+    EXPECT_LT(percentile(c.depth_error_vox, 0.5), 0.1);
+    EXPECT_LT(percentile(c.depth_error_vox, 0.95), 0.5);
+    EXPECT_LT(percentile(c.normal_error_deg, 0.5), 1.0);
+    EXPECT_LT(percentile(c.normal_error_deg, 0.9), 10.0);  // edges are rounded over two voxels
+  }
+}
+
+TEST_F(RaycastRoom, SeesTheSameWithAGuide) {
+  const Intrinsics camera = camera_of(320, 240);
+  const SurfaceMap unguided = Raycaster({}).raycast(*volume_, X_WC(), camera);
+  const cv::Mat_<float> guide_m = truth(camera_of(640, 480)).depth_m;
+  const auto c = compare(Raycaster({}).raycast(*volume_, X_WC(), camera, guide_m), truth(camera));
+  EXPECT_LT(c.hole_share, 0.001);
+  EXPECT_LT(percentile(c.depth_error_vox, 0.95), 0.5);
+
+  // A guide from elsewhere, or with nothing in it, loses no surface.
+  cv::Mat_<float> bad_guide_m(480, 640, std::numeric_limits<float>::quiet_NaN());
+  bad_guide_m.rowRange(0, 100).setTo(50.0F);
+  bad_guide_m.rowRange(100, 200).setTo(-1.0F);
+  bad_guide_m.rowRange(200, 300).setTo(std::numeric_limits<float>::infinity());
+  EXPECT_TRUE(same_bytes(depth_of(Raycaster({}).raycast(*volume_, X_WC(), camera, bad_guide_m)),
+                         depth_of(unguided)));
+  bad_guide_m.setTo(4.4F);
+  EXPECT_EQ(
+      cv::countNonZero(depth_of(Raycaster({}).raycast(*volume_, X_WC(), camera, bad_guide_m)) > 0),
+      cv::countNonZero(depth_of(unguided) > 0));
+}
+
+TEST_F(RaycastRoom, PutsPointsOnTheirPixelsRays) {
+  const Intrinsics camera = camera_of(160, 120);
+  const SurfaceMap surface = Raycaster({}).raycast(*volume_, X_WC(), camera);
+  EXPECT_EQ(surface.intrinsics, camera);
+  for (int v = 0; v < camera.height; ++v) {
+    for (int u = 0; u < camera.width; ++u) {
+      const cv::Vec3f& p = surface.points_C(v, u);
+      if (std::isnan(p[2])) continue;
+      ASSERT_NEAR(p[0] / p[2] * camera.fx + camera.cx, u, 1e-3);
+      ASSERT_NEAR(p[1] / p[2] * camera.fy + camera.cy, v, 1e-3);
+      const cv::Vec3f& n = surface.normals_C(v, u);
+      if (std::isnan(n[0])) continue;
+      ASSERT_NEAR(cv::norm(n), 1.0, 1e-5);
+      ASSERT_LT(n.dot(p), 0.0F);
+    }
+  }
+}
+
+TEST_F(RaycastRoom, DoesNotDependOnTheNumberOfThreads) {
+  const Intrinsics camera = camera_of(160, 120);
+  cv::Mat_<cv::Vec3b> parallel_rgb;
+  cv::Mat_<cv::Vec3b> serial_rgb;
+  const SurfaceMap parallel = Raycaster({}).raycast(*volume_, X_WC(), camera, {}, &parallel_rgb);
+  const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
+  const SurfaceMap serial = Raycaster({}).raycast(*volume_, X_WC(), camera, {}, &serial_rgb);
+  EXPECT_TRUE(same_bytes(parallel.points_C, serial.points_C));
+  EXPECT_TRUE(same_bytes(parallel.normals_C, serial.normals_C));
+  EXPECT_TRUE(same_bytes(parallel_rgb, serial_rgb));
+}
+
+TEST_F(RaycastRoom, EndsAtItsRange) {
+  const Intrinsics camera = camera_of(160, 120);
+  const cv::Mat_<float> all_m = depth_of(Raycaster({}).raycast(*volume_, X_WC(), camera));
+  const cv::Mat_<float> near_m =
+      depth_of(Raycaster({.max_depth_m = 1.5}).raycast(*volume_, X_WC(), camera));
+  EXPECT_GT(cv::countNonZero(all_m > 1.6F), 0);
+  EXPECT_EQ(cv::countNonZero(near_m > 1.6F), 0);
+}
+
+TEST(Raycaster, SeesASphereWithoutHoles) {
+  const auto scene = synthetic::make_scene("sphere");
+  TsdfVolume volume(volume_of(1.6));
+  fuse(testing::views_around(scene, 1.3, {-0.9, -0.3, 0.3, 0.9}, 8), volume);
+  const Intrinsics camera = camera_of(320, 240);
+  const Pose X_WC = synthetic::look_at({0.9, -0.8, 0.4}, {0.0, 0.0, 0.0});
+  const auto c =
+      compare(Raycaster({}).raycast(volume, X_WC, camera), synthetic::render(scene, camera, X_WC));
+  EXPECT_EQ(c.hole_share, 0.0);
+  EXPECT_LT(percentile(c.depth_error_vox, 0.5), 0.1);
+  EXPECT_LT(percentile(c.depth_error_vox, 0.99), 0.5);
+  EXPECT_LT(percentile(c.normal_error_deg, 0.5), 4.0);
+}
+
+TEST(Raycaster, SeesTheColor) {
+  const auto scene = synthetic::make_scene("plane");
+  View view = testing::make_view(scene, synthetic::look_at({0.0, -0.3, 0.8}, {0.0, 0.0, 0.0}));
+  view.frame.color_rgb.setTo(cv::Scalar(200, 100, 7));
+  TsdfVolume volume(volume_of(2.4));
+  fuse({view}, volume);
+  cv::Mat_<cv::Vec3b> color_rgb;
+  const SurfaceMap surface =
+      Raycaster({}).raycast(volume, view.X_WC, camera_of(160, 120), {}, &color_rgb);
+  ASSERT_EQ(color_rgb.size(), surface.points_C.size());
+  EXPECT_EQ(color_rgb(60, 80), cv::Vec3b(200, 100, 7));
+}
+
+TEST(Raycaster, SeesNothingInAnEmptyVolume) {
+  const TsdfVolume volume(volume_of(1.6));
+  cv::Mat_<cv::Vec3b> color_rgb;
+  const SurfaceMap surface = Raycaster({}).raycast(volume, Pose::Identity(), camera_of(160, 120),
+                                                   cv::Mat_<float>(120, 160, 1.0F), &color_rgb);
+  ASSERT_EQ(surface.points_C.size(), cv::Size(160, 120));
+  for (const cv::Vec3f& p : surface.points_C) {
+    ASSERT_TRUE(std::isnan(p[0]) && std::isnan(p[1]) && std::isnan(p[2]));
+  }
+  for (const cv::Vec3f& n : surface.normals_C) ASSERT_TRUE(std::isnan(n[0]));
+  EXPECT_EQ(cv::countNonZero(color_rgb.reshape(1)), 0);
+}
+
+TEST(Raycaster, SeesTheCubeFromOutsideAndFarFromTheOrigin) {
+  // A wall 2 m before a camera that is 1.5 km from the origin, in a cube that holds only the wall.
+  Pose X_WC = Pose::Identity();
+  X_WC.translation() << 1000.0, -1000.0, 500.0;
+  View view;
+  view.frame.intrinsics = camera_of(160, 120);
+  view.frame.depth_m = cv::Mat_<float>(120, 160, 2.0F);
+  TsdfVolume volume(volume_of(0.8), X_WC * Eigen::Vector3d(0.0, 0.0, 2.0));
+  Integrator({}).integrate(view.frame, X_WC, volume);
+  const SurfaceMap surface = Raycaster({}).raycast(volume, X_WC, camera_of(160, 120));
+  EXPECT_NEAR(surface.points_C(60, 80)[2], 2.0, 0.02 * kResolution_m);
+  EXPECT_TRUE(std::isnan(surface.points_C(2, 2)[2])) << "outside the cube";
+  Pose turned = X_WC;
+  turned.linear() = Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitY()).toRotationMatrix();
+  EXPECT_TRUE(
+      std::isnan(Raycaster({}).raycast(volume, turned, camera_of(160, 120)).points_C(60, 80)[2]));
+}
+
+TEST(Raycaster, RefusesWhatCannotWork) {
+  EXPECT_THAT([] { Raycaster raycaster({.min_depth_m = 0.0}); },
+              ThrowsMessage<std::invalid_argument>(HasSubstr("min_depth_m is 0")));
+  EXPECT_THAT([] { Raycaster raycaster({.min_depth_m = 2.0, .max_depth_m = 1.0}); },
+              ThrowsMessage<std::invalid_argument>(HasSubstr("max_depth_m is 1")));
+  const TsdfVolume volume(volume_of(0.8));
+  EXPECT_THROW(Raycaster({}).raycast(volume, Pose::Identity(), {}), std::invalid_argument);
+  Pose nowhere = Pose::Identity();
+  nowhere.translation().x() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(Raycaster({}).raycast(volume, nowhere, camera_of(160, 120)), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace kintsugi::mapper
