@@ -1,0 +1,280 @@
+// The process without threads and bus: slices in, updates and maps out.
+
+#include <algorithm>
+#include <map>
+#include <random>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "segmenter/slice_processor.hpp"
+#include "tests/segmenter/slice_session.hpp"
+
+namespace kintsugi::segmenter {
+namespace {
+
+using std::chrono::seconds;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using testing::LabelMirror;
+using testing::wavy_session;
+
+class SliceProcessorTest : public ::testing::Test {
+ protected:
+  SliceProcessor make(const std::string& mode, bool coalesce = true) {
+    SliceProcessor::Config config;
+    config.map.mode = mode;
+    config.coalesce = coalesce;
+    return make(config);
+  }
+
+  SliceProcessor make(const SliceProcessor::Config& config) {
+    return {config,
+            99,
+            {[this](SegmentUpdate update) { updates_.push_back(std::move(update)); },
+             [this](const SegmentMap& map, SliceProcessor::Save why) {
+               saves_.push_back({map.map_session(), map.cloud().size(), why});
+             },
+             [this](const std::string& text) { warnings_.push_back(text); }}};
+  }
+
+  void run(SliceProcessor& processor) {
+    while (processor.step(now_)) {
+    }
+  }
+
+  struct Saved {
+    std::int64_t session;
+    PointIndex num_points;
+    SliceProcessor::Save why;
+  };
+
+  SliceProcessor::Clock::time_point now_{seconds(1000)};
+  std::vector<SegmentUpdate> updates_;
+  std::vector<Saved> saves_;
+  std::vector<std::string> warnings_;
+};
+
+TEST_F(SliceProcessorTest, PublishesUpdatesThatReplayToTheMap) {
+  for (const std::string mode : {"batch", "voting"}) {
+    updates_.clear();
+    SliceProcessor processor = make(mode, false);
+    LabelMirror mirror;
+    std::size_t num_mirrored = 0;
+    for (const CloudSlice& slice : wavy_session(6, 300)) {
+      processor.offer(slice, now_);
+      run(processor);
+      for (; num_mirrored < updates_.size(); ++num_mirrored) {
+        mirror.apply(updates_[num_mirrored]);
+      }
+      EXPECT_EQ(mirror.labels(), testing::labels_of(*processor.map())) << mode << slice.id;
+      EXPECT_EQ(mirror.num_segments(), updates_.back().num_segments) << mode << slice.id;
+    }
+    ASSERT_EQ(updates_.size(), 6U);
+    for (std::size_t i = 0; i < 6; ++i) {
+      EXPECT_EQ(updates_[i].slice_id, static_cast<int>(i));
+      EXPECT_EQ(updates_[i].session, 99);
+      EXPECT_EQ(updates_[i].map_session, 5);
+      EXPECT_EQ(updates_[i].is_final, i == 5);
+    }
+    EXPECT_EQ(mirror.statistics(), processor.map()->statistics().all());
+    EXPECT_TRUE(processor.counts().complete);
+    EXPECT_EQ(processor.counts().lag, 0);
+  }
+}
+
+TEST_F(SliceProcessorTest, MapDoesNotDependOnTheOrderOfArrival) {
+  std::mt19937 random(11);
+  for (const std::string mode : {"batch", "voting"}) {
+    std::vector<CloudSlice> slices = wavy_session(6, 200);
+    SliceProcessor in_order = make(mode, false);
+    for (const CloudSlice& slice : slices) {
+      in_order.offer(slice, now_);
+    }
+    run(in_order);
+    for (int round = 0; round < 5; ++round) {
+      std::shuffle(slices.begin(), slices.end(), random);
+      SliceProcessor shuffled = make(mode, false);
+      for (const CloudSlice& slice : slices) {
+        shuffled.offer(slice, now_);
+        shuffled.offer(slice, now_);  // a duplicate changes nothing
+        run(shuffled);
+      }
+      EXPECT_EQ(testing::labels_of(*shuffled.map()), testing::labels_of(*in_order.map()));
+      EXPECT_EQ(shuffled.map()->statistics().all(), in_order.map()->statistics().all());
+    }
+  }
+  EXPECT_THAT(warnings_, ::testing::IsEmpty());
+}
+
+TEST_F(SliceProcessorTest, BatchSegmentsWaitingSlicesInOneRunWithOneUpdateEach) {
+  const auto slices = wavy_session(5, 200);
+  SliceProcessor one_run = make("batch");
+  for (const CloudSlice& slice : slices) {
+    one_run.offer(slice, now_);
+  }
+  EXPECT_EQ(one_run.counts().lag, 5);
+  EXPECT_TRUE(one_run.step(now_));
+  EXPECT_FALSE(one_run.step(now_));
+  ASSERT_EQ(updates_.size(), 5U);
+  LabelMirror mirror;
+  for (const SegmentUpdate& update : updates_) {
+    mirror.apply(update);
+    EXPECT_EQ(update.is_final, update.slice_id == 4);
+    EXPECT_EQ(update.num_slices, update.slice_id + 1);
+    EXPECT_EQ(update.num_points, 200 * (update.slice_id + 1));
+  }
+  EXPECT_EQ(mirror.labels(), testing::labels_of(*one_run.map()));
+
+  SliceProcessor each = make("batch", false);
+  for (const CloudSlice& slice : slices) {
+    each.offer(slice, now_);
+    run(each);
+  }
+  EXPECT_TRUE(
+      testing::same_partition(testing::labels_of(*one_run.map()), testing::labels_of(*each.map())));
+}
+
+TEST_F(SliceProcessorTest, GoesOnWithoutAMissingSliceAfterTheTimeout) {
+  const auto slices = wavy_session(4, 100);
+  SliceProcessor processor = make("batch");
+  for (const int i : {0, 2, 3}) {
+    processor.offer(slices[i], now_);
+  }
+  run(processor);
+  EXPECT_EQ(processor.counts().segmented, 1);
+  EXPECT_EQ(processor.counts().lag, 3);  // one of them is only known to exist
+  now_ += seconds(11);
+  run(processor);
+  EXPECT_EQ(processor.counts().segmented, 3);
+  EXPECT_EQ(processor.counts().missing, 1);
+  EXPECT_FALSE(processor.counts().complete);
+  EXPECT_FALSE(updates_.back().is_final);
+  EXPECT_THAT(warnings_, ElementsAre(HasSubstr("slices 1 to 1 of session 5 are missing")));
+
+  processor.offer(slices[1], now_);  // it comes after all
+  run(processor);
+  EXPECT_TRUE(processor.counts().complete);
+  EXPECT_TRUE(updates_.back().is_final);
+  EXPECT_EQ(processor.counts().missing, 0);
+}
+
+TEST_F(SliceProcessorTest, BeginsANewMapForANewSession) {
+  const auto old_session = wavy_session(3, 100, 5);
+  const auto new_session = wavy_session(3, 150, 6);
+  SliceProcessor processor = make("batch");
+  processor.offer(old_session[0], now_);
+  processor.offer(old_session[2], now_);  // 1 is missing when the new mapper starts
+  processor.offer(new_session[0], now_);
+  EXPECT_EQ(updates_.size(), 2U);
+  ASSERT_EQ(saves_.size(), 1U);
+  EXPECT_EQ(saves_[0].session, 5);
+  EXPECT_EQ(saves_[0].num_points, 200U);
+  EXPECT_EQ(saves_[0].why, SliceProcessor::Save::kSessionEnded);
+
+  processor.offer(old_session[1], now_);  // too late
+  processor.offer(new_session[1], now_);
+  processor.offer(new_session[2], now_);
+  run(processor);
+  EXPECT_EQ(processor.counts().map_session, 6);
+  EXPECT_EQ(processor.counts().dropped, 1);
+  EXPECT_EQ(processor.map()->cloud().size(), 450U);
+  EXPECT_TRUE(processor.counts().complete);
+  EXPECT_EQ(saves_.back().session, 6);
+  EXPECT_EQ(saves_.back().why, SliceProcessor::Save::kCurrent);
+  for (const SegmentUpdate& update : updates_) {
+    EXPECT_EQ(update.labels.size(), update.map_session == 5 ? 100U : 150U);
+  }
+}
+
+TEST_F(SliceProcessorTest, FollowsOnlyTheMapItIsToldTo) {
+  SliceProcessor::Config config;
+  config.map_name = "office";
+  SliceProcessor processor = make(config);
+  auto slices = wavy_session(1, 50);
+  slices[0].map_name = "kitchen";
+  processor.offer(slices[0], now_);
+  EXPECT_EQ(processor.map(), nullptr);
+  slices[0].map_name = "office";
+  processor.offer(slices[0], now_);
+  EXPECT_NE(processor.map(), nullptr);
+}
+
+TEST_F(SliceProcessorTest, DropsCorrectionsAndOtherResolutionsAndSaysSo) {
+  auto slices = wavy_session(2, 50);
+  SliceProcessor processor = make("batch");
+  processor.offer(slices[0], now_);
+  run(processor);
+  ++slices[0].revision;
+  processor.offer(slices[0], now_);
+  slices[1].resolution_m = 0.02F;
+  processor.offer(slices[1], now_);
+  EXPECT_EQ(processor.counts().dropped, 2);
+  EXPECT_THAT(warnings_, ElementsAre(HasSubstr("slice 0 of session 5 came again"),
+                                     HasSubstr("slice 1 of session 5 is dropped: its resolution")));
+}
+
+TEST_F(SliceProcessorTest, LabelsRejectedPointsZeroAndCountsThem) {
+  auto slices = wavy_session(1, 50);
+  slices[0].points_W[7].x = std::numeric_limits<float>::quiet_NaN();
+  slices[0].points_W[9].nz = 0.0F;
+  slices[0].points_W[9].nx = 0.0F;
+  slices[0].points_W[9].ny = 0.0F;
+  SliceProcessor processor = make("batch");
+  processor.offer(slices[0], now_);
+  run(processor);
+  EXPECT_EQ(processor.counts().rejected, 2);
+  EXPECT_EQ(processor.counts().points, 48);
+  EXPECT_EQ(updates_[0].labels.size(), 50U);
+  EXPECT_EQ(std::ranges::count(updates_[0].labels, kNoSegment), 2);
+  EXPECT_EQ(updates_[0].labels[7], kNoSegment);
+}
+
+TEST_F(SliceProcessorTest, AcceptsEmptySlices) {
+  auto slices = wavy_session(3, 40);
+  slices[0].points_W.clear();
+  slices[2].points_W.clear();
+  for (const std::string mode : {"batch", "voting"}) {
+    updates_.clear();
+    SliceProcessor processor = make(mode, false);
+    for (const CloudSlice& slice : slices) {
+      processor.offer(slice, now_);
+    }
+    run(processor);
+    EXPECT_EQ(updates_.size(), 3U);
+    EXPECT_TRUE(updates_.back().is_final);
+  }
+}
+
+TEST_F(SliceProcessorTest, SavesWhenAskedAndWhenDue) {
+  SliceProcessor::Config config;
+  config.coalesce = false;
+  config.write_every = 2;
+  SliceProcessor processor = make(config);
+  processor.save();  // there is nothing yet
+  const auto slices = wavy_session(6, 50);
+  for (int i = 0; i < 5; ++i) {
+    processor.offer(slices[i], now_);
+    run(processor);
+  }
+  EXPECT_EQ(saves_.size(), 2U);
+  processor.save();
+  processor.save();  // nothing new
+  EXPECT_EQ(saves_.size(), 3U);
+  EXPECT_EQ(saves_.back().num_points, 250U);
+}
+
+TEST_F(SliceProcessorTest, RefusesABadConfig) {
+  SliceProcessor::Config config;
+  config.map.mode = "exhaustive";
+  EXPECT_THROW(make(config), std::invalid_argument);
+  config = {};
+  config.write_every = -1;
+  EXPECT_THROW(make(config), std::invalid_argument);
+  config = {};
+  config.map.engine.threshold = 0.0;
+  EXPECT_THROW(make(config), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace kintsugi::segmenter
