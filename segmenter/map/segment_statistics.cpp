@@ -8,14 +8,10 @@
 namespace kintsugi::segmenter {
 namespace {
 
-// With coordinates below 2^20 m (admission.hpp) a sum holds 2^25 points at the very edge, and more
-// than an index can name within 10 km.
-constexpr double kUnitsPerMetre = 1 << 18;
-constexpr double kNormalUnits = 1 << 30;
+constexpr double kUnits = 1099511627776.0;  // 2^40
 
-std::int64_t to_units(float value, double units) {
-  return std::llround(static_cast<double>(value) * units);
-}
+// Below 2^63: a coordinate is below 2^20 m (admission.hpp).
+std::int64_t to_units(float value) { return std::llround(static_cast<double>(value) * kUnits); }
 
 std::array<float, 3> position(const CloudPoint& point) { return {point.x, point.y, point.z}; }
 
@@ -55,8 +51,8 @@ void SegmentStatisticsTable::Sums::add(const CloudPoint& point, std::int64_t sig
   const std::array<std::int64_t, 3> rgb{point.red, point.green, point.blue};
   const auto p_W = segmenter::position(point);
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    position[axis] += sign * to_units(p_W[axis], kUnitsPerMetre);
-    normal[axis] += sign * to_units(normal_W[axis], kNormalUnits);
+    position[axis] += sign * to_units(p_W[axis]);
+    normal[axis] += sign * to_units(normal_W[axis]);
     color[axis] += sign * rgb[axis];
   }
 }
@@ -115,7 +111,7 @@ SegmentStatistics SegmentStatisticsTable::operator()(std::uint32_t segment_id) c
   std::array<double, 3> mean_normal{};
   double squared_length = 0.0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    mean_normal[axis] = static_cast<double>(sums.normal[axis]) / (kNormalUnits * count);
+    mean_normal[axis] = static_cast<double>(sums.normal[axis]) / (kUnits * count);
     squared_length += mean_normal[axis] * mean_normal[axis];
   }
   constexpr double kMinLength = 1e-6;  // below it rounding decides the direction
@@ -124,7 +120,7 @@ SegmentStatistics SegmentStatisticsTable::operator()(std::uint32_t segment_id) c
     result.box_min_W[axis] = sums.extent.min_W[axis];
     result.box_max_W[axis] = sums.extent.max_W[axis];
     result.centroid_W[axis] =
-        static_cast<float>(static_cast<double>(sums.position[axis]) / (kUnitsPerMetre * count));
+        static_cast<float>(static_cast<double>(sums.position[axis]) / (kUnits * count));
     result.mean_normal_W[axis] =
         length < kMinLength ? 0.0F : static_cast<float>(mean_normal[axis] / length);
     result.mean_color[axis] =

@@ -13,9 +13,9 @@ namespace kintsugi::segmenter {
 
 /// Statistics of every segment.
 ///
-/// Sums are integers in fixed point (positions in units of 2^-18 m, normals of 2^-30), so that
-/// adding and removing points in any order gives the very result of summing from scratch. A point
-/// thereby moves by at most 2 micrometres in a centroid.
+/// Sums are integers in fixed point (units of 2^-40), so that adding and removing points in any
+/// order gives the very result of summing from scratch. A coordinate of more than 15 micrometres,
+/// a float32, is exact in these units.
 class SegmentStatisticsTable {
  public:
   /// @param resolution_m voxel size, > 0: a point stands for resolution_m^2 of surface
@@ -44,10 +44,11 @@ class SegmentStatisticsTable {
     void include(const CloudPoint& point, std::int32_t slice_id);
     [[nodiscard]] bool touches(const CloudPoint& point, std::int32_t slice_id) const;
   };
+  __extension__ using WideInteger = __int128;  // 2^60 for each coordinate, and room for 2^67 points
   struct Sums {
     std::int64_t num_points = 0;
-    std::array<std::int64_t, 3> position{};
-    std::array<std::int64_t, 3> normal{};
+    std::array<WideInteger, 3> position{};
+    std::array<WideInteger, 3> normal{};
     std::array<std::int64_t, 3> color{};
     Extent extent = Extent::none();
     bool extent_is_stale = false;  ///< a point that touched it has left

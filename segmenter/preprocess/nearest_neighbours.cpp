@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include <flann/flann.hpp>
 
@@ -63,30 +64,27 @@ void NearestNeighbours::find(std::span<const CloudPoint> queries_W, int k, Resul
 
 float median_spacing_m(std::span<const CloudPoint> points_W) {
   constexpr std::size_t kMaxSamples = 100'000;
-  constexpr int kNeighbours = 8;
+  constexpr int kNeighbours = 12;
+  if (points_W.size() <= kNeighbours) {
+    return 0.0F;
+  }
   const std::size_t stride = (points_W.size() + kMaxSamples - 1) / kMaxSamples;
   std::vector<CloudPoint> samples_W;
   for (std::size_t i = 0; i < points_W.size(); i += stride) {
     samples_W.push_back(points_W[i]);
   }
   NearestNeighbours::Result found;
-  NearestNeighbours(points_W).find(samples_W, kNeighbours, found);
+  NearestNeighbours(points_W).find(samples_W, kNeighbours + 1, found);  // each finds itself
 
-  std::vector<float> spacings_m;
-  for (std::size_t i = 0; i < samples_W.size(); ++i) {
-    const auto begin =
-        found.squared_distances.begin() + static_cast<std::ptrdiff_t>(i) * found.count;
-    const auto nearest = std::find_if(begin, begin + found.count, [](float d) { return d > 0.0F; });
-    if (nearest != begin + found.count) {
-      spacings_m.push_back(std::sqrt(*nearest));
-    }
+  std::vector<float> squared_radii;
+  for (std::size_t i = kNeighbours; i < found.squared_distances.size(); i += kNeighbours + 1) {
+    squared_radii.push_back(found.squared_distances[i]);
   }
-  if (spacings_m.empty()) {
-    return 0.0F;
-  }
-  const auto middle = spacings_m.begin() + static_cast<std::ptrdiff_t>(spacings_m.size() / 2);
-  std::nth_element(spacings_m.begin(), middle, spacings_m.end());
-  return *middle;
+  const auto middle = squared_radii.begin() + static_cast<std::ptrdiff_t>(squared_radii.size() / 2);
+  std::nth_element(squared_radii.begin(), middle, squared_radii.end());
+  // The point itself, 11 inside the disc, and half of the 12th on its rim.
+  constexpr float kPointsInDisc = kNeighbours + 0.5F;
+  return std::sqrt(std::numbers::pi_v<float> * *middle / kPointsInDisc);
 }
 
 }  // namespace kintsugi::segmenter

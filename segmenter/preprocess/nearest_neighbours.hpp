@@ -35,9 +35,12 @@ class NearestNeighbours {
   std::unique_ptr<Tree> tree_;
 };
 
-/// Median distance of a point to the nearest other place that holds one: what a cloud's voxel size
-/// is taken for when nobody says it. At most 100,000 points, evenly spread over the cloud's order,
-/// are asked. Points that coincide with all their 8 neighbours do not count; 0: nothing to go by.
+/// Spacing of the points on their surfaces, what a cloud's voxel size is taken for when nobody says
+/// it: the side of the square that one point has to itself, by the disc that holds 12 neighbours
+/// (as many as a point of a square grid has within 2 steps); the median over at most 100,000
+/// points, evenly spread over the cloud's order. The distance to the nearest point alone would
+/// mislead: a voxel that is crossed in x, y and z holds three points close together. 0: nothing to
+/// go by.
 float median_spacing_m(std::span<const CloudPoint> points_W);
 
 }  // namespace kintsugi::segmenter
