@@ -93,28 +93,25 @@ void VotingEngine::extend_graph(std::span<const PointIndex> added) {
   std::erase_if(border_edges_, [&](const Edge& edge) { return is_in_D(edge.j); });
   for (Found& edges : found) {
     merge_edges(inner_edges_, std::move(edges.inner));
-    merge_edges(border_edges_, std::move(edges.border));
+    border_edges_.insert(border_edges_.end(), edges.border.begin(), edges.border.end());
   }
 }
 
-/// Algorithm 4: segments D; border edges that would have joined mark discrepant points.
+/// Algorithm 4: segments D and marks the points D^Delta where the border disagrees.
+///
+/// The paper tests a border edge when its turn comes. Its segment in D is alive then (weight below
+/// theta) if and only if it is at the end: each later join leaves theta above that join's weight,
+/// and a segment that is frozen joins no more. So the final thetas decide as well.
 std::int64_t VotingEngine::segment_graph() {
   for (const PointIndex i : D_) forest_.reset(i);
   std::int64_t num_joins = 0;
-  auto inner = inner_edges_.begin();
-  const auto join_up_to = [&](float weight) {
-    for (; inner != inner_edges_.end() && inner->weight < weight; ++inner) {
-      num_joins += forest_.join(inner->i, inner->j, inner->weight);
-    }
-  };
+  for (const Edge& edge : inner_edges_) num_joins += forest_.join(edge.i, edge.j, edge.weight);
   for (const Edge& edge : border_edges_) {
-    join_up_to(edge.weight);
     const double w = edge.weight;
     if (w < forest_.theta_at(forest_.find(edge.i)) && w < forest_.theta_at(forest_.find(edge.j))) {
       round_discrepant_[edge.j] = round_;
     }
   }
-  join_up_to(INFINITY);
   return num_joins;
 }
 

@@ -71,20 +71,22 @@ INSTANTIATE_TEST_SUITE_P(
                       Case{CloudShape::kWaves, Arrival::kStrips, NeighbourSearch::kFlann}));
 
 TEST(VotingEngine, EqualsTheLiteralAlgorithmsForOtherParameters) {
-  const LiteralParameters parameters{.T = 0.004, .k = 0.002, .beta = 0.4, .r = 0.025F};
-  for (unsigned seed = 0; seed < 6; ++seed) {
-    const auto points = arriving_cloud(CloudShape::kUnrelated, Arrival::kStrips, 240, seed);
-    PointCloud cloud;
-    VotingEngine engine(cloud, {.threshold = parameters.T,
-                                .scale = parameters.k,
-                                .beta = parameters.beta,
-                                .radius_factor = 2.5});
-    LiteralVoting literal(parameters);
-    for (std::size_t first = 0; first < points.size(); first += 40) {
-      cloud.add_slice(static_cast<int>(first), std::span(points).subspan(first, 40));
-      engine.update();
-      literal.add(cloud.points_W(), seed);
-      testing::expect_partition(engine, literal.partition());
+  for (const double beta : {0.4, 0.85, 0.97}) {
+    const LiteralParameters parameters{.T = 0.004, .k = 0.002, .beta = beta, .r = 0.025F};
+    for (unsigned seed = 0; seed < 30; ++seed) {
+      const auto points = arriving_cloud(CloudShape::kUnrelated, Arrival::kMixed, 240, seed);
+      PointCloud cloud;
+      VotingEngine engine(cloud, {.threshold = parameters.T,
+                                  .scale = parameters.k,
+                                  .beta = parameters.beta,
+                                  .radius_factor = 2.5});
+      LiteralVoting literal(parameters);
+      for (std::size_t first = 0; first < points.size(); first += 40) {
+        cloud.add_slice(static_cast<int>(first), std::span(points).subspan(first, 40));
+        engine.update();
+        literal.add(cloud.points_W(), seed);
+        testing::expect_partition(engine, literal.partition());
+      }
     }
   }
 }
