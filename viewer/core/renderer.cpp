@@ -64,10 +64,9 @@ Layout layout_of(int width, int height) {
   const int column = (width - kGap) / 2;
   Layout layout;
   for (int i = 0; i < 2; ++i) {
-    const int left = i * (column + kGap);
-    const int right = i == 0 ? column : width;
-    layout.map[i] = {left, 0, right - left, map_height};
-    layout.slice[i] = {left, slice_top, right - left, slice_height};
+    const int left = i == 0 ? 0 : width - column;
+    layout.map[i] = {left, 0, column, map_height};
+    layout.slice[i] = {left, slice_top, column, slice_height};
   }
   layout.caption = {0, height - caption_height, width, caption_height};
   return layout;
@@ -92,6 +91,7 @@ void Renderer::Config::validate() const {
           supersampling, "in [1, 4]");
   require(frustum_m > 0.0, "Renderer::Config::frustum_m", frustum_m, "> 0");
   splat.validate();
+  view.validate();
 }
 
 Renderer::Renderer(const Config& config) : config_(config) { config_.validate(); }

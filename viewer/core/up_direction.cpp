@@ -66,7 +66,7 @@ Eigen::Vector3d UpDirection::up_W() const {
       up = candidate;
     }
   }
-  if (best < kMinShare * total_) return level;
+  if (best == 0.0 || best < kMinShare * total_) return level;
   for (int i = 0; i < 5; ++i) up = sum_in_cone(bins_, up, cos_window).head<3>().normalized();
   return up;
 }

@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "viewer/core/require.hpp"
+
 namespace kintsugi::viewer {
 namespace {
 
@@ -57,6 +59,20 @@ std::vector<Eigen::Vector3d> sample(std::span<const PointChunk> chunks,
 }
 
 }  // namespace
+
+void ViewConfig::validate() const {
+  require(field_of_view_rad > 0.0 && field_of_view_rad < 3.0, "ViewConfig::field_of_view_rad",
+          field_of_view_rad, "in (0, 3)");
+  require(follow_distance_m > 0.0 && follow_distance_m <= 1000.0, "ViewConfig::follow_distance_m",
+          follow_distance_m, "in (0, 1000]");
+  require(std::abs(follow_height_m) <= 1000.0, "ViewConfig::follow_height_m", follow_height_m,
+          "in [-1000, 1000]");
+  require(std::isfinite(overview_yaw_rad), "ViewConfig::overview_yaw_rad", overview_yaw_rad,
+          "a finite angle");
+  require(std::abs(overview_pitch_rad) <= 1.5, "ViewConfig::overview_pitch_rad", overview_pitch_rad,
+          "in [-1.5, 1.5]");
+  require(margin_px >= 0.0, "ViewConfig::margin_px", margin_px, ">= 0");
+}
 
 View parse_view(const std::string& text) {
   if (text == "follow") return FollowView{};

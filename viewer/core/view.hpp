@@ -49,6 +49,9 @@ struct ViewConfig {
   double overview_yaw_rad = 0.5;   ///< turned from the first camera's forward direction
   double overview_pitch_rad = 0.8;
   double margin_px = 12.0;  ///< left free around what is fitted into a picture
+
+  /// Throws std::invalid_argument naming the field, its value and the bound.
+  void validate() const;
 };
 
 /// The camera with this orientation that fits the points that face it, but for a few, into the
