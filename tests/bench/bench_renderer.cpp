@@ -1,0 +1,46 @@
+// The viewer's figure, 1280x720, over a furnished room of so many million points.
+
+#include <benchmark/benchmark.h>
+
+#include "tests/viewer/synthetic_room.hpp"
+#include "viewer/core/renderer.hpp"
+
+namespace kintsugi::viewer {
+namespace {
+
+void draw_figure(benchmark::State& state, const View& view) {
+  constexpr double kResolution_m = 0.0088;
+  constexpr double kPointsPerMetre = 18.0 / (kResolution_m * kResolution_m);
+  const double length_m = 1e6 * static_cast<double>(state.range(0)) / kPointsPerMetre;
+  const SyntheticMap room = make_room(length_m, kResolution_m);
+  Scene scene(room.slices.front().session);
+  FollowedCamera followed;
+  for (const CloudSlice& slice : room.slices) scene.add_slice(slice);
+  for (std::size_t i = 0; i < room.updates.size(); ++i) {
+    scene.apply_update(room.updates[i], static_cast<std::uint32_t>(i));
+  }
+  for (const CameraPose& pose : room.poses) {
+    scene.add_pose(pose);
+    followed.update(pose, scene.up().up_W());
+  }
+
+  const Renderer renderer{Renderer::Config{}};
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(renderer.draw_figure(scene, followed, view, caption(scene)));
+  }
+  state.counters["points"] = static_cast<double>(scene.counts().points);
+}
+
+BENCHMARK_CAPTURE(draw_figure, follow, FollowView{})
+    ->Arg(1)
+    ->Arg(4)
+    ->UseRealTime()
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(draw_figure, overview, OverviewView{})
+    ->Arg(1)
+    ->Arg(4)
+    ->UseRealTime()
+    ->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace kintsugi::viewer

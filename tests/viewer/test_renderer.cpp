@@ -1,0 +1,140 @@
+#include <set>
+
+#include <gtest/gtest.h>
+#include <oneapi/tbb/global_control.h>
+
+#include "tests/viewer/synthetic_room.hpp"
+#include "viewer/core/chart.hpp"
+#include "viewer/core/renderer.hpp"
+
+namespace kintsugi::viewer {
+namespace {
+
+Renderer::Config small() {
+  Renderer::Config config;
+  config.width_px = 480;
+  config.height_px = 270;
+  return config;
+}
+
+/// A furnished room with its segments, and what the camera follows.
+struct Furnished {
+  Scene scene{1'000};
+  FollowedCamera followed;
+
+  explicit Furnished(bool segmented = true) {
+    const SyntheticMap room = make_room(4.0, 0.04);
+    for (const CloudSlice& slice : room.slices) scene.add_slice(slice);
+    for (std::size_t i = 0; segmented && i < room.updates.size(); ++i) {
+      scene.apply_update(room.updates[i], static_cast<std::uint32_t>(i));
+    }
+    for (const CameraPose& pose : room.poses) {
+      scene.add_pose(pose);
+      followed.update(pose, scene.up().up_W());
+    }
+  }
+};
+
+double share_of(const cv::Mat3b& image, const Color& color) {
+  cv::Mat mask;
+  cv::inRange(image, color, color, mask);
+  return cv::countNonZero(mask) / static_cast<double>(mask.total());
+}
+
+TEST(Renderer, DrawsAnEmptyScene) {
+  const Scene scene(1);
+  const cv::Mat3b figure = Renderer(small()).draw_figure(scene, {}, FollowView{}, "nothing");
+  EXPECT_EQ(cv::Size(480, 270), figure.size());
+  EXPECT_GT(share_of(figure, kBackground), 0.8);
+}
+
+TEST(Renderer, ShowsTheFloorInItsColorFromAbove) {
+  const Furnished room;
+  const View from_above = FixedView{{0.0, -8.0, 2.0}, {0.0, 0.0, 2.001}};
+  const cv::Mat3b map =
+      Renderer(small()).draw_map(room.scene, room.followed, from_above, Coloring::kTrue);
+  // The ceiling faces away and is left out. The floor is (150, 118, 84) give or take 8, seen head
+  // on: full brightness but for the darkening at edges. A place with neither desk nor path:
+  const Color floor = map(135 + 20, 240 + 40);
+  EXPECT_NEAR(84, floor[0], 12);
+  EXPECT_NEAR(118, floor[1], 12);
+  EXPECT_NEAR(150, floor[2], 12);
+}
+
+TEST(Renderer, ShowsSegmentsInTheirColorsAndGreyWithoutASegmenter) {
+  const View from_above = FixedView{{0.0, -8.0, 2.0}, {0.0, 0.0, 2.001}};
+  const auto floor_of = [&](const Furnished& room) {
+    return Renderer(small()).draw_map(room.scene, room.followed, from_above, Coloring::kSegments)(
+        155, 280);
+  };
+  const Color expected = segment_color(1);
+  const Color segmented = floor_of(Furnished());
+  const Color grey = floor_of(Furnished(false));
+  for (int i = 0; i < 3; ++i) {
+    // Light takes at most a tenth at this angle, edges nothing on a plane.
+    EXPECT_NEAR(expected[i], segmented[i], 0.1 * expected[i] + 2);
+    EXPECT_NEAR(kUnlabelledColor[i], grey[i], 0.1 * kUnlabelledColor[i] + 2);
+  }
+}
+
+TEST(Renderer, DrawsTheSameBytesOnAnyNumberOfThreads) {
+  const Furnished room;
+  const auto draw = [&](std::size_t threads) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    return Renderer(small()).draw_figure(room.scene, room.followed, FollowView{}, "caption");
+  };
+  EXPECT_EQ(0.0, cv::norm(draw(1), draw(4), cv::NORM_INF));
+}
+
+TEST(Renderer, FillsAnyReasonableSize) {
+  const Furnished room;
+  for (const cv::Size size : {cv::Size(160, 120), cv::Size(333, 777), cv::Size(800, 200)}) {
+    Renderer::Config config = small();
+    config.width_px = size.width;
+    config.height_px = size.height;
+    const Renderer renderer(config);
+    EXPECT_EQ(size,
+              renderer.draw_figure(room.scene, room.followed, OverviewView{}, "caption").size());
+    EXPECT_EQ(size,
+              renderer.draw_map(room.scene, room.followed, FollowView{}, Coloring::kTrue).size());
+  }
+}
+
+TEST(Renderer, RefusesAConfigurationOutOfItsBounds) {
+  for (const auto spoil : std::initializer_list<void (*)(Renderer::Config&)>{
+           [](Renderer::Config& c) { c.width_px = 10; },
+           [](Renderer::Config& c) { c.height_px = 100'000; },
+           [](Renderer::Config& c) { c.supersampling = 0; },
+           [](Renderer::Config& c) { c.frustum_m = -1.0; },
+           [](Renderer::Config& c) { c.splat.radius_vox = -1.0; },
+           [](Renderer::Config& c) { c.view.field_of_view_rad = 4.0; },
+           [](Renderer::Config& c) { c.view.follow_distance_m = NAN; }}) {
+    Renderer::Config config = small();
+    spoil(config);
+    EXPECT_THROW(Renderer{config}, std::invalid_argument);
+  }
+}
+
+TEST(Caption, SaysWhatIsShown) {
+  const Furnished room(false);
+  EXPECT_NE(std::string::npos, caption(room.scene).find("0 segments   16 slices   lag 16"))
+      << caption(room.scene);
+}
+
+TEST(Chart, RoundsUpToOneTwoOrFive) {
+  EXPECT_DOUBLE_EQ(1.0, round_up(0.0));
+  EXPECT_DOUBLE_EQ(1.0, round_up(1.0));
+  EXPECT_DOUBLE_EQ(2.0, round_up(1.1));
+  EXPECT_DOUBLE_EQ(5.0, round_up(4.0));
+  EXPECT_DOUBLE_EQ(1000.0, round_up(501.0));
+  EXPECT_DOUBLE_EQ(0.02, round_up(0.013));
+}
+
+TEST(Chart, DrawsAlsoWithoutPoints) {
+  const cv::Mat3b image =
+      draw_charts(std::array{Chart{"a", {}}, Chart{"b", {{0, 1}, {5, 3}}}}, "slice", {300, 200});
+  EXPECT_EQ(cv::Size(300, 200), image.size());
+}
+
+}  // namespace
+}  // namespace kintsugi::viewer

@@ -1,0 +1,258 @@
+#include <algorithm>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "viewer/core/scene.hpp"
+
+namespace kintsugi::viewer {
+namespace {
+
+constexpr std::int64_t kMapSession = 10;
+constexpr std::int64_t kSegmenterSession = 20;
+
+CloudSlice slice_of(std::int32_t id, int num_points, std::int32_t revision = 0) {
+  CloudSlice slice;
+  slice.session = kMapSession;
+  slice.id = id;
+  slice.revision = revision;
+  slice.utime = 1'000 + id;
+  slice.resolution_m = 0.01F;
+  for (int i = 0; i < num_points; ++i) {
+    CloudPoint p;
+    p.x = static_cast<float>(id);
+    p.y = static_cast<float>(i);
+    p.ny = -1.0F;
+    slice.points_W.push_back(p);
+  }
+  return slice;
+}
+
+SegmentUpdate update_of(std::int32_t slice_id, std::vector<std::uint32_t> labels,
+                        std::vector<LabelRun> runs = {}) {
+  SegmentUpdate update;
+  update.session = kSegmenterSession;
+  update.map_session = kMapSession;
+  update.slice_id = slice_id;
+  update.num_slices = slice_id + 1;
+  update.num_segments = 5;
+  update.labels = std::move(labels);
+  update.runs = std::move(runs);
+  return update;
+}
+
+std::vector<std::uint32_t> labels_of(const Scene& scene, std::int32_t id) {
+  return scene.slice(id)->labels;
+}
+
+using Labels = std::vector<std::uint32_t>;
+
+TEST(Scene, IsEmptyAtFirst) {
+  const Scene scene(kMapSession);
+  EXPECT_EQ(nullptr, scene.newest_slice());
+  EXPECT_EQ(nullptr, scene.slice(0));
+  EXPECT_TRUE(scene.chunks().empty());
+  EXPECT_TRUE(scene.box_W().isEmpty());
+  EXPECT_FALSE(scene.X_WC().has_value());
+  EXPECT_EQ(0, scene.lag_slices());
+}
+
+TEST(Scene, LabelsItsPointsFromUpdatesAndRuns) {
+  Scene scene(kMapSession);
+  scene.add_slice(slice_of(0, 4));
+  scene.add_slice(slice_of(1, 2));
+  EXPECT_EQ(Labels({0, 0, 0, 0}), labels_of(scene, 0));
+  EXPECT_EQ(2, scene.lag_slices());
+
+  scene.apply_update(update_of(0, {1, 1, 2, 2}), 0);
+  scene.apply_update(update_of(1, {2, 3}, {{0, 1, 2, 3}}), 1);
+  EXPECT_EQ(Labels({1, 3, 3, 2}), labels_of(scene, 0));
+  EXPECT_EQ(Labels({2, 3}), labels_of(scene, 1));
+  EXPECT_EQ(0, scene.lag_slices());
+  EXPECT_EQ(5, scene.counts().segments);
+  EXPECT_EQ(6, scene.counts().points);
+}
+
+/// A run of a segmenter: each slice gets random labels, and random runs of older points change.
+struct RandomRun {
+  std::vector<CloudSlice> slices;
+  std::vector<SegmentUpdate> updates;
+  std::vector<Labels> truth;  ///< labels per slice after all updates in their order
+
+  explicit RandomRun(unsigned seed) {
+    std::mt19937 random(seed);
+    const auto below = [&](int end) {
+      return std::uniform_int_distribution<int>(0, end - 1)(random);
+    };
+    for (std::int32_t id = 0; id < 30; ++id) {
+      const int size = below(50);
+      slices.push_back(slice_of(id, size));
+      Labels labels(static_cast<std::size_t>(size));
+      for (auto& label : labels) label = static_cast<std::uint32_t>(1 + below(9));
+      std::vector<LabelRun> runs;
+      for (int i = 0; i < 20 && id > 0; ++i) {
+        const std::int32_t older = below(id);
+        const int older_size = static_cast<int>(truth[static_cast<std::size_t>(older)].size());
+        if (older_size == 0) continue;
+        const int first = below(older_size);
+        const int count = 1 + below(older_size - first);
+        const auto label = static_cast<std::uint32_t>(1 + below(9));
+        runs.push_back({older, first, count, label});
+        auto& changed = truth[static_cast<std::size_t>(older)];
+        std::fill_n(changed.begin() + first, count, label);
+      }
+      truth.push_back(labels);
+      updates.push_back(update_of(id, labels, runs));
+    }
+  }
+};
+
+TEST(Scene, EndsWithTheSameLabelsInWhateverOrderSlicesAndUpdatesArrive) {
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    const RandomRun run(seed);
+    const auto count = static_cast<int>(run.slices.size());
+    std::vector<int> order;  // i: slice i; i + count: update i; each twice
+    for (int i = 0; i < 4 * count; ++i) order.push_back(i % (2 * count));
+    std::mt19937 random(seed + 100);
+    std::ranges::shuffle(order, random);
+
+    Scene scene(kMapSession);
+    for (const int i : order) {
+      if (i < count) {
+        scene.add_slice(run.slices[static_cast<std::size_t>(i)]);
+      } else {
+        scene.apply_update(run.updates[static_cast<std::size_t>(i - count)],
+                           static_cast<std::uint32_t>(i - count));
+      }
+    }
+    for (int i = 0; i < count; ++i) {
+      EXPECT_EQ(run.truth[static_cast<std::size_t>(i)], labels_of(scene, i)) << seed;
+    }
+    EXPECT_EQ(0, scene.lag_slices());
+    EXPECT_EQ(count, scene.counts().ignored_slices);
+    EXPECT_EQ(0, scene.counts().ignored_runs);
+  }
+}
+
+TEST(Scene, IgnoresAndCountsRunsOutsideTheirSlice) {
+  Scene scene(kMapSession);
+  scene.add_slice(slice_of(0, 3));
+  scene.apply_update(update_of(0, {1, 1, 1},
+                               {{0, 2, 2, 7},
+                                {0, -1, 2, 7},
+                                {0, 0, 0, 7},
+                                {0, 0, -5, 7},
+                                {0, 3, 1, 7},
+                                {0, 2147483647, 2147483647, 7}}),
+                     0);
+  EXPECT_EQ(Labels({1, 1, 1}), labels_of(scene, 0));
+  EXPECT_EQ(6, scene.counts().ignored_runs);
+}
+
+TEST(Scene, KeepsRunsForSlicesThatHaveNotCome) {
+  Scene scene(kMapSession);
+  scene.apply_update(update_of(7, {1}, {{3, 0, 2, 9}, {99, 0, 1, 9}}), 0);
+  EXPECT_EQ(8, scene.lag_slices());
+  scene.add_slice(slice_of(3, 3));
+  EXPECT_EQ(Labels({9, 9, 0}), labels_of(scene, 3));
+}
+
+TEST(Scene, IgnoresAndCountsUpdatesOfAnotherMapOrOfAnotherLength) {
+  Scene scene(kMapSession);
+  scene.add_slice(slice_of(0, 3));
+  SegmentUpdate other = update_of(0, {1, 1, 1});
+  other.map_session = kMapSession + 1;
+  scene.apply_update(other, 0);
+  scene.apply_update(update_of(0, {1, 1}), 0);
+  EXPECT_EQ(Labels({0, 0, 0}), labels_of(scene, 0));
+  EXPECT_EQ(2, scene.counts().ignored_updates);
+  EXPECT_EQ(0, scene.counts().updates);
+}
+
+TEST(Scene, ReplacesASliceByItsHigherRevision) {
+  Scene scene(kMapSession);
+  scene.add_slice(slice_of(0, 3));
+  scene.apply_update(update_of(0, {1, 1, 1}), 0);
+  SegmentUpdate revised = update_of(0, {4, 4});
+  revised.slice_revision = 2;
+  scene.apply_update(revised, 1);  // before its slice
+  EXPECT_EQ(Labels({1, 1, 1}), labels_of(scene, 0));
+
+  scene.add_slice(slice_of(0, 2, 2));
+  scene.add_slice(slice_of(0, 3, 1));  // late
+  EXPECT_EQ(Labels({4, 4}), labels_of(scene, 0));
+  EXPECT_EQ(2, scene.counts().points);
+  EXPECT_EQ(1, scene.counts().slices);
+  EXPECT_EQ(1, scene.counts().labelled_slices);
+  EXPECT_EQ(1, scene.counts().ignored_slices);
+}
+
+TEST(Scene, StartsTheLabelsAnewWithANewSegmenter) {
+  Scene scene(kMapSession);
+  scene.add_slice(slice_of(0, 2));
+  scene.add_slice(slice_of(1, 2));
+  scene.apply_update(update_of(0, {1, 1}), 8);
+  scene.apply_update(update_of(1, {1, 1}), 9);
+  SegmentUpdate restarted = update_of(0, {5, 5});
+  restarted.session = kSegmenterSession + 1;
+  scene.apply_update(restarted, 0);
+  EXPECT_EQ(Labels({5, 5}), labels_of(scene, 0));
+  EXPECT_EQ(Labels({0, 0}), labels_of(scene, 1));
+  EXPECT_EQ(1, scene.lag_slices());
+
+  scene.apply_update(update_of(1, {3, 3}), 10);  // late, of the segmenter that is gone
+  EXPECT_EQ(Labels({0, 0}), labels_of(scene, 1));
+}
+
+TEST(Scene, ShowsTheSliceSegmentedLastOrWithoutSegmenterTheLast) {
+  Scene scene(kMapSession);
+  scene.add_slice(slice_of(0, 2));
+  scene.add_slice(slice_of(1, 2));
+  scene.add_slice(slice_of(2, 0));
+  EXPECT_EQ(1, scene.newest_slice()->id);  // the last that has points
+  scene.apply_update(update_of(0, {1, 1}), 0);
+  EXPECT_EQ(0, scene.newest_slice()->id);
+  scene.apply_update(update_of(1, {1, 1}), 1);
+  EXPECT_EQ(1, scene.newest_slice()->id);
+}
+
+TEST(Scene, CutsSlicesIntoChunksThatHoldEveryPointOnceInItsBox) {
+  Scene scene(kMapSession);
+  scene.add_slice(slice_of(0, static_cast<int>(2 * Scene::kChunkPoints + 1)));
+  scene.add_slice(slice_of(5, 3));
+  const std::vector<PointChunk> chunks = scene.chunks();
+  ASSERT_EQ(4U, chunks.size());
+  std::size_t total = 0;
+  for (const PointChunk& chunk : chunks) {
+    EXPECT_LE(chunk.points_W.size(), Scene::kChunkPoints);
+    EXPECT_EQ(chunk.points_W.size(), chunk.labels.size());
+    total += chunk.points_W.size();
+    for (const CloudPoint& p : chunk.points_W) {
+      EXPECT_TRUE(chunk.box_W.contains(Eigen::Vector3f(p.x, p.y, p.z)));
+    }
+  }
+  EXPECT_EQ(2 * Scene::kChunkPoints + 4, total);
+  EXPECT_EQ(5.0F, scene.box_W().max().x());
+}
+
+TEST(Scene, FollowsTheCameraWhileItIsTracked) {
+  Scene scene(kMapSession);
+  CameraPose pose;
+  pose.state = TrackingState::kTracking;
+  for (int i = 0; i <= 100; ++i) {
+    pose.utime = 1'000 + i;
+    pose.X_WC.translation().z() = 0.01 * i;
+    scene.add_pose(pose);
+  }
+  pose.state = TrackingState::kLost;
+  pose.X_WC.translation().z() = 5.0;
+  scene.add_pose(pose);
+  EXPECT_DOUBLE_EQ(1.0, scene.X_WC()->translation().z());
+  EXPECT_EQ(100, scene.utime() - scene.first_utime());
+  // 1 m in steps of at least 2 cm; rounding may make a step 3 cm.
+  EXPECT_GE(scene.path_W().size(), 34U);
+  EXPECT_LE(scene.path_W().size(), 51U);
+}
+
+}  // namespace
+}  // namespace kintsugi::viewer
