@@ -53,9 +53,9 @@ void validate(Options& options) {
   options.normals.validate();
   options.map.validate();
   for (const auto& path : {options.output, options.json}) {
-    const auto folder = std::filesystem::absolute(path).parent_path();
-    if (!path.empty() && !std::filesystem::is_directory(folder)) {
-      throw std::runtime_error(path.string() + ": there is no folder " + folder.string());
+    if (path.has_parent_path() && !std::filesystem::is_directory(path.parent_path())) {
+      throw std::runtime_error(path.string() + ": there is no folder " +
+                               path.parent_path().string());
     }
   }
 }

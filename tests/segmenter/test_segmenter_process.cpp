@@ -1,0 +1,257 @@
+// The whole process: from a log, and over a real bus in a network namespace of the test's own.
+
+#include <fstream>
+#include <thread>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <lcm/lcm-cpp.hpp>
+
+#include "lcmtypes/channels.hpp"
+#include "lcmtypes/message_subscriber.hpp"
+#include "lcmtypes/stop_signal.hpp"
+#include "segmenter/io/ply_reader.hpp"
+#include "segmenter/segmenter_process.hpp"
+#include "tests/segmenter/program.hpp"
+#include "tests/segmenter/slice_session.hpp"
+#include "tests/support/private_bus.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace kintsugi::segmenter {
+namespace {
+
+using kintsugi::testing::kPrivateBusUrl;
+using kintsugi::testing::TemporaryFolder;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using testing::LabelMirror;
+using testing::wavy_session;
+
+// Chunks of the slices, as a mapper sends them.
+std::vector<std::pair<std::string, Bytes>> messages_of(const std::vector<CloudSlice>& slices) {
+  std::vector<std::pair<std::string, Bytes>> messages;
+  StreamPublisher::Config config;
+  config.rate_bytes_per_s = 1e12;  // nobody to overrun
+  config.max_chunk_bytes = 2000;   // several chunks for each slice
+  StreamPublisher publisher(
+      [&](const std::string& channel, ByteView message) {
+        messages.emplace_back(channel, Bytes(message.begin(), message.end()));
+      },
+      channels::kCloudSlice, slices[0].session, config);
+  for (const CloudSlice& slice : slices) {
+    publisher.publish(slice);
+  }
+  publisher.flush();
+  return messages;
+}
+
+void write_log(const std::filesystem::path& path,
+               const std::vector<std::pair<std::string, Bytes>>& messages) {
+  lcm::LogFile log(path.string(), "w");
+  std::int64_t utime = 0;
+  for (const auto& [channel, message] : messages) {
+    lcm::LogEvent event;
+    event.timestamp = ++utime;
+    event.channel = channel;
+    event.datalen = static_cast<std::int32_t>(message.size());
+    event.data = const_cast<std::uint8_t*>(message.data());  // NOLINT: LCM does not write to it
+    log.writeEvent(&event);
+  }
+}
+
+TEST(SegmenterStreams, MapIsTheSameHoweverTheChunksArrive) {
+  const auto slices = wavy_session(4, 200);
+  auto messages = messages_of(slices);
+  std::mt19937 random(5);
+  const auto labels_after = [&] {
+    std::vector<CloudSlice> received;
+    StreamSubscriber<CloudSlice> subscriber(
+        channels::kCloudSlice, [&](CloudSlice slice) { received.push_back(std::move(slice)); });
+    for (const auto& [channel, message] : messages) {
+      subscriber.handle(channel, message);
+    }
+    SliceProcessor::Config config;
+    config.map.mode = "voting";
+    SliceProcessor processor(config, 1,
+                             {[](SegmentUpdate) {}, [](const SegmentMap&, SliceProcessor::Save) {},
+                              [](const std::string&) {}});
+    for (CloudSlice& slice : received) {
+      processor.offer(std::move(slice), {});
+    }
+    processor.finish({});
+    EXPECT_TRUE(processor.counts().complete);
+    return testing::labels_of(*processor.map());
+  };
+  const auto expected = labels_after();
+  for (int round = 0; round < 5; ++round) {
+    std::shuffle(messages.begin(), messages.end(), random);
+    EXPECT_EQ(labels_after(), expected);
+    messages.push_back(messages[static_cast<std::size_t>(round)]);  // a duplicate
+  }
+}
+
+class SegmenterProgram : public ::testing::Test {
+ protected:
+  testing::ProgramResult run(const std::string& arguments) {
+    return testing::run_program("kintsugi-segmenter", arguments, folder_ / "log.txt");
+  }
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(SegmenterProgram, SegmentsALogAndWritesTheMap) {
+  const auto slices = wavy_session(5, 200);
+  write_log(path("slices.lcm"), messages_of(slices));
+  for (const std::string mode : {"batch", "voting"}) {
+    const auto result =
+        run("--log " + path("slices.lcm") + " --mode " + mode + " --out " + path("out"));
+    EXPECT_EQ(result.exit_code, 0) << result.output;
+    const PlyCloud cloud = read_ply(path("out") + "/segments.ply");
+    EXPECT_EQ(cloud.points_W.size(), 1000U);
+
+    SegmentMapConfig config;
+    config.mode = mode;
+    SegmentMap map(config, 1, slices[0]);
+    for (const CloudSlice& slice : slices) {
+      map.add({&slice, 1});
+    }
+    testing::Labels labels;
+    for (std::size_t i = 0; i < cloud.points_W.size(); ++i) {
+      labels[cloud.slice_ids[i]].push_back(cloud.segment_ids[i]);
+    }
+    EXPECT_TRUE(testing::same_partition(labels, testing::labels_of(map)));
+    EXPECT_TRUE(std::filesystem::exists(path("out") + "/segments.json"));
+  }
+}
+
+TEST_F(SegmenterProgram, WritesTheMapOfEachSessionInALog) {
+  auto messages = messages_of(wavy_session(2, 100, 5));
+  const auto more = messages_of(wavy_session(2, 150, 6));
+  messages.insert(messages.end(), more.begin(), more.end());
+  write_log(path("slices.lcm"), messages);
+  const auto result = run("--log " + path("slices.lcm") + " --out " + path("out"));
+  EXPECT_EQ(result.exit_code, 0) << result.output;
+  EXPECT_EQ(read_ply(path("out") + "/segments_5.ply").points_W.size(), 200U);
+  EXPECT_EQ(read_ply(path("out") + "/segments.ply").points_W.size(), 300U);
+}
+
+TEST_F(SegmenterProgram, ReportsGapsAndDamageOfALogAndKeepsWhatItCouldRead) {
+  auto messages = messages_of(wavy_session(4, 200));
+  messages.erase(messages.begin() + 5);  // a chunk of slice 1
+  write_log(path("gap.lcm"), messages);
+  const auto gap = run("--log " + path("gap.lcm") + " --out " + path("gap"));
+  EXPECT_EQ(gap.exit_code, 1);
+  EXPECT_THAT(gap.output, AllOf(HasSubstr("gap.lcm: 1 slices are missing"),
+                                HasSubstr("slices 1 to 1 of session 5 are missing")));
+  EXPECT_EQ(read_ply(path("gap") + "/segments.ply").points_W.size(), 600U);
+
+  write_log(path("cut.lcm"), messages_of(wavy_session(4, 200)));
+  std::filesystem::resize_file(path("cut.lcm"), std::filesystem::file_size(path("cut.lcm")) - 900);
+  const auto cut = run("--log " + path("cut.lcm") + " --out " + path("cut"));
+  EXPECT_EQ(cut.exit_code, 1);
+  EXPECT_THAT(cut.output, HasSubstr("cut.lcm"));
+  EXPECT_EQ(read_ply(path("cut") + "/segments.ply").points_W.size(), 600U);
+
+  const auto absent = run("--log " + path("absent.lcm") + " --out " + path("absent"));
+  EXPECT_EQ(absent.exit_code, 1);
+  EXPECT_THAT(absent.output, HasSubstr("absent.lcm"));
+
+  write_log(path("other.lcm"), {{"SOMETHING_ELSE", Bytes{1, 2, 3}}});
+  const auto other = run("--log " + path("other.lcm") + " --out " + path("other"));
+  EXPECT_EQ(other.exit_code, 1);
+  EXPECT_THAT(other.output, HasSubstr("holds no slice"));
+}
+
+TEST_F(SegmenterProgram, ReportsAFolderItCannotWriteTo) {
+  write_log(path("slices.lcm"), messages_of(wavy_session(2, 100)));
+  std::ofstream(path("taken")) << "a file";
+  const auto result = run("--log " + path("slices.lcm") + " --out " + path("taken"));
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.output, AllOf(HasSubstr("the map is not written"), HasSubstr("taken")));
+}
+
+TEST_F(SegmenterProgram, RefusesParametersOutOfRange) {
+  EXPECT_THAT(run("--mode none").output, HasSubstr("mode is 'none'"));
+  EXPECT_EQ(run("--threshold -1").exit_code, 1);
+  EXPECT_NE(run("--gap-timeout 0").exit_code, 0);
+  EXPECT_NE(run("--config " + path("absent.toml")).exit_code, 0);
+}
+
+TEST_F(SegmenterProgram, ReadsTheConfigThatItPrints) {
+  const auto printed = run("--threshold 0.002 --mode voting --neighbours flann --print-config");
+  EXPECT_EQ(printed.exit_code, 0);
+  EXPECT_THAT(printed.output, AllOf(HasSubstr("threshold=0.002"), HasSubstr("mode=\"voting\"")));
+  std::ofstream(path("config.toml")) << printed.output;
+  const auto again = run("--config " + path("config.toml") + " --print-config");
+  EXPECT_EQ(again.output, printed.output);
+}
+
+class SegmenterOnTheBus : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    static const std::optional<std::string> why_not = kintsugi::testing::enter_private_bus();
+    if (why_not) GTEST_SKIP() << *why_not;
+  }
+};
+
+TEST_F(SegmenterOnTheBus, PublishesUpdatesAndStatusUntilTheFinalSlice) {
+  const TemporaryFolder folder;
+  const auto slices = wavy_session(6, 300);
+  SegmenterProcess::Config config;
+  config.lcm_url = kPrivateBusUrl;
+  config.output_folder = folder.path();
+  config.exit_on_final = true;
+  config.processor.map.mode = "voting";
+  SegmenterProcess process(config);
+
+  Bus bus(kPrivateBusUrl);
+  LabelMirror mirror;
+  std::optional<SegmentUpdate> last;
+  StreamSubscriber<SegmentUpdate> updates(channels::kSegmentUpdate, [&](SegmentUpdate update) {
+    mirror.apply(update);
+    last = std::move(update);
+  });
+  updates.subscribe(bus);
+  std::optional<SegmenterStatus> status;
+  subscribe<SegmenterStatus>(bus, channels::kSegmenterStatus,
+                             [&](const SegmenterStatus& s) { status = s; });
+
+  int exit_code = -1;
+  std::thread segmenter([&] { exit_code = process.run(); });
+  // The first status tells that the segmenter listens.
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(15);
+  const auto handle_until = [&](const auto& done) {
+    while (!done() && std::chrono::steady_clock::now() < deadline) {
+      bus.handle(std::chrono::milliseconds(100));
+    }
+    return done();
+  };
+  EXPECT_TRUE(handle_until([&] { return status.has_value(); }));
+  StreamPublisher publisher(bus, channels::kCloudSlice, slices[0].session, {});
+  for (const CloudSlice& slice : slices) {
+    publisher.publish(slice);
+  }
+  const bool is_done =
+      handle_until([&] { return last && last->is_final && status && status->finished; });
+  if (!is_done) request_stop();
+  segmenter.join();
+
+  ASSERT_TRUE(is_done);
+  EXPECT_EQ(exit_code, 0);
+  EXPECT_EQ(status->slices_segmented, 6);
+  EXPECT_EQ(status->lag_slices, 0);
+  EXPECT_EQ(status->points, 1800);
+  EXPECT_EQ(status->mode, "voting");
+  EXPECT_EQ(status->segments, mirror.num_segments());
+  EXPECT_GT(status->memory_bytes, 0);
+  const PlyCloud cloud = read_ply(folder / "segments.ply");
+  testing::Labels written;
+  for (std::size_t i = 0; i < cloud.points_W.size(); ++i) {
+    written[cloud.slice_ids[i]].push_back(cloud.segment_ids[i]);
+  }
+  EXPECT_EQ(written, mirror.labels());
+}
+
+}  // namespace
+}  // namespace kintsugi::segmenter
