@@ -1,0 +1,131 @@
+// Shows a person how far a run is, and tells a script when it has finished.
+
+#include <cstdio>
+#include <exception>
+#include <iostream>
+#include <string>
+
+#include <CLI/CLI.hpp>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include "lcmtypes/bus.hpp"
+#include "lcmtypes/channels.hpp"
+#include "lcmtypes/message_subscriber.hpp"
+#include "lcmtypes/stop_signal.hpp"
+#include "lcmtypes/tools/progress.hpp"
+
+namespace kintsugi {
+namespace {
+
+constexpr std::int64_t kSecond_us = 1'000'000;
+constexpr int kNoProgress = 2;     // exit status
+constexpr int kInterrupted = 130;  // as shells have it
+
+struct Options {
+  std::string url;
+  bool once = false;
+  bool until_finished = false;
+  bool viewer = false;
+  double timeout_s = 60.0;
+};
+
+void subscribe_statuses(Bus& bus, Progress& progress) {
+  const auto keep = [&progress](const auto& status) { progress.update(status, wall_clock_us()); };
+  subscribe<MapperStatus>(bus, channels::kMapperStatus, keep);
+  subscribe<SegmenterStatus>(bus, channels::kSegmenterStatus, keep);
+  subscribe<ViewerStatus>(bus, channels::kViewerStatus, keep);
+}
+
+/// In a terminal each line replaces the one before; elsewhere they follow each other.
+class LinePrinter {
+ public:
+  LinePrinter() : in_terminal_(isatty(STDOUT_FILENO) == 1) {}
+  ~LinePrinter() { end_line(); }
+  LinePrinter(const LinePrinter&) = delete;
+  LinePrinter& operator=(const LinePrinter&) = delete;
+
+  void print(const std::string& line) {
+    if (in_terminal_) {
+      std::cout << '\r' << line.substr(0, width()) << "\x1b[K" << std::flush;
+    } else {
+      std::cout << line << std::endl;
+    }
+    line_open_ = in_terminal_;
+  }
+
+  /// Before anything else is written to the terminal.
+  void end_line() {
+    if (line_open_) std::cout << std::endl;
+    line_open_ = false;
+  }
+
+ private:
+  static std::size_t width() {
+    winsize size{};
+    const bool known = ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1;
+    return known ? size.ws_col - 1U : std::string::npos;
+  }
+
+  const bool in_terminal_;
+  bool line_open_ = false;
+};
+
+/// Seconds since something moved.
+double idle_s(const Progress& progress, std::int64_t start_us) {
+  const std::int64_t since_us = progress.last_progress_us().value_or(start_us);
+  return static_cast<double>(wall_clock_us() - since_us) / 1e6;
+}
+
+int watch(const Options& options) {
+  Bus bus(options.url);
+  Progress progress;
+  subscribe_statuses(bus, progress);
+  LinePrinter printer;
+  const std::int64_t start_us = wall_clock_us();
+  std::int64_t next_line_us = start_us + kSecond_us;
+  const bool has_timeout = options.timeout_s > 0.0 && (options.once || options.until_finished);
+  while (!stop_requested()) {
+    bus.handle(std::chrono::milliseconds(100));
+    const bool finished = options.until_finished && progress.finished(options.viewer);
+    const std::int64_t now_us = wall_clock_us();
+    if (finished || now_us >= next_line_us) {
+      if (!options.once || progress.heard_anything()) printer.print(progress.line(now_us));
+      if (finished || (options.once && progress.heard_anything())) return 0;
+      next_line_us = now_us + kSecond_us;
+    }
+    if (has_timeout && idle_s(progress, start_us) >= options.timeout_s) {
+      printer.end_line();
+      std::cerr << "kintsugi-status: no progress for " << options.timeout_s
+                << " s: " << progress.unfinished(options.viewer) << std::endl;
+      return kNoProgress;
+    }
+  }
+  return options.once || options.until_finished ? kInterrupted : 0;
+}
+
+}  // namespace
+}  // namespace kintsugi
+
+int main(int argc, char** argv) {
+  kintsugi::Options options;
+  CLI::App app("Shows the progress of mapper, segmenter and viewer, one line a second.");
+  app.add_option("--lcm-url", options.url, "Bus; default: LCM_DEFAULT_URL, or this host's");
+  auto* once = app.add_flag("--once", options.once, "Print one line and exit");
+  app.add_flag("--until-finished", options.until_finished,
+               "Exit 0 when mapper and segmenter have finished, 2 without progress")
+      ->excludes(once);
+  app.add_flag("--viewer", options.viewer, "Wait for the viewer too");
+  app.add_option("--timeout", options.timeout_s,
+                 "Seconds without progress until giving up; 0: never")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  CLI11_PARSE(app, argc, argv);
+  try {
+    kintsugi::install_stop_signals();
+    return kintsugi::watch(options);
+  } catch (const std::exception& error) {
+    std::cerr << "kintsugi-status: " << error.what() << std::endl;
+    return 1;
+  }
+}
