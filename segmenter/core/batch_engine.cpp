@@ -13,13 +13,13 @@ BatchEngine::BatchEngine(const PointCloud& cloud, const EngineConfig& config)
 
 RunStatistics BatchEngine::update() {
   index_->update();
-  std::vector<Edge> edges = build_graph(cloud_, *index_, config_.threshold + config_.scale);
+  const std::vector<Edge> edges = build_graph(cloud_, *index_, config_.threshold + config_.scale);
 
   forest_ = SegmentForest(config_.threshold, config_.scale);
   forest_.grow(cloud_.size());
   RunStatistics statistics{.num_points = cloud_.size(), .num_iterations = 1};
   statistics.num_edges = static_cast<std::int64_t>(edges.size());
-  statistics.num_joins = join_segments(std::move(edges), forest_);
+  statistics.num_joins = join_segments(edges, forest_);
 
   std::vector<PointIndex> roots(cloud_.size());
   for (PointIndex i = 0; i < cloud_.size(); ++i) roots[i] = forest_.find(i);

@@ -5,22 +5,14 @@
 #include <numeric>
 
 #include <oneapi/tbb/enumerable_thread_specific.h>
-#include <oneapi/tbb/parallel_sort.h>
 
 #include "segmenter/core/edge_weight.hpp"
+#include "segmenter/core/felzenszwalb.hpp"
 
 namespace kintsugi::segmenter {
 namespace {
 
 constexpr PointIndex kNoPoint = UINT32_MAX;
-
-/// Sorts `added` into `edges`, which are sorted.
-void merge_edges(std::vector<Edge>& edges, std::vector<Edge> added) {
-  oneapi::tbb::parallel_sort(added.begin(), added.end(), AscendingWeight());
-  const auto middle = static_cast<std::ptrdiff_t>(edges.size());
-  edges.insert(edges.end(), added.begin(), added.end());
-  std::inplace_merge(edges.begin(), edges.begin() + middle, edges.end(), AscendingWeight());
-}
 
 }  // namespace
 
@@ -91,8 +83,8 @@ void VotingEngine::extend_graph(std::span<const PointIndex> added) {
     }
   });
   std::erase_if(border_edges_, [&](const Edge& edge) { return is_in_D(edge.j); });
-  for (Found& edges : found) {
-    merge_edges(inner_edges_, std::move(edges.inner));
+  for (const Found& edges : found) {
+    inner_edges_.insert(inner_edges_.end(), edges.inner.begin(), edges.inner.end());
     border_edges_.insert(border_edges_.end(), edges.border.begin(), edges.border.end());
   }
 }
@@ -104,8 +96,7 @@ void VotingEngine::extend_graph(std::span<const PointIndex> added) {
 /// and a segment that is frozen joins no more. So the final thetas decide as well.
 std::int64_t VotingEngine::segment_graph() {
   for (const PointIndex i : D_) forest_.reset(i);
-  std::int64_t num_joins = 0;
-  for (const Edge& edge : inner_edges_) num_joins += forest_.join(edge.i, edge.j, edge.weight);
+  const std::int64_t num_joins = join_segments(inner_edges_, forest_);
   for (const Edge& edge : border_edges_) {
     const double w = edge.weight;
     if (w < forest_.theta_at(forest_.find(edge.i)) && w < forest_.theta_at(forest_.find(edge.j))) {

@@ -50,8 +50,8 @@ class VotingEngine final : public SegmentationEngine {
 
   // The run: D and its graph. Rounds are numbered over all runs, so nothing needs to be cleared.
   std::vector<PointIndex> D_;
-  std::vector<Edge> inner_edges_;   ///< both ends in D, undirected, i < j, ascending weight
-  std::vector<Edge> border_edges_;  ///< i in D, j in D^B, weight from i to j, no order
+  std::vector<Edge> inner_edges_;   ///< both ends in D, undirected, i < j
+  std::vector<Edge> border_edges_;  ///< i in D, j in D^B, weight from i to j
   std::uint32_t first_round_ = 1;   ///< of this run
   std::uint32_t round_ = 1;
   std::vector<std::uint32_t> round_added_;       ///< when a point last was added to D

@@ -62,10 +62,10 @@ std::vector<Edge> undirected(const std::vector<LiteralEdge>& directed) {
   return edges;
 }
 
-SegmentForest segment(std::vector<Edge> edges, int num_points) {
+SegmentForest segment(const std::vector<Edge>& edges, int num_points) {
   SegmentForest forest(kT, kK);
   forest.grow(static_cast<PointIndex>(num_points));
-  join_segments(std::move(edges), forest);
+  join_segments(edges, forest);
   return forest;
 }
 
