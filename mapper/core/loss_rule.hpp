@@ -23,7 +23,7 @@ class LossRule {
  public:
   struct Config {
     double min_covered_share = 0.02;  ///< of all pixels
-    double max_covered_drop = 0.6;    ///< may fall by this much of the recent one
+    double max_covered_drop = 0.4;    ///< may fall by this much of the recent one
     double recent_view_decay = 0.9;   ///< per frame: a view that stays small is accepted
     double min_inlier_share = 0.45;   ///< of the covered pixels
     double max_rms_m = 0.014;

@@ -99,8 +99,8 @@ Intrinsics half_size(const Intrinsics& intrinsics) {
 cv::Mat_<float> half_size(const cv::Mat_<float>& depth_m) {
   cv::Mat_<float> half(depth_m.rows / 2, depth_m.cols / 2);
   for_each_row(half.rows, [&](int v) {
-    const float* upper = depth_m[2 * v];
-    const float* lower = depth_m[2 * v + 1];
+    const float* upper = depth_m.ptr<float>(2 * v);
+    const float* lower = depth_m.ptr<float>(2 * v + 1);
     for (int u = 0; u < half.cols; ++u) {
       half(v, u) =
           mean_of_nearest({upper[2 * u], upper[2 * u + 1], lower[2 * u], lower[2 * u + 1]});

@@ -46,7 +46,7 @@ struct TrackingResult {
 class Tracker {
  public:
   struct Config {
-    std::vector<int> iterations = {4, 5, 5};  ///< at most, per level, finest first
+    std::vector<int> iterations = {5, 5, 4};  ///< at most, per level, finest first
     IcpGates gates;
     double early_exit = 3e-5;  ///< norm of the increment (m, rad) at the finest level, x2 a level
     double retry_gate_factor = 3.0;  ///< on max_distance_m, at the coarsest level of a retry

@@ -22,7 +22,7 @@ TEST(LossRule, NamesWhatIsWrong) {
   quality.covered_share = 0.019;
   EXPECT_EQ(rule.judge(quality), LossReason::kTooFewPixels);
   quality = good();
-  quality.covered_share = 0.25;  // three quarters of the width wiped
+  quality.covered_share = 0.5;  // less than 0.6 of what was there
   EXPECT_EQ(rule.judge(quality), LossReason::kViewCutOff);
   quality = good();
   quality.solved = false;
@@ -55,8 +55,8 @@ TEST(LossRule, GetsUsedToAViewThatStaysSmall) {
     rule.remember(quality.covered_share, false);
     ++frames;
   }
-  // 0.25 >= 0.4 * 0.9 * 0.9^n from n = 4 on.
-  EXPECT_EQ(frames, 4);
+  // 0.25 >= 0.6 * 0.9 * 0.9^n from n = 8 on.
+  EXPECT_EQ(frames, 8);
 }
 
 TEST(LossRule, RefusesSettingsOutOfRange) {
