@@ -1,0 +1,99 @@
+#include "mapper/process/frame_reader.hpp"
+
+#include <utility>
+
+#include "mapper/core/stopwatch.hpp"
+
+namespace kintsugi::mapper {
+
+FrameReader::FrameReader(SourceConfig config) {
+  config.stop_requested = [this, outer = std::move(config.stop_requested)] {
+    return stop_ || outer();
+  };
+  source_ = open_frame_source(config);
+  name_ = source_->name();
+  frames_total_ = source_->frames_total();
+  thread_ = std::thread([this] { run(); });
+}
+
+FrameReader::FrameReader(std::unique_ptr<FrameSource> source)
+    : source_(std::move(source)),
+      name_(source_->name()),
+      frames_total_(source_->frames_total()),
+      thread_([this] { run(); }) {}
+
+FrameReader::~FrameReader() {
+  stop_ = true;
+  changed_.notify_all();
+  thread_.join();
+}
+
+std::optional<RgbdFrame> FrameReader::next(std::chrono::milliseconds timeout) {
+  std::unique_lock lock(mutex_);
+  changed_.wait_for(lock, timeout, [this] { return frame_ || ended_; });
+  auto frame = std::exchange(frame_, std::nullopt);
+  changed_.notify_all();
+  return frame;
+}
+
+bool FrameReader::finished() const {
+  const std::scoped_lock lock(mutex_);
+  return ended_ && !frame_;
+}
+
+void FrameReader::rethrow_failure() const {
+  const std::scoped_lock lock(mutex_);
+  if (failure_) std::rethrow_exception(failure_);
+}
+
+SourceCounts FrameReader::counts() const {
+  const std::scoped_lock lock(mutex_);
+  return counts_;
+}
+
+std::string FrameReader::end_reason() const {
+  const std::scoped_lock lock(mutex_);
+  return end_reason_;
+}
+
+bool FrameReader::ended_well() const {
+  const std::scoped_lock lock(mutex_);
+  return ended_well_;
+}
+
+double FrameReader::busy_ms() const {
+  const std::scoped_lock lock(mutex_);
+  return busy_ms_;
+}
+
+void FrameReader::run() {
+  while (true) {
+    const Stopwatch stopwatch;
+    std::optional<RgbdFrame> frame;
+    std::exception_ptr failure;
+    try {
+      frame = source_->next();
+    } catch (...) {
+      failure = std::current_exception();
+    }
+    const double elapsed_ms = stopwatch.elapsed_ms();
+    std::unique_lock lock(mutex_);
+    busy_ms_ += elapsed_ms;
+    counts_ = source_->counts();
+    if (!frame) {
+      ended_ = true;
+      ended_well_ = !failure && source_->ended_well();
+      end_reason_ = source_->end_reason();
+      failure_ = failure;
+      changed_.notify_all();
+      return;
+    }
+    frame_ = std::move(frame);
+    changed_.notify_all();
+    // stop_ is set without the lock: look at it again now and then.
+    while (frame_ && !stop_) changed_.wait_for(lock, std::chrono::milliseconds(100));
+    if (stop_) return;
+  }
+}
+
+}  // namespace kintsugi::mapper

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <exception>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "mapper/source/frame_source.hpp"
+
+namespace kintsugi::mapper {
+
+/// Reads one frame ahead on a thread of its own: the next frame is decoded while this one is
+/// mapped.
+class FrameReader {
+ public:
+  /// Opens the source. @throws as open_frame_source()
+  explicit FrameReader(SourceConfig config);
+  /// Reads from a source that is open already; `config.stop_requested` cannot reach it.
+  explicit FrameReader(std::unique_ptr<FrameSource> source);
+  ~FrameReader();
+  FrameReader(const FrameReader&) = delete;
+  FrameReader& operator=(const FrameReader&) = delete;
+
+  /// The next frame if it comes within `timeout`.
+  std::optional<RgbdFrame> next(std::chrono::milliseconds timeout);
+
+  /// No frame will come any more.
+  bool finished() const;
+
+  /// Throws what reading threw, if it did.
+  void rethrow_failure() const;
+
+  const std::string& device_name() const { return name_; }
+  std::int64_t frames_total() const { return frames_total_; }
+  SourceCounts counts() const;
+  /// Of the source, once finished().
+  std::string end_reason() const;
+  bool ended_well() const;
+  /// Time spent reading and decoding so far, waiting included, milliseconds.
+  double busy_ms() const;
+
+ private:
+  void run();
+
+  std::atomic<bool> stop_ = false;
+  std::unique_ptr<FrameSource> source_;
+  std::string name_;
+  std::int64_t frames_total_ = -1;
+
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;
+  std::optional<RgbdFrame> frame_;
+  bool ended_ = false;
+  bool ended_well_ = true;
+  std::string end_reason_;
+  std::exception_ptr failure_;
+  SourceCounts counts_;
+  double busy_ms_ = 0.0;
+  std::thread thread_;
+};
+
+}  // namespace kintsugi::mapper

@@ -1,0 +1,153 @@
+#include "mapper/process/mapper_process.hpp"
+
+#include <chrono>
+#include <thread>
+#include <utility>
+
+#include <spdlog/spdlog.h>
+
+#include "lcmtypes/atomic_file.hpp"
+#include "lcmtypes/stop_signal.hpp"
+
+namespace kintsugi::mapper {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr double kStatusPeriod_ms = 300.0;
+constexpr milliseconds kFrameWait{100};  ///< how long a status may be late
+constexpr milliseconds kRoomWait{5};
+
+SourceConfig with_stop_signal(SourceConfig config) {
+  config.stop_requested = [] { return stop_requested(); };
+  return config;
+}
+
+MapPublisher::Config publisher_config(const Options& options) {
+  MapPublisher::Config config;
+  config.lcm_url = options.lcm_url;
+  config.map_name = options.map_name;
+  config.session = options.session;
+  config.publish_frames = options.publish_frames;
+  return config;
+}
+
+bool is_located(TrackingState state) {
+  return state == TrackingState::kTracking || state == TrackingState::kGiven;
+}
+
+}  // namespace
+
+MapperProcess::MapperProcess(const Options& options)
+    : options_(options),
+      reader_(with_stop_signal(options.source)),
+      pipeline_(options.pipeline),
+      publisher_(publisher_config(options)) {}
+
+void MapperProcess::run() {
+  log_start();
+  map_frames();
+  finish();
+  log_summary();
+  reader_.rethrow_failure();
+}
+
+void MapperProcess::map_frames() {
+  publish_status(false);
+  while (!reader_.finished() && !stop_requested()) {
+    if (options_.max_frames > 0 && statistics_.frames() >= options_.max_frames) return;
+    publish_status_when_due();
+    if (!publisher_.has_room()) {
+      std::this_thread::sleep_for(kRoomWait);
+    } else if (const auto frame = reader_.next(kFrameWait)) {
+      map_frame(*frame);
+    }
+  }
+}
+
+void MapperProcess::map_frame(const RgbdFrame& frame) {
+  FrameResult result = pipeline_.process(frame);
+  const TrackingResult& tracking = result.tracking;
+  log_change_of_state(result, frame);
+  if (is_located(tracking.state)) path_.push_back({frame.utime, tracking.X_WC});
+
+  const Stopwatch stopwatch;
+  publisher_.publish_pose({frame.utime, 0, frame.frame_index, tracking.state, tracking.X_WC});
+  publisher_.publish_frame(frame);
+  publisher_.publish_slices(std::move(result.slices));
+  statistics_.add(result, stopwatch.elapsed_ms());
+}
+
+void MapperProcess::finish() {
+  if (!options_.output_path_file.empty()) {
+    AtomicFile file(options_.output_path_file);
+    write_tum(file.stream(), path_);
+    file.commit();
+  }
+  publisher_.publish_slices(pipeline_.finish());
+  publisher_.flush();
+  publish_status(true);
+}
+
+void MapperProcess::publish_status(bool finished) {
+  MapperStatus status;
+  statistics_.report(status, reader_.busy_ms(), pipeline_.extraction_ms());
+  status.device = options_.source.device;
+  status.finished = finished;
+  status.frames_total = reader_.frames_total();
+  status.frames_dropped = reader_.counts().frames_dropped;
+  status.blocks = pipeline_.num_blocks();
+  publisher_.publish_status(std::move(status));
+  status_clock_ = Stopwatch();
+}
+
+void MapperProcess::publish_status_when_due() {
+  if (status_clock_.elapsed_ms() >= kStatusPeriod_ms) publish_status(false);
+}
+
+void MapperProcess::log_start() const {
+  const auto& volume = options_.pipeline.volume;
+  spdlog::info("device '{}'{}, {} frames", reader_.device_name(),
+               options_.source.replay ? ", replayed" : "",
+               reader_.frames_total() < 0 ? "unknown" : std::to_string(reader_.frames_total()));
+  spdlog::info("volume {:.2f} m, voxel {:.2f} mm, map '{}', session {}", volume.volume_size_m,
+               1e3 * volume.resolution_m, options_.map_name, options_.session);
+}
+
+void MapperProcess::log_change_of_state(const FrameResult& result, const RgbdFrame& frame) {
+  const TrackingResult& tracking = result.tracking;
+  if (tracking.state == last_state_) return;
+  last_state_ = tracking.state;
+  if (tracking.loss_reason) {
+    spdlog::warn("frame {}: lost, {} (covered {:.2f}, inliers {:.2f}, rms {:.1f} mm)",
+                 frame.frame_index, to_string(*tracking.loss_reason),
+                 tracking.quality.covered_share, tracking.quality.inlier_share,
+                 1e3 * tracking.quality.rms_m);
+  } else if (tracking.state == TrackingState::kLost) {
+    spdlog::warn("frame {}: no given pose within 20 ms", frame.frame_index);
+  } else {
+    spdlog::info("frame {}: tracking", frame.frame_index);
+  }
+}
+
+void MapperProcess::log_summary() const {
+  const double elapsed_s = 1e-3 * run_clock_.elapsed_ms();
+  const SourceCounts counts = reader_.counts();
+  if (reader_.finished() && !reader_.ended_well()) {
+    spdlog::warn("the device ended early: {}", reader_.end_reason());
+  } else if (reader_.finished()) {
+    spdlog::info("end: {}", reader_.end_reason());
+  }
+  spdlog::info(
+      "{} frames in {:.1f} s ({:.1f} ms each without reading): {} located, {} lost, {} "
+      "dropped, {} bad",
+      statistics_.frames(), elapsed_s, statistics_.mean_frame_ms(), statistics_.frames_tracked(),
+      statistics_.frames_lost(), counts.frames_dropped, counts.frames_bad);
+  spdlog::info("{} slices, {} points, {} messages published", publisher_.slices_published(),
+               publisher_.points_published(), publisher_.chunks_published());
+  if (!options_.output_path_file.empty()) {
+    spdlog::info("camera path of {} poses in {}", path_.size(), options_.output_path_file);
+  }
+}
+
+}  // namespace kintsugi::mapper

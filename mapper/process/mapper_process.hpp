@@ -1,0 +1,46 @@
+#pragma once
+
+#include "mapper/core/mapper_pipeline.hpp"
+#include "mapper/core/stopwatch.hpp"
+#include "mapper/core/trajectory.hpp"
+#include "mapper/process/frame_reader.hpp"
+#include "mapper/process/map_publisher.hpp"
+#include "mapper/process/options.hpp"
+#include "mapper/process/run_statistics.hpp"
+
+namespace kintsugi::mapper {
+
+/// kintsugi-mapper: reads frames, maps them, says on the bus what came of it.
+class MapperProcess {
+ public:
+  /// Opens the device and the bus. @throws std::runtime_error when either cannot be opened
+  explicit MapperProcess(const Options& options);
+
+  /// Until the device ends, max_frames, or a stop signal. Then the final slice is published and
+  /// everything sent, and the camera's path written.
+  /// @throws std::runtime_error when reading, sending or writing failed; what could be mapped and
+  ///   sent before that was
+  void run();
+
+ private:
+  void map_frames();
+  void map_frame(const RgbdFrame& frame);
+  void finish();
+  void publish_status(bool finished);
+  void publish_status_when_due();
+  void log_start() const;
+  void log_change_of_state(const FrameResult& result, const RgbdFrame& frame);
+  void log_summary() const;
+
+  const Options options_;
+  FrameReader reader_;
+  MapperPipeline pipeline_;
+  MapPublisher publisher_;
+  RunStatistics statistics_;
+  Trajectory path_;  ///< of the frames that were located
+  TrackingState last_state_ = TrackingState::kStarting;
+  Stopwatch run_clock_;
+  Stopwatch status_clock_;
+};
+
+}  // namespace kintsugi::mapper

@@ -1,0 +1,123 @@
+#include "mapper/process/options.hpp"
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <iostream>
+#include <stdexcept>
+
+#include <CLI/CLI.hpp>
+
+#include "lcmtypes/bus.hpp"
+#include "lcmtypes/codec.hpp"
+#include "mapper/core/check.hpp"
+
+namespace kintsugi::mapper {
+namespace {
+
+constexpr int kDefaultVoxelsPerSide = 512;
+constexpr std::string_view kSyntheticScheme = "synthetic://";
+
+void add_source_flags(CLI::App& app, Options& options) {
+  app.add_option("--device", options.source.device,
+                 "a .oni file, folder://PATH, synthetic://NAME, lcm://CHANNEL or a camera's URI; "
+                 "empty: the first camera");
+  app.add_option("--calibration", options.source.calibration_file,
+                 "camera.txt: fx fy cx cy width height depth_scale [k1 k2 p1 p2 k3]");
+  app.add_flag("--replay", options.source.replay,
+               "every frame of a recording, as fast as they can be mapped");
+  app.add_option("--ground-truth", options.ground_truth_dir,
+                 "folder into which a synthetic:// device writes what is true");
+  app.add_option("--max-frames", options.max_frames, "stop after so many frames; 0: at the end");
+}
+
+void add_mapping_flags(CLI::App& app, Options& options) {
+  app.add_option("--volume-size", options.pipeline.volume.volume_size_m,
+                 "side of the moving cube, m");
+  app.add_option("--resolution", options.resolution_m,
+                 "side of a voxel, m; 0: 1/512 of the volume's");
+  app.add_option("--shift", options.pipeline.volume.shift_vox,
+                 "the cube follows when the camera is so far from its centre, voxels");
+  app.add_option("--min-weight", options.pipeline.slices.extractor.weight_threshold,
+                 "surface needs more observations than this");
+  app.add_option("--trajectory", options.given_path_file,
+                 "camera path in TUM format that replaces tracking");
+  app.add_option("--output-trajectory", options.output_path_file,
+                 "where to write the camera's path, TUM format");
+  app.add_option("--threads", options.threads, "of the parallel stages; 0: one per core");
+}
+
+void add_bus_flags(CLI::App& app, Options& options) {
+  app.add_flag("--publish-frames", options.publish_frames, "publish RGBD_FRAME too");
+  app.add_option("--lcm-url", options.lcm_url, "as LCM has it; empty: LCM's default");
+  app.add_option("--map-name", options.map_name, "tells mappers on one bus apart");
+  app.add_option("--session", options.session, "number of this run; 0: by the clock");
+}
+
+/// The device's own option for where it writes its truth.
+void pass_ground_truth_to_device(Options& options) {
+  if (options.ground_truth_dir.empty()) return;
+  std::string& device = options.source.device;
+  if (device.rfind(kSyntheticScheme, 0) != 0) {
+    throw std::invalid_argument("--ground-truth is for synthetic:// devices, --device is '" +
+                                device + "'");
+  }
+  device += device.find('?') == std::string::npos ? '?' : '&';
+  device += "ground_truth=" + options.ground_truth_dir;
+}
+
+Trajectory read_path(const std::string& file) {
+  std::ifstream in(file);
+  if (!in) throw std::runtime_error(file + ": " + std::strerror(errno));
+  return read_tum(in, file);
+}
+
+}  // namespace
+
+void Options::validate() const {
+  source.validate();
+  pipeline.validate();
+  check_range<std::int64_t>("--max-frames", max_frames, 0, 1'000'000'000);
+  check_range<std::int64_t>("--session", session, 1, INT64_MAX);
+  check_range("--threads", threads, 0, 1024);
+  if (map_name.empty() || map_name.size() > kMaxStringBytes) {
+    throw std::invalid_argument("--map-name has " + std::to_string(map_name.size()) +
+                                " bytes, must have 1 to " + std::to_string(kMaxStringBytes));
+  }
+}
+
+std::variant<Options, int> parse_command_line(int argc, const char* const* argv) {
+  Options options;
+  CLI::App app{"Maps the RGB-D frames of an OpenNI2 device and publishes the map in slices."};
+  app.option_defaults()->always_capture_default();
+  add_source_flags(app, options);
+  add_mapping_flags(app, options);
+  add_bus_flags(app, options);
+  app.set_config("--config", "", "read flags from this file (TOML)");
+  bool print_config = false;
+  app.add_flag("--print-config", print_config, "print every flag with its value, and exit")
+      ->configurable(false);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error);
+  }
+
+  if (print_config) {
+    std::cout << app.config_to_str(true, true);
+    return 0;
+  }
+  auto& volume = options.pipeline.volume;
+  volume.resolution_m = options.resolution_m == 0.0 ? volume.volume_size_m / kDefaultVoxelsPerSide
+                                                    : options.resolution_m;
+  if (options.session == 0) options.session = new_session();
+  options.source.lcm_url = options.lcm_url;
+  options.validate();
+  pass_ground_truth_to_device(options);
+  if (!options.given_path_file.empty()) {
+    options.pipeline.given_path = read_path(options.given_path_file);
+  }
+  return options;
+}
+
+}  // namespace kintsugi::mapper

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <variant>
+
+#include "mapper/core/mapper_pipeline.hpp"
+#include "mapper/source/frame_source.hpp"
+
+namespace kintsugi::mapper {
+
+/// All that a run of kintsugi-mapper can be told; each has a flag.
+struct Options {
+  SourceConfig source;
+  MapperPipeline::Config pipeline;
+  double resolution_m = 0.0;     ///< side of a voxel; 0: 1/512 of the volume's side
+  std::string given_path_file;   ///< TUM; empty: track
+  std::string output_path_file;  ///< TUM; empty: none is written
+  std::string ground_truth_dir;  ///< where a synthetic:// device writes its truth; empty: nowhere
+  std::int64_t max_frames = 0;   ///< 0: no limit
+  bool publish_frames = false;   ///< RGBD_FRAME too
+  std::string lcm_url;           ///< empty: LCM's default
+  std::string map_name = "map";
+  std::int64_t session = 0;  ///< > 0; 0: by the clock
+  int threads = 0;           ///< for the parallel stages; 0: one per core
+
+  /// @throws std::invalid_argument naming the field, its value and its bound
+  void validate() const;
+};
+
+/// Reads the command line (and the --config file it names) and the files that belong to the
+/// options. Gives the options, or the code to exit with when there is nothing to run: help, the
+/// printed configuration, or a flag that is wrong (said on stderr).
+/// @throws std::invalid_argument for a value out of its bounds, std::runtime_error for a file that
+///   cannot be read
+std::variant<Options, int> parse_command_line(int argc, const char* const* argv);
+
+}  // namespace kintsugi::mapper

@@ -1,0 +1,156 @@
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "mapper/process/options.hpp"
+
+namespace kintsugi::mapper {
+namespace {
+
+using ::testing::HasSubstr;
+
+std::variant<Options, int> parse(std::vector<const char*> flags) {
+  flags.insert(flags.begin(), "kintsugi-mapper");
+  return parse_command_line(static_cast<int>(flags.size()), flags.data());
+}
+
+Options options_of(const std::vector<const char*>& flags) {
+  return std::get<Options>(parse(flags));
+}
+
+std::string error_of(const std::vector<const char*>& flags) {
+  try {
+    parse(flags);
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+class TemporaryFile {
+ public:
+  explicit TemporaryFile(const std::string& text)
+      : path_(std::filesystem::temp_directory_path() /
+              ("kintsugi_options_" + std::to_string(::getpid()) + ".txt")) {
+    std::ofstream(path_) << text;
+  }
+  ~TemporaryFile() { std::filesystem::remove(path_); }
+  std::string path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+TEST(Options, DefaultsAreTheDesigns) {
+  const Options options = options_of({});
+  EXPECT_DOUBLE_EQ(options.pipeline.volume.volume_size_m, 4.5);
+  EXPECT_DOUBLE_EQ(options.pipeline.volume.resolution_m, 4.5 / 512);
+  EXPECT_EQ(options.pipeline.volume.shift_vox, 14);
+  EXPECT_EQ(options.pipeline.slices.extractor.weight_threshold, 8);
+  EXPECT_GT(options.session, 0);
+  EXPECT_FALSE(options.source.replay);
+}
+
+TEST(Options, TakesEveryFlag) {
+  const Options options = options_of({"--device",
+                                      "folder:///data/x",
+                                      "--calibration",
+                                      "camera.txt",
+                                      "--volume-size",
+                                      "6",
+                                      "--shift",
+                                      "20",
+                                      "--min-weight",
+                                      "4",
+                                      "--output-trajectory",
+                                      "out.txt",
+                                      "--max-frames",
+                                      "9",
+                                      "--publish-frames",
+                                      "--replay",
+                                      "--lcm-url",
+                                      "memq://",
+                                      "--map-name",
+                                      "attic",
+                                      "--session",
+                                      "77",
+                                      "--threads",
+                                      "2"});
+  EXPECT_EQ(options.source.device, "folder:///data/x");
+  EXPECT_EQ(options.source.calibration_file, "camera.txt");
+  EXPECT_TRUE(options.source.replay);
+  EXPECT_EQ(options.source.lcm_url, "memq://");
+  EXPECT_DOUBLE_EQ(options.pipeline.volume.volume_size_m, 6.0);
+  EXPECT_DOUBLE_EQ(options.pipeline.volume.resolution_m, 6.0 / 512);  // follows the size
+  EXPECT_EQ(options.pipeline.volume.shift_vox, 20);
+  EXPECT_EQ(options.pipeline.slices.extractor.weight_threshold, 4);
+  EXPECT_EQ(options.output_path_file, "out.txt");
+  EXPECT_EQ(options.max_frames, 9);
+  EXPECT_TRUE(options.publish_frames);
+  EXPECT_EQ(options.map_name, "attic");
+  EXPECT_EQ(options.session, 77);
+  EXPECT_EQ(options.threads, 2);
+  EXPECT_DOUBLE_EQ(options_of({"--resolution", "0.01"}).pipeline.volume.resolution_m, 0.01);
+}
+
+TEST(Options, ReadsAConfigurationFileUnderTheFlags) {
+  const TemporaryFile file("volume-size=3\nmap-name=\"cellar\"\nresolution=0.02\n");
+  const Options options = options_of({"--config", file.path().c_str(), "--map-name", "attic"});
+  EXPECT_DOUBLE_EQ(options.pipeline.volume.volume_size_m, 3.0);
+  EXPECT_DOUBLE_EQ(options.pipeline.volume.resolution_m, 0.02);
+  EXPECT_EQ(options.map_name, "attic");
+}
+
+TEST(Options, WhatIsPrintedCanBeReadBack) {
+  ::testing::internal::CaptureStdout();
+  EXPECT_EQ(std::get<int>(parse({"--volume-size", "3.5", "--print-config"})), 0);
+  const TemporaryFile file(::testing::internal::GetCapturedStdout());
+  const Options options = options_of({"--config", file.path().c_str()});
+  EXPECT_DOUBLE_EQ(options.pipeline.volume.volume_size_m, 3.5);
+  EXPECT_DOUBLE_EQ(options.pipeline.volume.resolution_m, 3.5 / 512);
+}
+
+TEST(Options, NamesWhatIsWrong) {
+  EXPECT_THAT(error_of({"--max-frames", "-1"}), HasSubstr("--max-frames is -1"));
+  EXPECT_THAT(error_of({"--volume-size", "-4"}), HasSubstr("volume_size_m"));
+  EXPECT_THAT(error_of({"--volume-size", "nan"}), HasSubstr("volume_size_m"));
+  EXPECT_THAT(error_of({"--map-name", ""}), HasSubstr("--map-name has 0 bytes"));
+  EXPECT_THAT(error_of({"--session", "-5"}), HasSubstr("--session is -5"));
+  EXPECT_THAT(error_of({"--trajectory", "/no/such/file"}),
+              HasSubstr("/no/such/file: No such file or directory"));
+  EXPECT_THAT(error_of({"--device", "a.oni", "--ground-truth", "dir"}),
+              HasSubstr("--ground-truth is for synthetic:// devices, --device is 'a.oni'"));
+}
+
+TEST(Options, UnknownFlagsAndTextForNumbersEndTheProcess) {
+  EXPECT_NE(std::get<int>(parse({"--no-such-flag"})), 0);
+  EXPECT_NE(std::get<int>(parse({"--volume-size", "big"})), 0);
+}
+
+TEST(Options, PassesTheFolderForTheTruthToTheDevice) {
+  EXPECT_EQ(options_of({"--device", "synthetic://office", "--ground-truth", "d"}).source.device,
+            "synthetic://office?ground_truth=d");
+  EXPECT_EQ(
+      options_of({"--device", "synthetic://office?noise=0", "--ground-truth", "d"}).source.device,
+      "synthetic://office?noise=0&ground_truth=d");
+}
+
+TEST(Options, ReadsTheGivenPath) {
+  const TemporaryFile good("1.0 1 2 3 0 0 0 1\n");
+  EXPECT_EQ(options_of({"--trajectory", good.path().c_str()}).pipeline.given_path.size(), 1U);
+}
+
+TEST(Options, NamesFileAndLineOfABadPath) {
+  const TemporaryFile bad("1.0 1 2 3 0 0 0 1\n2.0 1 2\n");
+  EXPECT_THAT(error_of({"--trajectory", bad.path().c_str()}),
+              HasSubstr(bad.path() + ":2: 3 fields"));
+}
+
+}  // namespace
+}  // namespace kintsugi::mapper
