@@ -112,7 +112,9 @@ std::optional<RgbdFrameMessage> LcmSource::wait_for_message() {
     if (config_.stop_requested()) {
       end(true, "stopped on request");
     } else if (receiver_->thread->failed()) {
-      end(false, "the connection to the bus failed");
+      // LCM reads a log like a bus, and its end is the end of the connection.
+      const bool is_log = config_.lcm_url.starts_with("file:");
+      end(is_log, is_log ? "end of the log" : "the connection to the bus failed");
     } else if (silent) {
       end(true, "nothing came on " + config_.device + " for " +
                     std::to_string(config_.lcm_silence_s) + " s");

@@ -23,7 +23,7 @@ std::string trimmed_error() {
   std::string text = openni::OpenNI::getExtendedError();
   std::ranges::replace(text, '\n', ' ');
   text.erase(text.find_last_not_of(" \t\r") + 1);
-  return text;
+  return text.empty() ? "OpenNI2 gives no reason" : text;
 }
 
 /// OpenNI2's library is one per process and counts its users; what the drivers load (threads, USB)

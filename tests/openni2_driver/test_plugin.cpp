@@ -222,40 +222,5 @@ TEST(Plugin, RefusesToSeek) {
   EXPECT_EQ(client.depth_frames.size(), kNumFrames);
 }
 
-TEST(Plugin, RecordsToAnOniFileThatPlaysBackFrameForFrame) {
-  const OpenNi2Session session;
-  const RecordingFolder folder;
-  const std::string oni = (folder.path() / "recorded.oni").string();
-  {
-    Client client(folder.uri());
-    openni::Recorder recorder;
-    ASSERT_EQ(recorder.create(oni.c_str()), openni::STATUS_OK);
-    ASSERT_EQ(recorder.attach(client.depth(), false), openni::STATUS_OK);
-    ASSERT_EQ(recorder.attach(client.color(), false), openni::STATUS_OK);
-    ASSERT_EQ(recorder.start(), openni::STATUS_OK);
-    // start() only posts a message to the recorder's thread, and nothing tells when it was heard.
-    std::this_thread::sleep_for(std::chrono::milliseconds(300));
-    client.start(-1.0F);
-    client.read_all();
-    ASSERT_EQ(client.depth_frames.size(), kNumFrames);
-    recorder.stop();
-    recorder.destroy();
-  }
-  Client playback(oni);
-  ASSERT_TRUE(playback.is_open()) << playback.error();
-  EXPECT_FLOAT_EQ(playback.depth().getHorizontalFieldOfView(),
-                  static_cast<float>(2.0 * std::atan(32.0 / 50.0)));
-  playback.start(-1.0F);
-  playback.read_all();
-  ASSERT_EQ(playback.depth_frames.size(), kNumFrames);
-  ASSERT_EQ(playback.color_frames.size(), kNumFrames);
-  for (std::size_t i = 0; i < kNumFrames; ++i) {
-    const int frame = static_cast<int>(i);
-    EXPECT_EQ(playback.depth_frames[i].utime, 33333 * frame) << "from 0, as OpenNI2 records";
-    EXPECT_TRUE(same(playback.depth_frames[i].image, test::raw_depth_image(frame))) << i;
-    EXPECT_TRUE(same(playback.color_frames[i].image, test::color_image(frame))) << i;
-  }
-}
-
 }  // namespace
 }  // namespace kintsugi::mapper
