@@ -92,9 +92,12 @@ void StreamPublisher::enqueue(Job job) {
 
 void StreamPublisher::flush() {
   std::unique_lock lock(mutex_);
+  ++num_flushing_;
+  wake_.notify_all();
   idle_.wait(lock, [this] {
     return failure_ || (queue_.empty() && heartbeat_sequence_ == next_sequence_);
   });
+  --num_flushing_;
   if (failure_) std::rethrow_exception(failure_);
 }
 
@@ -114,7 +117,7 @@ void StreamPublisher::run() {
     while (true) {
       if (!queue_.empty()) {
         send_message(lock);
-      } else if (heartbeat_sequence_ != next_sequence_ || Clock::now() >= next_heartbeat_) {
+      } else if (heartbeat_is_due()) {
         send_heartbeat(lock);
       } else if (stopping_) {
         return;
@@ -127,6 +130,13 @@ void StreamPublisher::run() {
     failure_ = std::current_exception();
     idle_.notify_all();
   }
+}
+
+/// Every heartbeat_period; and at once when somebody waits until everything is sent.
+bool StreamPublisher::heartbeat_is_due() const {
+  const bool is_waited_for = stopping_ || num_flushing_ > 0;
+  return Clock::now() >= next_heartbeat_ ||
+         (is_waited_for && heartbeat_sequence_ != next_sequence_);
 }
 
 void StreamPublisher::send_message(std::unique_lock<std::mutex>& lock) {

@@ -83,6 +83,7 @@ class StreamPublisher {
   void send_message(std::unique_lock<std::mutex>& lock);
   void send_heartbeat(std::unique_lock<std::mutex>& lock);
   void pace(std::size_t bytes);
+  bool heartbeat_is_due() const;
 
   const Transmit transmit_;
   const std::string channel_;
@@ -100,6 +101,7 @@ class StreamPublisher {
   std::size_t queued_bytes_ = 0;
   std::int64_t next_sequence_ = 0;
   std::int64_t heartbeat_sequence_ = -1;  // the next_sequence of the last heartbeat
+  int num_flushing_ = 0;                  // callers of flush() that wait
   bool stopping_ = false;
   std::exception_ptr failure_;
 
