@@ -46,12 +46,11 @@ SegmenterProcess::SegmenterProcess(const Config& config)
       subscriber_(
           channels::kCloudSlice, [this](CloudSlice slice) { queue_.push(std::move(slice)); },
           [](const DecodeError& error) { spdlog::warn("dropped a message: {}", error.what()); }),
-      processor_(config.processor, session_,
-                 {[this](SegmentUpdate update) {
-                    if (publisher_) publisher_->publish(std::move(update));
-                  },
-                  [this](const SegmentMap& map, SliceProcessor::Save why) { save(map, why); },
-                  [](const std::string& text) { spdlog::warn("{}", text); }}) {
+      processor_(
+          config.processor, session_,
+          {[this](SegmentUpdate update) { publish(std::move(update)); },
+           [this](const SegmentMap& map, SliceProcessor::Save why) { return save(map, why); },
+           [](const std::string& text) { spdlog::warn("{}", text); }}) {
   if (config_.log.empty() || config_.publish) {
     bus_ = std::make_unique<Bus>(config_.lcm_url);
   }
@@ -75,6 +74,9 @@ int SegmenterProcess::run() {
   worker.join();
   if (failure_) {
     std::rethrow_exception(failure_);
+  }
+  if (counts().missing > 0) {
+    fail(std::to_string(counts().missing) + " slices are missing from the map");
   }
   if (publisher_) {
     publisher_->flush();
@@ -103,8 +105,7 @@ void SegmenterProcess::receive_from_log() {
         subscriber_.handle(event->channel, event->data);
       }
     } catch (const std::exception& error) {
-      spdlog::error("{}", error.what());
-      has_failed_ = true;
+      fail(error.what());
     }
     queue_.close();
   });
@@ -116,17 +117,12 @@ void SegmenterProcess::receive_from_log() {
 
   const std::string name = config_.log.string();
   if (log.damage()) {
-    spdlog::error("{}", *log.damage());
-    has_failed_ = true;
+    fail(*log.damage());
   }
   if (counts().segmented == 0) {
-    spdlog::error("{}: holds no slice that could be read on {}", name, channels::kCloudSlice);
-    has_failed_ = true;
-  } else if (counts().missing > 0) {
-    spdlog::error("{}: {} slices are missing", name, counts().missing);
-    has_failed_ = true;
-  } else if (!counts().complete) {
-    spdlog::warn("{}: ends before the final slice", name);
+    fail(name + ": holds no slice that could be read on " + channels::kCloudSlice);
+  } else if (!counts().ended) {
+    spdlog::warn("{}: read to its end, or stopped, before the final slice", name);
   }
 }
 
@@ -135,7 +131,7 @@ void SegmenterProcess::wait_for_end() {
   const auto until = std::chrono::steady_clock::now() + config_.status_period;
   while (working_ && std::chrono::steady_clock::now() < until) {
     std::this_thread::sleep_for(kPollPeriod);
-    if (stop_requested() || (config_.exit_on_final && is_finished())) {
+    if (stop_requested() || (config_.exit_on_final && counts().ended && nothing_is_queued())) {
       ending_ = true;
     }
   }
@@ -146,14 +142,14 @@ void SegmenterProcess::work() {
   try {
     work_until_end();
   } catch (...) {
-    const std::lock_guard lock(mutex_);
-    failure_ = std::current_exception();
+    failure_ = std::current_exception();  // read after join()
+    processor_.save();
   }
   working_ = false;
 }
 
 void SegmenterProcess::work_until_end() {
-  while (!ending_) {
+  while (!ending_ && !queue_.is_exhausted()) {
     offer_all(queue_.take(kPollPeriod));
     while (!ending_ && processor_.step(SliceProcessor::Clock::now())) {
       offer_all(queue_.take(milliseconds(0)));
@@ -161,17 +157,16 @@ void SegmenterProcess::work_until_end() {
     if (take_write_request()) {
       processor_.save();
     }
-    if (queue_.is_exhausted()) {
-      processor_.finish(SliceProcessor::Clock::now());
-      offer_all({});
-      break;
-    }
   }
+  offer_all(queue_.take(milliseconds(0)));
+  if (stop_requested() && counts().lag > 0) {
+    spdlog::info("segmenting what was received, {} slices behind; a second signal leaves it out",
+                 counts().lag);
+    processor_.save();  // now: what follows may take long
+  }
+  processor_.finish(SliceProcessor::Clock::now());
+  offer_all({});
   processor_.save();
-  const std::int64_t num_left = counts().lag + queue_.size();
-  if (num_left > 0) {
-    spdlog::warn("ended with {} slices not segmented", num_left);
-  }
 }
 
 void SegmenterProcess::offer_all(std::vector<CloudSlice> slices) {
@@ -182,7 +177,18 @@ void SegmenterProcess::offer_all(std::vector<CloudSlice> slices) {
   counts_ = processor_.counts();
 }
 
-void SegmenterProcess::save(const SegmentMap& map, SliceProcessor::Save why) {
+void SegmenterProcess::publish(SegmentUpdate update) {
+  if (!publisher_) {
+    return;
+  }
+  try {
+    publisher_->publish(std::move(update));
+  } catch (const std::exception& error) {  // the map is worth keeping without a listener
+    fail(std::string("an update is not published: ") + error.what());
+  }
+}
+
+bool SegmenterProcess::save(const SegmentMap& map, SliceProcessor::Save why) {
   const std::string stem = why == SliceProcessor::Save::kCurrent
                                ? "segments"
                                : "segments_" + std::to_string(map.map_session());
@@ -191,9 +197,10 @@ void SegmenterProcess::save(const SegmentMap& map, SliceProcessor::Save why) {
     spdlog::info("wrote {}.ply and .json: {} points, {} segments",
                  (config_.output_folder / stem).string(), map.cloud().size(),
                  map.segment_ids().num_segments());
+    return true;
   } catch (const std::exception& error) {
-    spdlog::error("the map is not written: {}", error.what());
-    has_failed_ = true;
+    fail(std::string("the map is not written: ") + error.what());
+    return false;
   }
 }
 
@@ -202,9 +209,13 @@ SliceProcessor::Counts SegmenterProcess::counts() const {
   return counts_;
 }
 
-bool SegmenterProcess::is_finished() const {
-  return counts().complete && queue_.size() == 0 &&
-         (!publisher_ || publisher_->queued_bytes() == 0);
+void SegmenterProcess::fail(const std::string& what) {
+  spdlog::error("{}", what);
+  has_failed_ = true;
+}
+
+bool SegmenterProcess::nothing_is_queued() const {
+  return queue_.size() == 0 && (!publisher_ || publisher_->queued_bytes() == 0);
 }
 
 void SegmenterProcess::publish_status() {
@@ -219,7 +230,7 @@ void SegmenterProcess::publish_status() {
   status.map_session = counts.map_session;
   status.map_name = counts.map_name;
   status.mode = config_.processor.map.mode;
-  status.finished = is_finished();
+  status.finished = counts.complete && nothing_is_queued();
   status.slices_received = counts.received + queue_.size();
   status.slices_segmented = counts.segmented;
   status.lag_slices = counts.lag + queue_.size();

@@ -42,8 +42,9 @@ class SegmenterProcess {
   ~SegmenterProcess();
 
   /// Works until the end of the log, the final slice (Config::exit_on_final) or a stop signal;
-  /// then writes the map. Returns the exit status: 0, or 1 when a file could not be written, the
-  /// log is damaged or slices are missing from it. Throws what makes going on impossible.
+  /// then writes the map. Returns the exit status: 0, or 1 when a file could not be written, an
+  /// update not be sent, the log is damaged, or slices are missing at the end. Throws what makes
+  /// going on impossible, after it has tried to write the map.
   int run();
 
  private:
@@ -52,11 +53,13 @@ class SegmenterProcess {
   void work();
   void work_until_end();
   void offer_all(std::vector<CloudSlice> slices);
-  void save(const SegmentMap& map, SliceProcessor::Save why);
+  void publish(SegmentUpdate update);
+  bool save(const SegmentMap& map, SliceProcessor::Save why);
+  void fail(const std::string& what);
   void publish_status();
   void wait_for_end();
   [[nodiscard]] SliceProcessor::Counts counts() const;
-  [[nodiscard]] bool is_finished() const;
+  [[nodiscard]] bool nothing_is_queued() const;
 
   Config config_;
   std::int64_t session_;

@@ -82,7 +82,8 @@ void SliceProcessor::begin_session(const CloudSlice& first) {
   counts_.dropped = dropped;
   counts_.map_session = first.session;
   counts_.map_name = first.map_name;
-  num_unsaved_ = 0;
+  is_saved_ = true;
+  num_since_save_ = 0;
   total_ms_ = 0.0;
 }
 
@@ -137,13 +138,14 @@ void SliceProcessor::segment(const std::vector<CloudSlice>& slices) {
   std::vector<SegmentUpdate> updates = map_->add(slices);
   const std::chrono::duration<double, std::milli> run = Clock::now() - start;
   count_run(slices, run.count());
+  is_saved_ = false;
+  num_since_save_ += static_cast<std::int64_t>(slices.size());
   for (SegmentUpdate& update : updates) {
     outputs_.publish(std::move(update));
   }
-  num_unsaved_ += static_cast<std::int64_t>(slices.size());
-  const bool is_due = config_.write_every > 0 && num_unsaved_ >= config_.write_every;
+  const bool is_due = config_.write_every > 0 && num_since_save_ >= config_.write_every;
   if (is_due || counts_.complete) {
-    save(Save::kCurrent);
+    save();
   }
 }
 
@@ -156,6 +158,7 @@ void SliceProcessor::count_run(const std::vector<CloudSlice>& slices, double run
   counts_.rejected = map_->cloud().num_rejected();
   counts_.segments = map_->segment_ids().num_segments();
   counts_.complete = map_->is_complete();
+  counts_.ended = map_->has_final_slice() && sequencer_->num_waiting() == 0;
   total_ms_ += run_ms;
   counts_.slice_ms = run_ms / static_cast<double>(num_slices);
   counts_.slice_mean_ms = total_ms_ / static_cast<double>(counts_.segmented);
@@ -163,14 +166,10 @@ void SliceProcessor::count_run(const std::vector<CloudSlice>& slices, double run
 }
 
 void SliceProcessor::save() {
-  if (map_ && num_unsaved_ > 0) {
-    save(Save::kCurrent);
+  if (map_ && !is_saved_) {
+    num_since_save_ = 0;
+    is_saved_ = outputs_.save(*map_, Save::kCurrent);
   }
-}
-
-void SliceProcessor::save(Save why) {
-  num_unsaved_ = 0;
-  outputs_.save(*map_, why);
 }
 
 }  // namespace kintsugi::segmenter

@@ -46,7 +46,7 @@ class SliceProcessor {
 
   struct Outputs {
     std::function<void(SegmentUpdate update)> publish;
-    std::function<void(const SegmentMap& map, Save why)> save;
+    std::function<bool(const SegmentMap& map, Save why)> save;  ///< false: it could not be saved
     std::function<void(const std::string& text)> warn;
   };
 
@@ -63,6 +63,7 @@ class SliceProcessor {
     std::int64_t missing = 0;      ///< slices given up in the current session, and not come since
     std::int64_t dropped = 0;      ///< slices of ended sessions, revisions, other resolutions
     bool complete = false;         ///< the final slice and every earlier one are segmented
+    bool ended = false;            ///< complete, or the final slice is and the missing are given up
     double slice_ms = 0.0;         ///< of the last slice; a run's time is shared by its slices
     double slice_mean_ms = 0.0;    ///< of the current session
     double slice_max_ms = 0.0;     ///< of the current session
@@ -81,7 +82,7 @@ class SliceProcessor {
   /// No more slices will come: segments all that is there, gaps or not.
   void finish(Clock::time_point now);
 
-  /// Saves the current map, if there is one with something new in it.
+  /// Saves the current map, unless it is saved as it is.
   void save();
 
   [[nodiscard]] const Counts& counts() const { return counts_; }
@@ -96,7 +97,6 @@ class SliceProcessor {
   [[nodiscard]] std::vector<CloudSlice> take_ready(Clock::time_point now);
   void segment(const std::vector<CloudSlice>& slices);
   void count_run(const std::vector<CloudSlice>& slices, double run_ms);
-  void save(Save why);
 
   Config config_;
   std::int64_t session_;
@@ -104,7 +104,8 @@ class SliceProcessor {
   std::unique_ptr<SegmentMap> map_;
   std::optional<SliceSequencer> sequencer_;  // there is one iff there is a map
   std::set<std::int64_t> ended_sessions_;
-  std::int64_t num_unsaved_ = 0;  // slices
+  bool is_saved_ = true;
+  std::int64_t num_since_save_ = 0;  // slices since saving was tried
   double total_ms_ = 0.0;
   Counts counts_;
 };

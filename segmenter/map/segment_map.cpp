@@ -78,7 +78,7 @@ std::vector<SegmentUpdate> SegmentMap::add(std::span<const CloudSlice> slices) {
 }
 
 bool SegmentMap::is_complete() const {
-  return final_slice_id_ >= 0 &&
+  return has_final_slice() &&
          std::distance(slice_ids_.begin(), slice_ids_.upper_bound(final_slice_id_)) ==
              std::int64_t{final_slice_id_} + 1;
 }

@@ -44,6 +44,9 @@ class SegmentMap {
   ///   resolution, is in the map already, or comes twice
   std::vector<SegmentUpdate> add(std::span<const CloudSlice> slices);
 
+  /// True when the final slice is in the map.
+  [[nodiscard]] bool has_final_slice() const { return final_slice_id_ >= 0; }
+
   /// True when the final slice and every earlier one are in the map.
   [[nodiscard]] bool is_complete() const;
 

@@ -72,9 +72,10 @@ TEST(SegmenterStreams, MapIsTheSameHoweverTheChunksArrive) {
     }
     SliceProcessor::Config config;
     config.map.mode = "voting";
-    SliceProcessor processor(config, 1,
-                             {[](SegmentUpdate) {}, [](const SegmentMap&, SliceProcessor::Save) {},
-                              [](const std::string&) {}});
+    SliceProcessor processor(
+        config, 1,
+        {[](SegmentUpdate) {}, [](const SegmentMap&, SliceProcessor::Save) { return true; },
+         [](const std::string&) {}});
     for (CloudSlice& slice : received) {
       processor.offer(std::move(slice), {});
     }
@@ -142,7 +143,7 @@ TEST_F(SegmenterProgram, ReportsGapsAndDamageOfALogAndKeepsWhatItCouldRead) {
   write_log(path("gap.lcm"), messages);
   const auto gap = run("--log " + path("gap.lcm") + " --out " + path("gap"));
   EXPECT_EQ(gap.exit_code, 1);
-  EXPECT_THAT(gap.output, AllOf(HasSubstr("gap.lcm: 1 slices are missing"),
+  EXPECT_THAT(gap.output, AllOf(HasSubstr("1 slices are missing from the map"),
                                 HasSubstr("slices 1 to 1 of session 5 are missing")));
   EXPECT_EQ(read_ply(path("gap") + "/segments.ply").points_W.size(), 600U);
 

@@ -34,6 +34,7 @@ class SliceProcessorTest : public ::testing::Test {
             {[this](SegmentUpdate update) { updates_.push_back(std::move(update)); },
              [this](const SegmentMap& map, SliceProcessor::Save why) {
                saves_.push_back({map.map_session(), map.cloud().size(), why});
+               return can_save_;
              },
              [this](const std::string& text) { warnings_.push_back(text); }}};
   }
@@ -52,6 +53,7 @@ class SliceProcessorTest : public ::testing::Test {
   SliceProcessor::Clock::time_point now_{seconds(1000)};
   std::vector<SegmentUpdate> updates_;
   std::vector<Saved> saves_;
+  bool can_save_ = true;
   std::vector<std::string> warnings_;
 };
 
@@ -149,6 +151,7 @@ TEST_F(SliceProcessorTest, GoesOnWithoutAMissingSliceAfterTheTimeout) {
   EXPECT_EQ(processor.counts().segmented, 3);
   EXPECT_EQ(processor.counts().missing, 1);
   EXPECT_FALSE(processor.counts().complete);
+  EXPECT_TRUE(processor.counts().ended);
   EXPECT_FALSE(updates_.back().is_final);
   EXPECT_THAT(warnings_, ElementsAre(HasSubstr("slices 1 to 1 of session 5 are missing")));
 
@@ -262,6 +265,18 @@ TEST_F(SliceProcessorTest, SavesWhenAskedAndWhenDue) {
   processor.save();  // nothing new
   EXPECT_EQ(saves_.size(), 3U);
   EXPECT_EQ(saves_.back().num_points, 250U);
+}
+
+TEST_F(SliceProcessorTest, TriesAgainToSaveWhatCouldNotBeSaved) {
+  can_save_ = false;
+  SliceProcessor processor = make("batch");
+  processor.offer(wavy_session(1, 50)[0], now_);
+  run(processor);
+  EXPECT_EQ(saves_.size(), 1U);  // it is complete
+  can_save_ = true;
+  processor.save();
+  processor.save();
+  EXPECT_EQ(saves_.size(), 2U);
 }
 
 TEST_F(SliceProcessorTest, RefusesABadConfig) {
