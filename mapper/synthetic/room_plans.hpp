@@ -11,5 +11,7 @@ SceneWithPath sphere_scene(std::uint32_t seed);
 SceneWithPath plane_scene(std::uint32_t seed);
 SceneWithPath box_room_scene(std::uint32_t seed);
 SceneWithPath office_scene(std::uint32_t seed);
+SceneWithPath loop_scene(std::uint32_t seed);
+SceneWithPath two_floors_scene(std::uint32_t seed);
 
 }  // namespace kintsugi::synthetic

@@ -29,15 +29,15 @@ void add_skirting(SceneBuilder& builder, double left, double right) {
   add_piece(builder, left, right, 0.0, 0.09, kWallThickness_m + 2 * kProud_m * 0.6, kSkirting);
 }
 
+/// Covers the edges of the hole: proud of the wall on both sides and of the hole's own faces.
 void add_opening_frame(SceneBuilder& builder, const Opening& opening) {
   const double left = opening.middle_m - opening.width_m / 2;
   const double right = opening.middle_m + opening.width_m / 2;
+  const double top = opening.top_m + kTrim_m;
   const double thickness = kWallThickness_m + 2 * kProud_m;
-  add_piece(builder, left - kTrim_m, left, opening.bottom_m, opening.top_m + kTrim_m, thickness,
-            kFrame);
-  add_piece(builder, right, right + kTrim_m, opening.bottom_m, opening.top_m + kTrim_m, thickness,
-            kFrame);
-  add_piece(builder, left, right, opening.top_m, opening.top_m + kTrim_m, thickness, kFrame);
+  add_piece(builder, left - kTrim_m, left + kProud_m, opening.bottom_m, top, thickness, kFrame);
+  add_piece(builder, right - kProud_m, right + kTrim_m, opening.bottom_m, top, thickness, kFrame);
+  add_piece(builder, left, right, opening.top_m - kProud_m, top, thickness, kFrame);
 }
 
 void add_window(SceneBuilder& builder, const Pose& X_WG, const Opening& opening) {

@@ -14,10 +14,9 @@ using Maker = std::function<SceneWithPath(std::uint32_t)>;
 
 const std::map<std::string, Maker>& makers() {
   static const std::map<std::string, Maker> kMakers = {
-      {"office", office_scene},
-      {"sphere", sphere_scene},
-      {"plane", plane_scene},
-      {"box-room", box_room_scene},
+      {"loop", loop_scene},     {"office", office_scene},
+      {"sphere", sphere_scene}, {"two-floors", two_floors_scene},
+      {"plane", plane_scene},   {"box-room", box_room_scene},
   };
   return kMakers;
 }

@@ -163,13 +163,14 @@ Real intersect_rounded_box(const BasicShape<Real>& s, const Vector<Real>& o, con
   return kMiss<Real>;
 }
 
-/// Sphere tracing: the torus is not convex, but its distance is exact.
+/// Sphere tracing: the torus is not convex, but its distance is exact. Only rays that all but touch
+/// it take more than a hundred steps.
 template <typename Real>
 Real intersect_torus(const BasicShape<Real>& s, const Vector<Real>& o, const Vector<Real>& d,
                      Real leave) {
   const Real step_scale = Real(1) / d.norm();
   Real t = 0;
-  for (int step = 0; step < 256 && t <= leave; ++step) {
+  for (int step = 0; step < 4096 && t <= leave; ++step) {
     const Vector<Real> p = o + t * d;
     const Real to_ring = std::sqrt(p.x() * p.x() + p.y() * p.y()) - s.radius;
     const Real distance = std::sqrt(to_ring * to_ring + p.z() * p.z()) - s.second_radius;
