@@ -33,21 +33,6 @@ GridIndex::GridIndex(const PointCloud& cloud, float radius_m)
   assert(radius_m > 0.0F);
 }
 
-Cell GridIndex::cell_of(float x, float y, float z) const {
-  return {cell_coordinate(x, cell_m_), cell_coordinate(y, cell_m_), cell_coordinate(z, cell_m_)};
-}
-
-// kSide is a power of two: >> and & round towards minus infinity, as the grid needs.
-Cell GridIndex::block_of(const Cell& cell) {
-  return {cell.x >> kSideBits, cell.y >> kSideBits, cell.z >> kSideBits};
-}
-
-/// Place of a cell in its block, x fastest.
-std::int32_t GridIndex::place_of(const Cell& cell) {
-  constexpr std::int32_t kMask = kSide - 1;
-  return ((cell.z & kMask) * kSide + (cell.y & kMask)) * kSide + (cell.x & kMask);
-}
-
 std::uint32_t GridIndex::find_block(const Cell& block) const {
   const auto found = block_at_.find(block);
   return found == block_at_.end() ? kNoBlock : found->second;

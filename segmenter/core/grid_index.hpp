@@ -40,9 +40,19 @@ class GridIndex final : public NeighbourIndex {
   };
   struct Neighbourhood;
 
-  static Cell block_of(const Cell& cell);
-  static std::int32_t place_of(const Cell& cell);
-  Cell cell_of(float x, float y, float z) const;
+  // In the header, for the inner loops: position-independent code calls what is not inline.
+  // kSide is a power of two: >> and & round towards minus infinity, as the grid needs.
+  static Cell block_of(const Cell& cell) {
+    return {cell.x >> kSideBits, cell.y >> kSideBits, cell.z >> kSideBits};
+  }
+  /// Place of a cell in its block, x fastest.
+  static std::int32_t place_of(const Cell& cell) {
+    constexpr std::int32_t kMask = kSide - 1;
+    return ((cell.z & kMask) * kSide + (cell.y & kMask)) * kSide + (cell.x & kMask);
+  }
+  Cell cell_of(float x, float y, float z) const {
+    return {cell_coordinate(x, cell_m_), cell_coordinate(y, cell_m_), cell_coordinate(z, cell_m_)};
+  }
   std::uint32_t find_block(const Cell& block) const;
   Neighbourhood neighbourhood_of(const Cell& block) const;
   void find_neighbours(const Entry& query, const Cell& cell, const Neighbourhood& around,
