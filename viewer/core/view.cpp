@@ -39,7 +39,9 @@ VirtualCamera follow(const Scene& scene, const FollowedCamera& followed,
   const Eigen::Vector3d eye_W = followed.position_W() -
                                 config.follow_distance_m * followed.heading_W() +
                                 config.follow_height_m * up_W;
-  return {intrinsics, look_at(eye_W, followed.position_W(), up_W)};
+  const Eigen::Vector3d target_W =
+      followed.position_W() - config.follow_trail_m * followed.heading_W();
+  return {intrinsics, look_at(eye_W, target_W, up_W)};
 }
 
 /// Points spread evenly over the map, of those whose normals do not face along `forward_W`: what a
@@ -66,6 +68,8 @@ void ViewConfig::validate() const {
   require(follow_distance_m > 0.0 && follow_distance_m <= 1000.0, "ViewConfig::follow_distance_m",
           follow_distance_m, "in (0, 1000]");
   require(std::abs(follow_height_m) <= 1000.0, "ViewConfig::follow_height_m", follow_height_m,
+          "in [-1000, 1000]");
+  require(std::abs(follow_trail_m) <= 1000.0, "ViewConfig::follow_trail_m", follow_trail_m,
           "in [-1000, 1000]");
   require(std::isfinite(overview_yaw_rad), "ViewConfig::overview_yaw_rad", overview_yaw_rad,
           "a finite angle");

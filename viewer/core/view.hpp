@@ -44,11 +44,12 @@ class FollowedCamera {
 
 struct ViewConfig {
   double field_of_view_rad = 0.9;
-  double follow_distance_m = 5.0;  ///< behind the camera: what left its volume lies there
-  double follow_height_m = 3.5;    ///< above the camera
-  double overview_yaw_rad = 0.5;   ///< turned from the first camera's forward direction
+  double follow_distance_m = 6.0;  ///< of the eye behind the camera
+  double follow_height_m = 4.5;    ///< of the eye above the camera
+  double follow_trail_m = 1.5;  ///< looks so far behind the camera: what left its volume lies there
+  double overview_yaw_rad = 0.5;  ///< turned from the first camera's forward direction
   double overview_pitch_rad = 0.8;
-  double margin_px = 12.0;  ///< left free around what is fitted into a picture
+  double margin_px = 24.0;  ///< left free around what is fitted into a picture
 
   /// Throws std::invalid_argument naming the field, its value and the bound.
   void validate() const;

@@ -41,6 +41,7 @@ std::optional<Options> parse_options(int argc, char** argv, int& exit_code) {
       ->configurable(false);
   app.add_option("--lcm-url", options.lcm_url, "LCM URL; empty: LCM's default");
   app.add_option("--log", log, "Read this LCM log as fast as possible instead of the bus");
+  app.add_option("--map-name", viewer.map_name, "Draw only the map with this name (default: any)");
   app.add_option("--out", folder, "Folder for the pictures; created where it is missing")
       ->capture_default_str();
   app.add_option("--every", viewer.every_slices, "Slices between two snapshots")
@@ -63,6 +64,9 @@ std::optional<Options> parse_options(int argc, char** argv, int& exit_code) {
       ->capture_default_str();
   app.add_option("--follow-height", renderer.view.follow_height_m,
                  "How far above the camera the follow view stands, m")
+      ->capture_default_str();
+  app.add_option("--follow-trail", renderer.view.follow_trail_m,
+                 "How far behind the camera the follow view looks, m")
       ->capture_default_str();
   app.add_option("--splat-radius", renderer.splat.radius_vox,
                  "Radius of the disc drawn for a point, voxels")

@@ -1,6 +1,6 @@
 #include "viewer/process/run_history.hpp"
 
-#include <array>
+#include <vector>
 
 namespace kintsugi::viewer {
 namespace {
@@ -27,7 +27,11 @@ void RunHistory::add_render_time(const Scene& scene, double render_ms) {
 }
 
 cv::Mat3b RunHistory::draw(cv::Size size) const {
-  return draw_charts(std::array{lag_, slice_time_, render_time_}, "slice", size);
+  std::vector<Chart> charts{lag_};
+  for (const Chart& chart : {slice_time_, render_time_}) {
+    if (!chart.points.empty()) charts.push_back(chart);
+  }
+  return draw_charts(charts, "slice", size);
 }
 
 }  // namespace kintsugi::viewer

@@ -49,14 +49,14 @@ void Viewer::add(Message message) {
 }
 
 void Viewer::use(CloudSlice slice) {
-  if (!enter_session(slice.session)) return;
+  if (!is_wanted(slice.map_name) || !enter_session(slice.session)) return;
   scene_->add_slice(std::move(slice));
   changed_since_final_ = true;
   last_map_message_ = Clock::now();
 }
 
 void Viewer::use(const SegmentUpdate& update) {
-  if (!enter_session(update.map_session)) return;
+  if (!is_wanted(update.map_name) || !enter_session(update.map_session)) return;
   // Each update adds a slice to the segmenter's map, so their order is in how many it has then.
   scene_->apply_update(update, static_cast<std::uint32_t>(std::max(update.num_slices, 0)));
   history_.add_lag(*scene_);
@@ -65,13 +65,18 @@ void Viewer::use(const SegmentUpdate& update) {
 }
 
 void Viewer::use(const CameraPose& pose) {
-  if (!enter_session(pose.session)) return;
+  const bool known = scene_ && scene_->map_session() == pose.session;
+  if (!known && (!is_wanted("") || !enter_session(pose.session))) return;
   scene_->add_pose(pose);
   followed_.update(pose, scene_->up().up_W());
 }
 
 void Viewer::use(const SegmenterStatus& status) {
   if (scene_ && status.map_session == scene_->map_session()) history_.add_slice_time(status);
+}
+
+bool Viewer::is_wanted(const std::string& map_name) const {
+  return config_.map_name.empty() || map_name == config_.map_name;
 }
 
 /// False for what is left over from a session that has been replaced.

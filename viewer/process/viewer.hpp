@@ -19,14 +19,16 @@ namespace kintsugi::viewer {
 /// Keeps the scene of the newest map session and writes its pictures. One thread.
 ///
 /// A message of a map session not seen before starts a new scene; the old one's final pictures are
-/// kept under its session number. A file that cannot be written is reported and counted, and the
-/// viewer goes on.
+/// kept under its session number. Two mappers that run at the same time are told apart by
+/// Config::map_name; camera poses carry no name, so then they start no scene. A file that cannot be
+/// written is reported and counted, and the viewer goes on.
 class Viewer {
  public:
   struct Config {
     Renderer::Config renderer;
     View view = FollowView{};
     std::filesystem::path folder = ".";  ///< of the pictures; must exist
+    std::string map_name;                ///< draw only the map with this name; empty: any
     int every_slices = 10;               ///< a snapshot each time so many more slices are shown
     std::optional<std::filesystem::path> video;
     double video_period_s = 0.1;  ///< map time between two frames
@@ -70,6 +72,7 @@ class Viewer {
   void use(const SegmentUpdate& update);
   void use(const CameraPose& pose);
   void use(const SegmenterStatus& status);
+  bool is_wanted(const std::string& map_name) const;
   bool enter_session(std::int64_t session);
   void write_final_as(const std::string& suffix);
 
