@@ -1,18 +1,17 @@
 #include "segmenter/segmenter_process.hpp"
 
-#include <fstream>
 #include <optional>
 #include <stdexcept>
 #include <utility>
 
 #include <spdlog/spdlog.h>
-#include <unistd.h>
 
 #include "lcmtypes/bus_thread.hpp"
 #include "lcmtypes/channels.hpp"
 #include "lcmtypes/log_reader.hpp"
 #include "lcmtypes/stop_signal.hpp"
 #include "segmenter/io/map_files.hpp"
+#include "segmenter/process_status.hpp"
 
 namespace kintsugi::segmenter {
 namespace {
@@ -20,14 +19,6 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr milliseconds kPollPeriod{50};
-
-std::int64_t resident_memory_bytes() {
-  std::ifstream statm("/proc/self/statm");
-  std::int64_t total_pages = 0;
-  std::int64_t resident_pages = 0;
-  statm >> total_pages >> resident_pages;
-  return resident_pages * sysconf(_SC_PAGESIZE);
-}
 
 }  // namespace
 
@@ -98,7 +89,7 @@ void SegmenterProcess::receive_from_bus() {
 
 void SegmenterProcess::receive_from_log() {
   LogReader log(config_.log);
-  std::thread reader([this, &log] {
+  std::jthread reader([this, &log] {
     try {
       while (const auto event = log.next()) {
         if (ending_) return;
@@ -222,30 +213,21 @@ void SegmenterProcess::publish_status() {
   if (!publisher_) {
     return;
   }
-  const SliceProcessor::Counts counts = this->counts();
-  const StreamCounts stream = subscriber_.counts();
-  SegmenterStatus status;
-  status.utime = wall_clock_us();
+  SliceProcessor::Counts counts = this->counts();
+  const std::int64_t num_queued = queue_.size();
+  counts.received += num_queued;
+  counts.lag += num_queued;
+  SegmenterStatus status = make_status(counts, subscriber_.counts());
   status.session = session_;
-  status.map_session = counts.map_session;
-  status.map_name = counts.map_name;
   status.mode = config_.processor.map.mode;
   status.finished = counts.complete && nothing_is_queued();
-  status.slices_received = counts.received + queue_.size();
-  status.slices_segmented = counts.segmented;
-  status.lag_slices = counts.lag + queue_.size();
-  status.points = counts.points;
-  status.points_rejected = counts.rejected;
-  status.segments = counts.segments;
-  status.chunks_received = stream.chunks_received;
-  status.chunks_duplicate = stream.chunks_duplicate;
-  status.chunks_missing = stream.chunks_missing;
-  status.messages_bad = stream.messages_bad + counts.dropped;
-  status.memory_bytes = resident_memory_bytes();
-  status.slice_ms = counts.slice_ms;
-  status.slice_mean_ms = counts.slice_mean_ms;
-  status.slice_max_ms = counts.slice_max_ms;
-  bus_->publish(channels::kSegmenterStatus, status);
+  try {
+    bus_->publish(channels::kSegmenterStatus, status);
+  } catch (const std::exception& error) {  // nobody watches: the map is made all the same
+    if (!std::exchange(status_has_failed_, true)) {
+      fail(std::string("the status is not published: ") + error.what());
+    }
+  }
 }
 
 }  // namespace kintsugi::segmenter

@@ -71,8 +71,9 @@ class SegmenterProcess {
 
   mutable std::mutex mutex_;  // guards what the working thread tells the others
   SliceProcessor::Counts counts_;
-  std::exception_ptr failure_;
 
+  std::exception_ptr failure_;      // of the working thread; read when it has ended
+  bool status_has_failed_ = false;  // of the thread of run()
   std::atomic<bool> ending_{false};
   std::atomic<bool> working_{true};
   std::atomic<bool> has_failed_{false};  // in something that did not stop the work

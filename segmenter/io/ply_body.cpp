@@ -73,12 +73,12 @@ class BinaryBody final : public PlyBody {
 
   double skip_list(const PlyElement& element, std::int64_t row, const PlyProperty& property) {
     const double length = take(element, row, property, *property.list_count);
-    const double room = static_cast<double>(num_bytes_left() / size_of(property.type));
-    if (length < 0.0 || length > room) {
+    const std::size_t room = num_bytes_left() / size_of(property.type);
+    if (length < 0.0 || length > static_cast<double>(room)) {
       fail(element, row,
-           "list '" + property.name + "' claims " + std::to_string(std::int64_t(length)) +
-               " entries, expected 0 to the " + std::to_string(std::int64_t(room)) +
-               " that the rest of the file can hold");
+           "list '" + property.name + "' claims " +
+               std::to_string(static_cast<std::int64_t>(length)) + " entries, expected 0 to the " +
+               std::to_string(room) + " that the rest of the file can hold");
     }
     position_ += static_cast<std::size_t>(length) * size_of(property.type);
     return length;

@@ -51,8 +51,10 @@ void SegmentStatisticsTable::Sums::add(const CloudPoint& point, std::int64_t sig
   const std::array<std::int64_t, 3> rgb{point.red, point.green, point.blue};
   const auto p_W = segmenter::position(point);
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    position[axis] += sign * to_units(p_W[axis]);
-    normal[axis] += sign * to_units(normal_W[axis]);
+    const std::int64_t signed_position = sign * to_units(p_W[axis]);
+    const std::int64_t signed_normal = sign * to_units(normal_W[axis]);
+    position[axis] += signed_position;
+    normal[axis] += signed_normal;
     color[axis] += sign * rgb[axis];
   }
 }
