@@ -9,9 +9,11 @@ namespace kintsugi::synthetic {
 
 namespace {
 
+/// In [0, 1), one value for each cell of a grid.
 float hash_cell(int x, int y, std::uint32_t salt) {
-  return unit_float(
-      hash32(hash32(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y)), salt));
+  const auto mixed = static_cast<std::uint32_t>(x) * 0x8da6b343U +
+                     static_cast<std::uint32_t>(y) * 0xd8163841U + salt * 0xcb1ab31fU;
+  return unit_float(hash32(mixed));
 }
 
 float fraction(float x) { return x - std::floor(x); }

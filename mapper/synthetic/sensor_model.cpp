@@ -1,6 +1,7 @@
 #include "mapper/synthetic/sensor_model.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -21,12 +22,32 @@ void require(bool condition, const char* field, double value, const char* bound)
   }
 }
 
-/// A draw from the standard normal distribution (Box and Muller), from two hashes.
-double normal_draw(std::uint32_t hash) {
-  const double u = 1.0 - unit_float(hash);  // in (0, 1]
-  const double angle = 2.0 * std::numbers::pi * unit_float(hash32(hash));
-  return std::sqrt(-2.0 * std::log(u)) * std::cos(angle);
-}
+/// The standard normal distribution by its quantiles, in the middles of 4,096 equal shares: a draw
+/// is a look-up. Their variance is 0.9995; the largest is 3.7.
+class NormalTable {
+ public:
+  NormalTable() {
+    double x = 0.0;
+    for (int i = kHalf; i < kSize; ++i) {  // Newton's iteration, from the quantile before
+      const double share = (i + 0.5) / kSize;
+      for (int step = 0; step < 6; ++step) {
+        const double above = 0.5 * std::erfc(x / std::numbers::sqrt2);
+        const double density =
+            std::exp(-0.5 * x * x) * std::numbers::inv_sqrtpi / std::numbers::sqrt2;
+        x += (above - (1.0 - share)) / density;
+      }
+      quantiles_[i] = static_cast<float>(x);
+      quantiles_[kSize - 1 - i] = -quantiles_[i];
+    }
+  }
+
+  float draw(std::uint32_t hash) const { return quantiles_[hash % kSize]; }
+
+ private:
+  static constexpr int kSize = 4096;
+  static constexpr int kHalf = kSize / 2;
+  std::array<float, kSize> quantiles_{};
+};
 
 /// Whether a neighbour (of four) is at another depth, by more than the share `ratio`, or invalid.
 bool at_depth_edge(const cv::Mat_<float>& depth_m, int v, int u, double ratio) {
@@ -65,6 +86,7 @@ double SensorModel::sigma_m(double z_m) const {
 
 cv::Mat_<std::uint16_t> SensorModel::apply(const RenderedFrame& frame,
                                            std::int64_t frame_index) const {
+  static const NormalTable normal;
   const Intrinsics& camera = frame.intrinsics;
   cv::Mat_<std::uint16_t> depth_mm(frame.depth_m.size());
   const auto frame_seed = hash32(config_.seed, static_cast<std::uint32_t>(frame_index));
@@ -81,19 +103,19 @@ cv::Mat_<std::uint16_t> SensorModel::apply(const RenderedFrame& frame,
     }
     const cv::Vec3f n = frame.normals_W(v, u);
     const Eigen::Vector3d ray_C((u - camera.cx) / camera.fx, (v - camera.cy) / camera.fy, 1.0);
-    const double cosine = -(R_CW * Eigen::Vector3d(n[0], n[1], n[2])).dot(ray_C) / ray_C.norm();
-    if (cosine < min_cosine) return 0.0;
-    const double noisy = z + sigma_m(z) * normal_draw(pixel);
+    const double facing = -(R_CW * Eigen::Vector3d(n[0], n[1], n[2])).dot(ray_C);  // cosine |ray|
+    if (facing < 0.0 || facing * facing < min_cosine * min_cosine * ray_C.squaredNorm()) return 0.0;
+    const double noisy = z + sigma_m(z) * normal.draw(pixel);
     if (config_.disparity_step_px <= 0.0 || noisy <= 0.0) return noisy;
     const double scale = config_.baseline_m * camera.fx / config_.disparity_step_px;
-    return scale / std::max(1.0, std::round(scale / noisy));
+    return scale / std::max(1.0, std::floor(scale / noisy + 0.5));
   };
 
   tbb::parallel_for(0, depth_mm.rows, [&](int v) {
     for (int u = 0; u < depth_mm.cols; ++u) {
       const double z = measure(v, u);
       const bool seen = z >= config_.min_depth_m && z <= config_.max_depth_m;
-      depth_mm(v, u) = seen ? static_cast<std::uint16_t>(std::lround(1000.0 * z)) : 0;
+      depth_mm(v, u) = seen ? static_cast<std::uint16_t>(1000.0 * z + 0.5) : 0;
     }
   });
   return depth_mm;
