@@ -105,7 +105,7 @@ void furnish_bedroom(SceneBuilder& b, const RoomPlan& plan, const Places& places
   add_carton(b, X_WD * at(0.0, 0.02, kCabinetHeight_m, 0.2), {0.3, 0.2, 0.14});
   add_picture(b, places.back(-plan.width_m / 2 + 0.75, 0, 1.55), 0.5, 0.7, any_color(random),
               any_color(random));
-  add_wall_shelf(b, places.back(0.95, 0, 1.30), 0.9, random);
+  add_wall_shelf(b, places.back(0.25, 0, 1.50), 0.9, random);
   add_picture(b, places.right(0.6, 0, 1.6), 0.8, 0.5, any_color(random), any_color(random));
   add_backpack(b, places.right(-0.45, 0.25), any_color(random));
   add_ball(b, places.right(-0.85, 0.30), 0.13, any_color(random));
