@@ -4,6 +4,7 @@
 #include <exception>
 #include <iostream>
 #include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <sys/ioctl.h>
@@ -27,6 +28,7 @@ struct Options {
   bool once = false;
   bool until_finished = false;
   bool viewer = false;
+  std::vector<std::string> until_ready;
   double timeout_s = 60.0;
 };
 
@@ -104,6 +106,29 @@ int watch(const Options& options) {
   return options.once || options.until_finished ? kInterrupted : 0;
 }
 
+/// Until each of the named processes has said something.
+int wait_until_ready(const Options& options) {
+  Bus bus(options.url);
+  std::vector<std::string> silent = options.until_ready;
+  const auto heard = [&silent](const char* name) {
+    return [&silent, name](const auto& /*status*/) { std::erase(silent, name); };
+  };
+  subscribe<MapperStatus>(bus, channels::kMapperStatus, heard("mapper"));
+  subscribe<SegmenterStatus>(bus, channels::kSegmenterStatus, heard("segmenter"));
+  subscribe<ViewerStatus>(bus, channels::kViewerStatus, heard("viewer"));
+  const std::int64_t start_us = wall_clock_us();
+  while (!stop_requested()) {
+    if (silent.empty()) return 0;
+    if (options.timeout_s > 0.0 && wall_clock_us() - start_us >= options.timeout_s * kSecond_us) {
+      std::cerr << "kintsugi-status: nothing heard from the " << silent.front() << " in "
+                << options.timeout_s << " s" << std::endl;
+      return kNoProgress;
+    }
+    bus.handle(std::chrono::milliseconds(100));
+  }
+  return kInterrupted;
+}
+
 }  // namespace
 }  // namespace kintsugi
 
@@ -116,6 +141,10 @@ int main(int argc, char** argv) {
                "Exit 0 when mapper and segmenter have finished, 2 without progress")
       ->excludes(once);
   app.add_flag("--viewer", options.viewer, "Wait for the viewer too");
+  app.add_option("--until-ready", options.until_ready,
+                 "Exit 0 when each of these has been heard: mapper, segmenter, viewer")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"mapper", "segmenter", "viewer"}));
   app.add_option("--timeout", options.timeout_s,
                  "Seconds without progress until giving up; 0: never")
       ->check(CLI::NonNegativeNumber)
@@ -123,7 +152,8 @@ int main(int argc, char** argv) {
   CLI11_PARSE(app, argc, argv);
   try {
     kintsugi::install_stop_signals();
-    return kintsugi::watch(options);
+    return options.until_ready.empty() ? kintsugi::watch(options)
+                                       : kintsugi::wait_until_ready(options);
   } catch (const std::exception& error) {
     std::cerr << "kintsugi-status: " << error.what() << std::endl;
     return 1;
