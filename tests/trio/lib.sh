@@ -1,0 +1,50 @@
+# Sourced by the tests of whole runs. Each works in a folder of its own, on a bus of its own, and ends with 0, with 1
+# and a reason, or with 77 (skipped) where the machine allows no network namespace.
+set -euo pipefail
+
+root="$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)"
+export KINTSUGI_BIN="${KINTSUGI_BIN:-$root/build/release/bin}"
+work="$(mktemp -d)"
+trap 'rm -rf "$work"' EXIT
+cd "$work"
+
+if ! unshare --net true 2>/dev/null && ! unshare --map-root-user --net true 2>/dev/null; then
+  echo "skipped: no network namespaces on this machine"
+  exit 77
+fi
+
+fail() {
+  echo "FAILED: $*" >&2
+  tail -n 20 ./*/*.log >&2 2>/dev/null || true
+  exit 1
+}
+
+# run_trio ARGS...: scripts/trio, what it said in trio.txt; a failure ends the test.
+run_trio() {
+  "$root/scripts/trio" "$@" >trio.txt 2>&1 || {
+    cat trio.txt
+    fail "scripts/trio $*"
+  }
+}
+
+# wait_for_file FILE: until it exists and holds something, 30 s at most.
+wait_for_file() {
+  local i
+  for ((i = 0; i < 300; i++)); do
+    [[ -s "$1" ]] && return
+    sleep 0.1
+  done
+  fail "$1 did not appear"
+}
+
+# A short, coarse run of the synthetic room: some slices leave before the end, and it takes seconds. The session is
+# fixed, for the map names it.
+small_room=(--private --device 'synthetic://office?frames=120' --resolution 0.02 --volume-size 3.2 --every 2
+  --mapper '--session=7')
+
+# vertices FILE.ply: how many its header promises.
+vertices() { head -c 2000 "$1" | grep -a -m1 -oP 'element vertex \K\d+'; }
+
+expect_file() { [[ -s "$1" ]] || fail "$1 is missing or empty; there is: $(ls .)"; }
+expect_same() { cmp "$1" "$2" || fail "$1 and $2 differ"; }
+expect_no_partial_files() { compgen -G "$1/*.partial*" && fail "half-written files are left" || true; }

@@ -1,0 +1,18 @@
+#!/usr/bin/env bash
+# A viewer that is killed is started again and the run goes on to its end; the segment map is not touched by it.
+source "$(dirname "${BASH_SOURCE[0]}")/lib.sh"
+
+run_trio "${small_room[@]}" --replay --out quiet
+
+"$root/scripts/trio" "${small_room[@]}" --replay --out "$work/killed" >trio.txt 2>&1 &
+trio=$!
+wait_for_file killed/mapper.log
+viewer="$(pgrep -f -- "kintsugi-viewer.*--out=$work/killed" | head -n 1)"
+[[ -n "$viewer" ]] || fail "no viewer to kill"
+kill -KILL "$viewer"
+wait "$trio" || {
+  cat trio.txt
+  fail "trio with a killed viewer"
+}
+grep -q 'viewer was killed' trio.txt || fail "the restart was not said: $(cat trio.txt)"
+expect_same quiet/segments.ply killed/segments.ply

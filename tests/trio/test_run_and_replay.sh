@@ -1,0 +1,21 @@
+#!/usr/bin/env bash
+# A run over a real bus writes everything it names; its log, replayed at 1x and 4x, gives the same segment map.
+source "$(dirname "${BASH_SOURCE[0]}")/lib.sh"
+
+run_trio "${small_room[@]}" --replay --video --out live
+for file in segments.ply segments.json final.png map_final.png segments_final.png trajectory.txt run.lcm run.mp4; do
+  expect_file "live/$file"
+  grep -q "live/$file" trio.txt || fail "the summary does not name $file: $(cat trio.txt)"
+done
+compgen -G 'live/snapshot_*.png' >/dev/null || fail "no snapshots"
+expect_no_partial_files live
+(($(grep -vc '^#' live/trajectory.txt) == 120)) || fail "the trajectory has not one pose a frame"
+(($(vertices live/segments.ply) > 2000)) || fail "the map is all but empty"
+
+for speed in 1 4; do
+  "$root/scripts/replay" live/run.lcm --private --speed "$speed" --out "replay$speed" >replay.txt 2>&1 || {
+    cat replay.txt
+    fail "replay at ${speed}x"
+  }
+  expect_same live/segments.ply "replay$speed/segments.ply"
+done
