@@ -35,7 +35,8 @@ class MapPublisher {
   /// Does nothing unless frames are to be published.
   void publish_frame(const RgbdFrame& frame);
 
-  /// The queues are short enough for more. @throws what sending threw
+  /// The queues are short enough for more. After a failure of the bus they stay long: the next
+  /// publish_...() throws it.
   bool has_room() const;
 
   /// Waits until everything is sent.
