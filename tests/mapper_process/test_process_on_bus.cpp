@@ -33,6 +33,7 @@ class MapperProgram {
     flags.insert(flags.begin(), here.parent_path() / "bin" / "kintsugi-mapper");
     flags.insert(flags.end(), {"--lcm-url", kPrivateBusUrl});
     std::vector<char*> argv;
+    argv.reserve(flags.size() + 1);
     for (std::string& flag : flags) argv.push_back(flag.data());
     argv.push_back(nullptr);
     if (posix_spawn(&pid_, argv[0], nullptr, nullptr, argv.data(), environ) != 0) pid_ = -1;
