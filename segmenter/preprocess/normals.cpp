@@ -35,7 +35,7 @@ Eigen::Vector3d plane_normal(std::span<const CloudPoint> points_W,
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance);
   // Thinner than a thousandth of its length, a neighbourhood is a line.
   constexpr double kMinVarianceRatio = 1e-6;
-  const Eigen::Vector3d variances = solver.eigenvalues();  // ascending
+  const Eigen::Vector3d& variances = solver.eigenvalues();  // ascending
   if (!(variances[1] > kMinVarianceRatio * variances[2])) {
     return Eigen::Vector3d::Zero();
   }
