@@ -7,7 +7,7 @@
 #include <utility>
 
 #include <arpa/inet.h>
-#include <lcm/lcm-cpp.hpp>
+#include <lcm/lcm.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -47,12 +47,13 @@ struct Bus::Subscriber {
   Bus& bus;
   Handler handler;
 
-  // Called through C code, which an exception must not cross: handle() throws it.
-  void on_message(const lcm::ReceiveBuffer* buffer, const std::string& /*channel*/) {
+  // Called by C code, which an exception must not cross: handle() throws it.
+  static void on_message(const lcm_recv_buf_t* buffer, const char* /*channel*/, void* user) {
+    auto* self = static_cast<Subscriber*>(user);
     try {
-      handler({static_cast<const std::uint8_t*>(buffer->data), buffer->data_size});
+      self->handler({static_cast<const std::uint8_t*>(buffer->data), buffer->data_size});
     } catch (...) {
-      if (!bus.failure_) bus.failure_ = std::current_exception();
+      if (!self->bus.failure_) self->bus.failure_ = std::current_exception();
     }
   }
 };
@@ -79,14 +80,16 @@ std::optional<std::string> receive_buffer_advice() {
          wanted;
 }
 
-Bus::Bus(std::string url) : url_(with_receive_buffer(url.empty() ? default_bus_url() : url)) {
+Bus::Bus(std::string url)
+    : url_(with_receive_buffer(url.empty() ? default_bus_url() : std::move(url))),
+      lcm_(nullptr, lcm_destroy) {
   if (url_.starts_with("udpm://") && !has_multicast_route()) {
     throw std::runtime_error("cannot open the bus " + url_ +
                              ": no route for 224.0.0.0/4. One command cures it: "
                              "ip route add 224.0.0.0/4 dev lo");
   }
-  lcm_ = std::make_unique<lcm::LCM>(url_);
-  if (!lcm_->good()) {
+  lcm_.reset(lcm_create(url_.c_str()));
+  if (!lcm_) {
     throw std::runtime_error("cannot open the bus " + url_ +
                              ": expected an LCM URL such as udpm://" + kGroup + ":7667?ttl=0");
   }
@@ -95,7 +98,8 @@ Bus::Bus(std::string url) : url_(with_receive_buffer(url.empty() ? default_bus_u
 Bus::~Bus() = default;
 
 void Bus::publish(const std::string& channel, ByteView message) {
-  if (lcm_->publish(channel, message.data(), static_cast<unsigned>(message.size())) != 0) {
+  const auto size = static_cast<unsigned>(message.size());
+  if (lcm_publish(lcm_.get(), channel.c_str(), message.data(), size) != 0) {
     throw std::runtime_error("cannot publish " + std::to_string(message.size()) + " bytes on " +
                              channel + " of the bus " + url_);
   }
@@ -103,21 +107,23 @@ void Bus::publish(const std::string& channel, ByteView message) {
 
 void Bus::subscribe(const std::string& channel, Handler handler) {
   subscribers_.push_back(std::make_unique<Subscriber>(Subscriber{*this, std::move(handler)}));
-  lcm::Subscription* subscription =
-      lcm_->subscribe(channel, &Subscriber::on_message, subscribers_.back().get());
+  lcm_subscription_t* subscription = lcm_subscribe(
+      lcm_.get(), channel.c_str(), &Subscriber::on_message, subscribers_.back().get());
   if (subscription == nullptr) {
     throw std::runtime_error("cannot subscribe to " + channel + " of the bus " + url_);
   }
-  subscription->setQueueCapacity(0);  // without limit; the default drops beyond 30, in silence
+  // Without limit; the default drops what is beyond 30 messages, in silence.
+  lcm_subscription_set_queue_capacity(subscription, 0);
 }
 
 bool Bus::handle(std::chrono::milliseconds timeout) {
   errno = 0;
-  const int handled = lcm_->handleTimeout(static_cast<int>(timeout.count()));
+  const int handled = lcm_handle_timeout(lcm_.get(), static_cast<int>(timeout.count()));
   const bool interrupted = handled < 0 && errno == EINTR;  // by a signal
   if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
-  if (handled < 0 && !interrupted)
+  if (handled < 0 && !interrupted) {
     throw std::runtime_error("the connection to the bus " + url_ + " is gone");
+  }
   return handled > 0;
 }
 

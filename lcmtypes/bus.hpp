@@ -12,9 +12,7 @@
 
 #include "lcmtypes/codec.hpp"
 
-namespace lcm {
-class LCM;
-}
+struct _lcm_t;  // of LCM's C interface
 
 namespace kintsugi {
 
@@ -66,7 +64,7 @@ class Bus {
   struct Subscriber;
 
   std::string url_;
-  std::unique_ptr<lcm::LCM> lcm_;
+  std::unique_ptr<_lcm_t, void (*)(_lcm_t*)> lcm_;
   std::vector<std::unique_ptr<Subscriber>> subscribers_;
   std::exception_ptr failure_;
 };
