@@ -71,7 +71,7 @@ void require(bool right, const cv::Mat& image, cv::Size size, const char* type,
 }  // namespace
 
 cv::Mat_<std::uint16_t> decode_depth(Bytes bytes, cv::Size expected, const std::string& what) {
-  const cv::Mat image = decode(bytes, what);
+  cv::Mat image = decode(bytes, what);
   require(image.type() == CV_16UC1, image, expected, "16 bit, 1 channel", what);
   return image;
 }

@@ -141,8 +141,8 @@ std::optional<RgbdFrame> LcmSource::convert(const RgbdFrameMessage& message) {
     const double units_per_m = message.depth_units_per_m;
     if (!conversion_ || conversion_->intrinsics != intrinsics ||
         conversion_->depth_units_per_m != units_per_m) {
-      conversion_ = std::make_unique<Conversion>(
-          intrinsics, units_per_m, FrameConverter(intrinsics, units_per_m, config_.max_range_m));
+      conversion_ = std::make_unique<Conversion>(Conversion{
+          intrinsics, units_per_m, FrameConverter(intrinsics, units_per_m, config_.max_range_m)});
     }
     RgbdFrame frame = conversion_->converter.convert(raw);
     last_utime_ = message.utime;

@@ -83,7 +83,9 @@ class RecordingFolder {
   [[nodiscard]] const fs::path& path() const { return path_; }
   [[nodiscard]] std::string uri() const { return "folder://" + path_.string(); }
 
-  static std::int64_t depth_utime(int frame) { return 1341836537655691 + 33333 * frame; }
+  static std::int64_t depth_utime(int frame) {
+    return 1341836537655691 + std::int64_t{33333} * frame;
+  }
   static std::int64_t color_utime(int frame) { return depth_utime(frame) - 29; }
   static std::string depth_time(int frame) { return seconds(depth_utime(frame)); }
   static std::string color_time(int frame) { return seconds(color_utime(frame)); }

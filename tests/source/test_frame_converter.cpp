@@ -33,10 +33,10 @@ TEST(FrameConverter, KeepsTimesAndAddsNothing) {
   EXPECT_EQ(frame.intrinsics, camera);
   EXPECT_FLOAT_EQ(frame.depth_m(2, 3), 1.2345F);
   EXPECT_TRUE(frame.color_rgb.empty());
-  EXPECT_THROW(converter.convert({.utime = 0,
-                                  .frame_index = 0,
-                                  .depth_raw = cv::Mat_<std::uint16_t>(4, 3),
-                                  .color_rgb = {}}),
+  EXPECT_THROW((void)converter.convert({.utime = 0,
+                                        .frame_index = 0,
+                                        .depth_raw = cv::Mat_<std::uint16_t>(4, 3),
+                                        .color_rgb = {}}),
                std::invalid_argument);
 }
 

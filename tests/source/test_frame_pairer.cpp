@@ -71,7 +71,7 @@ TEST_F(Pairing, DoesNotWaitForAColourStreamThatIsSilent) {
 }
 
 TEST_F(Pairing, CountsColoursWithoutDepth) {
-  for (int i = 0; i < 5; ++i) color(33'000 * i, i + 1);
+  for (int i = 0; i < 5; ++i) color(std::int64_t{33'000} * i, i + 1);
   depth(132'000);
   EXPECT_THAT(taken(), ElementsAre(Pair(132'000, 5)));
   EXPECT_EQ(pairer_.color_unpaired(), 4);

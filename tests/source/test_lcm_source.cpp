@@ -1,5 +1,6 @@
 // Frames over LCM: through the codec and a log file, which LCM reads like a bus.
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
@@ -40,6 +41,14 @@ RgbdFrame test_frame(int i) {
   return frame;
 }
 
+std::vector<RgbdFrameMessage> encoded_frames(int num, int jpeg_quality) {
+  std::vector<RgbdFrameMessage> messages(static_cast<std::size_t>(num));
+  std::ranges::generate(messages, [&, i = 0]() mutable {
+    return encode_rgbd_frame(test_frame(i++), kSession, jpeg_quality);
+  });
+  return messages;
+}
+
 bool same_depth(const cv::Mat_<float>& a, const cv::Mat_<float>& b) {
   return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](float x, float y) {
            return x == y || (std::isnan(x) && std::isnan(y));
@@ -70,9 +79,7 @@ class FramesInALog : public testing::Test {
 };
 
 TEST_F(FramesInALog, ComeBackAsTheyWere) {
-  std::vector<RgbdFrameMessage> messages;
-  for (int i = 0; i < 4; ++i) messages.push_back(encode_rgbd_frame(test_frame(i), kSession, 0));
-  write(messages);
+  write(encoded_frames(4, 0));
   const auto source = open();
   for (int i = 0; i < 4; ++i) {
     const auto frame = source->next();
@@ -89,8 +96,7 @@ TEST_F(FramesInALog, ComeBackAsTheyWere) {
 }
 
 TEST_F(FramesInALog, AreRefusedOneByOneWhenBad) {
-  std::vector<RgbdFrameMessage> messages;
-  for (int i = 0; i < 5; ++i) messages.push_back(encode_rgbd_frame(test_frame(i), kSession, 90));
+  std::vector<RgbdFrameMessage> messages = encoded_frames(5, 90);
   messages[1].depth_png.resize(messages[1].depth_png.size() / 2);
   messages[2].utime = messages[0].utime;
   messages[2].color_utime = messages[0].utime;

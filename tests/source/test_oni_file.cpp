@@ -30,7 +30,7 @@ class RecordedOni : public testing::Test {
 
   /// Only the first `size` bytes.
   fs::path cut(std::size_t size) {
-    const fs::path file = folder_.path() / "cut.oni";
+    fs::path file = folder_.path() / "cut.oni";
     std::ofstream(file, std::ios::binary)
         .write(reinterpret_cast<const char*>(bytes_.data()), static_cast<std::streamsize>(size));
     return file;

@@ -164,7 +164,7 @@ TEST(OpenNi2Source, ReadsRealOniFiles) {
   if (!fs::exists(folder)) GTEST_SKIP() << folder << " is not there";
   const auto read = [&](const char* name) {
     const auto source = open_frame_source(replay((folder / name).string()));
-    const auto frames = read_all(*source);
+    auto frames = read_all(*source);
     EXPECT_TRUE(source->ended_well()) << source->end_reason();
     EXPECT_EQ(source->counts().frames_dropped, 0);
     EXPECT_EQ(source->frames_total(), static_cast<std::int64_t>(frames.size()));

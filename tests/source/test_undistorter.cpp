@@ -127,8 +127,9 @@ TEST(Undistorter, PassesImagesThroughWithoutDistortion) {
 }
 
 TEST(Undistorter, RefusesAnotherSizeAndBadIntrinsics) {
-  EXPECT_THROW(Undistorter(kLens).undistort_depth(cv::Mat_<float>(10, 10)), std::invalid_argument);
-  EXPECT_THROW(Undistorter(kLens).undistort_color(cv::Mat_<cv::Vec3b>(10, 10)),
+  EXPECT_THROW((void)Undistorter(kLens).undistort_depth(cv::Mat_<float>(10, 10)),
+               std::invalid_argument);
+  EXPECT_THROW((void)Undistorter(kLens).undistort_color(cv::Mat_<cv::Vec3b>(10, 10)),
                std::invalid_argument);
   Intrinsics bad = kLens;
   bad.fx = 0.0;

@@ -15,6 +15,8 @@ std::size_t slot(StreamKind kind) { return static_cast<std::size_t>(kind); }
 Playback::Playback(Recording& recording, Callbacks callbacks)
     : recording_(recording), callbacks_(std::move(callbacks)), items_([&] {
         std::vector<Item> items;
+        items.reserve(static_cast<std::size_t>(recording.num_depth_frames()) +
+                      static_cast<std::size_t>(recording.num_color_frames()));
         for (int i = 0; i < recording.num_depth_frames(); ++i) {
           items.push_back({recording.depth_utime(i), StreamKind::kDepth, i});
         }
