@@ -35,10 +35,12 @@ bool has_multicast_route() {
   return !unreachable;
 }
 
-std::string with_receive_buffer(std::string url) {
-  if (!url.starts_with("udpm://") || url.find("recv_buf_size=") != std::string::npos) return url;
-  url += url.find('?') == std::string::npos ? '?' : '&';
-  return url + "recv_buf_size=" + std::to_string(kReceiveBufferBytes);
+/// The URL to open for what the caller asked for.
+std::string complete_url(const std::string& asked) {
+  const std::string url = asked.empty() ? default_bus_url() : asked;
+  if (url.rfind("udpm://", 0) != 0 || url.find("recv_buf_size=") != std::string::npos) return url;
+  const char separator = url.find('?') == std::string::npos ? '?' : '&';
+  return url + separator + "recv_buf_size=" + std::to_string(kReceiveBufferBytes);
 }
 
 }  // namespace
@@ -80,9 +82,7 @@ std::optional<std::string> receive_buffer_advice() {
          wanted;
 }
 
-Bus::Bus(std::string url)
-    : url_(with_receive_buffer(url.empty() ? default_bus_url() : std::move(url))),
-      lcm_(nullptr, lcm_destroy) {
+Bus::Bus(const std::string& url) : url_(complete_url(url)), lcm_(nullptr, lcm_destroy) {
   if (url_.starts_with("udpm://") && !has_multicast_route()) {
     throw std::runtime_error("cannot open the bus " + url_ +
                              ": no route for 224.0.0.0/4. One command cures it: "

@@ -37,7 +37,7 @@ class Bus {
   /// `url` as LCM has it; empty: default_bus_url(). A receive buffer size is asked for where the
   /// URL names none. Throws std::runtime_error with the cure when there is no multicast route, or
   /// when LCM cannot open the URL.
-  explicit Bus(std::string url = "");
+  explicit Bus(const std::string& url = "");
   ~Bus();
   Bus(const Bus&) = delete;
   Bus& operator=(const Bus&) = delete;
