@@ -44,10 +44,7 @@ void Receiver::handle_small(ByteView data) {
   on_message_(std::move(message));
 }
 
-void Receiver::bad(const DecodeError& reason) {
-  ++bad_;
-  on_bad_(reason.what());
-}
+void Receiver::bad(const DecodeError& reason) { on_bad_(++bad_, reason.what()); }
 
 std::int64_t Receiver::chunks_missing() const {
   return slices_.counts().chunks_missing + updates_.counts().chunks_missing;

@@ -14,11 +14,12 @@ namespace kintsugi::viewer {
 /// What the viewer takes from the bus or a log.
 using Message = std::variant<CloudSlice, SegmentUpdate, CameraPose, SegmenterStatus>;
 
-/// Turns what arrives into whole, checked messages. What cannot be used is counted and reported.
+/// Turns what arrives into whole, checked messages. What cannot be used is counted and reported
+/// with the count so far.
 class Receiver {
  public:
   using OnMessage = std::function<void(Message)>;
-  using OnBad = std::function<void(const std::string& reason)>;
+  using OnBad = std::function<void(std::int64_t count, const std::string& reason)>;
 
   Receiver(const OnMessage& on_message, OnBad on_bad);
 

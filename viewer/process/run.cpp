@@ -1,5 +1,6 @@
 #include "viewer/process/run.hpp"
 
+#include <bit>
 #include <chrono>
 #include <filesystem>
 #include <utility>
@@ -16,7 +17,12 @@
 namespace kintsugi::viewer {
 namespace {
 
-void report_bad(const std::string& reason) { spdlog::warn("dropped a message: {}", reason); }
+/// Bad messages come in floods: the 1st, 2nd, 4th, 8th ... are reported, all are counted.
+void report_bad(std::int64_t count, const std::string& reason) {
+  if (std::has_single_bit(static_cast<std::uint64_t>(count))) {
+    spdlog::warn("dropped bad message {}: {}", count, reason);
+  }
+}
 
 ViewerStatus status_of(const Viewer& viewer, const Receiver& receiver) {
   ViewerStatus status = viewer.status();

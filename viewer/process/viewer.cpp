@@ -184,7 +184,7 @@ void Viewer::write_final_as(const std::string& suffix) {
 void Viewer::close() {
   write_final();
   if (!video_) return;
-  if (attempt([this] { video_->finish(); })) {
+  if (attempt([this] { video_->finish(); }) && video_->frames() > 0) {
     spdlog::info("{} frames in {}", video_->frames(), video_->path().string());
   }
   video_.reset();
