@@ -108,7 +108,7 @@ TEST(Renderer, RefusesAConfigurationOutOfItsBounds) {
            [](Renderer::Config& c) { c.frustum_m = -1.0; },
            [](Renderer::Config& c) { c.splat.radius_vox = -1.0; },
            [](Renderer::Config& c) { c.view.field_of_view_rad = 4.0; },
-           [](Renderer::Config& c) { c.view.follow_distance_m = NAN; }}) {
+           [](Renderer::Config& c) { c.view.follow_radius_m = NAN; }}) {
     Renderer::Config config = small();
     spoil(config);
     EXPECT_THROW(Renderer{config}, std::invalid_argument);

@@ -139,5 +139,42 @@ TEST(FollowedCamera, GlidesTowardsThePoseAndKeepsItsHeadingLevel) {
   EXPECT_NEAR(1.0 - std::exp(-1.0), followed.position_W().x(), kRounding);
 }
 
+TEST(FollowView, SeesTheCameraAndTheMapAboutItFromBehindAndAbove) {
+  const SyntheticMap room = make_room(12.0, 0.05);
+  Scene scene(room.slices.front().session);
+  for (const CloudSlice& slice : room.slices) scene.add_slice(slice);
+  FollowedCamera followed;
+  const CameraPose& pose = room.poses[room.poses.size() / 2];
+  followed.update(pose, scene.up().up_W());
+
+  const ViewConfig config;
+  const VirtualCamera camera = camera_for(FollowView{}, scene, followed, 640, 480, config);
+  const Eigen::Vector3d forward_W = camera.X_WV.linear().col(2);
+  const Eigen::Vector3d from_camera_W = camera.X_WV.translation() - pose.X_WC.translation();
+  EXPECT_LT(from_camera_W.dot(followed.heading_W()), 0.0);
+  EXPECT_LT(from_camera_W.y(), 0.0);  // y is down
+
+  const auto is_seen = [&](const Eigen::Vector3d& p_W) {
+    const Eigen::Vector2d uv = project(camera, p_W);
+    return uv.x() > 0.0 && uv.x() < 639.0 && uv.y() > 0.0 && uv.y() < 479.0;
+  };
+  EXPECT_TRUE(is_seen(pose.X_WC.translation()));
+  int near_points = 0;
+  int unseen = 0;
+  for (const CloudSlice& slice : room.slices) {
+    for (const CloudPoint& p : slice.points_W) {
+      const Eigen::Vector3d p_W(p.x, p.y, p.z);
+      if (forward_W.dot(Eigen::Vector3d(p.nx, p.ny, p.nz)) > 0.0) continue;
+      if ((p_W - pose.X_WC.translation()).norm() > config.follow_radius_m) continue;
+      ++near_points;
+      unseen += is_seen(p_W) ? 0 : 1;
+    }
+  }
+  // The view is fitted to every 61st point; at most about as many as lie between two of them at the
+  // four sides may be outside, and the margin keeps even those in.
+  EXPECT_GT(near_points, 10'000);
+  EXPECT_LT(unseen, near_points / 1000);
+}
+
 }  // namespace
 }  // namespace kintsugi::viewer

@@ -27,23 +27,6 @@ std::optional<std::array<double, 6>> parse_six_numbers(const std::string& text) 
   return at == end ? std::optional(numbers) : std::nullopt;
 }
 
-VirtualCamera overview(const Scene& scene, const Intrinsics& intrinsics, const ViewConfig& config) {
-  const Eigen::Matrix3d R_WV =
-      look_down(scene.up().up_W(), config.overview_yaw_rad, config.overview_pitch_rad);
-  return camera_around(scene.chunks(), R_WV, intrinsics, config);
-}
-
-VirtualCamera follow(const Scene& scene, const FollowedCamera& followed,
-                     const Intrinsics& intrinsics, const ViewConfig& config) {
-  const Eigen::Vector3d up_W = scene.up().up_W();
-  const Eigen::Vector3d eye_W = followed.position_W() -
-                                config.follow_distance_m * followed.heading_W() +
-                                config.follow_height_m * up_W;
-  const Eigen::Vector3d target_W =
-      followed.position_W() - config.follow_trail_m * followed.heading_W();
-  return {intrinsics, look_at(eye_W, target_W, up_W)};
-}
-
 /// Points spread evenly over the map, of those whose normals do not face along `forward_W`: what a
 /// camera looking there can see.
 std::vector<Eigen::Vector3d> sample(std::span<const PointChunk> chunks,
@@ -60,17 +43,35 @@ std::vector<Eigen::Vector3d> sample(std::span<const PointChunk> chunks,
   return points_W;
 }
 
+VirtualCamera overview(const Scene& scene, const Intrinsics& intrinsics, const ViewConfig& config) {
+  const Eigen::Matrix3d R_WV =
+      look_down(scene.up().up_W(), config.overview_yaw_rad, config.overview_pitch_rad);
+  return camera_around(scene.chunks(), R_WV, intrinsics, config);
+}
+
+VirtualCamera follow(const Scene& scene, const FollowedCamera& followed,
+                     const Intrinsics& intrinsics, const ViewConfig& config) {
+  const Eigen::Vector3d up_W = scene.up().up_W();
+  const Eigen::Vector3d forward_W = std::cos(config.follow_pitch_rad) * followed.heading_W() -
+                                    std::sin(config.follow_pitch_rad) * up_W;
+  const Eigen::Matrix3d R_WV = look_at(Eigen::Vector3d::Zero(), forward_W, up_W).linear();
+  std::vector<Eigen::Vector3d> points_W = sample(scene.chunks(), forward_W);
+  std::erase_if(points_W, [&](const Eigen::Vector3d& p_W) {
+    return (p_W - followed.position_W()).norm() > config.follow_radius_m;
+  });
+  points_W.push_back(followed.position_W());
+  return fit_points(points_W, 0.0, R_WV, intrinsics, config.margin_px);
+}
+
 }  // namespace
 
 void ViewConfig::validate() const {
   require(field_of_view_rad > 0.0 && field_of_view_rad < 3.0, "ViewConfig::field_of_view_rad",
           field_of_view_rad, "in (0, 3)");
-  require(follow_distance_m > 0.0 && follow_distance_m <= 1000.0, "ViewConfig::follow_distance_m",
-          follow_distance_m, "in (0, 1000]");
-  require(std::abs(follow_height_m) <= 1000.0, "ViewConfig::follow_height_m", follow_height_m,
-          "in [-1000, 1000]");
-  require(std::abs(follow_trail_m) <= 1000.0, "ViewConfig::follow_trail_m", follow_trail_m,
-          "in [-1000, 1000]");
+  require(follow_radius_m > 0.0 && follow_radius_m <= 1000.0, "ViewConfig::follow_radius_m",
+          follow_radius_m, "in (0, 1000]");
+  require(std::abs(follow_pitch_rad) <= 1.5, "ViewConfig::follow_pitch_rad", follow_pitch_rad,
+          "in [-1.5, 1.5]");
   require(std::isfinite(overview_yaw_rad), "ViewConfig::overview_yaw_rad", overview_yaw_rad,
           "a finite angle");
   require(std::abs(overview_pitch_rad) <= 1.5, "ViewConfig::overview_pitch_rad", overview_pitch_rad,

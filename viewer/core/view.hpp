@@ -11,7 +11,7 @@
 
 namespace kintsugi::viewer {
 
-/// Behind and above the camera, looking along its heading.
+/// Behind and above the camera, along its heading: the camera and the map about it.
 struct FollowView {};
 /// The whole map from outside and above; walls and ceilings that face away are left out.
 struct OverviewView {};
@@ -44,9 +44,8 @@ class FollowedCamera {
 
 struct ViewConfig {
   double field_of_view_rad = 0.9;
-  double follow_distance_m = 6.0;  ///< of the eye behind the camera
-  double follow_height_m = 4.5;    ///< of the eye above the camera
-  double follow_trail_m = 1.5;  ///< looks so far behind the camera: what left its volume lies there
+  double follow_radius_m = 5.0;   ///< the map so far from the camera is fitted into the picture
+  double follow_pitch_rad = 0.6;  ///< below the horizon
   double overview_yaw_rad = 0.5;  ///< turned from the first camera's forward direction
   double overview_pitch_rad = 0.8;
   double margin_px = 24.0;  ///< left free around what is fitted into a picture

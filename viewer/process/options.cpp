@@ -59,14 +59,8 @@ std::optional<Options> parse_options(int argc, char** argv, int& exit_code) {
   app.add_option("--drawing-share", viewer.max_drawing_share,
                  "Most of the wall time that drawing may take, when reading the bus")
       ->default_val(0.5);
-  app.add_option("--follow-distance", renderer.view.follow_distance_m,
-                 "How far behind the camera the follow view stands, m")
-      ->capture_default_str();
-  app.add_option("--follow-height", renderer.view.follow_height_m,
-                 "How far above the camera the follow view stands, m")
-      ->capture_default_str();
-  app.add_option("--follow-trail", renderer.view.follow_trail_m,
-                 "How far behind the camera the follow view looks, m")
+  app.add_option("--follow-radius", renderer.view.follow_radius_m,
+                 "The follow view shows the map so far from the camera, m")
       ->capture_default_str();
   app.add_option("--splat-radius", renderer.splat.radius_vox,
                  "Radius of the disc drawn for a point, voxels")
