@@ -12,7 +12,7 @@
 
 #include "lcmtypes/codec.hpp"
 
-struct _lcm_t;  // of LCM's C interface
+struct _lcm_t;  // LCM's own name NOLINT(bugprone-reserved-identifier)
 
 namespace kintsugi {
 
