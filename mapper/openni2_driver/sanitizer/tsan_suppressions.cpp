@@ -1,0 +1,11 @@
+// What the thread sanitizer reports of libraries that are not ours, in every program that opens
+// OpenNI2 devices: OpenNI2's events are mutexes that another thread unlocks, and GDAL, which comes
+// with OpenCV's image codecs, takes two locks in both orders in one thread.
+
+extern "C" const char* __tsan_default_suppressions();
+
+extern "C" const char* __tsan_default_suppressions() {
+  return "mutex:libOpenNI2.so.0\n"
+         "mutex:libOniFile.so.0\n"
+         "deadlock:libgdal.so\n";
+}
