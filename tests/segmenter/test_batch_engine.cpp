@@ -84,6 +84,7 @@ TEST_P(BatchEngineTest, OrderOfPointsDoesNotMatter) {
     std::iota(order.begin(), order.end(), 0U);
     std::shuffle(order.begin(), order.end(), std::mt19937(9));
     std::vector<CloudPoint> shuffled;
+    shuffled.reserve(points.size());
     for (const PointIndex i : order) shuffled.push_back(points[i]);
 
     PointCloud cloud;

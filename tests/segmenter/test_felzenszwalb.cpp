@@ -43,6 +43,7 @@ std::vector<LiteralEdge> random_graph(int num_points, int num_pairs, int num_wei
 
 std::vector<Edge> to_edges(const std::vector<LiteralEdge>& directed) {
   std::vector<Edge> edges;
+  edges.reserve(directed.size());
   for (const LiteralEdge& e : directed) {
     edges.push_back({e.w, static_cast<PointIndex>(std::min(e.i, e.j)),
                      static_cast<PointIndex>(std::max(e.i, e.j))});

@@ -3,6 +3,7 @@
 #include <memory>
 #include <random>
 #include <set>
+#include <span>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -332,8 +333,8 @@ TEST_P(SegmentIdsOfEngine, RunsAndEventsReplayedGiveTheLabels) {
   std::map<std::int32_t, Ids> replayed;  // what a listener knows, by slice
   std::set<std::uint32_t> alive;
   for (std::int32_t slice_id = 0; slice_id < 15; ++slice_id) {
-    std::vector<CloudPoint> slice(points.begin() + slice_id * 200,
-                                  points.begin() + (slice_id + 1) * 200);
+    const auto part = std::span(points).subspan(static_cast<std::size_t>(slice_id) * 200, 200);
+    std::vector<CloudPoint> slice(part.begin(), part.end());
     slice[7].x = NAN;
     const PointIndex first = cloud.add_slice(slice_id, slice).first;
     engine->update();

@@ -43,7 +43,7 @@ TEST_P(VotingEngineTest, EqualsTheLiteralAlgorithmsAfterEverySlice) {
   constexpr std::size_t kSlicePoints = 45;
   int num_rounds = 0;
   int num_slices = 0;
-  for (unsigned seed = 0; seed < 40; ++seed) {
+  for (unsigned seed = 0; seed < 20; ++seed) {
     const auto points = arriving_cloud(GetParam().shape, GetParam().arrival, 270, seed);
     PointCloud cloud;
     VotingEngine engine(cloud, {.neighbour_search = GetParam().search});
@@ -73,7 +73,7 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(VotingEngine, EqualsTheLiteralAlgorithmsForOtherParameters) {
   for (const double beta : {0.4, 0.85, 0.97}) {
     const LiteralParameters parameters{.T = 0.004, .k = 0.002, .beta = beta, .r = 0.025F};
-    for (unsigned seed = 0; seed < 30; ++seed) {
+    for (unsigned seed = 0; seed < 10; ++seed) {
       const auto points = arriving_cloud(CloudShape::kUnrelated, Arrival::kMixed, 240, seed);
       PointCloud cloud;
       VotingEngine engine(cloud, {.threshold = parameters.T,
