@@ -68,6 +68,7 @@ BENCHMARK(integrate)
     ->Arg(static_cast<int>(InstructionSet::kPortable))
     ->Arg(static_cast<int>(InstructionSet::kAvx2))
     ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime()
     ->UseRealTime();
 
 void raycast(benchmark::State& state) {
@@ -88,7 +89,13 @@ void raycast(benchmark::State& state) {
                                                guided ? view.frame.depth_m : cv::Mat_<float>()));
   }
 }
-BENCHMARK(raycast)->ArgName("guided")->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(raycast)
+    ->ArgName("guided")
+    ->Arg(0)
+    ->Arg(1)
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime();
 
 void extract(benchmark::State& state) {
   const DetachedBlocks blocks = office_volume().snapshot();
@@ -98,13 +105,13 @@ void extract(benchmark::State& state) {
   state.counters["blocks"] = static_cast<double>(blocks.coords.size());
   state.counters["points"] = static_cast<double>(num_points);
 }
-BENCHMARK(extract)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(extract)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
 
 void snapshot(benchmark::State& state) {
   const TsdfVolume volume = office_volume();
   for (auto _ : state) benchmark::DoNotOptimize(volume.snapshot());
 }
-BENCHMARK(snapshot)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(snapshot)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
 
 }  // namespace
 }  // namespace kintsugi::mapper
