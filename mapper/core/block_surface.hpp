@@ -31,6 +31,7 @@ class BlockSurface {
  private:
   static constexpr int kReach = 2;
   static constexpr int kSide = kBlockSide + 2 * kReach;
+  static constexpr int kNumCells = kSide * kSide * kSide;
   static_assert(PaddedBlock::kPad >= kReach + 2);  // gradients around a point's voxel
 
   void add_point(const PaddedBlock& block, int x, int y, int z, int weight_threshold);
@@ -39,7 +40,7 @@ class BlockSurface {
   }
 
   std::vector<Point> points_;
-  std::array<std::int16_t, kSide * kSide * kSide> cells_;  ///< index of a voxel's point, or -1
+  std::array<std::int16_t, kNumCells> cells_;  ///< index of a voxel's point, or -1
 };
 
 }  // namespace kintsugi::mapper

@@ -22,7 +22,7 @@ Eigen::Matrix<float, 4, 3> side_normals_C(const CameraView& view) {
 }  // namespace
 
 float block_radius_m(const TsdfVolume& volume) {
-  return volume.resolution_m() * (kBlockSide / 2) * std::sqrt(3.0F);
+  return volume.resolution_m() * (0.5F * kBlockSide) * std::sqrt(3.0F);
 }
 
 std::vector<VisibleBlock> find_visible_blocks(const TsdfVolume& volume, const CameraView& view,

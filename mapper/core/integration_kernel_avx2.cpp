@@ -128,13 +128,19 @@ void fuse_row(const KernelFrame& frame, const Lanes& lanes, const float row_C[3]
 
 void integrate_block_avx2(const KernelFrame& frame, const KernelBlock& block) {
   const Lanes lanes(frame);
-  float row_C[3];
-  for (int row = 0; row < kSide * kSide; ++row) {
-    for (int i = 0; i < 3; ++i) {
-      row_C[i] = block.origin_C[i] + (static_cast<float>(row / kSide) * frame.step_C[2][i] +
-                                      static_cast<float>(row % kSide) * frame.step_C[1][i]);
+  std::uint32_t* voxels = block.voxels;
+  std::uint32_t* colors = block.colors;
+  for (int z = 0; z < kSide; ++z) {
+    for (int y = 0; y < kSide; ++y) {
+      float row_C[3];
+      for (int i = 0; i < 3; ++i) {
+        row_C[i] = block.origin_C[i] + (static_cast<float>(z) * frame.step_C[2][i] +
+                                        static_cast<float>(y) * frame.step_C[1][i]);
+      }
+      fuse_row(frame, lanes, row_C, voxels, colors);
+      voxels += kSide;
+      colors += kSide;
     }
-    fuse_row(frame, lanes, row_C, block.voxels + row * kSide, block.colors + row * kSide);
   }
 }
 

@@ -36,8 +36,8 @@ std::uint32_t fuse_color(std::uint32_t color, std::uint32_t pixel, const KernelF
   return result;
 }
 
-void fuse_voxel(const KernelFrame& frame, float x, float y, float z, std::uint32_t& voxel,
-                std::uint32_t& color) {
+void fuse_voxel(const KernelFrame& frame, float x, float y, float z, std::uint32_t* voxel,
+                std::uint32_t* color) {
   if (!(z > 0.0F)) return;
   const float inverse_z = 1.0F / z;
   const float u = x * inverse_z * frame.fx + frame.cx_plus_half;
@@ -49,26 +49,29 @@ void fuse_voxel(const KernelFrame& frame, float x, float y, float z, std::uint32
   if (!(depth >= frame.min_depth_m && depth <= frame.max_depth_m)) return;
   const float sdf_m = depth - z;
   if (!(sdf_m >= -frame.truncation_m)) return;
-  voxel = fuse_distance(voxel, sdf_m, frame);
+  *voxel = fuse_distance(*voxel, sdf_m, frame);
   if (frame.color_rgbx == nullptr || !(sdf_m < frame.truncation_m)) return;
-  color = fuse_color(color, frame.color_rgbx[pixel], frame);
+  *color = fuse_color(*color, frame.color_rgbx[pixel], frame);
 }
 
 }  // namespace
 
 void integrate_block_portable(const KernelFrame& frame, const KernelBlock& block) {
-  float row_C[3];
-  for (int row = 0; row < kSide * kSide; ++row) {
-    for (int i = 0; i < 3; ++i) {
-      row_C[i] = block.origin_C[i] + (static_cast<float>(row / kSide) * frame.step_C[2][i] +
-                                      static_cast<float>(row % kSide) * frame.step_C[1][i]);
-    }
-    for (int lane = 0; lane < kSide; ++lane) {
-      const auto steps = static_cast<float>(lane);
-      const int index = row * kSide + lane;
-      fuse_voxel(frame, row_C[0] + steps * frame.step_C[0][0],
-                 row_C[1] + steps * frame.step_C[0][1], row_C[2] + steps * frame.step_C[0][2],
-                 block.voxels[index], block.colors[index]);
+  std::uint32_t* voxels = block.voxels;
+  std::uint32_t* colors = block.colors;
+  for (int z = 0; z < kSide; ++z) {
+    for (int y = 0; y < kSide; ++y) {
+      float row_C[3];
+      for (int i = 0; i < 3; ++i) {
+        row_C[i] = block.origin_C[i] + (static_cast<float>(z) * frame.step_C[2][i] +
+                                        static_cast<float>(y) * frame.step_C[1][i]);
+      }
+      for (int lane = 0; lane < kSide; ++lane) {
+        const auto steps = static_cast<float>(lane);
+        fuse_voxel(frame, row_C[0] + steps * frame.step_C[0][0],
+                   row_C[1] + steps * frame.step_C[0][1], row_C[2] + steps * frame.step_C[0][2],
+                   voxels++, colors++);
+      }
     }
   }
 }

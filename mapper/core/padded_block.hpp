@@ -11,6 +11,7 @@ class PaddedBlock {
  public:
   static constexpr int kPad = 4;
   static constexpr int kSide = kBlockSide + 2 * kPad;
+  static constexpr int kNumVoxels = kSide * kSide * kSide;
 
   /// Voxels of blocks that are not there read as never observed.
   PaddedBlock(const DetachedBlocks& blocks, const BlockCoord& coord);
@@ -25,7 +26,7 @@ class PaddedBlock {
   Voxel operator[](int index) const { return voxels_[index]; }
 
  private:
-  std::array<Voxel, kSide * kSide * kSide> voxels_{};
+  std::array<Voxel, kNumVoxels> voxels_{};
 };
 
 }  // namespace kintsugi::mapper

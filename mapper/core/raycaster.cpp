@@ -82,7 +82,7 @@ cv::Vec3f normal_C(const std::optional<Eigen::Vector3f>& gradient_W, const Camer
 }
 
 cv::Vec3b to_bytes(const Eigen::Vector3f& color) {
-  const auto rounded = [&](int i) { return static_cast<unsigned char>(color[i] + 0.5F); };
+  const auto rounded = [&](int i) { return static_cast<unsigned char>(std::lround(color[i])); };
   return {rounded(0), rounded(1), rounded(2)};
 }
 

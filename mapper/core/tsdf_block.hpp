@@ -19,6 +19,7 @@ struct BlockCoord {
   int y = 0;
   int x = 0;
 
+  // NOLINTNEXTLINE(modernize-use-nullptr): clang-tidy 14 sees a pointer in the defaulted body
   auto operator<=>(const BlockCoord&) const = default;
 };
 

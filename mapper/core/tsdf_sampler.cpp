@@ -41,13 +41,12 @@ struct Cell {
 float mix(float a, float b, float fraction) { return a + fraction * (b - a); }
 
 float interpolate(const Voxel voxels[8], const float fraction[3]) {
-  float along_x[4];
-  for (int i = 0; i < 4; ++i) {
-    along_x[i] = mix(static_cast<float>(voxel_distance_raw(voxels[2 * i])),
-                     static_cast<float>(voxel_distance_raw(voxels[2 * i + 1])), fraction[0]);
-  }
-  const float near = mix(along_x[0], along_x[1], fraction[1]);
-  const float far = mix(along_x[2], along_x[3], fraction[1]);
+  const auto along_x = [&](int first) {
+    return mix(static_cast<float>(voxel_distance_raw(voxels[first])),
+               static_cast<float>(voxel_distance_raw(voxels[first + 1])), fraction[0]);
+  };
+  const float near = mix(along_x(0), along_x(2), fraction[1]);
+  const float far = mix(along_x(4), along_x(6), fraction[1]);
   return mix(near, far, fraction[2]) * (1.0F / kDistanceScale);
 }
 

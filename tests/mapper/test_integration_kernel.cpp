@@ -15,6 +15,7 @@ namespace {
 
 constexpr int kWidth = 41;  // odd: no row is aligned
 constexpr int kHeight = 23;
+constexpr int kNumPixels = kWidth * kHeight;
 
 struct Images {
   std::vector<float> depth_m;
@@ -71,8 +72,7 @@ struct Block {
 
 /// A voxel that stays in the middle of one pixel with this depth.
 Voxel fuse_one(const std::vector<float>& depths_m, float z, Block& block) {
-  Images images{std::vector<float>(kWidth * kHeight),
-                std::vector<std::uint32_t>(kWidth * kHeight, 0x010A64C8)};
+  Images images{std::vector<float>(kNumPixels), std::vector<std::uint32_t>(kNumPixels, 0x010A64C8)};
   KernelFrame frame = make_frame(images, 0.0F);
   for (const float depth_m : depths_m) {
     std::fill(images.depth_m.begin(), images.depth_m.end(), depth_m);

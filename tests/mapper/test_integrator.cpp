@@ -52,7 +52,7 @@ void for_each_voxel(const DetachedBlocks& blocks, Function function) {
     const BlockCoord& coord = blocks.coords[block];
     const Eigen::Vector3d corner_vox = kBlockSide * Eigen::Vector3d(coord.x, coord.y, coord.z);
     for (int i = 0; i < kBlockVoxels; ++i) {
-      const Eigen::Vector3d center_vox(i % 8 + 0.5, i / 8 % 8 + 0.5, i / 64 + 0.5);
+      const Eigen::Vector3d center_vox = Eigen::Vector3d(i & 7, (i >> 3) & 7, i >> 6).array() + 0.5;
       function(Eigen::Vector3d((corner_vox + center_vox) * kResolution_m),
                blocks.voxels[block].voxels[i]);
     }
