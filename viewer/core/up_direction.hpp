@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -17,7 +18,7 @@ namespace kintsugi::viewer {
 /// within kMaxTilt_rad of -y. With too few points there, or none, up is -y.
 class UpDirection {
  public:
-  UpDirection() : bins_(kSide * kSide, Eigen::Vector4d::Zero()) {}
+  UpDirection() : bins_(std::size_t{kSide} * kSide, Eigen::Vector4d::Zero()) {}
 
   /// Adds the normals of points; those without a unit normal are passed over.
   void add(std::span<const CloudPoint> points_W);

@@ -31,10 +31,13 @@ std::optional<std::array<double, 6>> parse_six_numbers(const std::string& text) 
 /// camera looking there can see.
 std::vector<Eigen::Vector3d> sample(std::span<const PointChunk> chunks,
                                     const Eigen::Vector3d& forward_W) {
-  constexpr std::size_t kStep = 61;
+  constexpr std::size_t kEnough = 50'000;  // to fit a view to within a pixel or so
+  std::size_t total = 0;
+  for (const PointChunk& chunk : chunks) total += chunk.points_W.size();
+  const std::size_t step = 1 + total / kEnough;
   std::vector<Eigen::Vector3d> points_W;
   for (const PointChunk& chunk : chunks) {
-    for (std::size_t i = 0; i < chunk.points_W.size(); i += kStep) {
+    for (std::size_t i = 0; i < chunk.points_W.size(); i += step) {
       const CloudPoint& p = chunk.points_W[i];
       if (forward_W.dot(Eigen::Vector3d(p.nx, p.ny, p.nz)) > 0.0) continue;
       points_W.emplace_back(p.x, p.y, p.z);
