@@ -1,6 +1,7 @@
 #include "mapper/process/mapper_process.hpp"
 
 #include <chrono>
+#include <stdexcept>
 #include <thread>
 #include <utility>
 
@@ -47,9 +48,14 @@ MapperProcess::MapperProcess(const Options& options)
 void MapperProcess::run() {
   log_start();
   map_frames();
-  finish();
+  publish_rest();
+  write_path();
   log_summary();
   reader_.rethrow_failure();
+  if (reader_.finished() && !reader_.ended_well()) {
+    throw std::runtime_error("the device ended early, what came before is mapped: " +
+                             reader_.end_reason());
+  }
 }
 
 void MapperProcess::map_frames() {
@@ -78,15 +84,17 @@ void MapperProcess::map_frame(const RgbdFrame& frame) {
   statistics_.add(result, stopwatch.elapsed_ms());
 }
 
-void MapperProcess::finish() {
-  if (!options_.output_path_file.empty()) {
-    AtomicFile file(options_.output_path_file);
-    write_tum(file.stream(), path_);
-    file.commit();
-  }
+void MapperProcess::publish_rest() {
   publisher_.publish_slices(pipeline_.finish());
   publisher_.flush();
   publish_status(true);
+}
+
+void MapperProcess::write_path() {
+  if (options_.output_path_file.empty()) return;
+  AtomicFile file(options_.output_path_file);
+  write_tum(file.stream(), path_);
+  file.commit();
 }
 
 void MapperProcess::publish_status(bool finished) {
@@ -133,11 +141,7 @@ void MapperProcess::log_change_of_state(const FrameResult& result, const RgbdFra
 void MapperProcess::log_summary() const {
   const double elapsed_s = 1e-3 * run_clock_.elapsed_ms();
   const SourceCounts counts = reader_.counts();
-  if (reader_.finished() && !reader_.ended_well()) {
-    spdlog::warn("the device ended early: {}", reader_.end_reason());
-  } else if (reader_.finished()) {
-    spdlog::info("end: {}", reader_.end_reason());
-  }
+  if (reader_.finished()) spdlog::info("end: {}", reader_.end_reason());
   spdlog::info(
       "{} frames in {:.1f} s ({:.1f} ms each without reading): {} located, {} lost, {} "
       "dropped, {} bad",

@@ -18,14 +18,15 @@ class MapperProcess {
 
   /// Until the device ends, max_frames, or a stop signal. Then the final slice is published and
   /// everything sent, and the camera's path written.
-  /// @throws std::runtime_error when reading, sending or writing failed; what could be mapped and
-  ///   sent before that was
+  /// @throws std::runtime_error when reading, sending or writing failed or the recording ended
+  ///   before its time; what could be mapped and sent before that was
   void run();
 
  private:
   void map_frames();
   void map_frame(const RgbdFrame& frame);
-  void finish();
+  void publish_rest();
+  void write_path();
   void publish_status(bool finished);
   void publish_status_when_due();
   void log_start() const;
