@@ -37,7 +37,7 @@ bool has_multicast_route() {
 
 /// The URL to open for what the caller asked for.
 std::string complete_url(const std::string& asked) {
-  const std::string url = asked.empty() ? default_bus_url() : asked;
+  std::string url = asked.empty() ? default_bus_url() : asked;
   if (url.rfind("udpm://", 0) != 0 || url.find("recv_buf_size=") != std::string::npos) return url;
   const char separator = url.find('?') == std::string::npos ? '?' : '&';
   return url + separator + "recv_buf_size=" + std::to_string(kReceiveBufferBytes);

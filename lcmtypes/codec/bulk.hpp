@@ -52,14 +52,13 @@ constexpr std::int64_t record_bytes() {
 
 template <class Message>
 Counts count_records(const Message& message) {
+  const Check check(Bulk<Message>::WireType::getTypeName());
   Counts counts{};
   std::size_t i = 0;
   Bulk<Message>::for_each_vector(message, [&](const auto& records) {
-    if (static_cast<std::int64_t>(records.size()) > kMaxPayloadBytes) {
-      Check(Bulk<Message>::WireType::getTypeName())
-          .fail("number of records", records.size(), "a payload of at most 1 GiB");
-    }
-    counts.at(i++) = static_cast<std::int32_t>(records.size());
+    const auto count = static_cast<std::int64_t>(records.size());
+    check.range<std::int64_t>("number of records", count, 0, kMaxPayloadBytes);
+    counts.at(i++) = static_cast<std::int32_t>(count);
   });
   return counts;
 }

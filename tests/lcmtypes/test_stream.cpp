@@ -52,6 +52,15 @@ std::vector<Bytes> chunks_of(const std::vector<CloudSlice>& slices) {
   return recording.chunks;
 }
 
+/// Slices 0 .. count - 1.
+std::vector<CloudSlice> example_slices(int count, int num_points) {
+  std::vector<CloudSlice> slices(static_cast<std::size_t>(count));
+  for (int id = 0; id < count; ++id) {
+    slices[static_cast<std::size_t>(id)] = example_slice(num_points, id);
+  }
+  return slices;
+}
+
 struct Receiver {
   std::vector<CloudSlice> slices;
   std::vector<std::string> reasons;
@@ -220,7 +229,7 @@ TEST(StreamSubscriber, ReportsWhatIsMissingAndCompletesWhenItComes) {
 
 TEST(StreamSubscriber, LearnsFromHeartbeatsWhatNeverCame) {
   Receiver receiver;
-  const auto beat = [&](Heartbeat heartbeat) {
+  const auto beat = [&](const Heartbeat& heartbeat) {
     receiver.stream.handle(channels::kHeartbeat, encode(heartbeat));
   };
   beat({1, 42, "SEGMENT_UPDATE", 0, 50});  // another stream
@@ -276,9 +285,7 @@ TEST(StreamSubscriber, StaysWithinItsMemoryBoundAndReportsWhatItDropped) {
   StreamSubscriberConfig config;
   config.max_pending_bytes = 20'000;
   Receiver receiver(config);
-  std::vector<CloudSlice> slices;
-  for (int id = 0; id < 20; ++id) slices.push_back(example_slice(300, id));
-  const std::vector<Bytes> chunks = chunks_of(slices);
+  const std::vector<Bytes> chunks = chunks_of(example_slices(20, 300));
   ASSERT_EQ(chunks.size(), 60U);  // three each
   for (std::size_t i = 0; i < chunks.size(); ++i) {
     if (i % 3 != 2) receiver.receive(chunks[i]);
@@ -308,9 +315,7 @@ TEST(StreamSubscriber, BoundsTheGapsItRemembers) {
   StreamSubscriberConfig config;
   config.max_gaps_per_session = 4;
   Receiver receiver(config);
-  std::vector<CloudSlice> slices;
-  for (int id = 0; id < 40; ++id) slices.push_back(example_slice(1, id));
-  const std::vector<Bytes> chunks = chunks_of(slices);
+  const std::vector<Bytes> chunks = chunks_of(example_slices(40, 1));
   for (std::size_t i = 1; i < chunks.size(); i += 2) receiver.receive(chunks[i]);
   EXPECT_THAT(receiver.slices, SizeIs(20));
   EXPECT_LE(receiver.stream.gaps()[0].ranges.size(), 4U);

@@ -78,8 +78,10 @@ inline SegmentUpdate example_update(int num_labels, std::int32_t slice_id = 7) {
 }
 
 inline std::vector<std::uint8_t> example_bytes(int size) {
-  std::vector<std::uint8_t> bytes;
-  for (int i = 0; i < size; ++i) bytes.push_back(static_cast<std::uint8_t>(i * 7 + i / 256));
+  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(size));
+  for (int i = 0; i < size; ++i) {
+    bytes[static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(i * 7 + i / 256);
+  }
   return bytes;
 }
 
