@@ -16,7 +16,6 @@ namespace {
 struct Options {
   SegmenterProcess::Config process;
   double gap_timeout_s = 10.0;
-  bool every_slice = false;
   bool print_config = false;
 };
 
@@ -31,8 +30,9 @@ void add_options(CLI::App& app, Options& options) {
   app.add_option("--write-every", process.processor.write_every,
                  "also write them after so many slices; 0: do not")
       ->capture_default_str();
-  app.add_flag("--every-slice", options.every_slice,
-               "mode batch: one run for each slice, even when several are waiting");
+  app.add_flag("--coalesce", process.processor.coalesce,
+               "mode batch: one run for all slices that are waiting: catches up sooner, gives the "
+               "same partition, but the segment ids may differ from one time to the next");
   app.add_option("--gap-timeout", options.gap_timeout_s,
                  "seconds to wait for a missing slice before going on without it, > 0")
       ->check(CLI::Range(0.001, 1e6))
@@ -51,7 +51,6 @@ void add_options(CLI::App& app, Options& options) {
 
 void complete(Options& options) {
   SegmenterProcess::Config& process = options.process;
-  process.processor.coalesce = !options.every_slice;
   process.processor.order.gap_timeout =
       std::chrono::milliseconds(std::llround(options.gap_timeout_s * 1000.0));
   process.publish = process.log.empty() || !process.lcm_url.empty();

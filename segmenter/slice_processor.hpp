@@ -23,9 +23,10 @@ namespace kintsugi::segmenter {
 /// `save`, a new one begins. Slices of a session that has ended are dropped and counted. Two
 /// mappers that run at the same time are told apart by Config::map_name.
 ///
-/// In mode `batch` all slices that are ready are segmented in one run (Config::coalesce). The
-/// partition after them is the same as in one run each, but the segment ids may be numbered
-/// differently: they tell the history of the runs.
+/// Each slice is one run, so the same slices give the same ids, whenever they arrive. With
+/// Config::coalesce, mode `batch` segments all slices that are ready in one run. The partition
+/// after them is the same, but the segment ids may be numbered differently: they tell the history
+/// of the runs, which then depends on timing.
 class SliceProcessor {
  public:
   using Clock = SliceSequencer::Clock;
@@ -33,9 +34,9 @@ class SliceProcessor {
   struct Config {
     SegmentMapConfig map;
     SliceSequencer::Config order;
-    std::string map_name;  ///< only slices of this map; empty: any
-    bool coalesce = true;  ///< mode `batch`: one run for all slices that are ready
-    int write_every = 0;   ///< save after so many slices; 0: only at the end, or when asked
+    std::string map_name;   ///< only slices of this map; empty: any
+    bool coalesce = false;  ///< mode `batch`: one run for all slices that are ready
+    int write_every = 0;    ///< save after so many slices; 0: only at the end, or when asked
 
     /// Throws std::invalid_argument naming field, value and bound.
     void validate() const;

@@ -121,7 +121,7 @@ TEST_F(SegmenterProgram, SegmentsALogAndWritesTheMap) {
     for (std::size_t i = 0; i < cloud.points_W.size(); ++i) {
       labels[cloud.slice_ids[i]].push_back(cloud.segment_ids[i]);
     }
-    EXPECT_TRUE(testing::same_partition(labels, testing::labels_of(map)));
+    EXPECT_EQ(labels, testing::labels_of(map));  // the ids too: they do not depend on timing
     EXPECT_TRUE(std::filesystem::exists(path("out") + "/segments.json"));
   }
 }

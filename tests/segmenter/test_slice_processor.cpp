@@ -21,7 +21,7 @@ using testing::wavy_session;
 
 class SliceProcessorTest : public ::testing::Test {
  protected:
-  SliceProcessor make(const std::string& mode, bool coalesce = true) {
+  SliceProcessor make(const std::string& mode, bool coalesce = false) {
     SliceProcessor::Config config;
     config.map.mode = mode;
     config.coalesce = coalesce;
@@ -60,7 +60,7 @@ class SliceProcessorTest : public ::testing::Test {
 TEST_F(SliceProcessorTest, PublishesUpdatesThatReplayToTheMap) {
   for (const std::string mode : {"batch", "voting"}) {
     updates_.clear();
-    SliceProcessor processor = make(mode, false);
+    SliceProcessor processor = make(mode);
     LabelMirror mirror;
     std::size_t num_mirrored = 0;
     for (const CloudSlice& slice : wavy_session(6, 300)) {
@@ -89,14 +89,14 @@ TEST_F(SliceProcessorTest, MapDoesNotDependOnTheOrderOfArrival) {
   std::mt19937 random(11);
   for (const std::string mode : {"batch", "voting"}) {
     std::vector<CloudSlice> slices = wavy_session(6, 200);
-    SliceProcessor in_order = make(mode, false);
+    SliceProcessor in_order = make(mode);
     for (const CloudSlice& slice : slices) {
       in_order.offer(slice, now_);
     }
     run(in_order);
     for (int round = 0; round < 5; ++round) {
       std::shuffle(slices.begin(), slices.end(), random);
-      SliceProcessor shuffled = make(mode, false);
+      SliceProcessor shuffled = make(mode);
       for (const CloudSlice& slice : slices) {
         shuffled.offer(slice, now_);
         shuffled.offer(slice, now_);  // a duplicate changes nothing
@@ -109,9 +109,9 @@ TEST_F(SliceProcessorTest, MapDoesNotDependOnTheOrderOfArrival) {
   EXPECT_THAT(warnings_, ::testing::IsEmpty());
 }
 
-TEST_F(SliceProcessorTest, BatchSegmentsWaitingSlicesInOneRunWithOneUpdateEach) {
+TEST_F(SliceProcessorTest, CoalescingSegmentsWaitingSlicesInOneRunWithOneUpdateEach) {
   const auto slices = wavy_session(5, 200);
-  SliceProcessor one_run = make("batch");
+  SliceProcessor one_run = make("batch", true);
   for (const CloudSlice& slice : slices) {
     one_run.offer(slice, now_);
   }
@@ -128,7 +128,7 @@ TEST_F(SliceProcessorTest, BatchSegmentsWaitingSlicesInOneRunWithOneUpdateEach) 
   }
   EXPECT_EQ(mirror.labels(), testing::labels_of(*one_run.map()));
 
-  SliceProcessor each = make("batch", false);
+  SliceProcessor each = make("batch");
   for (const CloudSlice& slice : slices) {
     each.offer(slice, now_);
     run(each);
@@ -239,7 +239,7 @@ TEST_F(SliceProcessorTest, AcceptsEmptySlices) {
   slices[2].points_W.clear();
   for (const std::string mode : {"batch", "voting"}) {
     updates_.clear();
-    SliceProcessor processor = make(mode, false);
+    SliceProcessor processor = make(mode);
     for (const CloudSlice& slice : slices) {
       processor.offer(slice, now_);
     }
@@ -251,7 +251,6 @@ TEST_F(SliceProcessorTest, AcceptsEmptySlices) {
 
 TEST_F(SliceProcessorTest, SavesWhenAskedAndWhenDue) {
   SliceProcessor::Config config;
-  config.coalesce = false;
   config.write_every = 2;
   SliceProcessor processor = make(config);
   processor.save();  // there is nothing yet
