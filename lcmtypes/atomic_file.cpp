@@ -15,17 +15,25 @@ namespace {
 
 namespace fs = std::filesystem;
 
-[[noreturn]] void fail(const char* what, const fs::path& path, int error) {
+[[noreturn]] void fail(const char* what, const std::string& file, int error) {
   throw std::system_error(error, std::generic_category(),
-                          std::string("cannot ") + what + " '" + path.string() + "'");
+                          std::string("cannot ") + what + " " + file);
+}
+
+std::string quoted(const fs::path& path) { return std::string("'") + path.string() + "'"; }
+
+/// For errors: a person knows the final name.
+std::string both_names(const fs::path& path, const fs::path& partial) {
+  return quoted(path) + " (by way of " + quoted(partial.filename()) + ")";
 }
 
 /// A file descriptor that closes itself.
 class Descriptor {
  public:
-  Descriptor(const fs::path& path, int flags)
+  /// @param file names it in errors
+  Descriptor(const fs::path& path, int flags, const std::string& file)
       : value_(open(path.c_str(), flags | O_CLOEXEC, 0666)) {
-    if (value_ < 0) fail("open", path, errno);
+    if (value_ < 0) fail("open", file, errno);
   }
   ~Descriptor() {
     if (value_ >= 0) ::close(value_);
@@ -50,9 +58,9 @@ fs::path partial_name(const fs::path& path) {
 /// Also the name must be on disk; without its directory's entry the file is lost.
 void sync_directory(const fs::path& path) {
   const fs::path parent = path.has_parent_path() ? path.parent_path() : fs::path(".");
-  const Descriptor directory(parent, O_RDONLY | O_DIRECTORY);
+  const Descriptor directory(parent, O_RDONLY | O_DIRECTORY, quoted(parent));
   // Some file systems cannot; the file itself is safe then too.
-  if (fsync(directory.get()) != 0 && errno != EINVAL) fail("sync", parent, errno);
+  if (fsync(directory.get()) != 0 && errno != EINVAL) fail("sync", quoted(parent), errno);
 }
 
 }  // namespace
@@ -60,8 +68,9 @@ void sync_directory(const fs::path& path) {
 /// Buffers writes; throws at the one that fails, which std::ofstream does not tell apart.
 class AtomicFile::FileBuffer : public std::streambuf {
  public:
-  explicit FileBuffer(fs::path path)
-      : path_(std::move(path)), file_(path_, O_WRONLY | O_CREAT | O_TRUNC) {
+  /// @param name of the file in errors
+  FileBuffer(const fs::path& path, std::string name)
+      : name_(std::move(name)), file_(path, O_WRONLY | O_CREAT | O_TRUNC, name_) {
     setp(buffer_.data(), buffer_.data() + buffer_.size());
   }
 
@@ -77,7 +86,7 @@ class AtomicFile::FileBuffer : public std::streambuf {
     while (from != pptr()) {
       const ssize_t written = write(file_.get(), from, static_cast<std::size_t>(pptr() - from));
       if (written < 0 && errno == EINTR) continue;
-      if (written < 0) fail("write", path_, errno);
+      if (written < 0) fail("write", name_, errno);
       from += written;
     }
     setp(buffer_.data(), buffer_.data() + buffer_.size());
@@ -85,7 +94,7 @@ class AtomicFile::FileBuffer : public std::streambuf {
   }
 
  private:
-  fs::path path_;
+  std::string name_;
   Descriptor file_;
   std::array<char, std::size_t{1} << 16U> buffer_;
 };
@@ -106,7 +115,7 @@ AtomicFile::~AtomicFile() {
 
 std::ostream& AtomicFile::stream() {
   if (!stream_) {
-    buffer_ = std::make_unique<FileBuffer>(partial_path_);
+    buffer_ = std::make_unique<FileBuffer>(partial_path_, both_names(path_, partial_path_));
     stream_ = std::make_unique<std::ostream>(buffer_.get());
     stream_->exceptions(std::ios::badbit | std::ios::failbit);
   }
@@ -117,12 +126,13 @@ void AtomicFile::commit() {
   if (stream_) stream_->flush();
   stream_.reset();
   buffer_.reset();
+  const std::string names = both_names(path_, partial_path_);
   {
-    Descriptor file(partial_path_, O_WRONLY);
-    if (fsync(file.get()) != 0 && errno != EINVAL) fail("sync", partial_path_, errno);
-    if (file.close() != 0) fail("close", partial_path_, errno);
+    Descriptor file(partial_path_, O_WRONLY, names);
+    if (fsync(file.get()) != 0 && errno != EINVAL) fail("sync", names, errno);
+    if (file.close() != 0) fail("close", names, errno);
   }
-  if (std::rename(partial_path_.c_str(), path_.c_str()) != 0) fail("rename to", path_, errno);
+  if (std::rename(partial_path_.c_str(), path_.c_str()) != 0) fail("rename", names, errno);
   committed_ = true;
   sync_directory(path_);
 }

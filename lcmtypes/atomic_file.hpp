@@ -10,9 +10,9 @@ namespace kintsugi {
 /// Writes beside the final name and renames on commit(): under the final name there is the old
 /// content or all of the new, whatever happens. Without commit() nothing remains.
 ///
-/// Either write to stream(), which throws std::system_error naming the file and the reason at the
-/// write that failed; or have a library write to partial_path(), which keeps the extension. Prefer
-/// the stream where the library can write to memory: few libraries report a full disk.
+/// Either write to stream(), which throws std::system_error naming both files and the reason at
+/// the write that failed; or have a library write to partial_path(), which keeps the extension.
+/// Prefer the stream where the library can write to memory: few libraries report a full disk.
 class AtomicFile {
  public:
   /// Nothing is opened yet. Throws std::invalid_argument when `path` has no file name.
