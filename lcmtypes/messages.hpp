@@ -190,7 +190,8 @@ struct SegmenterStatus {
   bool finished = false;  ///< the final slice and every earlier one are segmented and published
   std::int64_t slices_received = 0;
   std::int64_t slices_segmented = 0;
-  std::int64_t lag_slices = 0;  ///< received, or known to exist, and not yet segmented
+  std::int64_t slices_missing = 0;  ///< known to exist, and given up until they come after all
+  std::int64_t lag_slices = 0;      ///< received, or known to exist, and not yet segmented
   std::int64_t points = 0;
   std::int64_t points_rejected = 0;
   std::int64_t segments = 0;

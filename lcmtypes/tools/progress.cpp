@@ -156,6 +156,7 @@ std::string Progress::segmenter_text() const {
   std::string text = count(s.slices_segmented) + " segmented, " + count(s.segments) +
                      " segments, lag " + count(s.lag_slices) +
                      format(", %.0f ms/slice", s.slice_mean_ms);
+  if (s.slices_missing > 0) text += ", " + count(s.slices_missing) + " slices MISSING";
   if (s.chunks_missing > 0) text += ", " + count(s.chunks_missing) + " chunks MISSING";
   if (s.messages_bad > 0) text += ", " + count(s.messages_bad) + " bad messages";
   return text;

@@ -11,6 +11,7 @@
 #include "lcmtypes/message_subscriber.hpp"
 #include "lcmtypes/stop_signal.hpp"
 #include "segmenter/io/ply_reader.hpp"
+#include "segmenter/process_status.hpp"
 #include "segmenter/segmenter_process.hpp"
 #include "tests/segmenter/program.hpp"
 #include "tests/segmenter/slice_session.hpp"
@@ -89,6 +90,21 @@ TEST(SegmenterStreams, MapIsTheSameHoweverTheChunksArrive) {
     EXPECT_EQ(labels_after(), expected);
     messages.push_back(messages[static_cast<std::size_t>(round)]);  // a duplicate
   }
+}
+
+TEST(SegmenterStatus, TellsWhatIsMissingAndWhatWasDropped) {
+  SliceProcessor::Counts counts;
+  counts.missing = 3;
+  counts.dropped = 2;
+  counts.lag = 5;
+  StreamCounts stream;
+  stream.chunks_missing = 7;
+  stream.messages_bad = 1;
+  const kintsugi::SegmenterStatus status = make_status(counts, stream);
+  EXPECT_EQ(status.slices_missing, 3);
+  EXPECT_EQ(status.lag_slices, 5);
+  EXPECT_EQ(status.chunks_missing, 7);
+  EXPECT_EQ(status.messages_bad, 3);
 }
 
 class SegmenterProgram : public ::testing::Test {

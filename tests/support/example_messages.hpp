@@ -156,6 +156,7 @@ inline SegmenterStatus example_segmenter_status() {
   status.slice_ms = 13.5;
   status.slice_mean_ms = 14.5;
   status.slice_max_ms = 15.5;
+  status.slices_missing = 16;
   return status;
 }
 
