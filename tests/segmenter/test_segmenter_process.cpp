@@ -167,7 +167,8 @@ TEST_F(SegmenterProgram, ReportsGapsAndDamageOfALogAndKeepsWhatItCouldRead) {
   std::filesystem::resize_file(path("cut.lcm"), std::filesystem::file_size(path("cut.lcm")) - 900);
   const auto cut = run("--log " + path("cut.lcm") + " --out " + path("cut"));
   EXPECT_EQ(cut.exit_code, 1);
-  EXPECT_THAT(cut.output, HasSubstr("cut.lcm"));
+  EXPECT_THAT(cut.output, AllOf(HasSubstr("cut.lcm"), HasSubstr("is damaged at byte"),
+                                HasSubstr("lacks its last")));
   EXPECT_EQ(read_ply(path("cut") + "/segments.ply").points_W.size(), 600U);
 
   const auto absent = run("--log " + path("absent.lcm") + " --out " + path("absent"));
@@ -178,6 +179,30 @@ TEST_F(SegmenterProgram, ReportsGapsAndDamageOfALogAndKeepsWhatItCouldRead) {
   const auto other = run("--log " + path("other.lcm") + " --out " + path("other"));
   EXPECT_EQ(other.exit_code, 1);
   EXPECT_THAT(other.output, HasSubstr("holds no slice"));
+}
+
+TEST_F(SegmenterProgram, RefusesAFileThatIsNoLogAndWritesNothing) {
+  std::ofstream(path("foreign.lcm")) << std::string(5000, 'x');
+  std::ofstream(path("empty.lcm")).flush();
+  std::filesystem::create_directory(path("folder.lcm"));
+  const auto refusal = [&](const std::string& name) {
+    const auto result = run("--log " + path(name) + " --out " + path("out"));
+    EXPECT_EQ(result.exit_code, 1) << name;
+    EXPECT_FALSE(std::filesystem::exists(path("out"))) << name;
+    return result.output;
+  };
+  EXPECT_THAT(refusal("foreign.lcm"), HasSubstr("foreign.lcm' is no LCM log"));
+  EXPECT_THAT(refusal("empty.lcm"), HasSubstr("empty.lcm' is empty"));
+  EXPECT_THAT(refusal("folder.lcm"), HasSubstr("folder.lcm' is a folder"));
+}
+
+TEST_F(SegmenterProgram, KeepsWhatItReadBeforeForeignBytesInALog) {
+  write_log(path("spoilt.lcm"), messages_of(wavy_session(4, 200)));
+  std::ofstream(path("spoilt.lcm"), std::ios::binary | std::ios::app) << std::string(200, 'x');
+  const auto result = run("--log " + path("spoilt.lcm") + " --out " + path("out"));
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.output, HasSubstr("expected the sync word"));
+  EXPECT_EQ(read_ply(path("out") + "/segments.ply").points_W.size(), 800U);
 }
 
 TEST_F(SegmenterProgram, ReportsAFolderItCannotWriteTo) {
