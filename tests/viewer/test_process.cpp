@@ -36,6 +36,7 @@ class Program {
   explicit Program(std::vector<std::string> arguments, rlim_t max_file_bytes = 0) {
     arguments.insert(arguments.begin(), KINTSUGI_VIEWER);
     std::vector<char*> argv;
+    argv.reserve(arguments.size() + 1);
     for (std::string& argument : arguments) argv.push_back(argument.data());
     argv.push_back(nullptr);
     pid_ = fork();

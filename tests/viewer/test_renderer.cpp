@@ -55,7 +55,7 @@ TEST(Renderer, ShowsTheFloorInItsColorFromAbove) {
       Renderer(small()).draw_map(room.scene, room.followed, from_above, Coloring::kTrue);
   // The ceiling faces away and is left out. The floor is (150, 118, 84) give or take 8, seen head
   // on: full brightness but for the darkening at edges. A place with neither desk nor path:
-  const Color floor = map(135 + 20, 240 + 40);
+  const Color& floor = map(135 + 20, 240 + 40);
   EXPECT_NEAR(84, floor[0], 12);
   EXPECT_NEAR(118, floor[1], 12);
   EXPECT_NEAR(150, floor[2], 12);

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <numeric>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -112,7 +113,11 @@ TEST(Scene, EndsWithTheSameLabelsInWhateverOrderSlicesAndUpdatesArrive) {
     const RandomRun run(seed);
     const auto count = static_cast<int>(run.slices.size());
     std::vector<int> order;  // i: slice i; i + count: update i; each twice
-    for (int i = 0; i < 4 * count; ++i) order.push_back(i % (2 * count));
+    for (int round = 0; round < 2; ++round) {
+      const auto old_size = static_cast<std::ptrdiff_t>(order.size());
+      order.resize(order.size() + 2 * run.slices.size());
+      std::iota(order.begin() + old_size, order.end(), 0);
+    }
     std::mt19937 random(seed + 100);
     std::ranges::shuffle(order, random);
 

@@ -47,13 +47,18 @@ struct Reference {
   std::size_t point = 0;
 };
 
+std::size_t pixel_index(const Intrinsics& k, int u, int v) {
+  return static_cast<std::size_t>(v) * static_cast<std::size_t>(k.width) +
+         static_cast<std::size_t>(u);
+}
+
 std::vector<Reference> reference_picture(const std::vector<CloudPoint>& points,
                                          const VirtualCamera& camera, const SplatConfig& config) {
   const Intrinsics& k = camera.intrinsics;
   const double radius_m = config.radius_vox * kResolution_m;
-  std::vector<Reference> picture(static_cast<std::size_t>(k.width * k.height));
+  std::vector<Reference> picture(pixel_index(k, 0, k.height));
   const auto keep = [&](int u, int v, double depth_m, std::size_t i) {
-    Reference& pixel = picture[static_cast<std::size_t>(v * k.width + u)];
+    Reference& pixel = picture[pixel_index(k, u, v)];
     if (depth_m < pixel.depth_m) pixel = {depth_m, i};
   };
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -105,7 +110,7 @@ TEST(Splat, FindsInEachPixelWhatASearchOverAllPointsFinds) {
   int drawn = 0;
   for (int v = 0; v < kHeight; ++v) {
     for (int u = 0; u < kWidth; ++u) {
-      const Reference& pixel = expected[static_cast<std::size_t>(v * kWidth + u)];
+      const Reference& pixel = expected[pixel_index(camera.intrinsics, u, v)];
       const bool empty = std::isinf(pixel.depth_m);
       drawn += empty ? 0 : 1;
       const bool same = found.empty(u, v)

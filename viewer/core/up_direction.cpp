@@ -50,7 +50,7 @@ void UpDirection::add(std::span<const CloudPoint> points_W) {
 }
 
 Eigen::Vector3d UpDirection::up_W() const {
-  const Eigen::Vector3d level = -Eigen::Vector3d::UnitY();
+  Eigen::Vector3d level = -Eigen::Vector3d::UnitY();
   const double cos_tilt = std::cos(kMaxTilt_rad);
   const double cos_window = std::cos(0.2);
 
