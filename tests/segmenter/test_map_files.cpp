@@ -68,7 +68,7 @@ TEST(MapFiles, PlyHasTheDocumentedProperties) {
                         "property uchar red\nproperty uchar green\nproperty uchar blue\n"
                         "property uint segment_id\nproperty int slice_id\nproperty float weight\n"
                         "end_header\n"));
-  EXPECT_EQ(text.size(), text.find("end_header\n") + 11 + 158 * 39);
+  EXPECT_EQ(text.size(), text.find("end_header\n") + 11 + std::size_t{158} * 39);
 }
 
 TEST(MapFiles, JsonTellsOfEverySegment) {

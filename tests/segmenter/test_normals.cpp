@@ -40,8 +40,11 @@ std::vector<CloudPoint> sphere(int num_points, const Eigen::Vector3d& center, do
 
 std::vector<CloudPoint> grid_plane(int side) {
   std::vector<CloudPoint> points;
-  for (int i = 0; i < side * side; ++i) {
-    points.push_back(at(0.01 * (i % side), 0.01 * (i / side), 1.0));
+  points.reserve(static_cast<std::size_t>(side) * static_cast<std::size_t>(side));
+  for (int row = 0; row < side; ++row) {
+    for (int column = 0; column < side; ++column) {
+      points.push_back(at(0.01 * column, 0.01 * row, 1.0));
+    }
   }
   return points;
 }
@@ -90,6 +93,7 @@ TEST(Normals, AgreeOverTheEdgesOfABox) {
 
 TEST(Normals, OfDegenerateNeighbourhoodsAreZeroAndCounted) {
   std::vector<CloudPoint> line;
+  line.reserve(100);
   for (int i = 0; i < 100; ++i) {
     line.push_back(at(0.01 * i, 0.02 * i, 3.0));
   }
@@ -123,6 +127,7 @@ TEST(NearestNeighbours, EqualBruteForce) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> coordinate(0.0, 1.0);
   std::vector<CloudPoint> points;
+  points.reserve(300);
   for (int i = 0; i < 300; ++i) {
     points.push_back(at(coordinate(random), coordinate(random), coordinate(random)));
   }
@@ -131,6 +136,7 @@ TEST(NearestNeighbours, EqualBruteForce) {
   ASSERT_EQ(found.count, 5);
   for (std::size_t q = 0; q < points.size(); ++q) {
     std::vector<double> distances;
+    distances.reserve(points.size());
     for (const CloudPoint& p : points) {
       distances.push_back((position(p) - position(points[q])).squaredNorm());
     }

@@ -59,8 +59,10 @@ class SegmentCloud : public ::testing::Test {
 std::vector<CloudPoint> two_plates() {
   std::vector<CloudPoint> points;
   for (int plate = 0; plate < 2; ++plate) {
-    for (int i = 0; i < 400; ++i) {
-      points.push_back(testing::make_point(0.01 * (i % 20), 0.01 * (i / 20), 1.0 * plate, 0, 0, 1));
+    for (int row = 0; row < 20; ++row) {
+      for (int column = 0; column < 20; ++column) {
+        points.push_back(testing::make_point(0.01 * column, 0.01 * row, 1.0 * plate, 0, 0, 1));
+      }
     }
   }
   return points;
@@ -75,8 +77,9 @@ TEST_F(SegmentCloud, FindsTheTwoPlatesWithAndWithoutNormalsInBothModes) {
     for (const std::string mode : {"batch", "voting"}) {
       for (const std::string neighbours : {"grid", "flann"}) {
         write_input(two_plates(), normals);
-        const auto result = run(in() + " " + out() + " --mode " + mode + " --neighbours " +
-                                neighbours + " --json " + json());
+        std::string arguments = in() + " " + out();
+        arguments.append(" --mode ").append(mode).append(" --neighbours ").append(neighbours);
+        const auto result = run(arguments + " --json " + json());
         ASSERT_EQ(result.exit_code, 0) << result.output;
         const PlyCloud cloud = read_ply(out());
         ASSERT_EQ(cloud.points_W.size(), 800U);
