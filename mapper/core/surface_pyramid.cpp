@@ -102,8 +102,8 @@ cv::Mat_<float> half_size(const cv::Mat_<float>& depth_m) {
     const float* upper = depth_m.ptr<float>(2 * v);
     const float* lower = depth_m.ptr<float>(2 * v + 1);
     for (int u = 0; u < half.cols; ++u) {
-      half(v, u) =
-          mean_of_nearest({upper[2 * u], upper[2 * u + 1], lower[2 * u], lower[2 * u + 1]});
+      const int left = 2 * u;
+      half(v, u) = mean_of_nearest({upper[left], upper[left + 1], lower[left], lower[left + 1]});
     }
   });
   return half;
