@@ -208,10 +208,11 @@ OpenNi2Device::~OpenNi2Device() {
   // while a stream that is destroyed takes itself out of it: 1 in 8 runs crashed. Stopped, the
   // thread sleeps and touches nothing that goes away before the process does; so it is left that
   // way.
-  static auto* const left_stopped = new std::vector<std::unique_ptr<Implementation>>;
+  using Devices = std::vector<std::unique_ptr<Implementation>>;
+  static Devices& left_stopped = *std::make_unique<Devices>().release();  // never destroyed
   static std::mutex mutex;
   const std::lock_guard lock(mutex);
-  left_stopped->push_back(std::move(implementation_));
+  left_stopped.push_back(std::move(implementation_));
 }
 
 void OpenNi2Device::stop() { implementation_->stop(); }

@@ -98,11 +98,10 @@ void FolderWriter::finish() {
   AtomicFile rgb(folder_ / "rgb.txt");
   AtomicFile associations(folder_ / "associations.txt");
   for (const std::string& time : seconds_) {
-    const std::string depth_line = time + " depth/" + time + ".png";
-    const std::string rgb_line = time + " rgb/" + time + ".png";
-    depth.stream() << depth_line << '\n';
-    rgb.stream() << rgb_line << '\n';
-    associations.stream() << depth_line << ' ' << rgb_line << '\n';
+    depth.stream() << time << " depth/" << time << ".png\n";
+    rgb.stream() << time << " rgb/" << time << ".png\n";
+    associations.stream() << time << " depth/" << time << ".png " << time << " rgb/" << time
+                          << ".png\n";
   }
   write_ground_truth(sequence_, folder_);
   depth.commit();

@@ -14,7 +14,8 @@ namespace kintsugi::synthetic {
 
 namespace {
 
-constexpr int kTile = 16;         // pixels
+constexpr int kTile = 16;  // pixels
+constexpr std::size_t kTilePixels = std::size_t{kTile} * kTile;
 constexpr double kNear_m = 1e-3;  // nothing nearer than this is drawn
 const cv::Vec3b kSky(226, 236, 246);
 
@@ -99,8 +100,8 @@ class TileRenderer {
 
  private:
   struct Nearest {
-    std::array<float, kTile * kTile> depth_m;
-    std::array<int, kTile * kTile> candidate;
+    std::array<float, kTilePixels> depth_m;
+    std::array<int, kTilePixels> candidate;
   };
 
   Eigen::Vector3f direction_C(int u, int v) const {

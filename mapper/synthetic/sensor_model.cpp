@@ -115,7 +115,7 @@ cv::Mat_<std::uint16_t> SensorModel::apply(const RenderedFrame& frame,
     for (int u = 0; u < depth_mm.cols; ++u) {
       const double z = measure(v, u);
       const bool seen = z >= config_.min_depth_m && z <= config_.max_depth_m;
-      depth_mm(v, u) = seen ? static_cast<std::uint16_t>(1000.0 * z + 0.5) : 0;
+      depth_mm(v, u) = seen ? static_cast<std::uint16_t>(std::lround(1000.0 * z)) : 0;
     }
   });
   return depth_mm;
