@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# A run over a real bus writes everything it names; its log, replayed at 1x and 4x, gives the same segment map.
+# A run over a real bus writes everything it names; its log, replayed at 1x and 4x, gives the same segment map; and
+# the points and normals in that map are those that were used: segmented again, they give as many segments.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.sh"
 
 run_trio "${small_room[@]}" --replay --video --out live
@@ -19,3 +20,12 @@ for speed in 1 4; do
   }
   expect_same live/segments.ply "replay$speed/segments.ply"
 done
+
+"$KINTSUGI_BIN/kintsugi-segment-cloud" live/segments.ply again.ply --mode batch --resolution 0.02 --json again.json \
+  >again.txt 2>&1 || {
+  cat again.txt
+  fail "kintsugi-segment-cloud"
+}
+num_segments() { grep -m1 '"num_segments"' "$1"; }
+[[ "$(num_segments live/segments.json)" == "$(num_segments again.json)" ]] ||
+  fail "the map in the file is segmented otherwise: $(num_segments again.json)"
