@@ -10,7 +10,7 @@ namespace {
 Trajectory helix(int poses) {
   Trajectory trajectory;
   for (int i = 0; i < poses; ++i) {
-    StampedPose pose{i * 33333, Pose::Identity()};
+    StampedPose pose{std::int64_t{i} * 33333, Pose::Identity()};
     pose.X_WC.translation() << std::cos(0.1 * i), std::sin(0.1 * i), 0.02 * i;
     trajectory.push_back(pose);
   }
