@@ -1,5 +1,7 @@
 #include "segmenter/core/batch_engine.hpp"
 
+#include <cassert>
+
 #include "segmenter/core/felzenszwalb.hpp"
 #include "segmenter/core/graph.hpp"
 
@@ -11,7 +13,9 @@ BatchEngine::BatchEngine(const PointCloud& cloud, const EngineConfig& config)
       index_(make_neighbour_index(config.neighbour_search, cloud, config.radius_m())),
       forest_(config.threshold, config.scale) {}
 
-RunStatistics BatchEngine::update() {
+RunStatistics BatchEngine::update(const CloudChange& change) {
+  assert(change.removed.empty());
+  static_cast<void>(change);
   index_->update();
   const std::vector<Edge> edges = build_graph(cloud_, *index_, config_.threshold + config_.scale);
 
@@ -31,8 +35,8 @@ RunStatistics BatchEngine::update() {
   return statistics;
 }
 
-double BatchEngine::theta(PointIndex representative) const {
-  return forest_.theta_at(forest_.root(representative));
+double BatchEngine::theta(ComponentId component) const {
+  return forest_.theta_at(forest_.root(component));
 }
 
 }  // namespace kintsugi::segmenter

@@ -13,10 +13,10 @@ class BatchEngine final : public SegmentationEngine {
  public:
   BatchEngine(const PointCloud& cloud, const EngineConfig& config);
 
-  RunStatistics update() override;
-  std::span<const PointIndex> components() const override { return components_; }
+  RunStatistics update(const CloudChange& change) override;
+  std::span<const ComponentId> components() const override { return components_; }
   std::span<const PointIndex> changed() const override { return changed_; }
-  double theta(PointIndex representative) const override;
+  double theta(ComponentId component) const override;
 
  private:
   const PointCloud& cloud_;

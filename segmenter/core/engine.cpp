@@ -51,11 +51,12 @@ std::unique_ptr<SegmentationEngine> make_engine(std::string_view mode, const Poi
   throw std::invalid_argument("mode is \"" + std::string(mode) + "\", must be one of:" + known);
 }
 
-std::vector<PointIndex> canonical_labels(std::span<const PointIndex> components) {
+std::vector<PointIndex> canonical_labels(std::span<const ComponentId> components) {
   constexpr PointIndex kNone = UINT32_MAX;
   std::vector<PointIndex> smallest(components.size(), kNone);
-  std::vector<PointIndex> labels(components.size());
+  std::vector<PointIndex> labels(components.size(), kNoComponent);
   for (PointIndex i = 0; i < components.size(); ++i) {
+    if (components[i] == kNoComponent) continue;
     PointIndex& label = smallest[components[i]];
     if (label == kNone) label = i;
     labels[i] = label;

@@ -35,28 +35,33 @@ struct RunStatistics {
   std::int32_t num_iterations = 0;  ///< voting rounds; 1 for `batch`
 };
 
-/// Keeps the partition of a growing cloud into components.
-///
-/// A component is named by its representative, one of its points. The engines `batch` and `voting`
-/// take the smallest index; use canonical_labels() to compare with others.
+/// Names a component. Names are below the size() of the cloud, and mean nothing more: those of two
+/// engines are compared by canonical_labels().
+using ComponentId = std::uint32_t;
+
+/// The component of a point that is not in the cloud (any more).
+inline constexpr ComponentId kNoComponent = UINT32_MAX;
+
+/// Keeps the partition of a changing cloud into components.
 class SegmentationEngine {
  public:
   virtual ~SegmentationEngine() = default;
 
-  /// Segments the points appended to the cloud since the last call. The partition depends only on
-  /// the points and, for incremental modes, on how they were divided over the calls.
-  virtual RunStatistics update() = 0;
+  /// Takes over what the cloud's take_change() tells. For `batch` and `exact` the partition depends
+  /// only on the points that are in the cloud; for `voting` also on how they came.
+  virtual RunStatistics update(const CloudChange& change) = 0;
 
-  /// The representative of each point's component, size() of the cloud at the last update().
-  /// `components()[r] == r` iff r is a representative.
-  virtual std::span<const PointIndex> components() const = 0;
+  /// The component of each point, size() of the cloud at the last update(); kNoComponent for those
+  /// that are gone.
+  virtual std::span<const ComponentId> components() const = 0;
 
-  /// The points whose representative differs from the one before the last update(): every new
-  /// point, and older ones whose component was renamed. Ascending, each once.
+  /// The points in the cloud whose component has another name than before the last update(): every
+  /// added point, and others that changed component or whose component was renamed. Ascending, each
+  /// once.
   virtual std::span<const PointIndex> changed() const = 0;
 
-  /// The join threshold theta of the component that `representative` names.
-  virtual double theta(PointIndex representative) const = 0;
+  /// The join threshold theta of a component that there is.
+  virtual double theta(ComponentId component) const = 0;
 };
 
 /// The modes make_engine() knows.
@@ -67,7 +72,7 @@ std::span<const std::string_view> engine_modes();
 std::unique_ptr<SegmentationEngine> make_engine(std::string_view mode, const PointCloud& cloud,
                                                 const EngineConfig& config);
 
-/// Each component named by its smallest point instead of its representative.
-std::vector<PointIndex> canonical_labels(std::span<const PointIndex> components);
+/// Each component named by its smallest point; kNoComponent stays.
+std::vector<PointIndex> canonical_labels(std::span<const ComponentId> components);
 
 }  // namespace kintsugi::segmenter

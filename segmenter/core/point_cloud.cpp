@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -9,6 +10,7 @@
 #include "segmenter/core/admission.hpp"
 
 namespace kintsugi::segmenter {
+
 const SliceRecord& PointCloud::add_slice(std::int32_t slice_id,
                                          std::span<const CloudPoint> points_W) {
   if (slice_id < 0) {
@@ -35,6 +37,7 @@ const SliceRecord& PointCloud::add_slice(std::int32_t slice_id,
   slice.first = size();
   for (std::size_t index = 0; index < points_W.size(); ++index) {
     if (!reason_to_reject(points_W[index])) {
+      change_.added.push_back(size());
       points_W_.push_back(points_W[index]);
     } else {
       slice.rejected.push_back(static_cast<std::int32_t>(index));
@@ -43,6 +46,13 @@ const SliceRecord& PointCloud::add_slice(std::int32_t slice_id,
   slice.count = size() - slice.first;
   num_rejected_ += static_cast<std::int64_t>(slice.rejected.size());
   return slices_.emplace_back(std::move(slice));
+}
+
+CloudChange PointCloud::everything() const {
+  CloudChange change;
+  change.added.resize(size());
+  std::iota(change.added.begin(), change.added.end(), PointIndex{0});
+  return change;
 }
 
 const SliceRecord& PointCloud::slice_of(PointIndex i) const {

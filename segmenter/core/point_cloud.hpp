@@ -2,9 +2,11 @@
 
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "lcmtypes/messages.hpp"
+#include "segmenter/core/growing_array.hpp"
 
 namespace kintsugi::segmenter {
 
@@ -17,6 +19,13 @@ struct PointId {
   std::int32_t index = 0;  ///< in the slice as it was received, rejected points included
 
   bool operator==(const PointId&) const = default;
+};
+
+/// The points that came and went between two updates of an engine. A point that moved is one of
+/// each: its new place has an index of its own.
+struct CloudChange {
+  std::vector<PointIndex> added;    ///< ascending
+  std::vector<PointIndex> removed;  ///< ascending; readable until the cloud is changed again
 };
 
 /// What became of one slice: its accepted points are `[first, first + count)` of the cloud.
@@ -39,9 +48,15 @@ class PointCloud {
   /// present; std::length_error when the cloud would outgrow PointIndex.
   const SliceRecord& add_slice(std::int32_t slice_id, std::span<const CloudPoint> points_W);
 
+  /// What has come and gone since the last call.
+  CloudChange take_change() { return std::exchange(change_, {}); }
+
+  /// All points as if they had just come.
+  CloudChange everything() const;
+
   PointIndex size() const { return static_cast<PointIndex>(points_W_.size()); }
   const CloudPoint& operator[](PointIndex i) const { return points_W_[i]; }
-  std::span<const CloudPoint> points_W() const { return points_W_; }
+  std::span<const CloudPoint> points_W() const { return points_W_.span(); }
 
   /// In order of arrival.
   std::span<const SliceRecord> slices() const { return slices_; }
@@ -51,8 +66,9 @@ class PointCloud {
   std::int64_t num_rejected() const { return num_rejected_; }
 
  private:
-  std::vector<CloudPoint> points_W_;
+  GrowingArray<CloudPoint> points_W_;
   std::vector<SliceRecord> slices_;
+  CloudChange change_;
   std::int64_t num_rejected_ = 0;
 };
 

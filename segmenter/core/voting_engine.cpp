@@ -1,6 +1,7 @@
 #include "segmenter/core/voting_engine.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <numeric>
 
@@ -25,7 +26,9 @@ VotingEngine::VotingEngine(const PointCloud& cloud, const EngineConfig& config)
       forest_(config.threshold, config.scale) {}
 
 /// Algorithm 3.
-RunStatistics VotingEngine::update() {
+RunStatistics VotingEngine::update(const CloudChange& change) {
+  assert(change.removed.empty());
+  static_cast<void>(change);
   RunStatistics statistics;
   first_round_ = round_;
   std::vector<PointIndex> added = add_new_points();
@@ -158,8 +161,8 @@ void VotingEngine::commit() {
   border_edges_.clear();
 }
 
-double VotingEngine::theta(PointIndex representative) const {
-  return forest_.theta_at(forest_.root(representative));
+double VotingEngine::theta(ComponentId component) const {
+  return forest_.theta_at(forest_.root(component));
 }
 
 }  // namespace kintsugi::segmenter

@@ -22,10 +22,10 @@ class VotingEngine final : public SegmentationEngine {
  public:
   VotingEngine(const PointCloud& cloud, const EngineConfig& config);
 
-  RunStatistics update() override;
-  std::span<const PointIndex> components() const override { return components_; }
+  RunStatistics update(const CloudChange& change) override;
+  std::span<const ComponentId> components() const override { return components_; }
   std::span<const PointIndex> changed() const override { return changed_; }
-  double theta(PointIndex representative) const override;
+  double theta(ComponentId component) const override;
 
  private:
   std::vector<PointIndex> add_new_points();

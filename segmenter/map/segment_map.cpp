@@ -56,7 +56,7 @@ std::vector<SegmentUpdate> SegmentMap::add(std::span<const CloudSlice> slices) {
       final_slice_id_ = slice.id;
     }
   }
-  engine_->update();
+  engine_->update(cloud_.take_change());
   IdUpdate change = ids_.update(engine_->components(), engine_->changed());
   const auto changed_segments = statistics_.apply(cloud_, ids_, change.changes);
 

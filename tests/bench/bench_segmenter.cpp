@@ -112,7 +112,7 @@ void batch(benchmark::State& state, NeighbourSearch search) {
     EngineConfig config = kConfig;
     config.neighbour_search = search;
     const auto engine = make_engine("batch", map_cloud(), config);
-    benchmark::DoNotOptimize(engine->update().num_joins);
+    benchmark::DoNotOptimize(engine->update(map_cloud().everything()).num_joins);
   }
 }
 BENCHMARK_CAPTURE(batch, grid, NeighbourSearch::kGrid)
@@ -136,7 +136,7 @@ void slice_by_slice(benchmark::State& state, std::string_view mode) {
     for (const auto& [id, points_W] : map_slices()) {
       cloud.add_slice(id, points_W);
       const auto start = Clock::now();
-      rounds += engine->update().num_iterations;
+      rounds += engine->update(cloud.take_change()).num_iterations;
       ids.update(engine->components(), engine->changed());
       slice_ms.push_back(std::chrono::duration<double, std::milli>(Clock::now() - start).count());
     }

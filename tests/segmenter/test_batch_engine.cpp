@@ -21,9 +21,9 @@ using testing::random_cloud;
 constexpr CloudShape kShapes[] = {CloudShape::kWaves, CloudShape::kLattice, CloudShape::kUnrelated};
 
 TEST(BatchEngine, EmptyCloud) {
-  const PointCloud cloud;
+  PointCloud cloud;
   BatchEngine engine(cloud, {});
-  engine.update();
+  engine.update(cloud.take_change());
   EXPECT_TRUE(engine.components().empty());
   EXPECT_TRUE(engine.changed().empty());
 }
@@ -39,7 +39,7 @@ TEST_P(BatchEngineTest, EqualsTheLiteralAlgorithms) {
       PointCloud cloud;
       cloud.add_slice(0, points);
       BatchEngine engine(cloud, {.neighbour_search = GetParam()});
-      engine.update();
+      engine.update(cloud.take_change());
       const auto expected = literal_batch(points, {}, seed);
       testing::expect_partition(engine, expected);
       num_segments += expected.segments.size();
@@ -61,7 +61,7 @@ TEST_P(BatchEngineTest, EqualsTheLiteralAlgorithmsForOtherParameters) {
                                .scale = parameters.k,
                                .radius_factor = 3.0,
                                .neighbour_search = GetParam()});
-    engine.update();
+    engine.update(cloud.take_change());
     testing::expect_partition(engine, literal_batch(points, parameters));
   }
 }
@@ -72,7 +72,7 @@ TEST_P(BatchEngineTest, EachUpdateIsAsIfAllPointsCameAtOnce) {
   BatchEngine engine(cloud, {.neighbour_search = GetParam()});
   for (int slice = 0; slice < 5; ++slice) {
     cloud.add_slice(slice, std::span(points).subspan(static_cast<std::size_t>(slice) * 60, 60));
-    engine.update();
+    engine.update(cloud.take_change());
     testing::expect_partition(engine, literal_batch(cloud.points_W(), {}));
   }
 }
@@ -93,8 +93,8 @@ TEST_P(BatchEngineTest, OrderOfPointsDoesNotMatter) {
     shuffled_cloud.add_slice(0, shuffled);
     BatchEngine engine(cloud, {.neighbour_search = GetParam()});
     BatchEngine shuffled_engine(shuffled_cloud, {.neighbour_search = GetParam()});
-    engine.update();
-    shuffled_engine.update();
+    engine.update(cloud.take_change());
+    shuffled_engine.update(shuffled_cloud.take_change());
 
     // Back in the order of `points`, each segment by one of its points.
     std::vector<PointIndex> labels(points.size());
@@ -115,7 +115,7 @@ TEST_P(BatchEngineTest, NumberOfThreadsDoesNotMatter) {
     using oneapi::tbb::global_control;
     const global_control threads(global_control::max_allowed_parallelism, num_threads);
     BatchEngine engine(cloud, {.neighbour_search = GetParam()});
-    engine.update();
+    engine.update(cloud.take_change());
     results.emplace_back(engine.components().begin(), engine.components().end());
   }
   EXPECT_EQ(results[0], results[1]);
@@ -129,7 +129,7 @@ TEST_P(BatchEngineTest, TellsWhichPointsChanged) {
   std::vector<PointIndex> before;
   for (int slice = 0; slice < 8; ++slice) {
     cloud.add_slice(slice, std::span(points).subspan(static_cast<std::size_t>(slice) * 50, 50));
-    engine.update();
+    engine.update(cloud.take_change());
     const std::vector<PointIndex> after(engine.components().begin(), engine.components().end());
     std::vector<PointIndex> expected;
     for (PointIndex i = 0; i < after.size(); ++i) {

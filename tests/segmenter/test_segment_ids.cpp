@@ -337,7 +337,7 @@ TEST_P(SegmentIdsOfEngine, RunsAndEventsReplayedGiveTheLabels) {
     std::vector<CloudPoint> slice(part.begin(), part.end());
     slice[7].x = NAN;
     const PointIndex first = cloud.add_slice(slice_id, slice).first;
-    engine->update();
+    engine->update(cloud.take_change());
     const IdUpdate result = ids.update(engine->components(), engine->changed());
     expect_equal(result, slow.update({engine->components().begin(), engine->components().end()}));
 

@@ -50,7 +50,7 @@ TEST_P(VotingEngineTest, EqualsTheLiteralAlgorithmsAfterEverySlice) {
     LiteralVoting literal({});
     for (std::size_t first = 0; first < points.size(); first += kSlicePoints) {
       cloud.add_slice(static_cast<int>(first), std::span(points).subspan(first, kSlicePoints));
-      const RunStatistics run = engine.update();
+      const RunStatistics run = engine.update(cloud.take_change());
       const int rounds = literal.add(cloud.points_W(), seed);
       testing::expect_partition(engine, literal.partition());
       EXPECT_EQ(run.num_iterations, rounds);
@@ -83,7 +83,7 @@ TEST(VotingEngine, EqualsTheLiteralAlgorithmsForOtherParameters) {
       LiteralVoting literal(parameters);
       for (std::size_t first = 0; first < points.size(); first += 40) {
         cloud.add_slice(static_cast<int>(first), std::span(points).subspan(first, 40));
-        engine.update();
+        engine.update(cloud.take_change());
         literal.add(cloud.points_W(), seed);
         testing::expect_partition(engine, literal.partition());
       }
@@ -96,19 +96,19 @@ TEST(VotingEngine, FirstSliceIsSegmentedAsInBatch) {
   PointCloud cloud;
   cloud.add_slice(0, points);
   VotingEngine engine(cloud, {});
-  EXPECT_EQ(engine.update().num_iterations, 1);
+  EXPECT_EQ(engine.update(cloud.take_change()).num_iterations, 1);
   testing::expect_partition(engine, testing::literal_batch(points, {}));
 }
 
 TEST(VotingEngine, EmptySliceChangesNothing) {
   PointCloud cloud;
   VotingEngine engine(cloud, {});
-  engine.update();
+  engine.update(cloud.take_change());
   cloud.add_slice(0, random_cloud(CloudShape::kWaves, 100, 2));
-  engine.update();
+  engine.update(cloud.take_change());
   const std::vector<PointIndex> before(engine.components().begin(), engine.components().end());
   cloud.add_slice(1, {});
-  EXPECT_EQ(engine.update().num_points, 0);
+  EXPECT_EQ(engine.update(cloud.take_change()).num_points, 0);
   EXPECT_THAT(engine.components(), ::testing::ElementsAreArray(before));
   EXPECT_TRUE(engine.changed().empty());
 }
@@ -121,7 +121,7 @@ TEST(VotingEngine, TellsWhichPointsChanged) {
   std::size_t num_renamed = 0;
   for (int slice = 0; slice < 12; ++slice) {
     cloud.add_slice(slice, std::span(points).subspan(static_cast<std::size_t>(slice) * 50, 50));
-    engine.update();
+    engine.update(cloud.take_change());
     const std::vector<PointIndex> after(engine.components().begin(), engine.components().end());
     std::vector<PointIndex> expected;
     for (PointIndex i = 0; i < after.size(); ++i) {
@@ -145,7 +145,7 @@ TEST(VotingEngine, NumberOfThreadsDoesNotMatter) {
     for (int slice = 0; slice < 4; ++slice) {
       cloud.add_slice(slice,
                       std::span(points).subspan(static_cast<std::size_t>(slice) * 5000, 5000));
-      engine.update();
+      engine.update(cloud.take_change());
     }
     results.emplace_back(engine.components().begin(), engine.components().end());
   }
