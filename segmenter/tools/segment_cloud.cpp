@@ -10,9 +10,8 @@
 
 #include "segmenter/io/labelled_ply_writer.hpp"
 #include "segmenter/io/map_files.hpp"
-#include "segmenter/io/ply_reader.hpp"
 #include "segmenter/options.hpp"
-#include "segmenter/preprocess/cloud_preparation.hpp"
+#include "segmenter/tools/cloud_input.hpp"
 #include "segmenter/tools/cloud_slices.hpp"
 
 namespace kintsugi::segmenter {
@@ -22,9 +21,7 @@ struct Options {
   std::filesystem::path input;
   std::filesystem::path output;
   std::filesystem::path json;
-  double resolution_m = 0.0;  // 0: estimated
-  std::vector<double> viewpoint_W;
-  NormalsConfig normals;
+  CloudInputConfig input_config;
   SegmentMapConfig map;
 };
 
@@ -34,23 +31,12 @@ void add_options(CLI::App& app, Options& options) {
       ->required();
   app.add_option("OUT", options.output, "the labelled PLY to write")->required();
   app.add_option("--json", options.json, "also write what is known about each segment");
-  app.add_option("--resolution", options.resolution_m,
-                 "voxel size in metres, > 0 (default: the median spacing of the points)")
-      ->check(CLI::PositiveNumber);
-  app.add_option("--normals-k", options.normals.num_neighbours,
-                 "neighbours for the normals of a cloud without, >= 3")
-      ->capture_default_str();
-  app.add_option("--viewpoint", options.viewpoint_W,
-                 "X Y Z that computed normals face (default: the mean of the points)")
-      ->expected(3);
+  add_cloud_options(app, options.input_config);
   add_segmentation_options(app, options.map);
 }
 
-void validate(Options& options) {
-  if (!options.viewpoint_W.empty()) {
-    options.normals.viewpoint_W = Eigen::Vector3d(options.viewpoint_W.data());
-  }
-  options.normals.validate();
+void validate(const Options& options) {
+  options.input_config.validate();
   options.map.validate();
   for (const auto& path : {options.output, options.json}) {
     if (path.has_parent_path() && !std::filesystem::is_directory(path.parent_path())) {
@@ -58,47 +44,6 @@ void validate(Options& options) {
                                path.parent_path().string());
     }
   }
-}
-
-void log_progress(const std::string& what, double share) {
-  spdlog::info("{} {:3.0f} %", what, 100.0 * share);
-}
-
-void prepare(PlyCloud& cloud, const Options& options) {
-  const std::string name = options.input.string();
-  if (cloud.points_W.empty()) {
-    throw std::runtime_error(name + ": holds no points");
-  }
-  spdlog::info("{}: {} points, {} normals, {} slice_id", name, cloud.points_W.size(),
-               cloud.has_normals ? "with" : "without",
-               cloud.slice_ids.empty() ? "without" : "with");
-  if (cloud.has_normals) {
-    const auto count = normalize_normals(cloud.points_W);
-    if (count > 0) {
-      spdlog::warn("{}: {} normals were not of unit length and have been scaled", name, count);
-    }
-  } else {
-    compute_normals(cloud.points_W, options.normals,
-                    [](double share) { log_progress("normals", share); });
-  }
-  for (const Rejection& rejection : count_rejections(cloud.points_W)) {
-    spdlog::warn("{}: {} points rejected: {} (the first is vertex {})", name, rejection.count,
-                 rejection.reason, rejection.first_vertex);
-  }
-}
-
-float choose_resolution_m(const PlyCloud& cloud, const Options& options) {
-  if (options.resolution_m > 0.0) {
-    return static_cast<float>(options.resolution_m);
-  }
-  const float resolution_m = usable_spacing_m(cloud.points_W);
-  if (!(resolution_m > 0.0F)) {
-    throw std::runtime_error(options.input.string() +
-                             ": too few usable points to estimate the resolution from: "
-                             "give --resolution");
-  }
-  spdlog::info("resolution {:.6g} m: the median spacing of the points", resolution_m);
-  return resolution_m;
 }
 
 void write_labelled_cloud(const SegmentMap& map, const CloudSlices& slices, const PlyCloud& cloud,
@@ -117,13 +62,12 @@ void write_labelled_cloud(const SegmentMap& map, const CloudSlices& slices, cons
 }
 
 void run(const Options& options) {
-  PlyCloud cloud = read_ply(options.input);
-  prepare(cloud, options);
-  const float resolution_m = choose_resolution_m(cloud, options);
+  const auto [cloud, resolution_m] = read_cloud(options.input, options.input_config);
   const CloudSlices slices =
       cut_into_slices(cloud, resolution_m, options.input.filename().string());
-  const auto map =
-      segment_slices(slices, options.map, [](double share) { log_progress("segmented", share); });
+  const auto map = segment_slices(slices, options.map, [](double share) {
+    spdlog::info("segmented {:3.0f} %", 100.0 * share);
+  });
   write_labelled_cloud(*map, slices, cloud, options);
   spdlog::info("{}: {} segments of {} points", options.output.string(),
                map->segment_ids().num_segments(), map->cloud().size());
