@@ -83,12 +83,13 @@ struct RgbdFrameMessage {
   std::vector<std::uint8_t> color_jpeg;  ///< 8-bit three-channel JPEG or PNG, empty: no colour
 };
 
-/// A run of consecutive points of one slice that now carry `segment_id`; 16 bytes on the bus.
+/// A run of consecutive points of one slice that now carry `segment_id`; 20 bytes on the bus.
 struct LabelRun {
   std::int32_t slice_id = 0;
   std::int32_t first = 0;  ///< index of the first point in its slice
   std::int32_t count = 0;  ///< > 0
   std::uint32_t segment_id = 0;
+  std::int32_t slice_revision = 0;  ///< a point is named by slice, revision and index
 
   bool operator==(const LabelRun&) const = default;
 };
@@ -128,10 +129,11 @@ struct SegmentStatistics {  ///< 72 bytes on the bus
 /// Segment id of a point that belongs to no segment (rejected at the door). Ids start at 1.
 inline constexpr std::uint32_t kNoSegment = 0;
 
-/// What changed in the segment map when one slice was added.
+/// What changed in the segment map when one slice was added, or replaced by a higher revision.
 struct SegmentUpdate {
   std::int64_t utime = 0;        ///< device time of the slice, microseconds
   std::int64_t session = 0;      ///< of the segmenter; > 0
+  std::int64_t sequence = 0;     ///< ascending in the session; known to receivers, not to be set
   std::int64_t map_session = 0;  ///< of the mapper whose slice this is
   std::string map_name;
   std::int32_t slice_id = 0;
@@ -190,8 +192,9 @@ struct SegmenterStatus {
   bool finished = false;  ///< the final slice and every earlier one are segmented and published
   std::int64_t slices_received = 0;
   std::int64_t slices_segmented = 0;
-  std::int64_t slices_missing = 0;  ///< known to exist, and given up until they come after all
-  std::int64_t lag_slices = 0;      ///< received, or known to exist, and not yet segmented
+  std::int64_t slices_corrected = 0;  ///< higher revisions that replaced what was segmented
+  std::int64_t slices_missing = 0;    ///< known to exist, and given up until they come after all
+  std::int64_t lag_slices = 0;        ///< received, or known to exist, and not yet segmented
   std::int64_t points = 0;
   std::int64_t points_rejected = 0;
   std::int64_t segments = 0;

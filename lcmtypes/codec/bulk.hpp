@@ -222,6 +222,7 @@ Message join(const std::vector<Chunk<Message>>& chunks) {
       payload.insert(payload.end(), chunk.part.begin(), chunk.part.end());
     }
     Message message = front.header;
+    if constexpr (requires { message.sequence; }) message.sequence = front.sequence;
     std::size_t i = 0;
     const std::uint8_t* from = payload.data();
     Traits::for_each_vector(message, [&](auto& records) {

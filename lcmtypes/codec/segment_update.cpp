@@ -5,7 +5,7 @@
 namespace kintsugi {
 namespace codec {
 
-static_assert(sizeof(LabelRun) == 16);
+static_assert(sizeof(LabelRun) == 20);
 static_assert(sizeof(SegmentEvent) == 12);
 static_assert(sizeof(SegmentStatistics) == 72);
 
@@ -78,6 +78,7 @@ struct Bulk<SegmentUpdate> : PlacedByByte<segment_update_t> {
     constexpr std::int64_t kMaxPoints =
         kMaxPayloadBytes / static_cast<std::int64_t>(sizeof(CloudPoint));
     check.not_negative("run slice_id", run.slice_id);
+    check.not_negative("run slice_revision", run.slice_revision);
     check.range<std::int64_t>("run count", run.count, 1, kMaxPoints);
     check.range<std::int64_t>("run first", run.first, 0, kMaxPoints - run.count);
   }

@@ -77,6 +77,7 @@ struct Small<SegmenterStatus> : Copied<SegmenterStatus, segmenter_status_t> {
     to.finished = from.finished != 0;
     to.slices_received = from.slices_received;
     to.slices_segmented = from.slices_segmented;
+    to.slices_corrected = from.slices_corrected;
     to.slices_missing = from.slices_missing;
     to.lag_slices = from.lag_slices;
     to.points = from.points;
@@ -99,6 +100,7 @@ struct Small<SegmenterStatus> : Copied<SegmenterStatus, segmenter_status_t> {
     check.not_negative("map_session", m.map_session);
     check.not_negative("slices_received", m.slices_received);
     check.not_negative("slices_segmented", m.slices_segmented);
+    check.not_negative("slices_corrected", m.slices_corrected);
     check.not_negative("slices_missing", m.slices_missing);
     check.not_negative("lag_slices", m.lag_slices);
     check.not_negative("points", m.points);

@@ -86,8 +86,8 @@ std::int64_t Progress::work_done() const {
   if (mapper_)
     sum += mapper_->frames_read + mapper_->chunks_published + (mapper_->finished ? 1 : 0);
   if (segmenter_) {
-    sum +=
-        segmenter_->chunks_received + segmenter_->slices_segmented + (segmenter_->finished ? 1 : 0);
+    sum += segmenter_->chunks_received + segmenter_->slices_segmented +
+           segmenter_->slices_corrected + (segmenter_->finished ? 1 : 0);
   }
   if (viewer_) {
     sum += viewer_->updates_applied + viewer_->snapshots_written + (viewer_->finished ? 1 : 0);
@@ -153,9 +153,10 @@ std::string Progress::mapper_text() const {
 std::string Progress::segmenter_text() const {
   if (!segmenter_) return "no segmenter";
   const SegmenterStatus& s = *segmenter_;
-  std::string text = count(s.slices_segmented) + " segmented, " + count(s.segments) +
-                     " segments, lag " + count(s.lag_slices) +
-                     format(", %.0f ms/slice", s.slice_mean_ms);
+  std::string text = count(s.slices_segmented) + " segmented, ";
+  if (s.slices_corrected > 0) text += count(s.slices_corrected) + " corrected, ";
+  text += count(s.segments) + " segments, lag " + count(s.lag_slices) +
+          format(", %.0f ms/slice", s.slice_mean_ms);
   if (s.slices_missing > 0) text += ", " + count(s.slices_missing) + " slices MISSING";
   if (s.chunks_missing > 0) text += ", " + count(s.chunks_missing) + " chunks MISSING";
   if (s.messages_bad > 0) text += ", " + count(s.messages_bad) + " bad messages";

@@ -183,6 +183,8 @@ TEST(CodecBounds, NameTypeFieldValueAndBound) {
                         u.runs = {{0, 0, 0, 1}};
                       }),
               HasSubstr("run count is 0"));
+  EXPECT_THAT(refusal(example_update(1), [](SegmentUpdate& u) { u.runs[0].slice_revision = -1; }),
+              HasSubstr("run slice_revision is -1"));
   EXPECT_THAT(refusal(example_update(1),
                       [](SegmentUpdate& u) {
                         u.events = {{SegmentEventType{5}, 1, 0}};

@@ -61,6 +61,10 @@ TEST(CodecRoundTrip, BulkMessagesKeepEveryFieldWhateverTheChunkSize) {
   expect_round_trip(example_snapshot(123'457));
 }
 
+TEST(CodecRoundTrip, UpdateKnowsTheSequenceOfItsFirstChunk) {
+  EXPECT_EQ(join(chunks_of(example_update(5'000), 10'000)).sequence, 1000);
+}
+
 TEST(CodecRoundTrip, LongestNamesLeaveRoomForAPayloadInTheSmallestChunk) {
   CloudSlice slice = example_slice(20);
   slice.map_name = std::string(kMaxStringBytes, 'x');

@@ -45,6 +45,10 @@ TEST(Progress, SaysInOneLineWhatAPersonWantsToKnow) {
   progress.update(segmenter(3, false), 0);
   EXPECT_THAT(progress.line(0), HasSubstr("11 segmented, 321 segments, lag 3, 500 ms/slice"));
   EXPECT_THAT(progress.line(0), Not(HasSubstr("MISSING")));
+  SegmenterStatus corrected = segmenter(0, false);
+  corrected.slices_corrected = 5;
+  progress.update(corrected, 0);
+  EXPECT_THAT(progress.line(0), HasSubstr("14 segmented, 5 corrected, 321 segments"));
   EXPECT_THAT(progress.line(9'000'000), HasSubstr("silent for 9 s"));
 }
 

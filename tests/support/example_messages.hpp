@@ -58,7 +58,7 @@ inline SegmentUpdate example_update(int num_labels, std::int32_t slice_id = 7) {
   for (int i = 0; i < num_labels; ++i) {
     const auto id = static_cast<std::uint32_t>(i % 97 + 1);
     update.labels.push_back(id);
-    if (i % 5 == 0) update.runs.push_back({slice_id, i, 5, id});
+    if (i % 5 == 0) update.runs.push_back({slice_id, i, 5, id, 1});
     if (i % 7 == 0) update.events.push_back({SegmentEventType::kMerged, id, id + 1});
     if (i % 11 == 0) {
       SegmentStatistics statistics;
@@ -144,6 +144,7 @@ inline SegmenterStatus example_segmenter_status() {
   status.finished = true;
   status.slices_received = 2;
   status.slices_segmented = 3;
+  status.slices_corrected = 21;
   status.lag_slices = 4;
   status.points = 5;
   status.points_rejected = 6;

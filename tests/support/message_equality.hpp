@@ -57,13 +57,13 @@ inline bool operator==(const SegmenterStatus& a, const SegmenterStatus& b) {
   return a.utime == b.utime && a.session == b.session && a.map_session == b.map_session &&
          a.map_name == b.map_name && a.mode == b.mode && a.finished == b.finished &&
          a.slices_received == b.slices_received && a.slices_segmented == b.slices_segmented &&
-         a.slices_missing == b.slices_missing && a.lag_slices == b.lag_slices &&
-         a.points == b.points && a.points_rejected == b.points_rejected &&
-         a.segments == b.segments && a.chunks_received == b.chunks_received &&
-         a.chunks_duplicate == b.chunks_duplicate && a.chunks_missing == b.chunks_missing &&
-         a.messages_bad == b.messages_bad && a.memory_bytes == b.memory_bytes &&
-         a.slice_ms == b.slice_ms && a.slice_mean_ms == b.slice_mean_ms &&
-         a.slice_max_ms == b.slice_max_ms;
+         a.slices_corrected == b.slices_corrected && a.slices_missing == b.slices_missing &&
+         a.lag_slices == b.lag_slices && a.points == b.points &&
+         a.points_rejected == b.points_rejected && a.segments == b.segments &&
+         a.chunks_received == b.chunks_received && a.chunks_duplicate == b.chunks_duplicate &&
+         a.chunks_missing == b.chunks_missing && a.messages_bad == b.messages_bad &&
+         a.memory_bytes == b.memory_bytes && a.slice_ms == b.slice_ms &&
+         a.slice_mean_ms == b.slice_mean_ms && a.slice_max_ms == b.slice_max_ms;
 }
 
 inline bool operator==(const ViewerStatus& a, const ViewerStatus& b) {
