@@ -1,7 +1,5 @@
 #include "segmenter/core/batch_engine.hpp"
 
-#include <cassert>
-
 #include "segmenter/core/felzenszwalb.hpp"
 #include "segmenter/core/graph.hpp"
 
@@ -14,25 +12,45 @@ BatchEngine::BatchEngine(const PointCloud& cloud, const EngineConfig& config)
       forest_(config.threshold, config.scale) {}
 
 RunStatistics BatchEngine::update(const CloudChange& change) {
-  assert(change.removed.empty());
-  static_cast<void>(change);
-  index_->update();
+  index_->remove(change.removed);
+  index_->insert(change.added);
   const std::vector<Edge> edges = build_graph(cloud_, *index_, config_.threshold + config_.scale);
 
   forest_ = SegmentForest(config_.threshold, config_.scale);
   forest_.grow(cloud_.size());
-  RunStatistics statistics{.num_points = cloud_.size(), .num_iterations = 1};
+  RunStatistics statistics{.num_iterations = 1};
   statistics.num_edges = static_cast<std::int64_t>(edges.size());
   statistics.num_joins = join_segments(edges, forest_);
 
-  std::vector<PointIndex> roots(cloud_.size());
-  for (PointIndex i = 0; i < cloud_.size(); ++i) roots[i] = forest_.find(i);
-  const std::vector<PointIndex> before = std::exchange(components_, canonical_labels(roots));
+  const std::vector<ComponentId> before = take_over(change);
+  statistics.num_points = name_components();
   changed_.clear();
   for (PointIndex i = 0; i < cloud_.size(); ++i) {
-    if (i >= before.size() || before[i] != components_[i]) changed_.push_back(i);
+    if (components_[i] != before[i]) changed_.push_back(i);
   }
   return statistics;
+}
+
+/// Marks who is there in components_; returns the names there were, none for new points.
+std::vector<ComponentId> BatchEngine::take_over(const CloudChange& change) {
+  components_.resize(cloud_.size(), kNoComponent);
+  for (const PointIndex i : change.removed) components_[i] = kNoComponent;
+  for (const PointIndex i : change.added) components_[i] = kNoComponent;
+  std::vector<ComponentId> before = components_;
+  for (const PointIndex i : change.added) components_[i] = i;
+  return before;
+}
+
+/// Returns the number of points there are.
+std::int64_t BatchEngine::name_components() {
+  std::int64_t num_points = 0;
+  for (PointIndex i = 0; i < cloud_.size(); ++i) {
+    if (components_[i] == kNoComponent) continue;
+    components_[i] = forest_.find(i);
+    ++num_points;
+  }
+  components_ = canonical_labels(components_);
+  return num_points;
 }
 
 double BatchEngine::theta(ComponentId component) const {

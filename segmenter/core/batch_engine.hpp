@@ -8,7 +8,7 @@
 
 namespace kintsugi::segmenter {
 
-/// Mode `batch`: Algorithm 1 over all points so far, from scratch at each update. The reference.
+/// Mode `batch`: Algorithm 1 over all points there are, from scratch at each update. The reference.
 class BatchEngine final : public SegmentationEngine {
  public:
   BatchEngine(const PointCloud& cloud, const EngineConfig& config);
@@ -19,11 +19,14 @@ class BatchEngine final : public SegmentationEngine {
   double theta(ComponentId component) const override;
 
  private:
+  std::vector<ComponentId> take_over(const CloudChange& change);
+  std::int64_t name_components();
+
   const PointCloud& cloud_;
   EngineConfig config_;
   std::unique_ptr<NeighbourIndex> index_;
   SegmentForest forest_;
-  std::vector<PointIndex> components_;
+  std::vector<ComponentId> components_;  ///< by the smallest point of each
   std::vector<PointIndex> changed_;
 };
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <numeric>
+#include <unordered_set>
 
 #include <flann/flann.hpp>
 #include <oneapi/tbb/blocked_range.h>
@@ -40,17 +40,16 @@ class Candidates final : public flann::ResultSet<float> {
 struct FlannIndex::Tile {
   std::vector<PointIndex> points;
   std::vector<float> positions_W;  ///< three for each point: FLANN keeps a pointer to them
-  std::unique_ptr<KdTree> tree;
-  bool is_dirty = true;
+  std::unique_ptr<KdTree> tree;    ///< none: dirty, or empty
 
   void build(const PointCloud& cloud) {
-    for (std::size_t k = positions_W.size() / 3; k < points.size(); ++k) {
-      const CloudPoint& p = cloud[points[k]];
-      positions_W.insert(positions_W.end(), {p.x, p.y, p.z});
+    positions_W.clear();
+    for (const PointIndex i : points) {
+      positions_W.insert(positions_W.end(), {cloud[i].x, cloud[i].y, cloud[i].z});
     }
+    if (points.empty()) return;
     tree = std::make_unique<KdTree>(flann::Matrix<float>(positions_W.data(), points.size(), 3));
     tree->buildIndex();
-    is_dirty = false;
   }
 };
 
@@ -59,21 +58,40 @@ FlannIndex::FlannIndex(const PointCloud& cloud, float radius_m)
 
 FlannIndex::~FlannIndex() = default;
 
-void FlannIndex::update() {
+std::unique_ptr<FlannIndex::Tile>& FlannIndex::tile_at(PointIndex point) {
+  const CloudPoint& p = cloud_[point];
+  std::unique_ptr<Tile>& tile = tiles_[{
+      cell_coordinate(p.x, kTile_m), cell_coordinate(p.y, kTile_m), cell_coordinate(p.z, kTile_m)}];
+  if (!tile) tile = std::make_unique<Tile>();
+  return tile;
+}
+
+void FlannIndex::build(std::span<Tile* const> tiles) const {
+  oneapi::tbb::parallel_for(std::size_t{0}, tiles.size(),
+                            [&](std::size_t k) { tiles[k]->build(cloud_); });
+}
+
+void FlannIndex::insert(std::span<const PointIndex> points) {
   std::vector<Tile*> dirty;
-  for (PointIndex i = num_indexed_; i < cloud_.size(); ++i) {
-    const CloudPoint& p = cloud_[i];
-    std::unique_ptr<Tile>& tile =
-        tiles_[{cell_coordinate(p.x, kTile_m), cell_coordinate(p.y, kTile_m),
-                cell_coordinate(p.z, kTile_m)}];
-    if (!tile) tile = std::make_unique<Tile>();
-    if (tile->points.empty() || !tile->is_dirty) dirty.push_back(tile.get());
-    tile->is_dirty = true;
-    tile->points.push_back(i);
+  for (const PointIndex i : points) {
+    Tile& tile = *tile_at(i);
+    if (tile.points.empty() || tile.tree) dirty.push_back(&tile);
+    tile.tree.reset();
+    tile.points.push_back(i);
   }
-  num_indexed_ = cloud_.size();
-  oneapi::tbb::parallel_for(std::size_t{0}, dirty.size(),
-                            [&](std::size_t k) { dirty[k]->build(cloud_); });
+  build(dirty);
+}
+
+void FlannIndex::remove(std::span<const PointIndex> points) {
+  std::unordered_map<Tile*, std::unordered_set<PointIndex>> leaving;
+  for (const PointIndex i : points) leaving[tile_at(i).get()].insert(i);
+  std::vector<Tile*> dirty;
+  for (const auto& [tile, gone] : leaving) {
+    std::erase_if(tile->points, [&](PointIndex i) { return gone.contains(i); });
+    tile->tree.reset();
+    dirty.push_back(tile);
+  }
+  build(dirty);
 }
 
 void FlannIndex::find_neighbours(PointIndex query, std::vector<PointIndex>& neighbours) const {
@@ -96,7 +114,7 @@ void FlannIndex::find_neighbours(PointIndex query, std::vector<PointIndex>& neig
     for (at.y = first.y; at.y <= last.y; ++at.y) {
       for (at.x = first.x; at.x <= last.x; ++at.x) {
         const auto tile = tiles_.find(at);
-        if (tile == tiles_.end()) continue;
+        if (tile == tiles_.end() || !tile->second->tree) continue;
         found.clear();
         tile->second->tree->findNeighbors(candidates, position_W, flann::SearchParams(-1));
         for (const std::size_t k : found) {
@@ -111,20 +129,37 @@ void FlannIndex::find_neighbours(PointIndex query, std::vector<PointIndex>& neig
 }
 
 void FlannIndex::visit(std::span<const PointIndex> points, const Visit& visit_point) const {
+  std::vector<PointIndex> neighbours;
+  for (const PointIndex point : points) {
+    find_neighbours(point, neighbours);
+    visit_point(point, neighbours);
+  }
+}
+
+void FlannIndex::visit_concurrently(std::span<const PointIndex> points,
+                                    const Visit& visit_point) const {
   using Range = oneapi::tbb::blocked_range<std::size_t>;
   oneapi::tbb::parallel_for(Range(0, points.size(), kPointsPerTask), [&](const Range& range) {
-    std::vector<PointIndex> neighbours;
-    for (std::size_t k = range.begin(); k != range.end(); ++k) {
-      find_neighbours(points[k], neighbours);
-      visit_point(points[k], neighbours);
-    }
+    visit(points.subspan(range.begin(), range.size()), visit_point);
   });
 }
 
 void FlannIndex::visit_all(const Visit& visit_point) const {
-  std::vector<PointIndex> points(num_indexed_);
-  std::iota(points.begin(), points.end(), PointIndex{0});
-  visit(points, visit_point);
+  std::vector<PointIndex> points;
+  for (const auto& [cell, tile] : tiles_) {
+    points.insert(points.end(), tile->points.begin(), tile->points.end());
+  }
+  visit_concurrently(points, visit_point);
+}
+
+std::size_t FlannIndex::bytes() const {
+  std::size_t sum = 0;
+  for (const auto& [cell, tile] : tiles_) {
+    sum += sizeof(Cell) + sizeof(Tile) + tile->points.capacity() * sizeof(PointIndex) +
+           tile->positions_W.capacity() * sizeof(float);
+    if (tile->tree) sum += static_cast<std::size_t>(tile->tree->usedMemory());
+  }
+  return sum;
 }
 
 }  // namespace kintsugi::segmenter

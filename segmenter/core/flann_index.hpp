@@ -11,24 +11,29 @@
 namespace kintsugi::segmenter {
 
 /// Neighbours by FLANN: one kd-tree for each tile of 1 m. FLANN's single kd-tree cannot take points
-/// in, so the tiles that a slice touches are built again, and only those.
+/// in or out well, so the tiles that a change touches are built again, and only those.
 class FlannIndex final : public NeighbourIndex {
  public:
   FlannIndex(const PointCloud& cloud, float radius_m);
   ~FlannIndex() override;
 
-  void update() override;
+  void insert(std::span<const PointIndex> points) override;
+  void remove(std::span<const PointIndex> points) override;
   void visit(std::span<const PointIndex> points, const Visit& visit_point) const override;
+  void visit_concurrently(std::span<const PointIndex> points,
+                          const Visit& visit_point) const override;
   void visit_all(const Visit& visit_point) const override;
+  std::size_t bytes() const override;
 
  private:
   struct Tile;
 
+  std::unique_ptr<Tile>& tile_at(PointIndex point);
+  void build(std::span<Tile* const> tiles) const;
   void find_neighbours(PointIndex query, std::vector<PointIndex>& neighbours) const;
 
   const PointCloud& cloud_;
   float radius_m_;
-  PointIndex num_indexed_ = 0;
   std::unordered_map<Cell, std::unique_ptr<Tile>, CellHash> tiles_;
 };
 

@@ -1,9 +1,6 @@
 #include "segmenter/core/grid_index.hpp"
 
-#include <algorithm>
 #include <cassert>
-#include <optional>
-#include <utility>
 
 #include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/parallel_for.h>
@@ -16,15 +13,8 @@ namespace {
 constexpr double kCellsPerRadius = 1.0 + 1e-5;
 
 constexpr std::size_t kPointsPerTask = 2048;
-constexpr std::size_t kBlocksPerTask = 8;
 
 }  // namespace
-
-/// The 3 x 3 x 3 blocks around one, nullptr where there is none.
-struct GridIndex::Neighbourhood {
-  Cell centre;
-  std::array<const Block*, 27> blocks{};
-};
 
 GridIndex::GridIndex(const PointCloud& cloud, float radius_m)
     : cloud_(cloud),
@@ -33,125 +23,112 @@ GridIndex::GridIndex(const PointCloud& cloud, float radius_m)
   assert(radius_m > 0.0F);
 }
 
-std::uint32_t GridIndex::find_block(const Cell& block) const {
-  const auto found = block_at_.find(block);
-  return found == block_at_.end() ? kNoBlock : found->second;
-}
+GridIndex::~GridIndex() = default;
 
-GridIndex::Neighbourhood GridIndex::neighbourhood_of(const Cell& block) const {
-  Neighbourhood around{.centre = block};
-  std::size_t i = 0;
-  for (std::int32_t dz = -1; dz <= 1; ++dz) {
-    for (std::int32_t dy = -1; dy <= 1; ++dy) {
-      for (std::int32_t dx = -1; dx <= 1; ++dx, ++i) {
-        const std::uint32_t found = find_block({block.x + dx, block.y + dy, block.z + dz});
-        if (found != kNoBlock) around.blocks[i] = &blocks_[found];
-      }
-    }
+GridIndex::Block& GridIndex::make_block(const Cell& block) {
+  std::unique_ptr<Tile>& tile = tiles_[tile_of(block)];
+  if (!tile) tile = std::make_unique<Tile>();
+  std::unique_ptr<Block>& place = tile->blocks[place_in_tile(block)];
+  if (!place) {
+    place = std::make_unique<Block>();
+    ++num_blocks_;
   }
-  return around;
+  return *place;
 }
 
-void GridIndex::update() {
-  // The new points by block, in the order of their index.
-  std::vector<std::pair<std::uint32_t, PointIndex>> arrivals;
-  arrivals.reserve(cloud_.size() - num_indexed_);
-  for (PointIndex i = num_indexed_; i < cloud_.size(); ++i) {
+void GridIndex::insert(std::span<const PointIndex> points) {
+  std::vector<Block*> block_of_point;
+  block_of_point.reserve(points.size());
+  std::vector<Block*> touched;
+  for (const PointIndex i : points) {
     const CloudPoint& p = cloud_[i];
-    const Cell cell = block_of(cell_of(p.x, p.y, p.z));
-    const auto [at, is_new] =
-        block_at_.try_emplace(cell, static_cast<std::uint32_t>(blocks_.size()));
-    if (is_new) blocks_.emplace_back().cell = cell;
-    arrivals.emplace_back(at->second, i);
+    Block& block = make_block(block_of(cell_of(p.x, p.y, p.z)));
+    if (block.num_arrivals++ == 0) touched.push_back(&block);
+    block_of_point.push_back(&block);
   }
-  num_indexed_ = cloud_.size();
-  std::sort(arrivals.begin(), arrivals.end());
-
-  std::vector<PointIndex> points;
-  for (auto first = arrivals.begin(); first != arrivals.end();) {
-    const std::uint32_t block = first->first;
-    points.clear();
-    for (; first != arrivals.end() && first->first == block; ++first) {
-      points.push_back(first->second);
-    }
-    insert(blocks_[block], points);
+  // Room for what comes and no more: a block that points come to is rewritten anyway.
+  for (Block* const block : touched) {
+    num_entries_ -= block->entries.capacity();
+    block->entries.reserve(block->entries.size() + block->num_arrivals);
+    num_entries_ += block->entries.capacity();
+    block->num_arrivals = 0;
   }
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const CloudPoint& p = cloud_[points[k]];
+    block_of_point[k]->entries.push_back({p.x, p.y, p.z, points[k]});
+  }
+  std::vector<Entry> scratch;
+  for (Block* const block : touched) sort_by_row(*block, scratch);
 }
 
-/// Counting sort of the block's entries by cell; entries of a cell keep their order.
-void GridIndex::insert(Block& block, std::span<const PointIndex> points) const {
-  std::vector<Entry> unsorted = std::move(block.entries);
-  for (const PointIndex i : points) unsorted.push_back({cloud_[i].x, cloud_[i].y, cloud_[i].z, i});
-  const auto place = [&](const Entry& e) { return place_of(cell_of(e.x, e.y, e.z)); };
-
-  std::array<std::uint32_t, kNumCells + 1> next{};
-  for (const Entry& entry : unsorted) ++next[place(entry) + 1];
-  for (std::int32_t c = 0; c < kNumCells; ++c) next[c + 1] += next[c];
+/// Counting sort; entries of a row keep their order.
+void GridIndex::sort_by_row(Block& block, std::vector<Entry>& scratch) const {
+  scratch.assign(block.entries.begin(), block.entries.end());
+  std::array<std::uint32_t, kNumRows + 1> next{};
+  for (const Entry& entry : scratch) ++next[row_of(entry) + 1];
+  for (std::int32_t row = 0; row < kNumRows; ++row) next[row + 1] += next[row];
   block.first = next;
-  block.entries.resize(unsorted.size());
-  for (const Entry& entry : unsorted) block.entries[next[place(entry)]++] = entry;
+  for (const Entry& entry : scratch) block.entries[next[row_of(entry)]++] = entry;
 }
 
-void GridIndex::find_neighbours(const Entry& query, const Cell& cell, const Neighbourhood& around,
-                                std::vector<PointIndex>& neighbours) const {
-  const auto scan = [&](const Block& block, std::int32_t first_cell, std::int32_t last_cell) {
-    const Entry* const end = block.entries.data() + block.first[last_cell + 1];
-    for (const Entry* e = block.entries.data() + block.first[first_cell]; e != end; ++e) {
-      const float dx = query.x - e->x;
-      const float dy = query.y - e->y;
-      const float dz = query.z - e->z;
-      // The order of squared_distance().
-      if ((dx * dx + dy * dy) + dz * dz < squared_radius_m2_ && e->point != query.point) {
-        neighbours.push_back(e->point);
-      }
-    }
-  };
-  neighbours.clear();
-  for (std::int32_t z = cell.z - 1; z <= cell.z + 1; ++z) {
-    for (std::int32_t y = cell.y - 1; y <= cell.y + 1; ++y) {
-      const Cell first_block = block_of({cell.x - 1, y, z});
-      const std::int32_t row_of_blocks =
-          ((first_block.z - around.centre.z + 1) * 3 + (first_block.y - around.centre.y + 1)) * 3;
-      // The row x - 1 .. x + 1 lies in one block or in two.
-      for (std::int32_t x = cell.x - 1; x <= cell.x + 1;) {
-        const std::int32_t block_x = x >> kSideBits;
-        const std::int32_t last_x = std::min(cell.x + 1, block_x * kSide + kSide - 1);
-        const Block* block = around.blocks[row_of_blocks + block_x - around.centre.x + 1];
-        if (block != nullptr) scan(*block, place_of({x, y, z}), place_of({last_x, y, z}));
-        x = last_x + 1;
-      }
-    }
+void GridIndex::remove(std::span<const PointIndex> points) {
+  for (const PointIndex point : points) remove(point);
+}
+
+void GridIndex::remove(PointIndex point) {
+  const CloudPoint& p = cloud_[point];
+  const Cell cell = cell_of(p.x, p.y, p.z);
+  Block& block = make_block(block_of(cell));
+  const std::int32_t row = row_in_block(cell.y, cell.z);
+  const auto first = block.entries.begin() + block.first[row];
+  const auto last = block.entries.begin() + block.first[row + 1];
+  const auto found = std::find_if(first, last, [&](const Entry& e) { return e.point == point; });
+  assert(found != last);
+  if (found == last) return;
+  block.entries.erase(found);
+  for (std::int32_t r = row + 1; r <= kNumRows; ++r) --block.first[r];
+  if (block.entries.size() <= block.entries.capacity() / 2) {
+    num_entries_ -= block.entries.capacity();
+    block.entries.shrink_to_fit();
+    num_entries_ += block.entries.capacity();
   }
 }
 
 void GridIndex::visit(std::span<const PointIndex> points, const Visit& visit_point) const {
+  Cursor cursor(*this);
+  std::vector<PointIndex> neighbours;
+  for (const PointIndex point : points) {
+    neighbours.clear();
+    cursor.for_each_neighbour(point, [&](PointIndex j) { neighbours.push_back(j); });
+    visit_point(point, neighbours);
+  }
+}
+
+void GridIndex::visit_concurrently(std::span<const PointIndex> points,
+                                   const Visit& visit_point) const {
   using Range = oneapi::tbb::blocked_range<std::size_t>;
   oneapi::tbb::parallel_for(Range(0, points.size(), kPointsPerTask), [&](const Range& range) {
-    std::vector<PointIndex> neighbours;
-    std::optional<Neighbourhood> around;
-    for (std::size_t k = range.begin(); k != range.end(); ++k) {
-      const CloudPoint& p = cloud_[points[k]];
-      const Cell cell = cell_of(p.x, p.y, p.z);
-      // Points come in runs from one block: most find the blocks around looked up already.
-      if (!around || around->centre != block_of(cell)) around = neighbourhood_of(block_of(cell));
-      find_neighbours({p.x, p.y, p.z, points[k]}, cell, *around, neighbours);
-      visit_point(points[k], neighbours);
-    }
+    visit(points.subspan(range.begin(), range.size()), visit_point);
   });
 }
 
 void GridIndex::visit_all(const Visit& visit_point) const {
-  using Range = oneapi::tbb::blocked_range<std::size_t>;
-  oneapi::tbb::parallel_for(Range(0, blocks_.size(), kBlocksPerTask), [&](const Range& range) {
-    std::vector<PointIndex> neighbours;
-    for (std::size_t b = range.begin(); b != range.end(); ++b) {
-      const Neighbourhood around = neighbourhood_of(blocks_[b].cell);
-      for (const Entry& e : blocks_[b].entries) {
-        find_neighbours(e, cell_of(e.x, e.y, e.z), around, neighbours);
-        visit_point(e.point, neighbours);
-      }
+  std::vector<const Tile*> tiles;
+  tiles.reserve(tiles_.size());
+  for (const auto& [cell, tile] : tiles_) tiles.push_back(tile.get());
+  oneapi::tbb::parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t t) {
+    std::vector<PointIndex> points;
+    for (const std::unique_ptr<Block>& block : tiles[t]->blocks) {
+      if (!block) continue;
+      for (const Entry& entry : block->entries) points.push_back(entry.point);
     }
+    visit(points, visit_point);
   });
+}
+
+std::size_t GridIndex::bytes() const {
+  return num_entries_ * sizeof(Entry) + num_blocks_ * sizeof(Block) +
+         tiles_.size() * (sizeof(Tile) + sizeof(Cell) + 4 * sizeof(void*));
 }
 
 }  // namespace kintsugi::segmenter

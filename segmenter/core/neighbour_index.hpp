@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <memory>
 #include <span>
@@ -24,21 +25,30 @@ inline bool are_neighbours(const CloudPoint& a, const CloudPoint& b, float radiu
   return squared_distance(a, b) < radius_m * radius_m;
 }
 
-/// Finds the neighbours of points of a growing cloud; every implementation finds the same.
+/// Finds the neighbours of points among those that were inserted and not removed; every
+/// implementation finds the same.
 class NeighbourIndex {
  public:
-  /// A point and its neighbours, itself left out, in no particular order. Called from several
-  /// threads at once.
+  /// A point and its neighbours, itself left out, in no particular order.
   using Visit = std::function<void(PointIndex point, std::span<const PointIndex> neighbours)>;
 
   virtual ~NeighbourIndex() = default;
 
-  /// Adds the points of the cloud that are not in the index yet.
-  virtual void update() = 0;
-  /// Visits each of `points` once; they must be in the index.
+  /// Adds points of the cloud that are not in the index.
+  virtual void insert(std::span<const PointIndex> points) = 0;
+  /// Takes points out again; the cloud must still tell where they are.
+  virtual void remove(std::span<const PointIndex> points) = 0;
+
+  /// Visits `points`, which must be in the index, in this order and in the calling thread.
   virtual void visit(std::span<const PointIndex> points, const Visit& visit_point) const = 0;
-  /// Visits every point in the index once.
+  /// As visit(), in any order, from several threads at once.
+  virtual void visit_concurrently(std::span<const PointIndex> points,
+                                  const Visit& visit_point) const = 0;
+  /// Visits every point in the index once, in any order, from several threads at once.
   virtual void visit_all(const Visit& visit_point) const = 0;
+
+  /// Memory taken, without what the allocator adds.
+  virtual std::size_t bytes() const = 0;
 };
 
 /// `cloud` must outlive the index; `radius_m` > 0.

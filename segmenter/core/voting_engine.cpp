@@ -1,9 +1,7 @@
 #include "segmenter/core/voting_engine.hpp"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
-#include <numeric>
 
 #include <oneapi/tbb/enumerable_thread_specific.h>
 
@@ -27,11 +25,11 @@ VotingEngine::VotingEngine(const PointCloud& cloud, const EngineConfig& config)
 
 /// Algorithm 3.
 RunStatistics VotingEngine::update(const CloudChange& change) {
-  assert(change.removed.empty());
-  static_cast<void>(change);
   RunStatistics statistics;
   first_round_ = round_;
-  std::vector<PointIndex> added = add_new_points();
+  std::vector<PointIndex> added = remove_points(change.removed);
+  add_points(change.added);
+  added.insert(added.end(), change.added.begin(), change.added.end());
   for (int c = 0; c == 0 || !added.empty(); ++c, ++round_) {
     add_to_D(added);
     extend_graph(added);
@@ -45,19 +43,35 @@ RunStatistics VotingEngine::update(const CloudChange& change) {
   return statistics;
 }
 
-std::vector<PointIndex> VotingEngine::add_new_points() {
-  index_->update();
-  const PointIndex first = forest_.size();
+/// Returns what is left of the segments that lost a point.
+std::vector<PointIndex> VotingEngine::remove_points(std::span<const PointIndex> removed) {
+  index_->remove(removed);
+  std::vector<PointIndex> left;
+  for (const PointIndex i : removed) {
+    // The first of its points to go takes the whole segment apart.
+    if (round_added_[i] != round_) {
+      const auto first = static_cast<std::ptrdiff_t>(left.size());
+      append_segment(components_[i], left);
+      for (auto j = left.begin() + first; j != left.end(); ++j) round_added_[*j] = round_;
+    }
+  }
+  for (const PointIndex i : removed) {
+    forest_.reset(i);
+    components_[i] = kNoComponent;
+  }
+  std::erase_if(left, [&](PointIndex i) { return components_[i] == kNoComponent; });
+  return left;
+}
+
+void VotingEngine::add_points(std::span<const PointIndex> added) {
+  index_->insert(added);
   forest_.grow(cloud_.size());
-  components_.resize(cloud_.size());
+  components_.resize(cloud_.size(), kNoComponent);
   next_.resize(cloud_.size());
+  representative_at_.resize(cloud_.size());
   round_added_.resize(cloud_.size(), 0);
   round_discrepant_.resize(cloud_.size(), 0);
   ballots_.resize(cloud_.size());
-  std::vector<PointIndex> points(cloud_.size() - first);
-  std::iota(points.begin(), points.end(), first);
-  for (const PointIndex i : points) components_[i] = i;
-  return points;
 }
 
 void VotingEngine::add_to_D(std::span<const PointIndex> points) {
@@ -73,7 +87,7 @@ void VotingEngine::extend_graph(std::span<const PointIndex> added) {
   };
   const double max_weight = config_.threshold + config_.scale;
   oneapi::tbb::enumerable_thread_specific<Found> found;
-  index_->visit(added, [&](PointIndex i, std::span<const PointIndex> neighbours) {
+  index_->visit_concurrently(added, [&](PointIndex i, std::span<const PointIndex> neighbours) {
     Found& edges = found.local();
     for (const PointIndex j : neighbours) {
       if (!is_in_D(j)) {
@@ -140,8 +154,6 @@ void VotingEngine::append_segment(PointIndex representative,
 
 /// Algorithm 3, line 10: the segments of D become part of S.
 void VotingEngine::commit() {
-  const PointIndex first_new = static_cast<PointIndex>(representative_at_.size());
-  representative_at_.resize(cloud_.size());
   for (const PointIndex i : D_) representative_at_[i] = kNoPoint;
   std::sort(D_.begin(), D_.end());
   changed_.clear();
@@ -153,7 +165,7 @@ void VotingEngine::commit() {
     } else {
       next_[i] = std::exchange(next_[representative], i);
     }
-    if (i >= first_new || components_[i] != representative) changed_.push_back(i);
+    if (components_[i] != representative) changed_.push_back(i);
     components_[i] = representative;
   }
   D_.clear();

@@ -18,6 +18,9 @@ double vote_threshold(double beta, int c);
 /// Mode `voting`: the paper's incremental segmentation, Algorithms 2-5. An update segments the new
 /// points; while the result disagrees with old segments at the border, these are voted into the
 /// set D and the set is segmented again.
+///
+/// The paper's map only grows. Where points are removed, all that is left of their segments is
+/// segmented again together with the new points, in D from the first round on.
 class VotingEngine final : public SegmentationEngine {
  public:
   VotingEngine(const PointCloud& cloud, const EngineConfig& config);
@@ -28,7 +31,8 @@ class VotingEngine final : public SegmentationEngine {
   double theta(ComponentId component) const override;
 
  private:
-  std::vector<PointIndex> add_new_points();
+  std::vector<PointIndex> remove_points(std::span<const PointIndex> removed);
+  void add_points(std::span<const PointIndex> added);
   void add_to_D(std::span<const PointIndex> points);
   void extend_graph(std::span<const PointIndex> added);
   std::int64_t segment_graph();
@@ -43,7 +47,7 @@ class VotingEngine final : public SegmentationEngine {
 
   // The partition S. A segment in D is taken apart in forest_ only.
   SegmentForest forest_;
-  std::vector<PointIndex> components_;
+  std::vector<ComponentId> components_;
   std::vector<PointIndex> next_;               ///< the next point of the same segment, in a circle
   std::vector<PointIndex> representative_at_;  ///< by root in forest_
   std::vector<PointIndex> changed_;

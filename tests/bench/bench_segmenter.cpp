@@ -65,7 +65,7 @@ const EngineConfig kConfig;
 void neighbours_of_all(benchmark::State& state, NeighbourSearch search) {
   for (auto _ : state) {
     const auto index = make_neighbour_index(search, map_cloud(), kConfig.radius_m());
-    index->update();
+    index->insert(map_cloud().everything().added);
     index->visit_all([](PointIndex, std::span<const PointIndex> neighbours) {
       benchmark::DoNotOptimize(neighbours.size());
     });
@@ -83,7 +83,7 @@ BENCHMARK_CAPTURE(neighbours_of_all, flann, NeighbourSearch::kFlann)
 
 void graph(benchmark::State& state) {
   const auto index = make_neighbour_index(NeighbourSearch::kGrid, map_cloud(), kConfig.radius_m());
-  index->update();
+  index->insert(map_cloud().everything().added);
   std::size_t num_edges = 0;
   for (auto _ : state) {
     num_edges = build_graph(map_cloud(), *index, kConfig.threshold + kConfig.scale).size();
@@ -94,7 +94,7 @@ BENCHMARK(graph)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRea
 
 void joins(benchmark::State& state) {
   const auto index = make_neighbour_index(NeighbourSearch::kGrid, map_cloud(), kConfig.radius_m());
-  index->update();
+  index->insert(map_cloud().everything().added);
   const auto edges = build_graph(map_cloud(), *index, kConfig.threshold + kConfig.scale);
   for (auto _ : state) {
     state.PauseTiming();

@@ -77,6 +77,45 @@ TEST_P(BatchEngineTest, EachUpdateIsAsIfAllPointsCameAtOnce) {
   }
 }
 
+TEST_P(BatchEngineTest, AfterRemovalsAsIfTheOtherPointsWereAll) {
+  for (const CloudShape shape : kShapes) {
+    PointCloud cloud;
+    cloud.add_slice(0, random_cloud(shape, 400, 6));
+    BatchEngine engine(cloud, {.neighbour_search = GetParam()});
+    engine.update(cloud.take_change());
+    std::vector<PointIndex> left = cloud.everything().added;
+    std::mt19937 generator(5);
+    for (int step = 0; step < 5; ++step) {
+      const std::vector<ComponentId> before(engine.components().begin(), engine.components().end());
+      CloudChange change;
+      std::erase_if(left, [&](PointIndex i) {
+        if (generator() % 6 != 0) return false;
+        change.removed.push_back(i);
+        return true;
+      });
+      const RunStatistics run = engine.update(change);
+      EXPECT_EQ(run.num_points, static_cast<std::int64_t>(left.size()));
+
+      PointCloud remaining;
+      std::vector<CloudPoint> points;
+      for (const PointIndex i : left) points.push_back(cloud[i]);
+      remaining.add_slice(0, points);
+      BatchEngine fresh(remaining, {.neighbour_search = GetParam()});
+      fresh.update(remaining.take_change());
+      std::vector<ComponentId> expected(cloud.size(), kNoComponent);
+      std::vector<PointIndex> changed;
+      for (PointIndex k = 0; k < left.size(); ++k) {
+        const ComponentId component = fresh.components()[k];
+        expected[left[k]] = left[component];
+        if (before[left[k]] != left[component]) changed.push_back(left[k]);
+        EXPECT_EQ(engine.theta(left[component]), fresh.theta(component));
+      }
+      EXPECT_THAT(engine.components(), ::testing::ElementsAreArray(expected));
+      EXPECT_THAT(engine.changed(), ::testing::ElementsAreArray(changed));
+    }
+  }
+}
+
 TEST_P(BatchEngineTest, OrderOfPointsDoesNotMatter) {
   for (const CloudShape shape : kShapes) {
     const auto points = random_cloud(shape, 1500, 3);
@@ -115,7 +154,7 @@ TEST_P(BatchEngineTest, NumberOfThreadsDoesNotMatter) {
     using oneapi::tbb::global_control;
     const global_control threads(global_control::max_allowed_parallelism, num_threads);
     BatchEngine engine(cloud, {.neighbour_search = GetParam()});
-    engine.update(cloud.take_change());
+    engine.update(cloud.everything());
     results.emplace_back(engine.components().begin(), engine.components().end());
   }
   EXPECT_EQ(results[0], results[1]);

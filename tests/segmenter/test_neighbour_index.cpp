@@ -3,6 +3,8 @@
 #include <mutex>
 #include <numeric>
 #include <random>
+#include <set>
+#include <thread>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -60,7 +62,7 @@ Neighbours visit_some(const NeighbourIndex& index, PointIndex num_points,
                       const std::vector<PointIndex>& points) {
   Neighbours all(num_points);
   std::mutex mutex;
-  index.visit(points, [&](PointIndex i, std::span<const PointIndex> neighbours) {
+  index.visit_concurrently(points, [&](PointIndex i, std::span<const PointIndex> neighbours) {
     const std::lock_guard lock(mutex);
     all[i].assign(neighbours.begin(), neighbours.end());
     std::sort(all[i].begin(), all[i].end());
@@ -75,7 +77,7 @@ class NeighbourIndexTest : public testing::TestWithParam<NeighbourSearch> {
     cloud.add_slice(0, points);
     ASSERT_EQ(cloud.size(), points.size());
     const auto index = make_neighbour_index(GetParam(), cloud, radius_m);
-    index->update();
+    index->insert(cloud.take_change().added);
     EXPECT_EQ(visit_all(*index, cloud.size()), brute_force(cloud, radius_m));
   }
 
@@ -150,7 +152,7 @@ TEST_P(NeighbourIndexTest, RadiusIsExclusive) {
   const float below = std::nextafter(kRadius_m, 0.0F);
   cloud.add_slice(0, std::vector{at(0, 0, 0), at(kRadius_m, 0, 0), at(-below, 0, 0)});
   const auto index = make_neighbour_index(GetParam(), cloud, kRadius_m);
-  index->update();
+  index->insert(cloud.take_change().added);
   EXPECT_EQ(visit_all(*index, 3), (Neighbours{{2}, {}, {0}}));
 }
 
@@ -172,16 +174,91 @@ TEST_P(NeighbourIndexTest, GrowsSliceBySlice) {
   for (int slice = 0; slice < 6; ++slice) {
     const unsigned seed = 20U + static_cast<unsigned>(slice);
     cloud.add_slice(slice, random_points(slice == 3 ? 0 : 300, 0.9, 0.2, seed));
-    index->update();
+    index->insert(cloud.take_change().added);
     EXPECT_EQ(visit_all(*index, cloud.size()), brute_force(cloud, kRadius_m));
   }
+}
+
+/// brute_force() with the points in `gone` away.
+Neighbours brute_force_without(const PointCloud& cloud, const std::set<PointIndex>& gone) {
+  Neighbours all = brute_force(cloud, kRadius_m);
+  for (PointIndex i = 0; i < cloud.size(); ++i) {
+    if (gone.contains(i)) all[i].clear();
+    std::erase_if(all[i], [&](PointIndex j) { return gone.contains(j); });
+  }
+  return all;
+}
+
+TEST_P(NeighbourIndexTest, FindsNoRemovedPointAndAgainAfterInsertingIt) {
+  PointCloud cloud;
+  cloud.add_slice(0, random_points(1200, -0.15, 0.3, 41));
+  const auto index = make_neighbour_index(GetParam(), cloud, kRadius_m);
+  index->insert(cloud.take_change().added);
+  std::mt19937 generator(7);
+  std::set<PointIndex> gone;
+  for (int step = 0; step < 8; ++step) {
+    std::vector<PointIndex> removed;
+    std::vector<PointIndex> inserted;
+    for (PointIndex i = 0; i < cloud.size(); ++i) {
+      if (generator() % 4 != 0) continue;
+      (gone.contains(i) ? inserted : removed).push_back(i);
+    }
+    index->remove(removed);
+    index->insert(inserted);
+    gone.insert(removed.begin(), removed.end());
+    for (const PointIndex i : inserted) gone.erase(i);
+
+    std::vector<PointIndex> present;
+    for (PointIndex i = 0; i < cloud.size(); ++i) {
+      if (!gone.contains(i)) present.push_back(i);
+    }
+    const Neighbours expected = brute_force_without(cloud, gone);
+    EXPECT_EQ(visit_some(*index, cloud.size(), present), expected);
+    Neighbours all(cloud.size());
+    std::mutex mutex;
+    index->visit_all([&](PointIndex i, std::span<const PointIndex> neighbours) {
+      const std::lock_guard lock(mutex);
+      EXPECT_FALSE(gone.contains(i));
+      all[i].assign(neighbours.begin(), neighbours.end());
+      std::sort(all[i].begin(), all[i].end());
+    });
+    EXPECT_EQ(all, expected);
+  }
+}
+
+TEST_P(NeighbourIndexTest, MayBecomeEmpty) {
+  PointCloud cloud;
+  cloud.add_slice(0, random_points(300, -0.1, 0.2, 43));
+  const auto index = make_neighbour_index(GetParam(), cloud, kRadius_m);
+  const std::vector<PointIndex> points = cloud.take_change().added;
+  index->insert(points);
+  index->remove(points);
+  index->visit_all([](PointIndex, std::span<const PointIndex>) { ADD_FAILURE(); });
+  index->insert(points);
+  EXPECT_EQ(visit_all(*index, cloud.size()), brute_force(cloud, kRadius_m));
+}
+
+TEST_P(NeighbourIndexTest, VisitKeepsTheOrderAndTheThread) {
+  PointCloud cloud;
+  cloud.add_slice(0, random_points(5000, -0.3, 0.6, 44));
+  const auto index = make_neighbour_index(GetParam(), cloud, kRadius_m);
+  std::vector<PointIndex> points = cloud.take_change().added;
+  index->insert(points);
+  std::shuffle(points.begin(), points.end(), std::mt19937(3));
+  std::vector<PointIndex> visited;
+  index->visit(points,
+               [&, here = std::this_thread::get_id()](PointIndex i, std::span<const PointIndex>) {
+                 EXPECT_EQ(std::this_thread::get_id(), here);
+                 visited.push_back(i);
+               });
+  EXPECT_EQ(visited, points);
 }
 
 TEST_P(NeighbourIndexTest, VisitsTheGivenPointsOnly) {
   PointCloud cloud;
   cloud.add_slice(0, random_points(2000, -0.2, 0.4, 31));
   const auto index = make_neighbour_index(GetParam(), cloud, kRadius_m);
-  index->update();
+  index->insert(cloud.take_change().added);
   Neighbours expected = brute_force(cloud, kRadius_m);
   std::vector<PointIndex> queries;
   for (PointIndex i = 0; i < cloud.size(); ++i) {

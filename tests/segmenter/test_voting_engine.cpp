@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <random>
+#include <set>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -111,6 +113,86 @@ TEST(VotingEngine, EmptySliceChangesNothing) {
   EXPECT_EQ(engine.update(cloud.take_change()).num_points, 0);
   EXPECT_THAT(engine.components(), ::testing::ElementsAreArray(before));
   EXPECT_TRUE(engine.changed().empty());
+}
+
+/// Every point there is in one component, named by its smallest point; the others in none.
+void expect_valid(const VotingEngine& engine, const std::set<PointIndex>& present) {
+  const std::span<const ComponentId> components = engine.components();
+  for (PointIndex i = 0; i < components.size(); ++i) {
+    if (!present.contains(i)) {
+      EXPECT_EQ(components[i], kNoComponent);
+    } else {
+      ASSERT_LE(components[i], i);
+      ASSERT_EQ(components[components[i]], components[i]);
+      EXPECT_GT(engine.theta(components[i]), 0.0);
+    }
+  }
+}
+
+TEST(VotingEngine, SegmentsWhatIsLeftOfASegmentThatLostPointsAgain) {
+  // Two sheets, too far from each other to have a common edge.
+  const auto sheet = random_cloud(CloudShape::kWaves, 300, 2);
+  std::vector<CloudPoint> points = sheet;
+  for (CloudPoint p : sheet) {
+    p.z += 1.0F;
+    points.push_back(p);
+  }
+  PointCloud cloud;
+  cloud.add_slice(0, points);
+  VotingEngine engine(cloud, {});
+  engine.update(cloud.take_change());
+  CloudChange change;
+  for (PointIndex i = 0; i < 150; ++i) change.removed.push_back(i);
+  const RunStatistics run = engine.update(change);
+  EXPECT_LE(run.num_points, 150);
+  const auto upper = testing::literal_batch(sheet, {});
+  for (PointIndex i = 0; i < 300; ++i) {
+    EXPECT_EQ(engine.components()[300 + i],
+              300 + static_cast<PointIndex>(*upper.of.at(static_cast<int>(i))->d.begin()));
+  }
+}
+
+TEST(VotingEngine, StaysAPartitionWhilePointsComeAndGo) {
+  for (unsigned seed = 0; seed < 4; ++seed) {
+    const auto points = arriving_cloud(CloudShape::kWaves, Arrival::kMixed, 600, seed);
+    std::mt19937 generator(seed);
+    PointCloud cloud;
+    VotingEngine engine(cloud, {});
+    std::set<PointIndex> present;
+    std::vector<ComponentId> before;
+    for (int slice = 0; slice < 10; ++slice) {
+      cloud.add_slice(slice, std::span(points).subspan(static_cast<std::size_t>(slice) * 60, 60));
+      CloudChange change = cloud.take_change();
+      for (const PointIndex i : present) {
+        if (generator() % 12 == 0) change.removed.push_back(i);
+      }
+      engine.update(change);
+      for (const PointIndex i : change.removed) present.erase(i);
+      present.insert(change.added.begin(), change.added.end());
+      expect_valid(engine, present);
+
+      std::vector<PointIndex> changed;
+      before.resize(cloud.size(), kNoComponent);
+      for (const PointIndex i : present) {
+        if (engine.components()[i] != before[i]) changed.push_back(i);
+      }
+      EXPECT_THAT(engine.changed(), ::testing::ElementsAreArray(changed));
+      before.assign(engine.components().begin(), engine.components().end());
+    }
+  }
+}
+
+TEST(VotingEngine, AllPointsMayGo) {
+  PointCloud cloud;
+  cloud.add_slice(0, random_cloud(CloudShape::kWaves, 200, 3));
+  VotingEngine engine(cloud, {});
+  engine.update(cloud.take_change());
+  CloudChange change;
+  change.removed = cloud.everything().added;
+  engine.update(change);
+  expect_valid(engine, {});
+  engine.update(cloud.everything());
+  testing::expect_partition(engine, testing::literal_batch(cloud.points_W(), {}));
 }
 
 TEST(VotingEngine, TellsWhichPointsChanged) {
