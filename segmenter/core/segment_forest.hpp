@@ -51,7 +51,11 @@ class SegmentForest {
   bool join(PointIndex i, PointIndex j, float weight) {
     PointIndex host = find(i);
     PointIndex guest = find(j);
-    if (host == guest) return false;
+    return host != guest && join_roots(host, guest, weight);
+  }
+  /// As join(), for two different roots. Where it joins, `host` is the one that stays a root: that
+  /// of the larger segment, the first of the two when they are equal.
+  bool join_roots(PointIndex& host, PointIndex& guest, float weight) {
     const double w = weight;
     if (!(w < sets_[host].theta && w < sets_[guest].theta)) return false;
     if (sets_[host].size < sets_[guest].size) std::swap(host, guest);

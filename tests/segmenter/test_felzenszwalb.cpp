@@ -2,7 +2,7 @@
 #include <random>
 #include <vector>
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include "segmenter/core/felzenszwalb.hpp"
 #include "tests/segmenter/literal_segmentation.hpp"
@@ -117,6 +117,53 @@ TEST_P(Felzenszwalb, EdgesThatCanNeverJoinMayBeLeftOut) {
     const auto removed = std::erase_if(pruned, [](const Edge& e) { return e.weight >= kT + kK; });
     EXPECT_GT(removed, 0U);
     expect_same(segment(pruned, GetParam().num_points), reference(edges));
+  }
+}
+
+/// Plays Algorithm 1 with what it is told, one edge after the other.
+struct Retold {
+  explicit Retold(int num_points) : forest(kT, kK) {
+    forest.grow(static_cast<PointIndex>(num_points));
+  }
+  void joined(const Edge& edge, PointIndex host, PointIndex guest) {
+    expect_ascending(edge);
+    EXPECT_THAT((std::vector{forest.find(edge.i), forest.find(edge.j)}),
+                ::testing::UnorderedElementsAre(host, guest));
+    EXPECT_TRUE(forest.join(edge.i, edge.j, edge.weight));
+    EXPECT_EQ(forest.find(guest), host);
+    ++num_joined;
+  }
+  void rejected(const Edge& edge) {
+    expect_ascending(edge);
+    EXPECT_NE(forest.find(edge.i), forest.find(edge.j));
+    EXPECT_FALSE(forest.join(edge.i, edge.j, edge.weight));
+    ++num_rejected;
+  }
+  void expect_ascending(const Edge& edge) {
+    EXPECT_FALSE(AscendingWeight()(edge, last));
+    last = edge;
+  }
+
+  SegmentForest forest;
+  Edge last;
+  std::int64_t num_joined = 0;
+  std::int64_t num_rejected = 0;
+};
+
+TEST_P(Felzenszwalb, TellsEachJoinAndEachRejectedEdgeInOrder) {
+  for (unsigned seed = 0; seed < kNumSeeds; ++seed) {
+    const auto edges = undirected(graph(seed));
+    Retold retold(GetParam().num_points);
+    SegmentForest forest(kT, kK);
+    forest.grow(static_cast<PointIndex>(GetParam().num_points));
+    EXPECT_EQ(join_segments(edges, forest, retold), retold.num_joined);
+    std::int64_t num_between = 0;
+    for (const Edge& edge : edges) num_between += forest.find(edge.i) != forest.find(edge.j);
+    EXPECT_GE(retold.num_rejected, num_between);
+    for (PointIndex i = 0; i < forest.size(); ++i) {
+      EXPECT_EQ(retold.forest.find(i), forest.find(i));
+      EXPECT_EQ(retold.forest.theta_at(retold.forest.find(i)), forest.theta_at(forest.find(i)));
+    }
   }
 }
 
