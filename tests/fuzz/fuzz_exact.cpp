@@ -1,0 +1,142 @@
+// Takes an engine through random scenarios and holds it against batch after every step:
+//
+//   fuzz_exact --steps 50000 --map office.ply --map loop.ply
+//
+// Ends with the number of steps checked. A failure is made smaller, printed, and saved as a file
+// that --replay takes.
+
+#include <chrono>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+
+#include <CLI/CLI.hpp>
+
+#include "tests/bench/map_generator_file.hpp"
+#include "tests/fuzz/isolated_run.hpp"
+#include "tests/fuzz/random_scenario.hpp"
+#include "tests/fuzz/shrink.hpp"
+
+namespace kintsugi::segmenter::fuzz {
+namespace {
+
+struct Options {
+  std::string mode = "exact";
+  std::uint64_t seed = 1;
+  std::size_t steps = 50'000;
+  double minutes = 0.0;  ///< 0: until the steps are done
+  std::vector<std::filesystem::path> maps;
+  std::filesystem::path replay;
+  std::filesystem::path failures = ".";
+  ScenarioBounds bounds;
+  int max_failures = 3;
+  int shrink_trials = 3000;
+};
+
+constexpr int kTimeout_s = 60;  // a scenario takes about one second
+
+Options parse_command_line(int argc, char** argv) {
+  Options options;
+  CLI::App app("Random maps, after every step held against batch");
+  app.add_option("--mode", options.mode, "engine to check")->capture_default_str();
+  app.add_option("--seed", options.seed, "of the first scenario; the next ones count up")
+      ->capture_default_str();
+  app.add_option("--steps", options.steps, "to check")->capture_default_str();
+  app.add_option("--minutes", options.minutes, "go on for so long instead");
+  app.add_option("--map", options.maps, "take pieces of these: PLY or oracle .bin")
+      ->check(CLI::ExistingFile);
+  app.add_option("--max-points", options.bounds.max_points, "of a cloud")->capture_default_str();
+  app.add_option("--replay", options.replay, "run this scenario only")->check(CLI::ExistingFile);
+  app.add_option("--failures", options.failures, "folder for scenarios that fail")
+      ->check(CLI::ExistingDirectory)
+      ->capture_default_str();
+  app.add_option("--max-failures", options.max_failures, "stop after so many")
+      ->capture_default_str();
+  app.add_option("--shrink-trials", options.shrink_trials, "to make a failing scenario smaller")
+      ->capture_default_str();
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    std::exit(app.exit(error));
+  }
+  return options;
+}
+
+Outcome run(const Scenario& scenario, const std::string& mode) {
+  return run_isolated([&] { return run_scenario(scenario, engine_factory(mode)); }, kTimeout_s);
+}
+
+/// Prints what is wrong and the smallest scenario that still shows it.
+void report(const Options& options, std::uint64_t seed, const Scenario& scenario,
+            const Outcome& outcome) {
+  std::cout << "seed " << seed << ", step " << outcome.num_steps << " of " << scenario.steps.size()
+            << ": " << *outcome.failure << std::endl;
+  const auto fails = [&](const Scenario& s) { return run(s, options.mode).failure.has_value(); };
+  const Scenario smallest = shrink(scenario, fails, options.shrink_trials);
+  const auto file = options.failures / ("fuzz_" + std::to_string(seed) + ".txt");
+  std::ofstream out(file);
+  write_scenario(out, smallest);
+  std::cout << "  smallest: " << smallest.pool.size() << " points, " << smallest.steps.size()
+            << " steps: " << run(smallest, options.mode).failure.value_or("(passes)") << '\n'
+            << "  fuzz_exact --mode " << options.mode << " --replay " << file.string() << std::endl;
+  if (smallest.pool.size() <= 30) write_scenario(std::cout, smallest);
+}
+
+int replay(const Options& options) {
+  std::ifstream in(options.replay);
+  const Scenario scenario = read_scenario(in);
+  const Outcome outcome = run(scenario, options.mode);
+  std::cout << outcome.num_steps << " of " << scenario.steps.size()
+            << " steps: " << outcome.failure.value_or("all right") << '\n';
+  return outcome.failure ? 1 : 0;
+}
+
+int fuzz(const Options& options) {
+  std::vector<std::vector<CloudPoint>> maps;
+  for (const auto& file : options.maps) maps.push_back(bench::all_points(bench::read_map(file)));
+
+  using Clock = std::chrono::steady_clock;
+  const auto start = Clock::now();
+  const auto seconds = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
+  std::size_t num_steps = 0;
+  std::size_t num_scenarios = 0;
+  int num_failures = 0;
+  const auto is_done = [&] {
+    if (num_failures >= options.max_failures) return true;
+    return options.minutes > 0.0 ? seconds() >= 60.0 * options.minutes : num_steps >= options.steps;
+  };
+  for (std::uint64_t seed = options.seed; !is_done(); ++seed) {
+    const auto map_W = maps.empty() ? std::span<const CloudPoint>() : maps[seed % maps.size()];
+    const Scenario scenario = random_scenario(seed, options.bounds, map_W);
+    const Outcome outcome = run(scenario, options.mode);
+    num_steps += outcome.num_steps;
+    ++num_scenarios;
+    if (outcome.failure) {
+      ++num_failures;
+      report(options, seed, scenario, outcome);
+    }
+    if (num_scenarios % 100 == 0) {
+      std::cerr << num_steps << " steps, " << static_cast<int>(seconds()) << " s\r";
+    }
+  }
+  std::cout << options.mode << ": " << num_steps << " steps of " << num_scenarios
+            << " scenarios checked against batch (seeds " << options.seed << " to "
+            << options.seed + num_scenarios - 1 << ", " << static_cast<int>(seconds())
+            << " s): " << num_failures << " failures" << std::endl;
+  return num_failures == 0 ? 0 : 1;
+}
+
+}  // namespace
+}  // namespace kintsugi::segmenter::fuzz
+
+int main(int argc, char** argv) {
+  using namespace kintsugi::segmenter::fuzz;
+  try {
+    const Options options = parse_command_line(argc, argv);
+    return options.replay.empty() ? fuzz(options) : replay(options);
+  } catch (const std::exception& error) {
+    std::cerr << "fuzz_exact: " << error.what() << '\n';
+    return 2;
+  }
+}

@@ -1,0 +1,31 @@
+#include "tests/fuzz/partition.hpp"
+
+#include "segmenter/core/batch_engine.hpp"
+
+namespace kintsugi::segmenter::fuzz {
+
+Partition batch_partition(std::span<const CloudPoint> points_W, const EngineConfig& config) {
+  PointCloud cloud;
+  cloud.add_slice(0, points_W);
+  BatchEngine engine(cloud, config);
+  engine.update(cloud.take_change());
+  std::vector<PointIndex> all(cloud.size());
+  for (PointIndex i = 0; i < cloud.size(); ++i) all[i] = i;
+  return partition_of(engine, all);
+}
+
+Partition partition_of(const SegmentationEngine& engine, std::span<const PointIndex> live) {
+  constexpr PointIndex kNone = UINT32_MAX;
+  std::vector<PointIndex> smallest(engine.components().size(), kNone);
+  Partition partition;
+  for (PointIndex k = 0; k < live.size(); ++k) {
+    const ComponentId component = engine.components()[live[k]];
+    PointIndex& label = smallest[component];
+    if (label == kNone) label = k;
+    partition.labels.push_back(label);
+    partition.thetas.push_back(label == k ? engine.theta(component) : partition.thetas[label]);
+  }
+  return partition;
+}
+
+}  // namespace kintsugi::segmenter::fuzz

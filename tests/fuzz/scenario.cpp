@@ -1,0 +1,87 @@
+#include "tests/fuzz/scenario.hpp"
+
+#include <istream>
+#include <limits>
+#include <ostream>
+#include <stdexcept>
+#include <string>
+
+namespace kintsugi::segmenter::fuzz {
+namespace {
+
+void write_indices(std::ostream& out, const char* name, const std::vector<PoolIndex>& indices) {
+  out << name << ' ' << indices.size();
+  for (const PoolIndex i : indices) out << ' ' << i;
+  out << '\n';
+}
+
+template <typename Number>
+Number read_number(std::istream& in, const std::string& what) {
+  Number number{};
+  if (!(in >> number)) throw std::runtime_error("scenario: expected " + what);
+  return number;
+}
+
+void expect_word(std::istream& in, const std::string& word) {
+  std::string found;
+  if (!(in >> found) || found != word) {
+    throw std::runtime_error("scenario: found \"" + found + "\", expected \"" + word + "\"");
+  }
+}
+
+std::vector<PoolIndex> read_indices(std::istream& in, const char* name, std::size_t pool_size) {
+  expect_word(in, name);
+  std::vector<PoolIndex> indices(read_number<std::size_t>(in, "a count of points"));
+  for (PoolIndex& i : indices) {
+    i = read_number<PoolIndex>(in, "a point");
+    if (i >= pool_size) {
+      throw std::runtime_error("scenario: point " + std::to_string(i) + " of " +
+                               std::to_string(pool_size));
+    }
+  }
+  return indices;
+}
+
+}  // namespace
+
+void write_scenario(std::ostream& out, const Scenario& scenario) {
+  out.precision(std::numeric_limits<double>::max_digits10);
+  const EngineConfig& config = scenario.config;
+  out << "config " << config.threshold << ' ' << config.scale << ' ' << config.resolution_m << ' '
+      << config.radius_factor << '\n';
+  out << "points " << scenario.pool.size() << '\n';
+  for (const CloudPoint& p : scenario.pool) {
+    out << p.x << ' ' << p.y << ' ' << p.z << "  " << p.nx << ' ' << p.ny << ' ' << p.nz << '\n';
+  }
+  out << "steps " << scenario.steps.size() << '\n';
+  for (const Step& step : scenario.steps) {
+    write_indices(out, "remove", step.remove);
+    write_indices(out, "add", step.add);
+  }
+}
+
+Scenario read_scenario(std::istream& in) {
+  Scenario scenario;
+  expect_word(in, "config");
+  EngineConfig& config = scenario.config;
+  for (double* const value :
+       {&config.threshold, &config.scale, &config.resolution_m, &config.radius_factor}) {
+    *value = read_number<double>(in, "a parameter");
+  }
+  expect_word(in, "points");
+  scenario.pool.resize(read_number<std::size_t>(in, "the number of points"));
+  for (CloudPoint& p : scenario.pool) {
+    for (float* const value : {&p.x, &p.y, &p.z, &p.nx, &p.ny, &p.nz}) {
+      *value = read_number<float>(in, "a coordinate");
+    }
+  }
+  expect_word(in, "steps");
+  scenario.steps.resize(read_number<std::size_t>(in, "the number of steps"));
+  for (Step& step : scenario.steps) {
+    step.remove = read_indices(in, "remove", scenario.pool.size());
+    step.add = read_indices(in, "add", scenario.pool.size());
+  }
+  return scenario;
+}
+
+}  // namespace kintsugi::segmenter::fuzz
