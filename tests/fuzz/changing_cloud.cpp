@@ -1,34 +1,43 @@
 #include "tests/fuzz/changing_cloud.hpp"
 
 #include <algorithm>
+#include <set>
 
 namespace kintsugi::segmenter::fuzz {
 
 CloudChange ChangingCloud::apply(const Step& step) {
-  CloudChange change;
-  for (const PoolIndex i : step.remove) {
-    if (!index_[i]) continue;
-    change.removed.push_back(*index_[i]);
-    index_[i].reset();
+  std::set<std::int32_t> touched;
+  const auto put = [&](PoolIndex i, bool in) {
+    if (is_in_[i] == in) return;
+    is_in_[i] = in;
+    touched.insert(static_cast<std::int32_t>(i / slice_points_));
+  };
+  for (const PoolIndex i : step.remove) put(i, false);
+  for (const PoolIndex i : step.add) put(i, true);
+  for (const std::int32_t slice_id : touched) renew_slice(slice_id);
+  return cloud_.take_change();
+}
+
+void ChangingCloud::renew_slice(std::int32_t slice_id) {
+  std::vector<CloudPoint> points_W;
+  const std::size_t first = static_cast<std::size_t>(slice_id) * slice_points_;
+  const std::size_t last = std::min(first + slice_points_, pool_.size());
+  for (std::size_t i = first; i < last; ++i) {
+    if (is_in_[i]) points_W.push_back(pool_[i]);
   }
-  for (const PoolIndex i : step.add) {
-    if (index_[i]) continue;
-    const SliceRecord& slice =
-        cloud_.add_slice(static_cast<std::int32_t>(cloud_.slices().size()), {&pool_[i], 1});
-    index_[i] = slice.first;
-    pool_index_.push_back(i);
-    change.added.push_back(slice.first);
+  if (cloud_.find_slice(slice_id) == nullptr) {
+    cloud_.add_slice(slice_id, points_W);
+  } else if (points_W.empty() && slice_id % 2 == 0) {
+    cloud_.remove_slice(slice_id);
+  } else {
+    cloud_.replace_slice(slice_id, points_W);
   }
-  cloud_.take_change();
-  std::ranges::sort(change.removed);
-  std::ranges::sort(change.added);
-  return change;
 }
 
 std::vector<PointIndex> ChangingCloud::live() const {
   std::vector<PointIndex> live;
-  for (const auto& index : index_) {
-    if (index) live.push_back(*index);
+  for (const SliceRecord& slice : cloud_.slices()) {
+    for (PointIndex k = 0; k < slice.count; ++k) live.push_back(slice.first + k);
   }
   std::ranges::sort(live);
   return live;

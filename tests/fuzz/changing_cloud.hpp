@@ -1,6 +1,6 @@
 #pragma once
 
-#include <optional>
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -9,13 +9,15 @@
 
 namespace kintsugi::segmenter::fuzz {
 
-/// The map of a scenario: a PointCloud whose points come and go one by one, and which index each
-/// has.
-///
-/// Points are appended; those that leave stay behind, readable but not in the map.
+/// The map of a scenario. Consecutive points of the pool are one slice, which is replaced by what
+/// it has then when some of them come or go: a point that stays gets another index, as if the slice
+/// had come again. With one point a slice, points come and go alone.
 class ChangingCloud {
  public:
-  explicit ChangingCloud(std::span<const CloudPoint> pool) : pool_(pool), index_(pool.size()) {}
+  explicit ChangingCloud(const Scenario& scenario)
+      : pool_(scenario.pool),
+        slice_points_(scenario.slice_points),
+        is_in_(scenario.pool.size(), false) {}
 
   /// Applies a step and tells what it changed.
   CloudChange apply(const Step& step);
@@ -23,15 +25,14 @@ class ChangingCloud {
   [[nodiscard]] const PointCloud& cloud() const { return cloud_; }
   /// The points in the map, ascending.
   [[nodiscard]] std::vector<PointIndex> live() const;
-  /// The pool index of a point that is or was in the map.
-  [[nodiscard]] PoolIndex pool_index(PointIndex point) const { return pool_index_[point]; }
-  [[nodiscard]] bool contains(PoolIndex i) const { return index_[i].has_value(); }
 
  private:
+  void renew_slice(std::int32_t slice_id);
+
   std::span<const CloudPoint> pool_;
+  std::size_t slice_points_;
+  std::vector<bool> is_in_;  ///< by pool index
   PointCloud cloud_;
-  std::vector<std::optional<PointIndex>> index_;  ///< by pool index; none: not in the map
-  std::vector<PoolIndex> pool_index_;             ///< by point
 };
 
 }  // namespace kintsugi::segmenter::fuzz

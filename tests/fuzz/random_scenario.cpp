@@ -57,6 +57,7 @@ class ScenarioWriter {
         static_cast<double>(bounds.min_points), static_cast<double>(bounds.max_points) + 1.0));
     scenario_.pool = random_cloud(random_, num_points, map_W);
     cloud_size_ = scenario_.pool.size();
+    if (random_.chance(0.3)) scenario_.slice_points = random_.between(2, cloud_size_ / 4 + 2);
     is_in_.resize(cloud_size_, false);
     max_slice_ = random_.between(1, cloud_size_ / (random_.chance(0.3) ? 1 : 4) + 2);
     num_steps_ = random_.between(bounds.max_steps / 4 + 1, bounds.max_steps);

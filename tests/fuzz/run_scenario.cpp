@@ -14,7 +14,7 @@ EngineFactory engine_factory(const std::string& mode) {
 }
 
 Outcome run_scenario(const Scenario& scenario, const EngineFactory& make_engine) {
-  ChangingCloud map(scenario.pool);
+  ChangingCloud map(scenario);
   const auto engine = make_engine(map.cloud(), scenario.config);
   EngineCheck check(*engine, map.cloud(), scenario.config);
   Outcome outcome;

@@ -49,6 +49,7 @@ void write_scenario(std::ostream& out, const Scenario& scenario) {
   const EngineConfig& config = scenario.config;
   out << "config " << config.threshold << ' ' << config.scale << ' ' << config.resolution_m << ' '
       << config.radius_factor << '\n';
+  out << "slice_points " << scenario.slice_points << '\n';
   out << "points " << scenario.pool.size() << '\n';
   for (const CloudPoint& p : scenario.pool) {
     out << p.x << ' ' << p.y << ' ' << p.z << "  " << p.nx << ' ' << p.ny << ' ' << p.nz << '\n';
@@ -68,6 +69,9 @@ Scenario read_scenario(std::istream& in) {
        {&config.threshold, &config.scale, &config.resolution_m, &config.radius_factor}) {
     *value = read_number<double>(in, "a parameter");
   }
+  expect_word(in, "slice_points");
+  scenario.slice_points = read_number<std::size_t>(in, "the number of points in a slice");
+  if (scenario.slice_points == 0) throw std::runtime_error("scenario: slice_points is 0");
   expect_word(in, "points");
   scenario.pool.resize(read_number<std::size_t>(in, "the number of points"));
   for (CloudPoint& p : scenario.pool) {

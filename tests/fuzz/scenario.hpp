@@ -23,6 +23,7 @@ struct Step {
 /// scenario.
 struct Scenario {
   EngineConfig config;
+  std::size_t slice_points = 1;  ///< consecutive points of the pool that share a slice
   std::vector<CloudPoint> pool;
   std::vector<Step> steps;
 };

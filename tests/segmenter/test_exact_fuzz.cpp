@@ -12,7 +12,6 @@
 #include "tests/fuzz/isolated_run.hpp"
 #include "tests/fuzz/partition.hpp"
 #include "tests/fuzz/random_scenario.hpp"
-#include "tests/fuzz/rebuilding_engine.hpp"
 #include "tests/fuzz/shrink.hpp"
 #include "tests/segmenter/literal_segmentation.hpp"
 
@@ -24,17 +23,14 @@ using ::testing::Optional;
 
 constexpr ScenarioBounds kSmall = {.min_points = 5, .max_points = 80, .max_steps = 12};
 
-std::unique_ptr<SegmentationEngine> right_engine(const PointCloud& cloud,
-                                                 const EngineConfig& config) {
-  return std::make_unique<RebuildingEngine>(cloud, config);
-}
+const EngineFactory kRightEngine = engine_factory("batch");
 
 // The harness itself.
 
-TEST(Harness, FindsNothingWrongWithBatchRebuilt) {
+TEST(Harness, FindsNothingWrongWithBatch) {
   for (std::uint64_t seed = 0; seed < 60; ++seed) {
     const Scenario scenario = random_scenario(seed, kSmall, {});
-    const Outcome outcome = run_scenario(scenario, right_engine);
+    const Outcome outcome = run_scenario(scenario, kRightEngine);
     EXPECT_EQ(outcome.num_steps, scenario.steps.size());
     EXPECT_EQ(outcome.failure, std::nullopt) << "seed " << seed;
   }
@@ -44,7 +40,7 @@ TEST(Harness, ComparesWithTheLiteralAlgorithm) {
   int num_compared = 0;
   for (std::uint64_t seed = 0; seed < 40; ++seed) {
     const Scenario scenario = random_scenario(seed, kSmall, {});
-    ChangingCloud map(scenario.pool);
+    ChangingCloud map(scenario);
     for (const Step& step : scenario.steps) map.apply(step);
     std::vector<CloudPoint> points_W;
     for (const PointIndex i : map.live()) points_W.push_back(map.cloud()[i]);
@@ -72,7 +68,7 @@ TEST_P(HarnessFault, IsFound) {
   int num_found = 0;
   for (std::uint64_t seed = 0; seed < 30; ++seed) {
     const Scenario scenario = random_scenario(seed, kSmall, {});
-    const auto spoilt = run_scenario(scenario, faulty(right_engine, fault, seed % 5));
+    const auto spoilt = run_scenario(scenario, faulty(kRightEngine, fault, seed % 5));
     if (!spoilt.failure) continue;  // no step left room for the fault
     ++num_found;
     EXPECT_GT(spoilt.num_steps, seed % 5);
@@ -96,7 +92,7 @@ INSTANTIATE_TEST_SUITE_P(Faults, HarnessFault,
 TEST(Harness, MakesAFailingScenarioSmall) {
   const Scenario scenario = random_scenario(3, kSmall, {});
   const auto fails = [](const Scenario& s) {
-    return run_scenario(s, faulty(right_engine, Fault::kGoneStays, 0)).failure.has_value();
+    return run_scenario(s, faulty(kRightEngine, Fault::kGoneStays, 0)).failure.has_value();
   };
   ASSERT_TRUE(fails(scenario));
   const Scenario smallest = shrink(scenario, fails, 1000);
@@ -113,6 +109,7 @@ TEST(Harness, WritesAScenarioThatReadsBackTheSame) {
   EXPECT_EQ(read.pool, scenario.pool);
   EXPECT_EQ(read.config.threshold, scenario.config.threshold);
   EXPECT_EQ(read.config.scale, scenario.config.scale);
+  EXPECT_EQ(read.slice_points, scenario.slice_points);
   ASSERT_EQ(read.steps.size(), scenario.steps.size());
   for (std::size_t s = 0; s < read.steps.size(); ++s) {
     EXPECT_EQ(read.steps[s].add, scenario.steps[s].add);
@@ -121,7 +118,8 @@ TEST(Harness, WritesAScenarioThatReadsBackTheSame) {
 }
 
 TEST(Harness, RefusesWhatIsNoScenario) {
-  std::istringstream text("config 0.001 0.0005 0.01 2\npoints 0\nsteps 1\nremove 1 7\n");
+  std::istringstream text(
+      "config 0.001 0.0005 0.01 2\nslice_points 1\npoints 0\nsteps 1\nremove 1 7\n");
   EXPECT_THAT([&] { read_scenario(text); },
               ::testing::ThrowsMessage<std::runtime_error>(HasSubstr("point 7 of 0")));
 }
@@ -142,7 +140,7 @@ TEST(RandomScenario, DoesEverythingThatItPromises) {
   std::size_t num_returns = 0;    // a point comes to its old place
   for (std::uint64_t seed = 0; seed < 100; ++seed) {
     const Scenario scenario = random_scenario(seed, kSmall, {});
-    ChangingCloud map(scenario.pool);
+    ChangingCloud map(scenario);
     std::vector<bool> was_in(scenario.pool.size(), false);
     for (const Step& step : scenario.steps) {
       ++num_steps;
