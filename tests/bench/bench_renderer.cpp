@@ -17,7 +17,7 @@ void draw_figure(benchmark::State& state, const View& view) {
   FollowedCamera followed;
   for (const CloudSlice& slice : room.slices) scene.add_slice(slice);
   for (std::size_t i = 0; i < room.updates.size(); ++i) {
-    scene.apply_update(room.updates[i], static_cast<std::uint32_t>(i));
+    scene.apply_update(room.updates[i]);
   }
   for (const CameraPose& pose : room.poses) {
     scene.add_pose(pose);

@@ -173,6 +173,7 @@ SyntheticMap make_room(double length_m, double resolution_m) {
     SegmentUpdate& update = map.updates[i];
     update.utime = slice.utime;
     update.session = kSegmenterSession;
+    update.sequence = slice.id;
     update.map_session = kMapSession;
     update.map_name = slice.map_name;
     update.slice_id = slice.id;

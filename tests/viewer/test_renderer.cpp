@@ -26,7 +26,7 @@ struct Furnished {
     const SyntheticMap room = make_room(4.0, 0.04);
     for (const CloudSlice& slice : room.slices) scene.add_slice(slice);
     for (std::size_t i = 0; segmented && i < room.updates.size(); ++i) {
-      scene.apply_update(room.updates[i], static_cast<std::uint32_t>(i));
+      scene.apply_update(room.updates[i]);
     }
     for (const CameraPose& pose : room.poses) {
       scene.add_pose(pose);

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <map>
 #include <numeric>
 #include <random>
 
@@ -42,6 +43,11 @@ SegmentUpdate update_of(std::int32_t slice_id, std::vector<std::uint32_t> labels
   return update;
 }
 
+void apply(Scene& scene, SegmentUpdate update, std::int64_t sequence) {
+  update.sequence = sequence;
+  scene.apply_update(update);
+}
+
 std::vector<std::uint32_t> labels_of(const Scene& scene, std::int32_t id) {
   return scene.slice(id)->labels;
 }
@@ -65,8 +71,8 @@ TEST(Scene, LabelsItsPointsFromUpdatesAndRuns) {
   EXPECT_EQ(Labels({0, 0, 0, 0}), labels_of(scene, 0));
   EXPECT_EQ(2, scene.lag_slices());
 
-  scene.apply_update(update_of(0, {1, 1, 2, 2}), 0);
-  scene.apply_update(update_of(1, {2, 3}, {{0, 1, 2, 3}}), 1);
+  apply(scene, update_of(0, {1, 1, 2, 2}), 0);
+  apply(scene, update_of(1, {2, 3}, {{0, 1, 2, 3}}), 1);
   EXPECT_EQ(Labels({1, 3, 3, 2}), labels_of(scene, 0));
   EXPECT_EQ(Labels({2, 3}), labels_of(scene, 1));
   EXPECT_EQ(0, scene.lag_slices());
@@ -74,42 +80,57 @@ TEST(Scene, LabelsItsPointsFromUpdatesAndRuns) {
   EXPECT_EQ(6, scene.counts().points);
 }
 
-/// A run of a segmenter: each slice gets random labels, and random runs of older points change.
+/// A run of a segmenter: slices come, some of them again with a higher revision and another number
+/// of points. Each gets random labels, and random runs of older points change.
 struct RandomRun {
   std::vector<CloudSlice> slices;
-  std::vector<SegmentUpdate> updates;
-  std::vector<Labels> truth;  ///< labels per slice after all updates in their order
+  std::vector<SegmentUpdate> updates;           ///< one for each of slices
+  std::map<std::int32_t, Labels> truth;         ///< after all updates in their order
+  std::map<std::int32_t, std::int32_t> newest;  ///< revision of each slice
 
-  explicit RandomRun(unsigned seed) {
-    std::mt19937 random(seed);
-    const auto below = [&](int end) {
-      return std::uniform_int_distribution<int>(0, end - 1)(random);
-    };
-    for (std::int32_t id = 0; id < 30; ++id) {
-      const int size = below(50);
-      slices.push_back(slice_of(id, size));
-      Labels labels(static_cast<std::size_t>(size));
-      for (auto& label : labels) label = static_cast<std::uint32_t>(1 + below(9));
-      std::vector<LabelRun> runs;
-      for (int i = 0; i < 20 && id > 0; ++i) {
-        const std::int32_t older = below(id);
-        const int older_size = static_cast<int>(truth[static_cast<std::size_t>(older)].size());
-        if (older_size == 0) continue;
-        const int first = below(older_size);
-        const int count = 1 + below(older_size - first);
-        const auto label = static_cast<std::uint32_t>(1 + below(9));
-        runs.push_back({older, first, count, label});
-        auto& changed = truth[static_cast<std::size_t>(older)];
-        std::fill_n(changed.begin() + first, count, label);
-      }
-      truth.push_back(labels);
-      updates.push_back(update_of(id, labels, runs));
+  explicit RandomRun(unsigned seed) : random_(seed) {
+    for (std::int32_t step = 0; step < 60; ++step) {
+      const bool is_correction = !truth.empty() && below(2) == 0;
+      const auto id =
+          static_cast<std::int32_t>(is_correction ? below(std::ssize(truth)) : std::ssize(truth));
+      const std::int32_t revision = is_correction ? newest[id] + 1 + below(2) : 0;
+      slices.push_back(slice_of(id, below(50), revision));
+      newest[id] = revision;
+      truth[id] = Labels(slices.back().points_W.size());
+      for (auto& label : truth[id]) label = random_label();
+      updates.push_back(update_of(id, truth[id], change_older_labels(id)));
+      updates.back().slice_revision = revision;
+      updates.back().num_slices = static_cast<std::int32_t>(std::ssize(truth));
     }
   }
+
+ private:
+  std::int32_t below(std::int64_t end) {
+    return std::uniform_int_distribution<std::int32_t>(0,
+                                                       static_cast<std::int32_t>(end - 1))(random_);
+  }
+  std::uint32_t random_label() { return static_cast<std::uint32_t>(1 + below(9)); }
+
+  std::vector<LabelRun> change_older_labels(std::int32_t newest_id) {
+    std::vector<LabelRun> runs;
+    for (int i = 0; i < 20; ++i) {
+      const std::int32_t id = below(std::ssize(truth));
+      Labels& labels = truth[id];
+      if (id == newest_id || labels.empty()) continue;
+      const std::int32_t first = below(std::ssize(labels));
+      const std::int32_t count = 1 + below(std::ssize(labels) - first);
+      const std::uint32_t label = random_label();
+      runs.push_back({id, first, count, label, newest[id]});
+      std::fill_n(labels.begin() + first, count, label);
+    }
+    return runs;
+  }
+
+  std::mt19937 random_;
 };
 
-TEST(Scene, EndsWithTheSameLabelsInWhateverOrderSlicesAndUpdatesArrive) {
-  for (unsigned seed = 0; seed < 20; ++seed) {
+TEST(Scene, EndsWithTheSameLabelsInWhateverOrderSlicesRevisionsAndUpdatesArrive) {
+  for (unsigned seed = 0; seed < 40; ++seed) {
     const RandomRun run(seed);
     const auto count = static_cast<int>(run.slices.size());
     std::vector<int> order;  // i: slice i; i + count: update i; each twice
@@ -126,15 +147,19 @@ TEST(Scene, EndsWithTheSameLabelsInWhateverOrderSlicesAndUpdatesArrive) {
       if (i < count) {
         scene.add_slice(run.slices[static_cast<std::size_t>(i)]);
       } else {
-        scene.apply_update(run.updates[static_cast<std::size_t>(i - count)],
-                           static_cast<std::uint32_t>(i - count));
+        apply(scene, run.updates[static_cast<std::size_t>(i - count)], i - count);
       }
     }
-    for (int i = 0; i < count; ++i) {
-      EXPECT_EQ(run.truth[static_cast<std::size_t>(i)], labels_of(scene, i)) << seed;
+    std::int64_t num_points = 0;
+    for (const auto& [id, labels] : run.truth) {
+      EXPECT_EQ(labels, labels_of(scene, id)) << "slice " << id << ", seed " << seed;
+      EXPECT_EQ(run.newest.at(id), scene.slice(id)->revision);
+      num_points += std::ssize(labels);
     }
+    EXPECT_EQ(num_points, scene.counts().points);  // of earlier revisions none is left
+    EXPECT_EQ(std::ssize(run.truth), scene.counts().labelled_slices);
     EXPECT_EQ(0, scene.lag_slices());
-    EXPECT_EQ(count, scene.counts().ignored_slices);
+    EXPECT_EQ(2 * count, scene.counts().updates + scene.counts().ignored_updates);
     EXPECT_EQ(0, scene.counts().ignored_runs);
   }
 }
@@ -142,21 +167,22 @@ TEST(Scene, EndsWithTheSameLabelsInWhateverOrderSlicesAndUpdatesArrive) {
 TEST(Scene, IgnoresAndCountsRunsOutsideTheirSlice) {
   Scene scene(kMapSession);
   scene.add_slice(slice_of(0, 3));
-  scene.apply_update(update_of(0, {1, 1, 1},
-                               {{0, 2, 2, 7},
-                                {0, -1, 2, 7},
-                                {0, 0, 0, 7},
-                                {0, 0, -5, 7},
-                                {0, 3, 1, 7},
-                                {0, 2147483647, 2147483647, 7}}),
-                     0);
+  apply(scene,
+        update_of(0, {1, 1, 1},
+                  {{0, 2, 2, 7},
+                   {0, -1, 2, 7},
+                   {0, 0, 0, 7},
+                   {0, 0, -5, 7},
+                   {0, 3, 1, 7},
+                   {0, 2147483647, 2147483647, 7}}),
+        0);
   EXPECT_EQ(Labels({1, 1, 1}), labels_of(scene, 0));
   EXPECT_EQ(6, scene.counts().ignored_runs);
 }
 
 TEST(Scene, KeepsRunsForSlicesThatHaveNotCome) {
   Scene scene(kMapSession);
-  scene.apply_update(update_of(7, {1}, {{3, 0, 2, 9}, {99, 0, 1, 9}}), 0);
+  apply(scene, update_of(7, {1}, {{3, 0, 2, 9}, {99, 0, 1, 9}}), 0);
   EXPECT_EQ(8, scene.lag_slices());
   scene.add_slice(slice_of(3, 3));
   EXPECT_EQ(Labels({9, 9, 0}), labels_of(scene, 3));
@@ -167,8 +193,8 @@ TEST(Scene, IgnoresAndCountsUpdatesOfAnotherMapOrOfAnotherLength) {
   scene.add_slice(slice_of(0, 3));
   SegmentUpdate other = update_of(0, {1, 1, 1});
   other.map_session = kMapSession + 1;
-  scene.apply_update(other, 0);
-  scene.apply_update(update_of(0, {1, 1}), 0);
+  apply(scene, other, 0);
+  apply(scene, update_of(0, {1, 1}), 0);
   EXPECT_EQ(Labels({0, 0, 0}), labels_of(scene, 0));
   EXPECT_EQ(2, scene.counts().ignored_updates);
   EXPECT_EQ(0, scene.counts().updates);
@@ -177,10 +203,10 @@ TEST(Scene, IgnoresAndCountsUpdatesOfAnotherMapOrOfAnotherLength) {
 TEST(Scene, ReplacesASliceByItsHigherRevision) {
   Scene scene(kMapSession);
   scene.add_slice(slice_of(0, 3));
-  scene.apply_update(update_of(0, {1, 1, 1}), 0);
+  apply(scene, update_of(0, {1, 1, 1}), 0);
   SegmentUpdate revised = update_of(0, {4, 4});
   revised.slice_revision = 2;
-  scene.apply_update(revised, 1);  // before its slice
+  apply(scene, revised, 1);  // before its slice
   EXPECT_EQ(Labels({1, 1, 1}), labels_of(scene, 0));
 
   scene.add_slice(slice_of(0, 2, 2));
@@ -192,20 +218,46 @@ TEST(Scene, ReplacesASliceByItsHigherRevision) {
   EXPECT_EQ(1, scene.counts().ignored_slices);
 }
 
+TEST(Scene, KeepsRunsForARevisionThatUpdatesHaveOvertaken) {
+  Scene scene(kMapSession);
+  scene.add_slice(slice_of(0, 3));
+  apply(scene, update_of(0, {1, 1, 1}), 0);
+  SegmentUpdate revised = update_of(0, {4, 4, 4});
+  revised.slice_revision = 1;
+  apply(scene, revised, 1);
+  apply(scene, update_of(1, {}, {{0, 1, 2, 6, 1}, {0, 0, 1, 9, 0}}), 2);
+  EXPECT_EQ(Labels({9, 1, 1}), labels_of(scene, 0));  // the points here are still the first ones
+  EXPECT_EQ(2, scene.lag_slices());                   // slice 1, and the revision of slice 0
+  scene.add_slice(slice_of(0, 3, 1));
+  EXPECT_EQ(Labels({4, 6, 6}), labels_of(scene, 0));
+  EXPECT_EQ(1, scene.lag_slices());
+  apply(scene, update_of(2, {}, {{0, 0, 3, 8, 0}}), 3);  // of the revision that is gone
+  EXPECT_EQ(Labels({4, 6, 6}), labels_of(scene, 0));
+}
+
+TEST(Scene, IgnoresUpdatesOutsideTheNumbersOfAStream) {
+  Scene scene(kMapSession);
+  scene.add_slice(slice_of(0, 1));
+  apply(scene, update_of(0, {1}), -1);
+  apply(scene, update_of(0, {1}), std::int64_t{1} << 40U);
+  EXPECT_EQ(Labels({0}), labels_of(scene, 0));
+  EXPECT_EQ(2, scene.counts().ignored_updates);
+}
+
 TEST(Scene, StartsTheLabelsAnewWithANewSegmenter) {
   Scene scene(kMapSession);
   scene.add_slice(slice_of(0, 2));
   scene.add_slice(slice_of(1, 2));
-  scene.apply_update(update_of(0, {1, 1}), 8);
-  scene.apply_update(update_of(1, {1, 1}), 9);
+  apply(scene, update_of(0, {1, 1}), 8);
+  apply(scene, update_of(1, {1, 1}), 9);
   SegmentUpdate restarted = update_of(0, {5, 5});
   restarted.session = kSegmenterSession + 1;
-  scene.apply_update(restarted, 0);
+  apply(scene, restarted, 0);
   EXPECT_EQ(Labels({5, 5}), labels_of(scene, 0));
   EXPECT_EQ(Labels({0, 0}), labels_of(scene, 1));
   EXPECT_EQ(1, scene.lag_slices());
 
-  scene.apply_update(update_of(1, {3, 3}), 10);  // late, of the segmenter that is gone
+  apply(scene, update_of(1, {3, 3}), 10);  // late, of the segmenter that is gone
   EXPECT_EQ(Labels({0, 0}), labels_of(scene, 1));
 }
 
@@ -215,9 +267,9 @@ TEST(Scene, ShowsTheSliceSegmentedLastOrWithoutSegmenterTheLast) {
   scene.add_slice(slice_of(1, 2));
   scene.add_slice(slice_of(2, 0));
   EXPECT_EQ(1, scene.newest_slice()->id);  // the last that has points
-  scene.apply_update(update_of(0, {1, 1}), 0);
+  apply(scene, update_of(0, {1, 1}), 0);
   EXPECT_EQ(0, scene.newest_slice()->id);
-  scene.apply_update(update_of(1, {1, 1}), 1);
+  apply(scene, update_of(1, {1, 1}), 1);
   EXPECT_EQ(1, scene.newest_slice()->id);
 }
 

@@ -92,58 +92,87 @@ void Scene::discard_labels() {
   final_update_seen_ = false;
 }
 
-void Scene::apply_update(const SegmentUpdate& update, std::uint32_t number) {
-  if (update.map_session != map_session_ || !accept_segmenter(update.session)) {
+Scene::Presence Scene::presence(SliceKey key) const {
+  const auto found = slices_.find(key.id);
+  if (found == slices_.end() || found->second.revision < key.revision) return Presence::kNotYet;
+  return found->second.revision == key.revision ? Presence::kHere : Presence::kReplaced;
+}
+
+void Scene::apply_update(const SegmentUpdate& update) {
+  const bool is_numbered = update.sequence >= 0 && update.sequence < UINT32_MAX;
+  if (update.map_session != map_session_ || !is_numbered || !accept_segmenter(update.session)) {
     ++counts_.ignored_updates;
     return;
   }
   ++counts_.updates;
+  const auto number = static_cast<std::uint32_t>(update.sequence);
   if (!newest_update_ || number >= *newest_update_) {
     newest_update_ = number;
     counts_.segments = update.num_segments;
     announced_slices_ = update.num_slices;
   }
   final_update_seen_ = final_update_seen_ || update.is_final;
+  use_labels({update.slice_id, update.slice_revision}, {update.labels, number});
+  for (const LabelRun& run : update.runs) use_run({run, number});
+}
 
-  PendingLabels labels{update.labels, update.slice_revision, number};
-  const auto found = slices_.find(update.slice_id);
-  if (found != slices_.end() && found->second.revision >= update.slice_revision) {
-    apply_labels(found->second, labels);
-  } else {
-    Pending& pending = pending_[update.slice_id];
-    if (!pending.labels || pending.labels->number <= number) pending.labels = std::move(labels);
-  }
-  for (const LabelRun& run : update.runs) {
-    if (const auto slice = slices_.find(run.slice_id); slice != slices_.end()) {
-      apply_run(slice->second, {run, number});
-    } else if (pending_runs_ < kMaxPendingRuns) {
-      pending_[run.slice_id].runs.push_back({run, number});
-      ++pending_runs_;
-    } else {
-      ++counts_.ignored_runs;
-    }
+void Scene::use_labels(SliceKey key, PendingLabels labels) {
+  switch (presence(key)) {
+    case Presence::kHere:
+      apply_labels(slices_.at(key.id), labels);
+      break;
+    case Presence::kReplaced:
+      ignore_counted_update();
+      break;
+    case Presence::kNotYet:
+      auto& waiting = pending_[key].labels;
+      if (!waiting || waiting->number <= labels.number) waiting = std::move(labels);
+      break;
   }
 }
 
-void Scene::apply_pending(SceneSlice& slice) {
-  const auto found = pending_.find(slice.id);
-  if (found == pending_.end()) return;
-  Pending pending = std::move(found->second);
-  pending_.erase(found);
-  pending_runs_ -= pending.runs.size();
-  for (const PendingRun& run : pending.runs) apply_run(slice, run);
-  if (!pending.labels) return;
-  if (pending.labels->revision > slice.revision) {
-    pending_[slice.id].labels = std::move(pending.labels);
-  } else {
-    apply_labels(slice, *pending.labels);
+void Scene::use_run(const PendingRun& pending) {
+  const SliceKey key{pending.run.slice_id, pending.run.slice_revision};
+  switch (presence(key)) {
+    case Presence::kHere:
+      apply_run(slices_.at(key.id), pending);
+      break;
+    case Presence::kReplaced:
+      break;
+    case Presence::kNotYet:
+      if (pending_runs_ < kMaxPendingRuns) {
+        pending_[key].runs.push_back(pending);
+        ++pending_runs_;
+      } else {
+        ++counts_.ignored_runs;
+      }
+      break;
   }
+}
+
+/// Applies what waited for this revision; what waited for earlier ones means nothing any more.
+void Scene::apply_pending(SceneSlice& slice) {
+  const auto end = pending_.upper_bound({slice.id, slice.revision});
+  for (auto it = pending_.lower_bound({slice.id, 0}); it != end; it = pending_.erase(it)) {
+    const auto& [key, pending] = *it;
+    pending_runs_ -= pending.runs.size();
+    if (key.revision < slice.revision) {
+      if (pending.labels) ignore_counted_update();
+      continue;
+    }
+    for (const PendingRun& run : pending.runs) apply_run(slice, run);
+    if (pending.labels) apply_labels(slice, *pending.labels);
+  }
+}
+
+void Scene::ignore_counted_update() {
+  ++counts_.ignored_updates;
+  --counts_.updates;
 }
 
 void Scene::apply_labels(SceneSlice& slice, const PendingLabels& pending) {
-  if (pending.revision != slice.revision || pending.labels.size() != slice.labels.size()) {
-    ++counts_.ignored_updates;
-    --counts_.updates;
+  if (pending.labels.size() != slice.labels.size()) {
+    ignore_counted_update();
     return;
   }
   for (std::size_t i = 0; i < slice.labels.size(); ++i) {
@@ -151,7 +180,10 @@ void Scene::apply_labels(SceneSlice& slice, const PendingLabels& pending) {
     slice.labels[i] = pending.labels[i];
     slice.label_updates[i] = pending.number + 1;
   }
-  if (!slice.labelled) ++counts_.labelled_slices;
+  if (!slice.labelled) {
+    ++counts_.labelled_slices;
+    ++counts_.labellings;
+  }
   slice.labelled = true;
   if (!slice.points_W.empty()) newest_labelled_id_ = std::max(newest_labelled_id_, slice.id);
 }
@@ -188,7 +220,20 @@ void Scene::advance_time(std::int64_t utime) {
 
 std::int64_t Scene::lag_slices() const {
   const std::int64_t known = std::max(counts_.slices, announced_slices_);
-  return known - counts_.labelled_slices;
+  return known - counts_.labelled_slices + superseded_slices();
+}
+
+/// Labelled slices of which the segmenter knows a newer revision.
+std::int64_t Scene::superseded_slices() const {
+  std::int64_t count = 0;
+  std::int32_t counted_id = -1;
+  for (const auto& [key, pending] : pending_) {
+    const SceneSlice* const here = slice(key.id);
+    if (!pending.labels || here == nullptr || !here->labelled || key.id == counted_id) continue;
+    counted_id = key.id;
+    ++count;
+  }
+  return count;
 }
 
 const SceneSlice* Scene::slice(std::int32_t id) const {

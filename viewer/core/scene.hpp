@@ -41,6 +41,7 @@ struct SceneCounts {
   std::int64_t segments = 0;         ///< as the newest update says
   std::int64_t updates = 0;          ///< applied, or kept until their slice arrives
   std::int64_t labelled_slices = 0;  ///< present now, with their update applied
+  std::int64_t labellings = 0;       ///< slices that got their update, each revision counted
   std::int64_t ignored_slices = 0;   ///< repeated, or older than what is shown
   std::int64_t ignored_updates = 0;  ///< of another map, of a superseded segmenter or revision
   std::int64_t ignored_runs = 0;     ///< reach outside their slice, or wait for too many
@@ -48,10 +49,12 @@ struct SceneCounts {
 
 /// The map as far as it is known: slices, their labels and the camera's path, of one map session.
 ///
-/// Slices and updates may arrive in any order and more than once. Every point remembers the number
-/// of the update that labelled it, and a lower number never overrides a higher one, so the labels
-/// after a set of updates are those of the updates applied in their order. What an update says
-/// about a slice that is not here yet waits for it.
+/// Slices and updates may arrive in any order and more than once. A higher revision of a slice
+/// takes the place of the one here, points and labels. Every point remembers the sequence number of
+/// the update that labelled it, and a lower one never overrides a higher one, so the labels after a
+/// set of updates are those of the updates applied in their order. What an update says about a
+/// revision of a slice that is not here yet waits for it; about one that has been replaced it means
+/// nothing.
 class Scene {
  public:
   /// Points of one PointChunk; a power of two, so that a point's number splits by shifting.
@@ -63,17 +66,18 @@ class Scene {
   /// A revision that is not newer than the one present is ignored and counted.
   void add_slice(CloudSlice slice);
 
-  /// Applies the labels and runs of an update. `number` is its place in the segmenter's stream,
-  /// from 0. The first update of a segmenter session not seen before discards the labels of the
-  /// session before it, whose later updates are ignored and counted.
-  void apply_update(const SegmentUpdate& update, std::uint32_t number);
+  /// Applies the labels and runs of an update. The first update of a segmenter session not seen
+  /// before discards the labels of the session before it, whose later updates are ignored and
+  /// counted. So is a sequence number beyond 2^32: no stream is that long.
+  void apply_update(const SegmentUpdate& update);
 
   /// Moves the camera; its path grows by each kPathStep_m. Lost and starting frames move nothing.
   void add_pose(const CameraPose& pose);
 
   std::int64_t map_session() const { return map_session_; }
   const SceneCounts& counts() const { return counts_; }
-  /// Slices here that wait for their update, and slices that an update has named but are not here.
+  /// Slices here that wait for their update, and slices, or newer revisions of them, that an update
+  /// has named but are not here.
   std::int64_t lag_slices() const;
   /// Device time of the newest slice or pose, microseconds; 0 when there is none.
   std::int64_t utime() const { return utime_; }
@@ -100,13 +104,17 @@ class Scene {
   std::int64_t memory_bytes() const;
 
  private:
+  struct SliceKey {
+    std::int32_t id = 0;
+    std::int32_t revision = 0;
+    auto operator<=>(const SliceKey&) const = default;
+  };
   struct PendingRun {
     LabelRun run;
-    std::uint32_t number = 0;
+    std::uint32_t number = 0;  ///< of its update
   };
   struct PendingLabels {
     std::vector<std::uint32_t> labels;
-    std::int32_t revision = 0;
     std::uint32_t number = 0;
   };
   struct Pending {
@@ -115,12 +123,19 @@ class Scene {
   };
 
   static constexpr double kPathStep_m = 0.02;
-  static constexpr std::size_t kMaxPendingRuns = 4'000'000;  ///< 80 MB: hostile or hopeless
+  static constexpr std::size_t kMaxPendingRuns = 4'000'000;  ///< 96 MB: hostile or hopeless
 
+  enum class Presence { kHere, kReplaced, kNotYet };
+
+  Presence presence(SliceKey key) const;
   bool accept_segmenter(std::int64_t session);
+  void use_labels(SliceKey key, PendingLabels labels);
+  void use_run(const PendingRun& pending);
   void apply_labels(SceneSlice& slice, const PendingLabels& pending);
   void apply_run(SceneSlice& slice, const PendingRun& pending);
   void apply_pending(SceneSlice& slice);
+  void ignore_counted_update();
+  std::int64_t superseded_slices() const;
   void discard_labels();
   void advance_time(std::int64_t utime);
 
@@ -128,7 +143,7 @@ class Scene {
   std::int64_t segmenter_session_ = 0;
   std::vector<std::int64_t> superseded_segmenters_;
   std::map<std::int32_t, SceneSlice> slices_;
-  std::map<std::int32_t, Pending> pending_;
+  std::map<SliceKey, Pending> pending_;  ///< what waits for points
   std::size_t pending_runs_ = 0;
   std::optional<std::uint32_t> newest_update_;
   std::int32_t newest_labelled_id_ = -1;

@@ -57,8 +57,7 @@ void Viewer::use(CloudSlice slice) {
 
 void Viewer::use(const SegmentUpdate& update) {
   if (!is_wanted(update.map_name) || !enter_session(update.map_session)) return;
-  // Each update adds a slice to the segmenter's map, so their order is in how many it has then.
-  scene_->apply_update(update, static_cast<std::uint32_t>(std::max(update.num_slices, 0)));
+  scene_->apply_update(update);
   history_.add_lag(*scene_);
   changed_since_final_ = true;
   last_map_message_ = Clock::now();
@@ -98,10 +97,10 @@ bool Viewer::enter_session(std::int64_t session) {
   return true;
 }
 
-/// Slices with their segments; without a segmenter, slices.
+/// Slices with their segments, corrected ones again; without a segmenter, slices.
 std::int64_t Viewer::shown_slices() const {
   const SceneCounts& counts = scene_->counts();
-  return counts.updates > 0 ? counts.labelled_slices : counts.slices;
+  return counts.updates > 0 ? counts.labellings : counts.slices;
 }
 
 bool Viewer::snapshot_due() const {
