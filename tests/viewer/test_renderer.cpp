@@ -77,6 +77,36 @@ TEST(Renderer, ShowsSegmentsInTheirColorsAndGreyWithoutASegmenter) {
   }
 }
 
+TEST(Renderer, ShowsOnlyTheNewestRevisionOfEachSlice) {
+  const SyntheticMap room = make_room(4.0, 0.04);
+  SyntheticMap moved = room;
+  for (std::size_t i = 0; i < room.slices.size(); i += 3) {
+    moved.slices[i].revision = moved.updates[i].slice_revision = 1;
+    moved.updates[i].sequence += std::ssize(room.updates);
+    for (CloudPoint& point : moved.slices[i].points_W) point.x += 0.3F;
+  }
+  Scene corrected(1'000);
+  Scene expected(1'000);
+  for (std::size_t i = 0; i < room.slices.size(); ++i) {
+    corrected.add_slice(room.slices[i]);
+    corrected.apply_update(room.updates[i]);
+    expected.add_slice(moved.slices[i]);
+    expected.apply_update(moved.updates[i]);
+  }
+  const View view = FixedView{{0.0, -8.0, 2.0}, {0.0, 0.0, 2.001}};
+  const auto difference = [&] {
+    const Renderer renderer(small());
+    return cv::norm(renderer.draw_map(corrected, {}, view, Coloring::kSegments),
+                    renderer.draw_map(expected, {}, view, Coloring::kSegments), cv::NORM_INF);
+  };
+  EXPECT_GT(difference(), 0.0);
+  for (std::size_t i = 0; i < room.slices.size(); i += 3) {
+    corrected.add_slice(moved.slices[i]);
+    corrected.apply_update(moved.updates[i]);
+  }
+  EXPECT_EQ(0.0, difference());
+}
+
 TEST(Renderer, DrawsTheSameBytesOnAnyNumberOfThreads) {
   const Furnished room;
   const auto draw = [&](std::size_t threads) {

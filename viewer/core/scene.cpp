@@ -42,6 +42,7 @@ void Scene::add_slice(CloudSlice message) {
       return;
     }
     counts_.points -= static_cast<std::int64_t>(slice->points_W.size());
+    up_.remove(slice->points_W);
     if (slice->labelled) --counts_.labelled_slices;
   } else {
     slice = &slices_[message.id];

@@ -37,15 +37,20 @@ Eigen::Vector4d sum_in_cone(std::span<const Eigen::Vector4d> bins, const Eigen::
 
 }  // namespace
 
-void UpDirection::add(std::span<const CloudPoint> points_W) {
+void UpDirection::add(std::span<const CloudPoint> points_W) { count(points_W, 1.0); }
+
+void UpDirection::remove(std::span<const CloudPoint> points_W) { count(points_W, -1.0); }
+
+void UpDirection::count(std::span<const CloudPoint> points_W, double sign) {
   for (const CloudPoint& p : points_W) {
     Eigen::Vector3d normal(p.nx, p.ny, p.nz);
     if (!(std::abs(normal.squaredNorm() - 1.0) < 0.1)) continue;
     if (normal.y() > 0.0) normal = -normal;
     Eigen::Vector4d& bin = bins_[static_cast<std::size_t>(bin_of(normal, kSide))];
-    bin.head<3>() += normal;
-    bin.w() += 1.0;
-    total_ += 1.0;
+    bin.head<3>() += sign * normal;
+    bin.w() += sign;
+    total_ += sign;
+    if (bin.w() == 0.0) bin.setZero();  // no rounding is left of what is gone
   }
 }
 

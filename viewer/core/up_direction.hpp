@@ -23,10 +23,15 @@ class UpDirection {
   /// Adds the normals of points; those without a unit normal are passed over.
   void add(std::span<const CloudPoint> points_W);
 
+  /// Takes back normals that were added.
+  void remove(std::span<const CloudPoint> points_W);
+
   /// Unit vector in W. Costs under a millisecond however many points were added.
   Eigen::Vector3d up_W() const;
 
  private:
+  void count(std::span<const CloudPoint> points_W, double sign);
+
   static constexpr int kSide = 32;  ///< bins along one side of the unfolded octahedron
   static constexpr double kMaxTilt_rad = 0.7854;  ///< beyond 45 degrees a wall may be nearer to -y
   static constexpr double kMinShare = 0.05;       ///< of all normals that must support up
