@@ -9,7 +9,7 @@ namespace kintsugi::segmenter {
 namespace {
 
 /// Counts the changed points by component and old id; neighbouring points mostly agree.
-std::vector<Overlap> count_overlaps(std::span<const PointIndex> components,
+std::vector<Overlap> count_overlaps(std::span<const ComponentId> components,
                                     std::span<const PointIndex> changed,
                                     std::span<const std::uint32_t> ids) {
   std::vector<Overlap> overlaps;
@@ -24,84 +24,187 @@ std::vector<Overlap> count_overlaps(std::span<const PointIndex> components,
   return overlaps;
 }
 
+/// Ranks points quickly when neighbours follow one another.
+class PointRanker {
+ public:
+  explicit PointRanker(const PointCloud& cloud) : cloud_(cloud) {}
+
+  PointRank operator()(PointIndex point) {
+    if (slice_ == nullptr || point - slice_->first >= slice_->count) {
+      slice_ = &cloud_.slice_of(point);
+    }
+    return {slice_->slice_id, point};
+  }
+
+ private:
+  const PointCloud& cloud_;
+  const SliceRecord* slice_ = nullptr;
+};
+
 }  // namespace
 
-IdUpdate SegmentIds::update(std::span<const PointIndex> components,
+IdUpdate SegmentIds::update(const PointCloud& cloud, const CloudChange& change,
+                            std::span<const ComponentId> components,
                             std::span<const PointIndex> changed) {
-  ids_.resize(components.size(), kNoSegment);
-  slot_.resize(components.size(), 0);
-  std::vector<Overlap> overlaps = count_overlaps(components, changed, ids_);
-  std::vector<IdChange> moves;
-  for (const PointIndex p : changed) moves.push_back({p, ids_[p], kNoSegment});
-  for (const PointIndex p : changed) detach(p);
+  grow(static_cast<PointIndex>(components.size()));
+  IdUpdate result;
+  std::vector<std::uint32_t> losers = take_out_removed(change, result.changes);
+  std::vector<Overlap> overlaps = count_overlaps(components, changed, ids());
+  const std::size_t num_gone = result.changes.size();
+  take_out_changed(change, changed, result.changes);
 
-  // What is left of the old segments that are touched counts as well.
-  const std::vector<std::uint32_t> rests = touched_rests(overlaps);
-  for (const std::uint32_t id : rests) {
-    overlaps.push_back({components[points_[id].front()], id, std::ssize(points_[id])});
+  // What is left of the old segments that take part counts as well.
+  const std::vector<std::uint32_t> old_ids = touched_by(overlaps, std::move(losers));
+  for (const std::uint32_t id : old_ids) {
+    const Segment& rest = segments_[id];
+    if (rest.num_points > 0) overlaps.push_back({components[rest.head], id, rest.num_points});
   }
   combine(overlaps);
   std::vector<Succession> successions = prefer(overlaps);
-  points_.resize(hand_out(successions, next_id()));
+  find_first_points(cloud, components, changed, old_ids, successions);
+  segments_.resize(hand_out(successions, next_id()));
 
-  // Rests that take another id leave before anyone moves in.
-  for (const std::uint32_t id : rests) {
-    if (find_succession(successions, components[points_[id].front()]).new_id == id) continue;
-    for (const PointIndex p : std::exchange(points_[id], {})) moves.push_back({p, id, kNoSegment});
-  }
-  for (IdChange& move : moves) {
+  move_rests(old_ids, components, successions, result.changes);
+  for (IdChange& move : std::span(result.changes).subspan(num_gone)) {
     move.new_id = find_succession(successions, components[move.point]).new_id;
     attach(move.point, move.new_id);
   }
-  std::erase_if(moves, [](const IdChange& move) { return move.old_id == move.new_id; });
-  std::sort(moves.begin(), moves.end(),
+  rename(old_ids, successions);
+  std::erase_if(result.changes, [](const IdChange& c) { return c.old_id == c.new_id; });
+  std::sort(result.changes.begin(), result.changes.end(),
             [](const IdChange& a, const IdChange& b) { return a.point < b.point; });
-
-  IdUpdate result{std::move(moves), tell_events(successions, overlaps)};
-  for (const SegmentEvent& event : result.events) {
-    num_segments_ +=
-        event.type == SegmentEventType::kCreated || event.type == SegmentEventType::kSplit;
-    num_segments_ -= event.type == SegmentEventType::kMerged;
-  }
+  result.events = tell_events(successions, overlaps, old_ids);
   return result;
 }
 
-/// The old segments that lost changed points or that a changed component builds on, as far as they
-/// still have points; the changed points are detached already.
-std::vector<std::uint32_t> SegmentIds::touched_rests(std::span<const Overlap> overlaps) const {
-  std::vector<std::uint32_t> ids;
+void SegmentIds::grow(PointIndex num_points) {
+  ids_.resize(num_points, kNoSegment);
+  members_.resize(num_points);
+}
+
+/// Hands the ids of moved points to their new places and takes removed points out of their
+/// segments. Returns the ids that lost points, each as often as it did.
+std::vector<std::uint32_t> SegmentIds::take_out_removed(const CloudChange& change,
+                                                        std::vector<IdChange>& changes) {
+  std::vector<std::uint32_t> losers;
+  for (const PointIndex p : change.removed) changes.push_back({p, ids_[p], kNoSegment});
+  for (const MovedPoint& moved : change.moved) {
+    const std::uint32_t id = ids_[moved.from];
+    detach(moved.from);
+    attach(moved.to, id);
+  }
+  for (const PointIndex p : change.removed) {
+    if (ids_[p] == kNoSegment) continue;
+    losers.push_back(ids_[p]);
+    detach(p);
+  }
+  return losers;
+}
+
+/// `changed` leave their segments, to be attached where they belong now.
+void SegmentIds::take_out_changed(const CloudChange& change, std::span<const PointIndex> changed,
+                                  std::vector<IdChange>& changes) {
+  auto added = change.added.begin();
+  for (const PointIndex p : changed) {
+    added = std::find_if(added, change.added.end(), [&](PointIndex other) { return other >= p; });
+    const bool is_new_place = added != change.added.end() && *added == p;
+    changes.push_back({p, is_new_place ? kNoSegment : ids_[p], kNoSegment});
+    detach(p);
+  }
+}
+
+/// The old segments that lost points or that a changed component builds on, by ascending id.
+std::vector<std::uint32_t> SegmentIds::touched_by(std::span<const Overlap> overlaps,
+                                                  std::vector<std::uint32_t> losers) const {
+  std::vector<std::uint32_t> ids = std::move(losers);
   for (const Overlap& overlap : overlaps) {
-    ids.push_back(overlap.old_id);
-    // A component that was there before still holds its representative.
-    ids.push_back(ids_[overlap.component]);
+    if (overlap.old_id != kNoSegment) ids.push_back(overlap.old_id);
+    // Points that are not changed are in the component of the name they had.
+    const auto same_name = id_of_component_.find(overlap.component);
+    if (same_name != id_of_component_.end()) ids.push_back(same_name->second);
   }
   std::sort(ids.begin(), ids.end());
   ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
-  std::erase_if(ids, [&](std::uint32_t id) { return points_[id].empty(); });
   return ids;
 }
 
-std::span<const PointIndex> SegmentIds::points_of(std::uint32_t segment_id) const {
-  if (segment_id >= points_.size()) return {};
-  return points_[segment_id];
+/// Where first points decide. A component with a rival, or with a new id, has no more unchanged
+/// points than it or its rival has changed ones: looking at all of them is cheap.
+void SegmentIds::find_first_points(const PointCloud& cloud, std::span<const ComponentId> components,
+                                   std::span<const PointIndex> changed,
+                                   std::span<const std::uint32_t> old_ids,
+                                   std::vector<Succession>& successions) const {
+  PointRanker rank(cloud);
+  auto look_at = [&, last = std::size_t{0}](PointIndex p) mutable {
+    if (successions[last].component != components[p]) {  // neighbouring points mostly agree
+      const Succession& found = find_succession(successions, components[p]);
+      last = static_cast<std::size_t>(&found - successions.data());
+    }
+    Succession& succession = successions[last];
+    if (!succession.is_unrivalled) succession.first = std::min(succession.first, rank(p));
+  };
+  for (const PointIndex p : changed) look_at(p);
+  for (const std::uint32_t id : old_ids) {
+    if (segments_[id].num_points == 0) continue;
+    if (find_succession(successions, components[segments_[id].head]).is_unrivalled) continue;
+    for (const PointIndex p : points_of(id)) look_at(p);
+  }
+}
+
+/// Rests that take another id leave before anyone moves in.
+void SegmentIds::move_rests(std::span<const std::uint32_t> old_ids,
+                            std::span<const ComponentId> components,
+                            std::span<const Succession> successions,
+                            std::vector<IdChange>& changes) {
+  for (const std::uint32_t id : old_ids) {
+    const Segment& rest = segments_[id];
+    if (rest.num_points == 0) continue;
+    if (find_succession(successions, components[rest.head]).new_id == id) continue;
+    while (rest.num_points > 0) {
+      changes.push_back({rest.head, id, kNoSegment});
+      detach(rest.head);
+    }
+  }
+}
+
+void SegmentIds::rename(std::span<const std::uint32_t> old_ids,
+                        std::span<const Succession> successions) {
+  for (const std::uint32_t id : old_ids) id_of_component_.erase(segments_[id].component);
+  for (const Succession& s : successions) {
+    id_of_component_[s.component] = s.new_id;
+    segments_[s.new_id].component = s.component;
+  }
+}
+
+MemberLists::List SegmentIds::points_of(std::uint32_t segment_id) const {
+  return members_.list(num_points_of(segment_id) > 0 ? segments_[segment_id].head
+                                                     : MemberLists::kEmpty);
+}
+
+std::int64_t SegmentIds::num_points_of(std::uint32_t segment_id) const {
+  return segment_id < segments_.size() ? segments_[segment_id].num_points : 0;
+}
+
+std::size_t SegmentIds::bytes() const {
+  constexpr std::size_t kMapNodeBytes = 48;
+  return ids_.bytes() + members_.bytes() + segments_.bytes() +
+         id_of_component_.size() * kMapNodeBytes;
 }
 
 void SegmentIds::detach(PointIndex point) {
   if (ids_[point] == kNoSegment) return;
-  std::vector<PointIndex>& points = points_[ids_[point]];
-  const PointIndex moved = points.back();
-  points[slot_[point]] = moved;
-  slot_[moved] = slot_[point];
-  points.pop_back();
-  if (points.empty()) points.shrink_to_fit();
+  Segment& segment = segments_[ids_[point]];
+  segment.head = members_.erase(segment.head, point);
+  --segment.num_points;
   ids_[point] = kNoSegment;
 }
 
 void SegmentIds::attach(PointIndex point, std::uint32_t segment_id) {
-  std::vector<PointIndex>& points = points_[segment_id];
+  Segment& segment = segments_[segment_id];
+  segment.head =
+      members_.insert(segment.num_points > 0 ? segment.head : MemberLists::kEmpty, point);
+  ++segment.num_points;
   ids_[point] = segment_id;
-  slot_[point] = static_cast<std::uint32_t>(points.size());
-  points.push_back(point);
 }
 
 std::vector<std::uint32_t> slice_labels(const SliceRecord& slice,
@@ -119,16 +222,24 @@ std::vector<std::uint32_t> slice_labels(const SliceRecord& slice,
   return labels;
 }
 
-std::vector<LabelRun> label_runs(const PointCloud& cloud, std::span<const IdChange> changes,
-                                 PointIndex end) {
-  std::vector<LabelRun> runs;
+std::vector<LabelRun> label_runs(const PointCloud& cloud, std::span<const IdChange> changes) {
+  std::vector<std::pair<PointRank, std::uint32_t>> relabelled;
+  PointRanker rank(cloud);
   for (const IdChange& change : changes) {
-    if (change.point >= end) break;
-    const PointId id = cloud.id_of(change.point);
+    if (change.old_id == kNoSegment || change.new_id == kNoSegment) continue;
+    relabelled.emplace_back(rank(change.point), change.new_id);
+  }
+  std::sort(relabelled.begin(), relabelled.end());
+
+  std::vector<LabelRun> runs;
+  for (const auto& [place, new_id] : relabelled) {
+    const PointId id = cloud.id_of(place.point);
     const bool goes_on = !runs.empty() && runs.back().slice_id == id.slice_id &&
                          runs.back().first + runs.back().count == id.index &&
-                         runs.back().segment_id == change.new_id;
-    if (!goes_on) runs.push_back({id.slice_id, id.index, 0, change.new_id});
+                         runs.back().segment_id == new_id;
+    if (!goes_on) {
+      runs.push_back({id.slice_id, id.index, 0, new_id, cloud.slice_of(place.point).revision});
+    }
     ++runs.back().count;
   }
   return runs;

@@ -56,7 +56,7 @@ Json header_json(const SegmentMap& map) {
           {"session", map.session()},
           {"complete", map.is_complete()},
           {"num_slices", map.cloud().slices().size()},
-          {"num_points", map.cloud().size()},
+          {"num_points", map.cloud().num_live()},
           {"num_points_rejected", map.cloud().num_rejected()},
           {"num_segments", map.segment_ids().num_segments()}};
 }
@@ -75,7 +75,7 @@ Json rejected_json(const PointCloud& cloud) {
 
 void write_map_ply(const SegmentMap& map, const std::filesystem::path& path) {
   const PointCloud& cloud = map.cloud();
-  LabelledPlyWriter writer(path, cloud.size(),
+  LabelledPlyWriter writer(path, cloud.num_live(),
                            {"kintsugi segment map, frame W, metres",
                             "map_session " + std::to_string(map.map_session())});
   const auto ids = map.segment_ids().ids();

@@ -48,33 +48,38 @@ std::vector<SegmentUpdate> SegmentMap::add(std::span<const CloudSlice> slices) {
     return {};
   }
 
-  const PointIndex first_new = cloud_.size();
-  for (const CloudSlice& slice : slices) {
-    cloud_.add_slice(slice.id, slice.points_W);
-    slice_ids_.insert(slice.id);
-    if (slice.kind == SliceKind::kFinal) {
-      final_slice_id_ = slice.id;
-    }
-  }
-  engine_->update(cloud_.take_change());
-  IdUpdate change = ids_.update(engine_->components(), engine_->changed());
-  const auto changed_segments = statistics_.apply(cloud_, ids_, change.changes);
-
   std::vector<SegmentUpdate> updates;
-  const auto records = cloud_.slices().last(slices.size());
-  const auto num_before = static_cast<std::int32_t>(cloud_.slices().size() - slices.size());
-  for (std::size_t i = 0; i < slices.size(); ++i) {
-    updates.push_back(
-        make_update(slices[i], records[i], num_before + static_cast<std::int32_t>(i) + 1));
+  for (const CloudSlice& slice : slices) {
+    store(slice);
+    updates.push_back(begin_update(slice));
+  }
+  const CloudChange change = cloud_.take_change();
+  engine_->update(change);
+  IdUpdate id_update = ids_.update(cloud_, change, engine_->components(), engine_->changed());
+  for (SegmentUpdate& update : updates) {
+    update.num_segments = ids_.num_segments();
+    update.labels = slice_labels(*cloud_.find_slice(update.slice_id), ids_.ids());
   }
   SegmentUpdate& last = updates.back();
   last.is_final = is_complete();
-  last.runs = label_runs(cloud_, change.changes, first_new);
-  last.events = std::move(change.events);
-  for (const std::uint32_t id : changed_segments) {
+  last.runs = label_runs(cloud_, id_update.changes);
+  for (const std::uint32_t id : statistics_.apply(cloud_, ids_, id_update.changes)) {
     last.statistics.push_back(statistics_(id));
   }
+  last.events = std::move(id_update.events);
   return updates;
+}
+
+void SegmentMap::store(const CloudSlice& slice) {
+  if (cloud_.find_slice(slice.id) == nullptr) {
+    cloud_.add_slice(slice.id, slice.points_W, slice.revision);
+    slice_ids_.insert(slice.id);
+  } else {
+    cloud_.replace_slice(slice.id, slice.points_W, slice.revision);
+  }
+  if (slice.kind == SliceKind::kFinal) {
+    final_slice_id_ = slice.id;
+  }
 }
 
 bool SegmentMap::is_complete() const {
@@ -96,13 +101,16 @@ void SegmentMap::check(const CloudSlice& slice) const {
   if (slice.id < 0) {
     throw std::invalid_argument(name + " has a negative id");
   }
-  if (slice_ids_.contains(slice.id)) {
-    throw std::invalid_argument(name + " is in the map already");
+  const SliceRecord* const record = cloud_.find_slice(slice.id);
+  if (record != nullptr && slice.revision <= record->revision) {
+    throw std::invalid_argument(name + " of revision " + std::to_string(slice.revision) +
+                                " is in the map already, in revision " +
+                                std::to_string(record->revision));
   }
 }
 
-SegmentUpdate SegmentMap::make_update(const CloudSlice& slice, const SliceRecord& record,
-                                      std::int32_t num_slices) const {
+// What is known before the engine has run.
+SegmentUpdate SegmentMap::begin_update(const CloudSlice& slice) const {
   SegmentUpdate update;
   update.utime = slice.utime;
   update.session = session_;
@@ -110,10 +118,8 @@ SegmentUpdate SegmentMap::make_update(const CloudSlice& slice, const SliceRecord
   update.map_name = map_name_;
   update.slice_id = slice.id;
   update.slice_revision = slice.revision;
-  update.num_slices = num_slices;
-  update.num_points = std::int64_t{record.first} + record.count;
-  update.num_segments = ids_.num_segments();
-  update.labels = slice_labels(record, ids_.ids());
+  update.num_slices = static_cast<std::int32_t>(cloud_.slices().size());
+  update.num_points = cloud_.num_live();
   return update;
 }
 

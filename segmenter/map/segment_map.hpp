@@ -36,12 +36,13 @@ class SegmentMap {
   SegmentMap(const SegmentMap&) = delete;  // the engine refers to the cloud
   SegmentMap& operator=(const SegmentMap&) = delete;
 
-  /// Adds slices and runs the engine once for all of them. Returns one update for each slice, in
-  /// order: each has the labels of its own points as they are after all of them; relabelled older
-  /// points, events and statistics come with the last.
+  /// Adds slices and runs the engine once for all of them. A slice that is in the map in a lower
+  /// revision is replaced: its points move. Returns one update for each slice, in order: each has
+  /// the labels of its own points as they are after all of them; relabelled points of other slices,
+  /// events and statistics come with the last.
   ///
   /// @throws std::invalid_argument, and adds nothing, when a slice is of another session or
-  ///   resolution, is in the map already, or comes twice
+  ///   resolution, is in the map already in this revision or a higher one, or comes twice
   std::vector<SegmentUpdate> add(std::span<const CloudSlice> slices);
 
   /// True when the final slice is in the map.
@@ -60,8 +61,8 @@ class SegmentMap {
 
  private:
   void check(const CloudSlice& slice) const;
-  [[nodiscard]] SegmentUpdate make_update(const CloudSlice& slice, const SliceRecord& record,
-                                          std::int32_t num_slices) const;
+  void store(const CloudSlice& slice);
+  [[nodiscard]] SegmentUpdate begin_update(const CloudSlice& slice) const;
 
   SegmentMapConfig config_;
   std::int64_t session_;

@@ -136,8 +136,9 @@ void slice_by_slice(benchmark::State& state, std::string_view mode) {
     for (const auto& [id, points_W] : map_slices()) {
       cloud.add_slice(id, points_W);
       const auto start = Clock::now();
-      rounds += engine->update(cloud.take_change()).num_iterations;
-      ids.update(engine->components(), engine->changed());
+      const CloudChange change = cloud.take_change();
+      rounds += engine->update(change).num_iterations;
+      ids.update(cloud, change, engine->components(), engine->changed());
       slice_ms.push_back(std::chrono::duration<double, std::milli>(Clock::now() - start).count());
     }
   }

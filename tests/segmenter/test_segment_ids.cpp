@@ -4,6 +4,8 @@
 #include <random>
 #include <set>
 #include <span>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -18,7 +20,7 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::ElementsAreArray;
 using ::testing::IsEmpty;
-using Components = std::vector<PointIndex>;
+using Components = std::vector<ComponentId>;
 using Ids = std::vector<std::uint32_t>;
 
 SegmentEvent created(std::uint32_t id) { return {SegmentEventType::kCreated, id, 0}; }
@@ -26,32 +28,44 @@ SegmentEvent grown(std::uint32_t id) { return {SegmentEventType::kGrown, id, 0};
 SegmentEvent merged(std::uint32_t into, std::uint32_t id) {
   return {SegmentEventType::kMerged, into, id};
 }
+SegmentEvent retired(std::uint32_t id) { return {SegmentEventType::kRetired, id, 0}; }
 SegmentEvent split(std::uint32_t from, std::uint32_t id) {
   return {SegmentEventType::kSplit, from, id};
 }
 
-std::vector<PointIndex> differing(const Components& before, const Components& after) {
-  std::vector<PointIndex> points;
+CloudPoint any_point() { return testing::make_point(0, 0, 0, 0, 0, 1); }
+
+/// What an engine that named the components so before and names them so now has to tell.
+Components differing(const Components& before, const Components& after, const CloudChange& change) {
+  Components points;
   for (PointIndex i = 0; i < after.size(); ++i) {
-    if (i >= before.size() || before[i] != after[i]) points.push_back(i);
+    if (after[i] == kNoComponent) continue;
+    const bool is_added = std::binary_search(change.added.begin(), change.added.end(), i);
+    if (is_added || before[i] != after[i]) points.push_back(i);
   }
   return points;
 }
 
-/// Keeps the components of the last update, as an engine would.
+/// Keeps the cloud, and the components of the last update as an engine would. Points come in slices
+/// of their own.
 class SegmentIdsTest : public ::testing::Test {
  protected:
   IdUpdate update(const Components& components) {
-    const auto changed = differing(components_, components);
+    for (std::int32_t i = 0; cloud_.size() < components.size(); ++i) {
+      if (cloud_.find_slice(i) == nullptr) cloud_.add_slice(i, std::vector{any_point()});
+    }
+    const CloudChange change = cloud_.take_change();
+    const Components changed = differing(components_, components, change);
     components_ = components;
-    return ids_.update(components_, changed);
+    return ids_.update(cloud_, change, components_, changed);
   }
+  PointCloud cloud_;
   Components components_;
   SegmentIds ids_;
 };
 
-TEST_F(SegmentIdsTest, NewSegmentsAreNumberedFromOneByRepresentative) {
-  const IdUpdate result = update({0, 1, 0, 3, 1});
+TEST_F(SegmentIdsTest, NewSegmentsAreNumberedFromOneByTheirFirstPoints) {
+  const IdUpdate result = update({4, 3, 4, 1, 3});
   EXPECT_THAT(ids_.ids(), ElementsAre(1, 2, 1, 3, 2));
   EXPECT_THAT(result.events, ElementsAre(created(1), created(2), created(3)));
   EXPECT_THAT(result.changes, ElementsAre(IdChange{0, 0, 1}, IdChange{1, 0, 2}, IdChange{2, 0, 1},
@@ -98,10 +112,58 @@ TEST_F(SegmentIdsTest, LargestPartOfASplitKeepsTheId) {
   EXPECT_THAT(result.events, ElementsAre(split(1, 2)));
 }
 
-TEST_F(SegmentIdsTest, EqualPartsOfASplitTieToTheSmallerRepresentative) {
+TEST_F(SegmentIdsTest, EqualPartsOfASplitTieToTheOneWithTheFirstPoint) {
   update({0, 0, 0, 0});
-  update({0, 1, 1, 0});
+  update({3, 0, 0, 3});  // the part that keeps the name is not the one that keeps the id
   EXPECT_THAT(ids_.ids(), ElementsAre(1, 2, 2, 1));
+}
+
+TEST_F(SegmentIdsTest, FirstPointsAreFirstBySliceNotByPlaceInTheCloud) {
+  update({0, 0, 0, 0});
+  cloud_.replace_slice(0, std::vector{any_point()});  // its point stands at 4 now
+  update({kNoComponent, 1, 1, 2, 2});
+  EXPECT_THAT(ids_.ids(), ElementsAre(0, 2, 2, 1, 1));
+}
+
+TEST_F(SegmentIdsTest, PointThatMovesIsTheSamePoint) {
+  update({0, 0, 2});
+  cloud_.replace_slice(0, std::vector{any_point()});
+  const IdUpdate result = update({kNoComponent, 1, 2, 1});
+  EXPECT_THAT(ids_.ids(), ElementsAre(0, 1, 2, 1));
+  EXPECT_THAT(result.events, IsEmpty());
+  EXPECT_THAT(result.changes, ElementsAre(IdChange{0, 1, 0}, IdChange{3, 0, 1}));
+}
+
+TEST_F(SegmentIdsTest, PointsThatMoveTakeTheirIdAlong) {
+  update({0, 0, 0, 3});
+  cloud_.replace_slice(1, std::vector{any_point()});
+  cloud_.replace_slice(2, std::vector{any_point()});
+  const IdUpdate result = update({0, kNoComponent, kNoComponent, 3, 4, 4});
+  EXPECT_THAT(ids_.ids(), ElementsAre(3, 0, 0, 2, 1, 1));
+  EXPECT_THAT(result.events, ElementsAre(split(1, 3)));
+}
+
+TEST_F(SegmentIdsTest, SegmentWhoseLastPointGoesIsRetired) {
+  update({0, 0, 2});
+  cloud_.remove_slice(0);
+  EXPECT_THAT(update({kNoComponent, 1, 2}).events, IsEmpty());
+  cloud_.remove_slice(1);
+  const IdUpdate result = update({kNoComponent, kNoComponent, 2});
+  EXPECT_THAT(ids_.ids(), ElementsAre(0, 0, 2));
+  EXPECT_THAT(result.events, ElementsAre(retired(1)));
+  EXPECT_THAT(result.changes, ElementsAre(IdChange{1, 1, 0}));
+  EXPECT_EQ(ids_.num_segments(), 1);
+}
+
+TEST_F(SegmentIdsTest, PointRejectedInARevisionIsGone) {
+  update({0, 0});
+  CloudPoint bad = any_point();
+  bad.x = NAN;
+  cloud_.replace_slice(0, std::vector{bad});
+  const IdUpdate result = update({kNoComponent, 0});  // nothing is changed but what is gone
+  EXPECT_THAT(result.events, IsEmpty());
+  EXPECT_THAT(result.changes, ElementsAre(IdChange{0, 1, 0}));
+  EXPECT_EQ(ids_.num_points_of(1), 1);
 }
 
 TEST_F(SegmentIdsTest, SegmentThatLosesItsClaimGetsANewIdEvenWithASecondChoice) {
@@ -128,198 +190,257 @@ TEST_F(SegmentIdsTest, IdsAreNotUsedTwice) {
   EXPECT_EQ(ids_.next_id(), 4U);
 }
 
+/// Points by what they are called, and a label of each.
+using Labels = std::map<PointId, std::uint32_t>;
+
+Labels labels_of(const PointCloud& cloud, std::span<const std::uint32_t> by_point) {
+  Labels labels;
+  for (const PointIndex p : cloud.everything().added) labels[cloud.id_of(p)] = by_point[p];
+  return labels;
+}
+
 /// The rules, applied to whole partitions as sets.
 class SlowIds {
  public:
-  IdUpdate update(const Components& components) {
-    std::map<PointIndex, std::set<PointIndex>> segments;
-    for (PointIndex i = 0; i < components.size(); ++i) segments[components[i]].insert(i);
-
-    std::map<PointIndex, std::map<std::uint32_t, int>> shares;  // with old ids, by representative
-    for (const auto& [representative, points] : segments) {
-      for (const PointIndex i : points) {
-        if (i < ids_.size()) ++shares[representative][ids_[i]];
+  /// Takes over the partition of the points there are now.
+  std::vector<SegmentEvent> update(const Labels& components) {
+    std::map<std::uint32_t, std::set<PointId>> by_component;
+    for (const auto& [point, component] : components) by_component[component].insert(point);
+    std::map<PointId, Segment> segments;  // by first point
+    for (const auto& [component, points] : by_component) {
+      Segment& segment = segments[*points.begin()];
+      segment.points = points;
+      for (const PointId& point : points) {
+        if (labels_.contains(point)) ++segment.shares[labels_.at(point)];
+      }
+      for (const auto& [id, count] : segment.shares) {
+        if (segment.preferred == kNoSegment || count > segment.shares.at(segment.preferred)) {
+          segment.preferred = id;
+        }
       }
     }
-    std::map<std::uint32_t, PointIndex> heirs;
-    std::map<PointIndex, std::uint32_t> preferred;
-    for (const auto& [representative, by_id] : shares) {
-      const auto best =
-          std::max_element(by_id.begin(), by_id.end(),
-                           [](const auto& a, const auto& b) { return a.second < b.second; });
-      preferred[representative] = best->first;
-      const auto [heir, is_first] = heirs.try_emplace(best->first, representative);
-      if (!is_first && best->second > shares[heir->second][best->first]) {
-        heir->second = representative;
-      }
+    std::map<std::uint32_t, Segment*> heirs;
+    for (auto& [first, segment] : segments) {
+      const std::uint32_t id = segment.preferred;
+      if (id == kNoSegment) continue;
+      const auto [heir, is_first] = heirs.try_emplace(id, &segment);
+      if (segment.shares.at(id) > heir->second->shares.at(id)) heir->second = &segment;
     }
-    std::map<PointIndex, std::uint32_t> new_ids;
-    for (const auto& [id, representative] : heirs) new_ids[representative] = id;
-    for (const auto& [representative, points] : segments) {
-      if (!new_ids.contains(representative)) new_ids[representative] = next_id_++;
+    for (const auto& [id, segment] : heirs) segment->id = id;
+    for (auto& [first, segment] : segments) {
+      if (segment.id == kNoSegment) segment.id = next_id_++;
     }
-    return tell(components, segments, shares, preferred, new_ids);
+    return tell(segments);
   }
 
-  Ids ids_;
+  Labels labels_;
 
  private:
-  IdUpdate tell(const Components& components,
-                const std::map<PointIndex, std::set<PointIndex>>& segments,
-                const std::map<PointIndex, std::map<std::uint32_t, int>>& shares,
-                const std::map<PointIndex, std::uint32_t>& preferred,
-                const std::map<PointIndex, std::uint32_t>& new_ids) {
-    IdUpdate result;
-    Ids ids;
-    for (PointIndex i = 0; i < components.size(); ++i) {
-      ids.push_back(new_ids.at(components[i]));
-      const std::uint32_t old_id = i < ids_.size() ? ids_[i] : kNoSegment;
-      if (old_id != ids[i]) result.changes.push_back({i, old_id, ids[i]});
-    }
-    std::map<std::uint32_t, std::set<PointIndex>> old_points;
-    for (PointIndex i = 0; i < ids_.size(); ++i) old_points[ids_[i]].insert(i);
-    for (const auto& [representative, points] : segments) {
-      const std::uint32_t id = new_ids.at(representative);
-      if (!preferred.contains(representative)) {
-        result.events.push_back(created(id));
-      } else if (preferred.at(representative) != id) {
-        result.events.push_back(split(preferred.at(representative), id));
-      } else if (!std::includes(old_points[id].begin(), old_points[id].end(), points.begin(),
-                                points.end())) {
-        result.events.push_back(grown(id));
+  struct Segment {
+    std::set<PointId> points;
+    std::map<std::uint32_t, int> shares;  // with old ids
+    std::uint32_t preferred = kNoSegment;
+    std::uint32_t id = kNoSegment;
+  };
+
+  std::vector<SegmentEvent> tell(const std::map<PointId, Segment>& segments) {
+    std::map<std::uint32_t, std::set<PointId>> old_points;
+    for (const auto& [point, id] : labels_) old_points[id].insert(point);
+    labels_.clear();
+    std::vector<SegmentEvent> events;
+    std::set<std::uint32_t> alive;
+    for (const auto& [first, segment] : segments) {
+      alive.insert(segment.id);
+      for (const PointId& point : segment.points) labels_[point] = segment.id;
+      if (segment.preferred == kNoSegment) {
+        events.push_back(created(segment.id));
+      } else if (segment.preferred != segment.id) {
+        events.push_back(split(segment.preferred, segment.id));
+      } else if (!std::includes(old_points[segment.id].begin(), old_points[segment.id].end(),
+                                segment.points.begin(), segment.points.end())) {
+        events.push_back(grown(segment.id));
       }
     }
-    const std::set<std::uint32_t> alive(ids.begin(), ids.end());
     for (const auto& [old_id, points] : old_points) {
       if (alive.contains(old_id)) continue;
       int most = 0;
       std::uint32_t taker = 0;
-      for (const auto& [representative, by_id] : shares) {
-        const auto share = by_id.find(old_id);
-        if (share == by_id.end()) continue;
-        const std::uint32_t id = new_ids.at(representative);
-        if (share->second > most || (share->second == most && id < taker)) {
+      for (const auto& [first, segment] : segments) {
+        const auto share = segment.shares.find(old_id);
+        if (share == segment.shares.end()) continue;
+        if (share->second > most || (share->second == most && segment.id < taker)) {
           most = share->second;
-          taker = id;
+          taker = segment.id;
         }
       }
-      result.events.push_back(merged(taker, old_id));
+      events.push_back(most > 0 ? merged(taker, old_id) : retired(old_id));
     }
-    std::sort(result.events.begin(), result.events.end(), [](const auto& a, const auto& b) {
+    std::sort(events.begin(), events.end(), [](const auto& a, const auto& b) {
       return std::tie(a.type, a.segment_id, a.other_id) <
              std::tie(b.type, b.segment_id, b.other_id);
     });
-    ids_ = ids;
-    return result;
+    return events;
   }
 
   std::uint32_t next_id_ = 1;
 };
 
-/// A partition as a random walk: segments merge, split and exchange points; new points come.
+/// A cloud and its partition as a random walk: slices come, come again and go; segments merge,
+/// split and exchange points. Components mostly keep a name, but any names may change hands.
 class RandomPartition {
  public:
   explicit RandomPartition(unsigned seed) : generator_(seed) {}
 
-  Components next() {
-    const std::size_t num_old = groups_.size();
-    for (int k = below(12); k > 0; --k) groups_.push_back(below(15));
-    if (groups_.empty()) return {};
-    for (int k = below(4); k > 0; --k) merge(below(15), below(15));
-    for (int k = below(4); k > 0; --k) scatter(below(15), below(15));
-    for (int k = below(6); k > 0; --k) {
-      groups_[static_cast<std::size_t>(below(static_cast<int>(groups_.size())))] = below(15);
-    }
-    // Groups that kept their representative's membership keep it, as a stable engine would; some
-    // are renamed all the same.
-    std::map<int, PointIndex> representatives;
-    for (std::size_t i = 0; i < num_old; ++i) {
-      const PointIndex old = components_[i];
-      if (below(10) > 0 && groups_[old] == groups_[i]) representatives.try_emplace(groups_[i], old);
-    }
-    for (PointIndex i = 0; i < groups_.size(); ++i) representatives.try_emplace(groups_[i], i);
-    components_.clear();
-    for (const int group : groups_) components_.push_back(representatives[group]);
-    return components_;
+  void step() {
+    change_cloud();
+    change = cloud.take_change();
+    change_groups();
+    const Components before = components;
+    name_components();
+    changed = differing(before, components, change);
   }
+
+  /// Names more points as changed than did change.
+  void enlarge_changed() {
+    std::set<PointIndex> more(changed.begin(), changed.end());
+    for (const PointIndex p : cloud.everything().added) {
+      if (below(4) == 0) more.insert(p);
+    }
+    changed.assign(more.begin(), more.end());
+  }
+
+  PointCloud cloud;
+  CloudChange change;
+  Components components;
+  Components changed;
 
  private:
-  int below(int limit) {
-    return static_cast<int>(generator_() % static_cast<unsigned>(std::max(limit, 1)));
-  }
-  void merge(int from, int to) { std::replace(groups_.begin(), groups_.end(), from, to); }
-  void scatter(int from, int to) {
-    for (int& group : groups_) {
-      if (group == from && below(2) == 0) group = to;
+  void change_cloud() {
+    for (int k = below(4); k > 0; --k) {
+      const std::int32_t slice = below(12);
+      std::vector<CloudPoint> points(static_cast<std::size_t>(below(9)), any_point());
+      for (CloudPoint& point : points) {
+        if (below(5) == 0) point.x = NAN;
+      }
+      if (cloud.find_slice(slice) == nullptr) {
+        cloud.add_slice(slice, points);
+      } else if (below(3) == 0) {
+        cloud.remove_slice(slice);
+      } else {
+        cloud.replace_slice(slice, points);
+      }
     }
   }
 
+  void change_groups() {
+    const auto before = std::exchange(group_, {});
+    const int from = below(15), to = below(15), torn = below(15);
+    for (const PointIndex p : cloud.everything().added) {
+      const PointId id = cloud.id_of(p);
+      int group = before.contains(id) ? before.at(id) : below(15);
+      if (group == from) group = to;
+      if (group == torn && below(2) == 0) group = (group + 7) % 15;
+      if (below(20) == 0) group = below(15);
+      group_[id] = group;
+    }
+  }
+
+  void name_components() {
+    const Components before = std::exchange(components, Components(cloud.size(), kNoComponent));
+    std::map<int, ComponentId> name;
+    std::set<ComponentId> used;
+    for (const PointIndex p : cloud.everything().added) {
+      const int group = group_.at(cloud.id_of(p));
+      if (name.contains(group)) continue;
+      if (p < before.size() && before[p] != kNoComponent && below(10) > 0 &&
+          used.insert(before[p]).second) {
+        name[group] = before[p];
+      }
+    }
+    for (const PointIndex p : cloud.everything().added) {
+      const int group = group_.at(cloud.id_of(p));
+      while (!name.contains(group)) {
+        const auto any = static_cast<ComponentId>(below(static_cast<int>(cloud.size())));
+        if (used.insert(any).second) name[group] = any;
+      }
+      components[p] = name.at(group);
+    }
+  }
+
+  int below(int limit) { return static_cast<int>(generator_() % static_cast<unsigned>(limit)); }
+
   std::mt19937 generator_;
-  std::vector<int> groups_;
-  Components components_;
+  std::map<PointId, int> group_;
 };
 
-void expect_equal(const IdUpdate& update, const IdUpdate& expected) {
-  EXPECT_THAT(update.changes, ElementsAreArray(expected.changes));
-  EXPECT_THAT(update.events, ElementsAreArray(expected.events));
+/// What came, went and got another id, from all labels before and after.
+std::vector<IdChange> expected_changes(const PointCloud& cloud, const CloudChange& change,
+                                       const Labels& before, const Labels& after) {
+  std::vector<IdChange> changes;
+  const auto contains = [](const std::vector<PointIndex>& points, PointIndex p) {
+    return std::binary_search(points.begin(), points.end(), p);
+  };
+  for (PointIndex p = 0; p < cloud.size(); ++p) {
+    if (contains(change.removed, p)) {
+      changes.push_back({p, before.at(cloud.id_of(p)), kNoSegment});
+    } else if (contains(change.added, p)) {
+      changes.push_back({p, kNoSegment, after.at(cloud.id_of(p))});
+    } else if (cloud.is_live(p) && before.at(cloud.id_of(p)) != after.at(cloud.id_of(p))) {
+      changes.push_back({p, before.at(cloud.id_of(p)), after.at(cloud.id_of(p))});
+    }
+  }
+  return changes;
 }
 
 TEST(SegmentIds, EqualTheSlowReferenceOnRandomPartitions) {
-  int num_mergers = 0;
-  int num_splits = 0;
+  std::map<SegmentEventType, int> num_events;
   for (unsigned seed = 0; seed < 150; ++seed) {
     RandomPartition partition(seed);
     SegmentIds ids;
     SlowIds slow;
-    Components before;
-    for (int step = 0; step < 15; ++step) {
-      const Components components = partition.next();
-      const IdUpdate result = ids.update(components, differing(before, components));
-      expect_equal(result, slow.update(components));
-      EXPECT_THAT(ids.ids(), ElementsAreArray(slow.ids_));
-      before = components;
-      for (const SegmentEvent& event : result.events) {
-        num_mergers += event.type == SegmentEventType::kMerged;
-        num_splits += event.type == SegmentEventType::kSplit;
-      }
+    for (int step = 0; step < 25; ++step) {
+      partition.step();
+      if (step % 3 == 0) partition.enlarge_changed();
+      const Labels before = slow.labels_;
+      const IdUpdate result =
+          ids.update(partition.cloud, partition.change, partition.components, partition.changed);
+      EXPECT_THAT(result.events,
+                  ElementsAreArray(slow.update(labels_of(partition.cloud, partition.components))));
+      EXPECT_EQ(labels_of(partition.cloud, ids.ids()), slow.labels_);
+      EXPECT_THAT(result.changes, ElementsAreArray(expected_changes(
+                                      partition.cloud, partition.change, before, slow.labels_)));
+      for (const SegmentEvent& event : result.events) ++num_events[event.type];
     }
   }
-  EXPECT_GT(num_mergers, 1000);
-  EXPECT_GT(num_splits, 1000);
-}
-
-TEST(SegmentIds, MorePointsGivenAsChangedThanDidChangeNothingMore) {
-  RandomPartition partition(77);
-  SegmentIds ids;
-  SlowIds slow;
-  for (int step = 0; step < 30; ++step) {
-    const Components components = partition.next();
-    expect_equal(ids.update(components, differing({}, components)), slow.update(components));
-  }
+  // Every kind has been seen often.
+  for (const auto& [type, count] : num_events) EXPECT_GT(count, 1000) << static_cast<int>(type);
+  EXPECT_EQ(num_events.size(), 5U);
 }
 
 TEST(SegmentIds, ListTheirPoints) {
   RandomPartition partition(5);
   SegmentIds ids;
-  Components before;
-  for (int step = 0; step < 40; ++step) {
-    const Components components = partition.next();
-    ids.update(components, differing(before, components));
-    before = components;
+  for (int step = 0; step < 60; ++step) {
+    partition.step();
+    ids.update(partition.cloud, partition.change, partition.components, partition.changed);
     std::int64_t num_segments = 0;
-    std::size_t num_points = 0;
+    std::int64_t num_points = 0;
     for (std::uint32_t id = 1; id < ids.next_id(); ++id) {
-      const auto points = ids.points_of(id);
+      std::set<PointIndex> points;
+      for (const PointIndex i : ids.points_of(id)) {
+        EXPECT_TRUE(points.insert(i).second);
+        EXPECT_EQ(ids.ids()[i], id);
+      }
+      EXPECT_EQ(std::ssize(points), ids.num_points_of(id));
+      EXPECT_EQ(points.empty(), ids.points_of(id).empty());
       num_segments += !points.empty();
-      num_points += points.size();
-      EXPECT_EQ(std::set(points.begin(), points.end()).size(), points.size());
-      for (const PointIndex i : points) EXPECT_EQ(ids.ids()[i], id);
+      num_points += std::ssize(points);
     }
     EXPECT_EQ(num_segments, ids.num_segments());
-    EXPECT_EQ(num_points, components.size());
+    EXPECT_EQ(num_points, partition.cloud.num_live());
   }
-  EXPECT_THAT(ids.points_of(kNoSegment), IsEmpty());
-  EXPECT_THAT(ids.points_of(ids.next_id()), IsEmpty());
+  EXPECT_TRUE(ids.points_of(kNoSegment).empty());
+  EXPECT_TRUE(ids.points_of(ids.next_id()).empty());
 }
 
 class SegmentIdsOfEngine : public ::testing::TestWithParam<std::string_view> {};
@@ -336,14 +457,16 @@ TEST_P(SegmentIdsOfEngine, RunsAndEventsReplayedGiveTheLabels) {
     const auto part = std::span(points).subspan(static_cast<std::size_t>(slice_id) * 200, 200);
     std::vector<CloudPoint> slice(part.begin(), part.end());
     slice[7].x = NAN;
-    const PointIndex first = cloud.add_slice(slice_id, slice).first;
-    engine->update(cloud.take_change());
-    const IdUpdate result = ids.update(engine->components(), engine->changed());
-    expect_equal(result, slow.update({engine->components().begin(), engine->components().end()}));
+    cloud.add_slice(slice_id, slice);
+    const CloudChange change = cloud.take_change();
+    engine->update(change);
+    const IdUpdate result = ids.update(cloud, change, engine->components(), engine->changed());
+    EXPECT_THAT(result.events,
+                ElementsAreArray(slow.update(labels_of(cloud, engine->components()))));
 
     replayed[slice_id] = slice_labels(cloud.slices().back(), ids.ids());
     EXPECT_EQ(replayed[slice_id][7], kNoSegment);
-    for (const LabelRun& run : label_runs(cloud, result.changes, first)) {
+    for (const LabelRun& run : label_runs(cloud, result.changes)) {
       ASSERT_LT(run.slice_id, slice_id);
       std::fill_n(replayed[run.slice_id].begin() + run.first, run.count, run.segment_id);
     }
@@ -376,19 +499,26 @@ TEST_P(SegmentIdsOfEngine, RunsAndEventsReplayedGiveTheLabels) {
 INSTANTIATE_TEST_SUITE_P(Modes, SegmentIdsOfEngine,
                          ::testing::ValuesIn(engine_modes().begin(), engine_modes().end()));
 
-TEST(LabelRuns, BreakAtSlicesIdsAndGaps) {
-  CloudPoint bad = testing::make_point(0, 0, 0, 0, 0, 1);
+TEST(LabelRuns, BreakAtSlicesIdsAndGapsAndNameTheRevision) {
+  CloudPoint bad = any_point();
   bad.ny = INFINITY;
-  const CloudPoint good = testing::make_point(0, 0, 0, 0, 0, 1);
+  const CloudPoint good = any_point();
   PointCloud cloud;
-  cloud.add_slice(4, std::vector{good, good, bad, good});  // points 0 1 . 2
-  cloud.add_slice(9, std::vector{bad, good, good});        // points . 3 4
-  const std::vector<IdChange> changes = {{0, 1, 5}, {1, 1, 5}, {2, 2, 5}, {3, 1, 5}, {4, 1, 6}};
-  EXPECT_THAT(label_runs(cloud, changes, 5),
-              ElementsAre(LabelRun{4, 0, 2, 5}, LabelRun{4, 3, 1, 5}, LabelRun{9, 1, 1, 5},
-                          LabelRun{9, 2, 1, 6}));
-  EXPECT_THAT(label_runs(cloud, changes, 3),
-              ElementsAre(LabelRun{4, 0, 2, 5}, LabelRun{4, 3, 1, 5}));
+  cloud.add_slice(4, std::vector{good, good, bad, good}, 7);  // points 0 1 . 2
+  cloud.add_slice(9, std::vector{bad, good, good});           // points . 3 4
+  cloud.add_slice(2, std::vector{good});
+  const std::vector<IdChange> changes = {{0, 1, 5}, {1, 1, 5}, {2, 2, 5},
+                                         {3, 1, 5}, {4, 1, 6}, {5, 1, 6}};
+  EXPECT_THAT(label_runs(cloud, changes),
+              ElementsAre(LabelRun{2, 0, 1, 6, 0}, LabelRun{4, 0, 2, 5, 7}, LabelRun{4, 3, 1, 5, 7},
+                          LabelRun{9, 1, 1, 5, 0}, LabelRun{9, 2, 1, 6, 0}));
+}
+
+TEST(LabelRuns, LeaveOutPointsThatCameOrWent) {
+  PointCloud cloud;
+  cloud.add_slice(0, std::vector{any_point(), any_point(), any_point()});
+  const std::vector<IdChange> changes = {{0, 1, kNoSegment}, {1, kNoSegment, 2}, {2, 1, 2}};
+  EXPECT_THAT(label_runs(cloud, changes), ElementsAre(LabelRun{0, 2, 1, 2}));
 }
 
 }  // namespace

@@ -77,7 +77,8 @@ TEST(SegmentStatistics, EqualThoseFromScratchAfterEveryChange) {
       component[random() % component.size()] = static_cast<int>(random() % 12);
     }
     const auto after = representatives(component);
-    const IdUpdate update = ids.update(after, differences(before, after));
+    const CloudChange change = cloud.take_change();
+    const IdUpdate update = ids.update(cloud, change, after, differences(before, after));
     table.apply(cloud, ids, update.changes);
     before = after;
     EXPECT_EQ(table.all(), from_scratch(cloud, ids, kResolution_m)) << "slice " << slice;
@@ -92,7 +93,8 @@ TEST(SegmentStatistics, HaveTheValuesOfClosedForm) {
   cloud.add_slice(5, std::vector{b});
   SegmentIds ids;
   const std::vector<PointIndex> components{0, 0};
-  const IdUpdate update = ids.update(components, std::vector<PointIndex>{0, 1});
+  const IdUpdate update =
+      ids.update(cloud, cloud.take_change(), components, std::vector<PointIndex>{0, 1});
   SegmentStatisticsTable table(0.1F);
   EXPECT_EQ(table.apply(cloud, ids, update.changes), std::vector<std::uint32_t>{1});
 
@@ -122,7 +124,9 @@ TEST(SegmentStatistics, GiveNoMeanNormalWhereTheNormalsCancelOut) {
   SegmentIds ids;
   const std::vector<PointIndex> components{0, 0};
   SegmentStatisticsTable table(0.1F);
-  table.apply(cloud, ids, ids.update(components, std::vector<PointIndex>{0, 1}).changes);
+  const IdUpdate update =
+      ids.update(cloud, cloud.take_change(), components, std::vector<PointIndex>{0, 1});
+  table.apply(cloud, ids, update.changes);
   EXPECT_EQ(table(1).mean_normal_W[2], 0.0F);
 }
 
