@@ -1,0 +1,28 @@
+#pragma once
+// The figures of the paper over the results of an evaluation.
+
+#include <string>
+#include <vector>
+
+#include "segmenter/evaluation/evaluation.hpp"
+#include "segmenter/evaluation/plot.hpp"
+
+namespace kintsugi::segmenter {
+
+struct Figure {
+  std::string name;  ///< of its file: "fig5a"
+  std::string title;
+  std::string caption;
+  Plot plot;
+};
+
+/// Those there are data for: Fig. 5 a and b and a logarithmic view of the same (time per slice),
+/// Fig. 4 (cumulative v), Fig. 2 (theta against joins), slices behind.
+std::vector<Figure> figures(const Evaluation& evaluation);
+
+/// Fig. 4 at v = 0, 1 / `steps`, ..., 1: the percentage of segments of at least `min_points` points
+/// with v_i >= v. Empty when there is no such segment.
+std::vector<std::pair<double, double>> cumulative_v(const std::vector<SegmentAgreement>& agreements,
+                                                    std::int64_t min_points, int steps = 200);
+
+}  // namespace kintsugi::segmenter

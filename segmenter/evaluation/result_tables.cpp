@@ -1,0 +1,256 @@
+#include "segmenter/evaluation/result_tables.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "segmenter/evaluation/paper_results.hpp"
+
+namespace kintsugi::segmenter {
+namespace {
+
+/// Over all slices: exact where each was run, else by trapezoids from the point (0, 0).
+double total_ms(const std::vector<SliceRun>& runs) {
+  double total = 0.0;
+  std::int32_t before_index = -1;
+  double before_ms = 0.0;
+  for (const SliceRun& run : runs) {
+    const std::int32_t step = run.slice_index - before_index;
+    // The slices of the step, at even steps from the run before to this one.
+    total += step * before_ms + (run.engine_ms - before_ms) * (step + 1) / 2.0;
+    before_index = run.slice_index;
+    before_ms = run.engine_ms;
+  }
+  return total;
+}
+
+/// One readable row: a quantity of each mode, then of each of the paper's datasets.
+class ReadableRows {
+ public:
+  ReadableRows(const Evaluation& evaluation, const std::string& quantity) : results_(evaluation) {
+    table_.header = {quantity};
+    for (const ModeResult& mode : results_.modes) table_.header.push_back(mode.replay.mode);
+    for (const paper::Dataset& dataset : paper::kDatasets) {
+      table_.header.push_back("paper: " + std::string(dataset.name));
+    }
+  }
+
+  void add(const std::string& name, const std::function<std::string(const ModeResult&)>& of_mode,
+           const std::function<std::string(const paper::Dataset&)>& of_paper) {
+    std::vector<std::string>& row = table_.rows.emplace_back();
+    row.push_back(name);
+    for (const ModeResult& mode : results_.modes) row.push_back(of_mode(mode));
+    for (const paper::Dataset& dataset : paper::kDatasets) {
+      row.push_back(of_paper ? of_paper(dataset) : "");
+    }
+  }
+
+  [[nodiscard]] Table take() { return std::move(table_); }
+
+ private:
+  const Evaluation& results_;
+  Table table_;
+};
+
+double mean_ids_ms(const Replay& replay) {
+  double total = 0.0;
+  for (const SliceRun& run : replay.runs) total += run.ids_ms;
+  return total / static_cast<double>(replay.runs.size());
+}
+
+/// A figure that was not measured after every slice says so.
+std::string sampled(const ModeResult& mode, const std::string& text) {
+  return mode.is_complete ? text : "~ " + text;
+}
+
+std::string percent(double share) { return decimal(100.0 * share, 1) + " %"; }
+
+}  // namespace
+
+SliceTimes slice_times(const Replay& replay) {
+  std::vector<double> times_ms;
+  for (const SliceRun& run : replay.runs) times_ms.push_back(run.engine_ms);
+  std::sort(times_ms.begin(), times_ms.end());
+  const auto rank =
+      static_cast<std::size_t>(std::ceil(0.99 * static_cast<double>(times_ms.size())));
+  SliceTimes times;
+  times.max_ms = times_ms.back();
+  times.min_ms = times_ms.front();
+  times.p99_ms = times_ms[rank - 1];
+  times.total_s = 1e-3 * total_ms(replay.runs);
+  times.average_ms = 1e3 * times.total_s / (replay.runs.back().slice_index + 1);
+  return times;
+}
+
+Table table1(const Evaluation& evaluation) {
+  Table table;
+  table.header = {"mode",    "vertices", "slices",         "build_time_s",       "length_m",
+                  "runs",    "max_ms",   "min_ms",         "average_ms",         "p99_ms",
+                  "total_s", "segments", "ids_average_ms", "memory_growth_bytes"};
+  for (const ModeResult& mode : evaluation.modes) {
+    const SliceTimes times = slice_times(mode.replay);
+    table.rows.push_back(
+        {mode.replay.mode, std::to_string(evaluation.num_vertices),
+         std::to_string(evaluation.session.slices.size()),
+         decimal(evaluation.session.build_time_s, 6), decimal(evaluation.session.path_length_m, 6),
+         std::to_string(mode.replay.runs.size()), decimal(times.max_ms, 3),
+         decimal(times.min_ms, 3), decimal(times.average_ms, 3), decimal(times.p99_ms, 3),
+         decimal(times.total_s, 6), std::to_string(mode.agreements.size()),
+         decimal(mean_ids_ms(mode.replay), 3), std::to_string(mode.replay.resident_growth_bytes)});
+  }
+  return table;
+}
+
+Table table2(const Evaluation& evaluation) {
+  Table table;
+  table.header = {"mode", "max_slices_behind", "average_slices_behind"};
+  for (const ModeResult& mode : evaluation.modes) {
+    if (mode.slices_behind.empty()) continue;
+    const LagSummary lag = summarize_lag(mode.slices_behind);
+    table.rows.push_back(
+        {mode.replay.mode, std::to_string(lag.max_slices), decimal(lag.mean_slices, 6)});
+  }
+  return table;
+}
+
+Table agreement_table(const Evaluation& evaluation) {
+  Table table;
+  table.header = {"mode",     "min_points", "segments",       "points",
+                  "share_v1", "mean_v",     "point_share_v1", "point_mean_v"};
+  for (const ModeResult& mode : evaluation.modes) {
+    for (const std::int64_t min_points : {std::int64_t{1}, kLargeSegment}) {
+      const AgreementSummary summary = summarize(mode.agreements, min_points);
+      table.rows.push_back({mode.replay.mode, std::to_string(min_points),
+                            std::to_string(summary.num_segments),
+                            std::to_string(summary.num_points), decimal(summary.exact_share, 6),
+                            decimal(summary.mean_v, 6), decimal(summary.exact_point_share, 6),
+                            decimal(summary.point_mean_v, 6)});
+    }
+  }
+  return table;
+}
+
+Table slices_table(const Evaluation& evaluation, const ModeResult& mode) {
+  Table table;
+  table.header = {"slice",     "slice_id",  "utime_us",      "points",           "map_points",
+                  "engine_ms", "ids_ms",    "slices_behind", "points_segmented", "edges",
+                  "joins",     "iterations"};
+  for (const SliceRun& run : mode.replay.runs) {
+    const auto index = static_cast<std::size_t>(run.slice_index);
+    const CloudSlice& slice = evaluation.session.slices[index];
+    table.rows.push_back(
+        {std::to_string(run.slice_index), std::to_string(slice.id),
+         evaluation.session.has_times ? std::to_string(slice.utime) : "",
+         std::to_string(slice.points_W.size()), std::to_string(run.map_points),
+         decimal(run.engine_ms, 3), decimal(run.ids_ms, 3),
+         mode.slices_behind.empty() ? "" : std::to_string(mode.slices_behind[index]),
+         std::to_string(run.statistics.num_points), std::to_string(run.statistics.num_edges),
+         std::to_string(run.statistics.num_joins), std::to_string(run.statistics.num_iterations)});
+  }
+  return table;
+}
+
+Table theta_table(const Evaluation& evaluation) {
+  Table table;
+  table.header = {"rank", "join", "theta", "points"};
+  for (const ChosenSegment& segment : evaluation.thetas) {
+    for (std::size_t n = 0; n < segment.history.theta.size(); ++n) {
+      table.rows.push_back({std::to_string(segment.rank), std::to_string(n),
+                            decimal(segment.history.theta[n], 9),
+                            std::to_string(segment.history.num_points[n])});
+    }
+  }
+  return table;
+}
+
+Table readable_table1(const Evaluation& evaluation) {
+  const RecordedSession& session = evaluation.session;
+  ReadableRows rows(evaluation, "Table I");
+  using Mode = const ModeResult&;
+  using Paper = const paper::Dataset&;
+  rows.add(
+      "Vertices", [&](Mode) { return grouped(evaluation.num_vertices); },
+      [](Paper p) { return grouped(p.num_vertices); });
+  rows.add(
+      "Cloud slices",
+      [&](Mode) { return grouped(static_cast<std::int64_t>(session.slices.size())); },
+      [](Paper p) { return grouped(p.num_slices); });
+  rows.add(
+      "Map build time (s)", [&](Mode) { return decimal(session.build_time_s, 2); },
+      [](Paper p) { return decimal(p.build_time_s, 2); });
+  rows.add(
+      "Map length (m)", [&](Mode) { return decimal(session.path_length_m, 1); },
+      [](Paper p) { return decimal(p.length_m, 1); });
+  rows.add(
+      "Maximum per slice (ms)", [](Mode m) { return decimal(slice_times(m.replay).max_ms, 2); },
+      [](Paper p) { return decimal(p.max_ms, 2); });
+  rows.add(
+      "Minimum per slice (ms)", [](Mode m) { return decimal(slice_times(m.replay).min_ms, 2); },
+      [](Paper p) { return decimal(p.min_ms, 2); });
+  rows.add(
+      "Average per slice (ms)",
+      [](Mode m) { return sampled(m, decimal(slice_times(m.replay).average_ms, 2)); },
+      [](Paper p) { return decimal(p.average_ms, 2); });
+  rows.add(
+      "Total timing (s)",
+      [](Mode m) { return sampled(m, decimal(slice_times(m.replay).total_s, 2)); },
+      [](Paper p) { return decimal(p.total_s, 2); });
+  rows.add("99th percentile per slice (ms)",
+           [](Mode m) { return decimal(slice_times(m.replay).p99_ms, 2); }, {});
+  rows.add("Segment ids, average per slice (ms)",
+           [](Mode m) { return m.replay.mode == "batch" ? "" : decimal(mean_ids_ms(m.replay), 2); },
+           {});
+  rows.add("Memory growth (bytes per point)",
+           [&](Mode m) {
+             return decimal(static_cast<double>(m.replay.resident_growth_bytes) /
+                                static_cast<double>(evaluation.num_vertices),
+                            0);
+           },
+           {});
+  return rows.take();
+}
+
+Table readable_table2(const Evaluation& evaluation) {
+  ReadableRows rows(evaluation, "Table II");
+  const auto of_mode = [](auto format) {
+    return [format](const ModeResult& mode) -> std::string {
+      if (mode.slices_behind.empty()) return "";
+      return format(summarize_lag(mode.slices_behind));
+    };
+  };
+  rows.add("Max cloud slices behind",
+           of_mode([](const LagSummary& lag) { return grouped(lag.max_slices); }),
+           [](const paper::Dataset& p) { return grouped(p.max_slices_behind); });
+  rows.add("Average cloud slices behind",
+           of_mode([](const LagSummary& lag) { return decimal(lag.mean_slices, 2); }),
+           [](const paper::Dataset& p) { return decimal(p.mean_slices_behind, 1); });
+  return rows.take();
+}
+
+Table readable_agreement(const Evaluation& evaluation) {
+  Table table;
+  table.header = {"Mode",
+                  "Segments of",
+                  "Segments",
+                  "Points",
+                  "v = 1",
+                  "Mean v",
+                  "Points in segments with v = 1",
+                  "Mean v by points"};
+  for (const ModeResult& mode : evaluation.modes) {
+    for (const std::int64_t min_points : {std::int64_t{1}, kLargeSegment}) {
+      const AgreementSummary summary = summarize(mode.agreements, min_points);
+      table.rows.push_back(
+          {mode.replay.mode,
+           min_points == 1 ? "any size" : "at least " + std::to_string(min_points) + " points",
+           grouped(summary.num_segments), grouped(summary.num_points), percent(summary.exact_share),
+           decimal(summary.mean_v, 4), percent(summary.exact_point_share),
+           decimal(summary.point_mean_v, 4)});
+    }
+  }
+  table.rows.push_back({"paper: Two floors", "any size", "", "",
+                        decimal(100.0 * paper::kExactShare, 0) + " %", "", "", ""});
+  return table;
+}
+
+}  // namespace kintsugi::segmenter

@@ -1,0 +1,99 @@
+#include "segmenter/evaluation/theta_history.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <numeric>
+
+#include "segmenter/core/edge.hpp"
+#include "segmenter/core/graph.hpp"
+#include "segmenter/core/neighbour_index.hpp"
+#include "segmenter/core/segment_forest.hpp"
+
+namespace kintsugi::segmenter {
+namespace {
+
+constexpr std::int32_t kNone = -1;
+
+/// A piece of a segment: a single point, or what a join made of two pieces.
+struct Piece {
+  double theta = 0.0;
+  std::int64_t num_points = 1;
+  std::int32_t larger = kNone;  // of the two
+};
+
+/// The tree of joins of a cloud whose edges are taken in ascending order.
+class JoinTree {
+ public:
+  JoinTree(PointIndex num_points, const EngineConfig& config)
+      : forest_(config.threshold, config.scale),
+        pieces_(num_points, Piece{config.threshold, 1, kNone}),
+        piece_of_(num_points) {
+    forest_.grow(num_points);
+    std::iota(piece_of_.begin(), piece_of_.end(), 0);
+  }
+
+  void offer(const Edge& edge) {
+    const std::int32_t a = piece_of_[forest_.find(edge.i)];
+    const std::int32_t b = piece_of_[forest_.find(edge.j)];
+    if (!forest_.join(edge.i, edge.j, edge.weight)) return;
+    const PointIndex root = forest_.find(edge.i);
+    const bool a_is_larger = pieces_[a].num_points != pieces_[b].num_points
+                                 ? pieces_[a].num_points > pieces_[b].num_points
+                                 : a < b;
+    piece_of_[root] = static_cast<std::int32_t>(pieces_.size());
+    pieces_.push_back({forest_.theta_at(root), pieces_[a].num_points + pieces_[b].num_points,
+                       a_is_larger ? a : b});
+  }
+
+  ThetaHistory history_of(PointIndex point) {
+    ThetaHistory history;
+    for (std::int32_t i = piece_of_[forest_.find(point)]; i != kNone; i = pieces_[i].larger) {
+      history.theta.push_back(pieces_[i].theta);
+      history.num_points.push_back(pieces_[i].num_points);
+    }
+    std::reverse(history.theta.begin(), history.theta.end());
+    std::reverse(history.num_points.begin(), history.num_points.end());
+    return history;
+  }
+
+ private:
+  SegmentForest forest_;
+  std::vector<Piece> pieces_;           // the points, then one for each join
+  std::vector<std::int32_t> piece_of_;  // the last one, by root
+};
+
+}  // namespace
+
+std::vector<ThetaHistory> theta_histories(const PointCloud& cloud,
+                                          std::span<const PointIndex> labels,
+                                          std::span<const PointIndex> segments,
+                                          const EngineConfig& config) {
+  assert(labels.size() == cloud.size());
+  std::vector<CloudPoint> points_W;
+  std::vector<PointIndex> label_of;  // of each of them
+  for (PointIndex i = 0; i < cloud.size(); ++i) {
+    if (std::find(segments.begin(), segments.end(), labels[i]) == segments.end()) continue;
+    points_W.push_back(cloud[i]);
+    label_of.push_back(labels[i]);
+  }
+  PointCloud part;
+  part.add_slice(0, points_W);
+  const auto index = make_neighbour_index(config.neighbour_search, part, config.radius_m());
+  index->update();
+  std::vector<Edge> edges = build_graph(part, *index, config.threshold + config.scale);
+  std::erase_if(edges, [&](const Edge& edge) { return label_of[edge.i] != label_of[edge.j]; });
+  std::sort(edges.begin(), edges.end(), AscendingWeight());
+
+  JoinTree tree(part.size(), config);
+  for (const Edge& edge : edges) tree.offer(edge);
+  std::vector<ThetaHistory> histories;
+  for (const PointIndex segment : segments) {
+    const auto member = std::find(label_of.begin(), label_of.end(), segment);
+    assert(member != label_of.end());
+    histories.push_back(tree.history_of(static_cast<PointIndex>(member - label_of.begin())));
+    histories.back().label = segment;
+  }
+  return histories;
+}
+
+}  // namespace kintsugi::segmenter

@@ -1,0 +1,139 @@
+// kintsugi-evaluate: replays a recorded map and writes the tables and figures of the paper.
+
+#include <chrono>
+#include <exception>
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include "lcmtypes/atomic_file.hpp"
+#include "segmenter/evaluation/evaluation.hpp"
+#include "segmenter/evaluation/plot.hpp"
+#include "segmenter/evaluation/report.hpp"
+#include "segmenter/evaluation/result_tables.hpp"
+#include "segmenter/options.hpp"
+
+namespace kintsugi::segmenter {
+namespace {
+
+struct Options {
+  std::filesystem::path input;
+  std::filesystem::path folder;
+  CloudInputConfig cloud;
+  SegmentMapConfig map;  // its engine
+  EvaluationConfig evaluation;
+};
+
+void add_options(CLI::App& app, Options& options) {
+  EvaluationConfig& evaluation = options.evaluation;
+  app.add_option("IN", options.input,
+                 "an LCM log with CLOUD_SLICE, or a PLY file (*.ply), by its slice_id")
+      ->required();
+  app.add_option("--out", options.folder, "the folder to write into; is made when absent")
+      ->required();
+  app.add_option("--modes", evaluation.modes, "what to compare, in this order")
+      ->delimiter(',')
+      ->capture_default_str();
+  app.add_option("--batch-every", evaluation.batch_every,
+                 "mode batch: after every so many slices; 0: as often as --batch-budget allows")
+      ->capture_default_str();
+  app.add_option("--batch-budget", evaluation.batch_budget_s,
+                 "seconds that the runs of batch may take together, about")
+      ->capture_default_str();
+  app.add_option("--segments", evaluation.segments,
+                 "whose theta is shown: ranks by size, 1 is the largest")
+      ->delimiter(',')
+      ->capture_default_str();
+  add_segmentation_options(app, options.map);
+  app.remove_option(app.get_option("--mode"));
+  auto* const group = app.add_option_group("PLY files");
+  add_cloud_options(*group, options.cloud);
+}
+
+/// A line now and then: at most one a second, and the last of each mode.
+class ProgressLog {
+ public:
+  void operator()(const ReplayProgress& progress) {
+    const auto now = std::chrono::steady_clock::now();
+    if (now < next_ && progress.slice < progress.num_slices) return;
+    next_ = now + std::chrono::seconds(1);
+    spdlog::info("{}: slice {} of {}, {} points, {:.1f} ms, {:.0f} s left", progress.mode,
+                 progress.slice, progress.num_slices, progress.map_points, progress.last_ms,
+                 progress.rest_s);
+  }
+
+ private:
+  std::chrono::steady_clock::time_point next_{};
+};
+
+void make_folder(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) throw std::runtime_error(folder.string() + ": cannot be made: " + error.message());
+  AtomicFile(folder / "index.html").stream();  // throws where nothing can be written
+}
+
+RecordedSession read(const Options& options) {
+  RecordedSession session = options.input.extension() == ".ply"
+                                ? read_session_cloud(options.input, options.cloud)
+                                : read_session_log(options.input);
+  spdlog::info("{}: {} slices, {} points", session.source, session.slices.size(),
+               session.num_points());
+  for (const std::string& remark : session.remarks) spdlog::warn("{}", remark);
+  return session;
+}
+
+void log_results(const Evaluation& evaluation) {
+  for (const ModeResult& mode : evaluation.modes) {
+    const SliceTimes times = slice_times(mode.replay);
+    const AgreementSummary agreement = summarize(mode.agreements);
+    spdlog::info(
+        "{}: average {:.2f} ms, max {:.2f} ms a slice, total {:.2f} s; v = 1 for {:.1f} % "
+        "of segments",
+        mode.replay.mode, times.average_ms, times.max_ms, times.total_s,
+        100.0 * agreement.exact_share);
+  }
+}
+
+/// Returns the exit status.
+int run(Options options, const std::string& command_line) {
+  options.evaluation.engine = options.map.engine;
+  options.evaluation.validate();
+  options.cloud.validate();
+  make_folder(options.folder);
+  ReportContext context{command_line, KINTSUGI_VERSION, gnuplot_version()};
+  if (!context.gnuplot_version) {
+    spdlog::warn("no gnuplot: figures are left out; it is in the Debian package gnuplot-nox");
+  }
+  const Evaluation evaluation = evaluate(read(options), options.evaluation, ProgressLog());
+  const bool is_drawn = write_report(evaluation, context, options.folder);
+  log_results(evaluation);
+  spdlog::info("memory: {} MB at the end, {} MB at most", evaluation.resident_bytes / 1'000'000,
+               evaluation.peak_resident_bytes / 1'000'000);
+  spdlog::info("written: {}", (options.folder / "index.html").string());
+  return is_drawn && evaluation.session.is_whole ? 0 : 1;
+}
+
+}  // namespace
+}  // namespace kintsugi::segmenter
+
+int main(int argc, char** argv) {
+  using namespace kintsugi::segmenter;
+  spdlog::set_default_logger(spdlog::stderr_color_mt("kintsugi-evaluate"));
+  spdlog::set_pattern("%^%l%$: %v");
+  CLI::App app{"Replays a recorded map slice by slice and writes the paper's tables and figures."};
+  Options options;
+  add_options(app, options);
+  CLI11_PARSE(app, argc, argv);
+  std::string command_line;
+  for (int i = 0; i < argc; ++i) command_line.append(i == 0 ? "" : " ").append(argv[i]);
+  try {
+    return run(options, command_line);
+  } catch (const std::exception& error) {
+    spdlog::error("{}", error.what());
+    return 1;
+  }
+}
