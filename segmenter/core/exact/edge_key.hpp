@@ -1,0 +1,33 @@
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+
+#include "segmenter/core/point_cloud.hpp"
+
+namespace kintsugi::segmenter::exact {
+
+/// Where an edge stands in the order in which Algorithm 1 takes the edges: by weight, ties by the
+/// two points, smaller first. It is also the time at which things happen in the engine's history.
+struct EdgeKey {
+  std::uint32_t weight_bits = UINT32_MAX;  ///< a float32 >= 0: its bits order as its value does
+  PointIndex a = UINT32_MAX;               ///< < b
+  PointIndex b = UINT32_MAX;
+
+  static EdgeKey of(float weight, PointIndex i, PointIndex j) {
+    return {std::bit_cast<std::uint32_t>(weight), std::min(i, j), std::max(i, j)};
+  }
+  float weight() const { return std::bit_cast<float>(weight_bits); }
+
+  bool operator==(const EdgeKey&) const = default;
+  bool operator<(const EdgeKey& other) const {
+    if (weight_bits != other.weight_bits) return weight_bits < other.weight_bits;
+    return a != other.a ? a < other.a : b < other.b;
+  }
+};
+
+/// After every edge.
+inline constexpr EdgeKey kNever{};
+
+}  // namespace kintsugi::segmenter::exact

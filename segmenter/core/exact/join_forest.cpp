@@ -1,0 +1,71 @@
+#include "segmenter/core/exact/join_forest.hpp"
+
+#include <cassert>
+#include <utility>
+
+namespace kintsugi::segmenter::exact {
+
+void JoinForest::absorb(PointIndex host, PointIndex guest, TreeEdgeId edge) {
+  Vertex& v = vertices_[guest];
+  assert(v.is_root() && host != guest);
+  v.host = host;
+  v.edge = edge;
+  v.weight_bits = edges_.key(edge).weight_bits;
+  v.size = history_.total(guest);
+  edges_.set_owner(edge, guest);
+  history_.update_end(guest);
+  history_.insert(guest);
+}
+
+PointIndex JoinForest::release(PointIndex guest) {
+  const PointIndex host = vertices_[guest].host;
+  assert(host != kNone);
+  history_.erase(guest);
+  set_free(guest);
+  return host;
+}
+
+void JoinForest::release_after(PointIndex host, const EdgeKey& time, std::vector<Freed>& freed) {
+  std::vector<PointIndex> guests;
+  history_.split_after(host, time, guests);
+  for (const PointIndex guest : guests) {
+    freed.push_back({guest, vertices_[guest].edge});
+    vertices_[guest].left = vertices_[guest].right = kNone;
+    set_free(guest);
+  }
+}
+
+void JoinForest::set_free(PointIndex guest) {
+  Vertex& v = vertices_[guest];
+  edges_.set_owner(v.edge, kNone);
+  v.host = kNone;
+  v.edge = kNone;
+  v.weight_bits = UINT32_MAX;
+  v.is_queued = 0;
+  history_.update_end(guest);
+}
+
+bool JoinForest::recount(PointIndex guest) {
+  const std::uint32_t size = history_.total(guest);
+  if (std::exchange(vertices_[guest].size, size) == size) return false;
+  history_.update_size(guest);
+  return true;
+}
+
+PointIndex JoinForest::step_down(PointIndex x) {
+  const PointIndex heir =
+      history_.first_child_that(x, [&](PointIndex child) { return vertices_[child].is_gone == 0; });
+  if (heir == kNone) return kNone;
+  const TreeEdgeId edge = vertices_[heir].edge;
+  const TreeEdgeId own_edge = vertices_[x].edge;
+  const PointIndex host = vertices_[x].host;
+  release(heir);
+  if (host != kNone) release(x);
+  const PointIndex later = history_.take_after(x, edges_.key(edge));
+  absorb(heir, x, edge);
+  history_.append(heir, later);
+  if (host != kNone) absorb(host, heir, own_edge);
+  return heir;
+}
+
+}  // namespace kintsugi::segmenter::exact

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+
+namespace kintsugi::segmenter::exact {
+
+/// The predicate that decides joins (Eq. 3 and Algorithm 1, line 8), in one place. T and k as in
+/// EngineConfig.
+struct JoinRule {
+  double threshold = 0.0;  ///< T
+  double scale = 0.0;      ///< k
+
+  /// No bound: the component is alive whatever its size.
+  static constexpr std::int32_t kUnbounded = 1 << 30;
+
+  /// theta of a component of `size` points whose last join had `weight`. A single point had none.
+  double theta(float weight, std::uint32_t size) const {
+    return size == 1 ? threshold : static_cast<double>(weight) + scale / static_cast<double>(size);
+  }
+
+  /// The most points that a component may have after a join of `weight` to be alive at an edge of
+  /// `next_weight` (>= weight); at least 1, though one point is not a join.
+  std::int32_t capacity(float weight, float next_weight) const {
+    if (next_weight <= weight) return kUnbounded;
+    const double w = next_weight;
+    const double estimate = scale / (w - static_cast<double>(weight));
+    if (estimate >= kUnbounded - 2) return kUnbounded;
+    // The division is rounded; the predicate itself decides.
+    auto size = static_cast<std::uint32_t>(estimate) + 1;
+    while (w < static_cast<double>(weight) + scale / (size + 1.0)) ++size;
+    while (size > 1 && !(w < static_cast<double>(weight) + scale / static_cast<double>(size))) {
+      --size;
+    }
+    return static_cast<std::int32_t>(size);
+  }
+};
+
+}  // namespace kintsugi::segmenter::exact
