@@ -57,4 +57,9 @@ double BatchEngine::theta(ComponentId component) const {
   return forest_.theta_at(forest_.root(component));
 }
 
+std::size_t BatchEngine::bytes() const {
+  return index_->bytes() + forest_.bytes() +
+         (components_.capacity() + changed_.capacity()) * sizeof(PointIndex);
+}
+
 }  // namespace kintsugi::segmenter

@@ -17,6 +17,7 @@ class BatchEngine final : public SegmentationEngine {
   std::span<const ComponentId> components() const override { return components_; }
   std::span<const PointIndex> changed() const override { return changed_; }
   double theta(ComponentId component) const override;
+  std::size_t bytes() const override;
 
  private:
   std::vector<ComponentId> take_over(const CloudChange& change);

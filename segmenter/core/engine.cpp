@@ -6,12 +6,13 @@
 #include <stdexcept>
 
 #include "segmenter/core/batch_engine.hpp"
+#include "segmenter/core/exact_engine.hpp"
 #include "segmenter/core/voting_engine.hpp"
 
 namespace kintsugi::segmenter {
 namespace {
 
-constexpr std::array<std::string_view, 2> kModes = {"batch", "voting"};
+constexpr std::array<std::string_view, 3> kModes = {"exact", "batch", "voting"};
 
 [[noreturn]] void throw_invalid(const char* field, double value, const char* bound) {
   std::ostringstream message;
@@ -31,6 +32,8 @@ void EngineConfig::validate() const {
   if (!(beta > 0.0 && beta < 1.0)) throw_invalid("beta", beta, "in (0, 1)");
   require_positive("resolution_m", resolution_m);
   require_positive("radius_factor", radius_factor);
+  if (!(rebuild_share >= 0.0)) throw_invalid("rebuild_share", rebuild_share, ">= 0");
+  if (!(explore_share >= 0.0)) throw_invalid("explore_share", explore_share, ">= 0");
   // A float32 whose square vanishes or overflows compares with no distance.
   const float squared_radius_m2 = radius_m() * radius_m();
   if (!std::isnormal(squared_radius_m2)) {
@@ -44,6 +47,7 @@ std::span<const std::string_view> engine_modes() { return kModes; }
 std::unique_ptr<SegmentationEngine> make_engine(std::string_view mode, const PointCloud& cloud,
                                                 const EngineConfig& config) {
   config.validate();
+  if (mode == "exact") return std::make_unique<ExactEngine>(cloud, config);
   if (mode == "batch") return std::make_unique<BatchEngine>(cloud, config);
   if (mode == "voting") return std::make_unique<VotingEngine>(cloud, config);
   std::string known;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -19,6 +20,10 @@ struct EngineConfig {
   double beta = 0.85;          ///< of Eq. 4, in (0, 1); mode `voting`
   double resolution_m = 0.01;  ///< voxel size of the map, > 0
   double radius_factor = 2.0;  ///< neighbours are closer than radius_factor * resolution_m, > 0
+  /// Mode `exact` builds its state anew where more of the map than this came and went,
+  double rebuild_share = 0.1;  ///< >= 0
+  /// or where the points to look at again turn out to be more of it than this.
+  double explore_share = 0.04;  ///< >= 0
   NeighbourSearch neighbour_search = NeighbourSearch::kGrid;
 
   /// r, as the float32 that squared distances are compared with.
@@ -32,7 +37,12 @@ struct RunStatistics {
   std::int64_t num_edges = 0;       ///< edges built: undirected, those that can never join left out
   std::int64_t num_joins = 0;       ///< of the last iteration
   std::int64_t num_points = 0;      ///< points (re-)segmented
-  std::int32_t num_iterations = 0;  ///< voting rounds; 1 for `batch`
+  std::int32_t num_iterations = 0;  ///< voting rounds; 1 for the others
+  std::int64_t num_explored = 0;    ///< `exact`: old points that looked at their edges again
+  bool is_rebuilt = false;          ///< `exact`: from scratch, as that was the cheaper way
+  double neighbours_ms = 0.0;       ///< `exact`: to find points and edges
+  double replay_ms = 0.0;           ///< `exact`: to decide joins
+  double naming_ms = 0.0;           ///< `exact`: to name the components that changed
 };
 
 /// Names a component. Names are below the size() of the cloud, and mean nothing more: those of two
@@ -62,6 +72,9 @@ class SegmentationEngine {
 
   /// The join threshold theta of a component that there is.
   virtual double theta(ComponentId component) const = 0;
+
+  /// Memory taken, the cloud left out.
+  virtual std::size_t bytes() const = 0;
 };
 
 /// The modes make_engine() knows.

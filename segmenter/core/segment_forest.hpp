@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -63,6 +64,10 @@ class SegmentForest {
     sets_[host].size += sets_[guest].size;
     sets_[host].theta = w + scale_ / sets_[host].size;
     return true;
+  }
+
+  std::size_t bytes() const {
+    return parents_.capacity() * sizeof(PointIndex) + sets_.capacity() * sizeof(Set);
   }
 
  private:

@@ -177,4 +177,13 @@ double VotingEngine::theta(ComponentId component) const {
   return forest_.theta_at(forest_.root(component));
 }
 
+std::size_t VotingEngine::bytes() const {
+  const std::size_t by_point = components_.capacity() + next_.capacity() +
+                               representative_at_.capacity() + changed_.capacity() + D_.capacity() +
+                               round_added_.capacity() + round_discrepant_.capacity();
+  return index_->bytes() + forest_.bytes() + by_point * sizeof(PointIndex) +
+         (inner_edges_.capacity() + border_edges_.capacity()) * sizeof(Edge) +
+         ballots_.capacity() * sizeof(Ballot);
+}
+
 }  // namespace kintsugi::segmenter

@@ -29,6 +29,7 @@ class VotingEngine final : public SegmentationEngine {
   std::span<const ComponentId> components() const override { return components_; }
   std::span<const PointIndex> changed() const override { return changed_; }
   double theta(ComponentId component) const override;
+  std::size_t bytes() const override;
 
  private:
   std::vector<PointIndex> remove_points(std::span<const PointIndex> removed);

@@ -28,6 +28,7 @@ class FaultyEngine final : public SegmentationEngine {
   }
   std::span<const ComponentId> components() const override { return components_; }
   std::span<const PointIndex> changed() const override { return changed_; }
+  std::size_t bytes() const override { return engine_->bytes(); }
   double theta(ComponentId component) const override {
     const double theta = engine_->theta(component);
     return wrong_theta_ == component ? std::nextafter(theta, 0.0) : theta;

@@ -9,7 +9,10 @@ namespace kintsugi::segmenter::fuzz {
 
 EngineFactory engine_factory(const std::string& mode) {
   return [mode](const PointCloud& cloud, const EngineConfig& config) {
-    return make_engine(mode, cloud, config);
+    // Small clouds change by large parts: without this, mode `exact` would build all anew.
+    EngineConfig incremental = config;
+    incremental.rebuild_share = 1e9;
+    return make_engine(mode, cloud, incremental);
   };
 }
 

@@ -1,0 +1,71 @@
+#include "segmenter/core/exact/bulk_build.hpp"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "segmenter/core/felzenszwalb.hpp"
+
+namespace kintsugi::segmenter::exact {
+namespace {
+
+/// Writes down what happens. The children of a host are a list meanwhile, the last one first:
+/// `history` of the host begins it, `left` goes on.
+class Recorder {
+ public:
+  Recorder(SegmentForest& forest, State& state) : forest_(forest), state_(state) {}
+
+  void joined(const Edge& edge, PointIndex host, PointIndex guest) {
+    const EdgeKey key = EdgeKey::of(edge.weight, edge.i, edge.j);
+    Vertex& v = state_.vertices[guest];
+    v.edge = state_.edges.add(key);
+    v.host = host;
+    v.weight_bits = key.weight_bits;
+    v.left = std::exchange(state_.vertices[host].history, guest);
+    state_.edges.set_owner(v.edge, guest);
+    state_.edges.link(v.edge);
+  }
+
+  void rejected(const Edge& edge) {
+    const PointIndex root_j = forest_.find(edge.j);
+    const bool is_j_frozen = !(static_cast<double>(edge.weight) < forest_.theta_at(root_j));
+    // A frozen component never changes again: its root will stay the root.
+    state_.watches.insert(is_j_frozen ? root_j : forest_.find(edge.i),
+                          is_j_frozen ? edge.j : edge.i, EdgeKey::of(edge.weight, edge.i, edge.j));
+  }
+
+ private:
+  SegmentForest& forest_;
+  State& state_;
+};
+
+void build_history(PointIndex host, State& state, std::vector<PointIndex>& children) {
+  children.clear();
+  PointIndex child = std::exchange(state.vertices[host].history, kNone);
+  for (; child != kNone; child = state.vertices[child].left) children.push_back(child);
+  std::reverse(children.begin(), children.end());
+  state.forest.build_history(host, children);
+}
+
+}  // namespace
+
+std::int64_t build_state(std::span<const Edge> edges, const JoinRule& rule, State& state) {
+  const auto num_vertices = static_cast<PointIndex>(state.vertices.size());
+  SegmentForest forest(rule.threshold, rule.scale);
+  forest.grow(num_vertices);
+  const std::int64_t num_joins = join_segments(edges, forest, Recorder(forest, state));
+
+  // Edges have their ids in the order of the joins: whoever is absorbed has made its own before.
+  std::vector<PointIndex> children;
+  for (TreeEdgeId id = 0; id < num_joins; ++id) {
+    const PointIndex guest = state.edges.owner(id);
+    build_history(guest, state, children);
+    state.vertices[guest].size = state.forest.history().total(guest);
+  }
+  for (PointIndex x = 0; x < num_vertices; ++x) {
+    if (state.vertices[x].is_root()) build_history(x, state, children);
+  }
+  return num_joins;
+}
+
+}  // namespace kintsugi::segmenter::exact

@@ -1,0 +1,126 @@
+#include "segmenter/core/exact_engine.hpp"
+
+#include <chrono>
+#include <utility>
+
+#include "segmenter/core/exact/bulk_build.hpp"
+#include "segmenter/core/graph.hpp"
+
+namespace kintsugi::segmenter {
+namespace {
+
+using exact::EdgeKey;
+using exact::Vertex;
+
+// Small maps: fewer explored points than this are no reason to build anew.
+constexpr std::int64_t kAlwaysExplored = 20'000;
+
+class Stopwatch {
+ public:
+  double lap_ms() {
+    const auto now = std::chrono::steady_clock::now();
+    return std::chrono::duration<double, std::milli>(now - std::exchange(start_, now)).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace
+
+ExactEngine::ExactEngine(const PointCloud& cloud, const EngineConfig& config)
+    : cloud_(cloud),
+      config_(config),
+      rule_{config.threshold, config.scale},
+      index_(make_neighbour_index(config.neighbour_search, cloud, config.radius_m())),
+      edges_of_(cloud, *index_, config.threshold + config.scale),
+      state_(rule_),
+      replay_(state_, edges_of_),
+      names_(state_.vertices, state_.forest) {}
+
+ExactEngine::~ExactEngine() = default;
+
+RunStatistics ExactEngine::update(const CloudChange& change) {
+  RunStatistics statistics{.num_iterations = 1};
+  const bool is_rebuilt = is_cheaper_to_rebuild(change);
+  Stopwatch stopwatch;
+  take_over(change);
+  statistics.neighbours_ms = stopwatch.lap_ms();
+  if (is_rebuilt || !replay(change, statistics)) rebuild(change, statistics);
+  return statistics;
+}
+
+bool ExactEngine::is_cheaper_to_rebuild(const CloudChange& change) const {
+  const auto num_changed = static_cast<double>(change.added.size() + change.removed.size());
+  return num_changed > config_.rebuild_share * static_cast<double>(num_points_);
+}
+
+/// Vertices and index; the watches at those that are gone are taken out.
+void ExactEngine::take_over(const CloudChange& change) {
+  edges_of_.for_each(change.removed, [&](PointIndex x, PointIndex neighbour, const EdgeKey&) {
+    state_.watches.erase(neighbour, x);
+  });
+  index_->remove(change.removed);
+  index_->insert(change.added);
+  Vertex nobody;
+  nobody.is_gone = 1;
+  state_.vertices.resize(cloud_.size(), nobody);
+  for (const PointIndex x : change.added) state_.vertices[x] = {};
+  num_points_ += std::ssize(change.added) - std::ssize(change.removed);
+}
+
+/// Each edge of the added points once.
+std::vector<EdgeKey> ExactEngine::find_new_edges(std::span<const PointIndex> added) const {
+  std::vector<EdgeKey> edges;
+  edges_of_.for_each(added, [&](PointIndex x, PointIndex other, const EdgeKey& key) {
+    const bool comes_again = state_.vertices[other].is_touched && x < other;
+    if (!comes_again) edges.push_back(key);
+  });
+  return edges;
+}
+
+bool ExactEngine::replay(const CloudChange& change, RunStatistics& statistics) {
+  Stopwatch stopwatch;
+  std::vector<PointIndex>& touched = replay_.touched();
+  touched = change.added;
+  for (const PointIndex x : touched) state_.vertices[x].is_touched = 1;
+  std::vector<EdgeKey> edges = find_new_edges(change.added);
+  statistics.num_edges = std::ssize(edges);
+  statistics.neighbours_ms += stopwatch.lap_ms();
+
+  const double max_explored = config_.explore_share * static_cast<double>(num_points_);
+  const bool is_done = replay_.run(change.removed, std::move(edges),
+                                   kAlwaysExplored + static_cast<std::int64_t>(max_explored));
+  statistics.replay_ms = stopwatch.lap_ms();
+  if (!is_done) return false;
+  names_.update(touched, change.removed);
+  statistics.naming_ms = stopwatch.lap_ms();
+  statistics.num_joins = replay_.num_joins();
+  statistics.num_points = std::ssize(change.added) + replay_.num_explored();
+  statistics.num_explored = replay_.num_explored();
+  return true;
+}
+
+void ExactEngine::rebuild(const CloudChange& change, RunStatistics& statistics) {
+  Stopwatch stopwatch;
+  for (const PointIndex x : change.removed) state_.vertices[x].is_gone = 1;
+  replay_.reset();
+  state_.clear();
+  const std::vector<Edge> edges = build_graph(cloud_, *index_, config_.threshold + config_.scale);
+  statistics.num_edges = std::ssize(edges);
+  statistics.neighbours_ms += stopwatch.lap_ms();
+  statistics.num_joins = exact::build_state(edges, rule_, state_);
+  statistics.num_points = num_points_;
+  statistics.is_rebuilt = true;
+  statistics.replay_ms += stopwatch.lap_ms();
+  names_.update_all(change.removed);
+  statistics.naming_ms = stopwatch.lap_ms();
+}
+
+double ExactEngine::theta(ComponentId component) const {
+  return state_.forest.history().final_theta(names_.root(component));
+}
+
+std::size_t ExactEngine::bytes() const { return index_->bytes() + state_.bytes() + names_.bytes(); }
+
+}  // namespace kintsugi::segmenter
