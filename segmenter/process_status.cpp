@@ -26,6 +26,7 @@ SegmenterStatus make_status(const SliceProcessor::Counts& counts, const StreamCo
   status.map_name = counts.map_name;
   status.slices_received = counts.received;
   status.slices_segmented = counts.segmented;
+  status.slices_corrected = counts.corrected;
   status.slices_missing = counts.missing;
   status.lag_slices = counts.lag;
   status.points = counts.points;

@@ -20,6 +20,13 @@ using std::chrono::milliseconds;
 
 constexpr milliseconds kPollPeriod{50};
 
+void write(const MapSnapshot& map, const std::filesystem::path& folder, const std::string& stem) {
+  write_map_files(map, folder, stem);
+  spdlog::info("wrote {}.ply and .json: {} slices, {} points, {} segments",
+               (folder / stem).string(), map.slices.size(), map.points_W.size(),
+               map.segments.size());
+}
+
 }  // namespace
 
 void SegmenterProcess::Config::validate() const {
@@ -37,11 +44,10 @@ SegmenterProcess::SegmenterProcess(const Config& config)
       subscriber_(
           channels::kCloudSlice, [this](CloudSlice slice) { queue_.push(std::move(slice)); },
           [](const DecodeError& error) { spdlog::warn("dropped a message: {}", error.what()); }),
-      processor_(
-          config.processor, session_,
-          {[this](SegmentUpdate update) { publish(std::move(update)); },
-           [this](const SegmentMap& map, SliceProcessor::Save why) { return save(map, why); },
-           [](const std::string& text) { spdlog::warn("{}", text); }}) {
+      processor_(config.processor, session_,
+                 {[this](SegmentUpdate update) { publish(std::move(update)); },
+                  [this](const SegmentMap& map, SliceProcessor::Save why) { save(map, why); },
+                  [](const std::string& text) { spdlog::warn("{}", text); }}) {
   if (config_.log.empty() || config_.publish) {
     bus_ = std::make_unique<Bus>(config_.lcm_url);
   }
@@ -63,6 +69,7 @@ int SegmenterProcess::run() {
     throw;
   }
   worker.join();
+  writer_.wait();
   if (failure_) {
     std::rethrow_exception(failure_);
   }
@@ -146,7 +153,7 @@ void SegmenterProcess::work_until_end() {
       offer_all(queue_.take(milliseconds(0)));
     }
     if (take_write_request()) {
-      processor_.save();
+      processor_.save(is_write_due_);
     }
   }
   offer_all(queue_.take(milliseconds(0)));
@@ -157,7 +164,8 @@ void SegmenterProcess::work_until_end() {
   }
   processor_.finish(SliceProcessor::Clock::now());
   offer_all({});
-  processor_.save();
+  writer_.wait();  // what is being written may fail
+  processor_.save(is_write_due_);
 }
 
 void SegmenterProcess::offer_all(std::vector<CloudSlice> slices) {
@@ -179,19 +187,29 @@ void SegmenterProcess::publish(SegmentUpdate update) {
   }
 }
 
-bool SegmenterProcess::save(const SegmentMap& map, SliceProcessor::Save why) {
-  const std::string stem = why == SliceProcessor::Save::kCurrent
-                               ? "segments"
-                               : "segments_" + std::to_string(map.map_session());
+// Copies what is written, and leaves the writing to the writer.
+void SegmenterProcess::save(const SegmentMap& map, SliceProcessor::Save why) {
+  const std::string stem = why == SliceProcessor::Save::kSessionEnded
+                               ? "segments_" + std::to_string(map.map_session())
+                               : "segments";
+  try_to_write([&] {
+    const auto snapshot = std::make_shared<const MapSnapshot>(take_snapshot(map));
+    writer_.put(stem, [this, stem, snapshot] {
+      try_to_write([&] {
+        write(*snapshot, config_.output_folder, stem);
+        is_write_due_ = false;
+      });
+    });
+  });
+}
+
+template <class Action>
+void SegmenterProcess::try_to_write(Action&& action) {
   try {
-    write_map_files(map, config_.output_folder, stem);
-    spdlog::info("wrote {}.ply and .json: {} points, {} segments",
-                 (config_.output_folder / stem).string(), map.cloud().size(),
-                 map.segment_ids().num_segments());
-    return true;
-  } catch (const std::exception& error) {
+    action();
+  } catch (const std::exception& error) {  // the map goes on, and is written again at the end
+    is_write_due_ = true;
     fail(std::string("the map is not written: ") + error.what());
-    return false;
   }
 }
 

@@ -12,14 +12,22 @@
 #include "lcmtypes/bus.hpp"
 #include "lcmtypes/stream_publisher.hpp"
 #include "lcmtypes/stream_subscriber.hpp"
+#include "segmenter/background_writer.hpp"
 #include "segmenter/slice_processor.hpp"
 #include "segmenter/slice_queue.hpp"
 
 namespace kintsugi::segmenter {
 
-/// Three threads that do not wait for each other: one receives slices (from the bus, or from a log
-/// as fast as it can be read), one segments and writes files, and the publisher's sends updates at
-/// its pace. run() itself publishes the status and watches for the end.
+/// Threads that do not wait for each other, each in one stage of a slice's way:
+///   receiving   decodes and joins chunks, from the bus or from a log as fast as it can be read
+///   working     drops duplicates, puts slices in order, finds neighbours, runs the engine
+///   publishing  (the publisher's) encodes updates and sends them at its pace
+///   writing     (the writer's) puts copies of the map into files
+/// Between two stages lies a queue without a bound: a slice is never dropped, however far behind
+/// the engine is. run() itself publishes the status, the lag in it, and watches for the end.
+///
+/// Work on a slice that needs nothing of the map could have a stage of its own, between SliceQueue
+/// and SliceProcessor.
 class SegmenterProcess {
  public:
   struct Config {
@@ -54,7 +62,9 @@ class SegmenterProcess {
   void work_until_end();
   void offer_all(std::vector<CloudSlice> slices);
   void publish(SegmentUpdate update);
-  bool save(const SegmentMap& map, SliceProcessor::Save why);
+  void save(const SegmentMap& map, SliceProcessor::Save why);
+  template <class Action>
+  void try_to_write(Action&& action);
   void fail(const std::string& what);
   void publish_status();
   void wait_for_end();
@@ -67,6 +77,7 @@ class SegmenterProcess {
   std::unique_ptr<StreamPublisher> publisher_;  // null likewise
   SliceQueue queue_;
   StreamSubscriber<CloudSlice> subscriber_;
+  BackgroundWriter writer_;
   SliceProcessor processor_;  // of the working thread
 
   mutable std::mutex mutex_;  // guards what the working thread tells the others
@@ -76,7 +87,8 @@ class SegmenterProcess {
   bool status_has_failed_ = false;  // of the thread of run()
   std::atomic<bool> ending_{false};
   std::atomic<bool> working_{true};
-  std::atomic<bool> has_failed_{false};  // in something that did not stop the work
+  std::atomic<bool> has_failed_{false};    // in something that did not stop the work
+  std::atomic<bool> is_write_due_{false};  // the files of the last writing are not there
 };
 
 }  // namespace kintsugi::segmenter

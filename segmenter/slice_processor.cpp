@@ -40,20 +40,8 @@ void SliceProcessor::offer(CloudSlice slice, Clock::time_point now) {
     drop(slice, "its resolution differs from the map's");
     return;
   }
-  const std::string name = name_of(slice);
-  switch (sequencer_->offer(std::move(slice), now)) {
-    case SliceSequencer::Verdict::kTaken:
-      ++counts_.received;
-      break;
-    case SliceSequencer::Verdict::kReplaced:
-    case SliceSequencer::Verdict::kDuplicate:
-      break;
-    case SliceSequencer::Verdict::kRevision:
-      ++counts_.dropped;
-      outputs_.warn(name +
-                    " came again with a correction after it was segmented: "
-                    "corrections are not supported yet, it is dropped");
-      break;
+  if (sequencer_->offer(std::move(slice), now) == SliceSequencer::Verdict::kTaken) {
+    ++counts_.received;
   }
   counts_.lag = sequencer_->num_waiting() + sequencer_->num_missing();
 }
@@ -84,7 +72,24 @@ void SliceProcessor::begin_session(const CloudSlice& first) {
   counts_.map_name = first.map_name;
   is_saved_ = true;
   num_since_save_ = 0;
+  num_timed_ = 0;
   total_ms_ = 0.0;
+}
+
+void SliceProcessor::resume(std::unique_ptr<SegmentMap> map) {
+  map_ = std::move(map);
+  SliceSequencer::Revisions done;
+  for (const SliceRecord& slice : map_->cloud().slices()) {
+    done[slice.slice_id] = slice.revision;
+  }
+  counts_.map_session = map_->map_session();
+  counts_.map_name = map_->map_name();
+  counts_.received = counts_.segmented = std::ssize(done);
+  sequencer_.emplace(config_.order, std::move(done));
+  count_map();
+  for (SegmentUpdate& update : map_->describe()) {
+    outputs_.publish(std::move(update));
+  }
 }
 
 void SliceProcessor::end_session(Clock::time_point now) {
@@ -106,7 +111,7 @@ bool SliceProcessor::step(Clock::time_point now, bool stream_has_ended) {
   if (!map_) {
     return false;
   }
-  const std::vector<CloudSlice> slices = take_ready(now);
+  const std::vector<CloudSlice> slices = take_ready(now, stream_has_ended);
   if (!slices.empty()) {
     segment(slices);
     return true;
@@ -120,55 +125,75 @@ bool SliceProcessor::step(Clock::time_point now, bool stream_has_ended) {
   return gap.has_value();
 }
 
-std::vector<CloudSlice> SliceProcessor::take_ready(Clock::time_point now) {
+// The next run; with Config::coalesce all there are, the newest revision of each slice.
+std::vector<CloudSlice> SliceProcessor::take_ready(Clock::time_point now, bool stream_has_ended) {
   const bool all = config_.coalesce && config_.map.mode == "batch";
   std::vector<CloudSlice> slices;
   while (all || slices.empty()) {
-    auto slice = sequencer_->pop(now);
-    if (!slice) {
+    auto run = sequencer_->pop(now, stream_has_ended);
+    if (!run) {
       break;
     }
-    slices.push_back(std::move(*slice));
+    for (CloudSlice& slice : run->slices) {
+      const auto earlier = std::ranges::find(slices, slice.id, &CloudSlice::id);
+      if (earlier == slices.end()) {
+        slices.push_back(std::move(slice));
+      } else {
+        *earlier = std::move(slice);
+      }
+    }
   }
   return slices;
 }
 
 void SliceProcessor::segment(const std::vector<CloudSlice>& slices) {
+  const auto num_slices = std::ssize(slices);
+  const auto num_new = std::ranges::count_if(slices, [this](const CloudSlice& slice) {
+    return map_->cloud().find_slice(slice.id) == nullptr;
+  });
   const auto start = Clock::now();
-  std::vector<SegmentUpdate> updates = map_->add(slices);
-  const std::chrono::duration<double, std::milli> run = Clock::now() - start;
-  count_run(slices, run.count());
   is_saved_ = false;
-  num_since_save_ += static_cast<std::int64_t>(slices.size());
+  is_broken_ = true;  // should this throw
+  std::vector<SegmentUpdate> updates = map_->add(slices);
+  is_broken_ = false;
+  const std::chrono::duration<double, std::milli> run = Clock::now() - start;
+  count_run(num_new, num_slices - num_new, run.count());
   for (SegmentUpdate& update : updates) {
     outputs_.publish(std::move(update));
   }
+  num_since_save_ += num_slices;
   const bool is_due = config_.write_every > 0 && num_since_save_ >= config_.write_every;
   if (is_due || counts_.complete) {
     save();
   }
 }
 
-void SliceProcessor::count_run(const std::vector<CloudSlice>& slices, double run_ms) {
-  const auto num_slices = static_cast<std::int64_t>(slices.size());
-  counts_.segmented += num_slices;
+void SliceProcessor::count_run(std::int64_t num_new, std::int64_t num_corrected, double run_ms) {
+  counts_.segmented += num_new;
+  counts_.corrected += num_corrected;
+  num_timed_ += num_new + num_corrected;
+  total_ms_ += run_ms;
+  counts_.slice_ms = run_ms / static_cast<double>(num_new + num_corrected);
+  counts_.slice_mean_ms = total_ms_ / static_cast<double>(num_timed_);
+  counts_.slice_max_ms = std::max(counts_.slice_max_ms, counts_.slice_ms);
+  count_map();
+}
+
+void SliceProcessor::count_map() {
   counts_.lag = sequencer_->num_waiting() + sequencer_->num_missing();
   counts_.missing = sequencer_->num_given_up();
-  counts_.points = map_->cloud().size();
+  counts_.points = map_->cloud().num_live();
   counts_.rejected = map_->cloud().num_rejected();
   counts_.segments = map_->segment_ids().num_segments();
   counts_.complete = map_->is_complete();
   counts_.ended = map_->has_final_slice() && sequencer_->num_waiting() == 0;
-  total_ms_ += run_ms;
-  counts_.slice_ms = run_ms / static_cast<double>(num_slices);
-  counts_.slice_mean_ms = total_ms_ / static_cast<double>(counts_.segmented);
-  counts_.slice_max_ms = std::max(counts_.slice_max_ms, counts_.slice_ms);
 }
 
-void SliceProcessor::save() {
-  if (map_ && !is_saved_) {
+void SliceProcessor::save(bool again) {
+  if (map_ && (again || !is_saved_)) {
+    is_saved_ = true;
     num_since_save_ = 0;
-    is_saved_ = outputs_.save(*map_, Save::kCurrent);
+    outputs_.save(*map_, is_broken_ ? Save::kBroken : Save::kCurrent);
   }
 }
 

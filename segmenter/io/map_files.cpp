@@ -41,9 +41,9 @@ std::string_view name_of(NeighbourSearch search) {
   return search == NeighbourSearch::kGrid ? "grid" : "flann";
 }
 
-Json header_json(const SegmentMap& map) {
-  const EngineConfig& engine = map.config().engine;
-  return {{"mode", map.config().mode},
+Json header_json(const MapSnapshot& map) {
+  const EngineConfig& engine = map.config.engine;
+  return {{"mode", map.config.mode},
           {"parameters",
            {{"threshold", engine.threshold},
             {"scale", engine.scale},
@@ -51,19 +51,19 @@ Json header_json(const SegmentMap& map) {
             {"resolution", readable(static_cast<float>(engine.resolution_m))},
             {"radius", readable(engine.radius_m())},
             {"neighbours", name_of(engine.neighbour_search)}}},
-          {"map_name", map.map_name()},
-          {"map_session", map.map_session()},
-          {"session", map.session()},
-          {"complete", map.is_complete()},
-          {"num_slices", map.cloud().slices().size()},
-          {"num_points", map.cloud().num_live()},
-          {"num_points_rejected", map.cloud().num_rejected()},
-          {"num_segments", map.segment_ids().num_segments()}};
+          {"map_name", map.map_name},
+          {"map_session", map.map_session},
+          {"session", map.session},
+          {"complete", map.is_complete},
+          {"num_slices", map.slices.size()},
+          {"num_points", map.points_W.size()},
+          {"num_points_rejected", map.num_points_rejected},
+          {"num_segments", map.segments.size()}};
 }
 
-Json rejected_json(const PointCloud& cloud) {
+Json rejected_json(const std::vector<SliceRecord>& records) {
   Json slices = Json::array();
-  for (const SliceRecord& slice : cloud.slices()) {
+  for (const SliceRecord& slice : records) {
     if (!slice.rejected.empty()) {
       slices.push_back({{"slice", slice.slice_id}, {"points", slice.rejected}});
     }
@@ -71,25 +71,35 @@ Json rejected_json(const PointCloud& cloud) {
   return slices;
 }
 
+Json revisions_json(const std::vector<SliceRecord>& records) {
+  Json slices = Json::array();
+  for (const SliceRecord& slice : records) {
+    if (slice.revision > 0) {
+      slices.push_back({{"slice", slice.slice_id}, {"revision", slice.revision}});
+    }
+  }
+  return slices;
+}
+
 }  // namespace
 
-void write_map_ply(const SegmentMap& map, const std::filesystem::path& path) {
-  const PointCloud& cloud = map.cloud();
-  LabelledPlyWriter writer(path, cloud.num_live(),
-                           {"kintsugi segment map, frame W, metres",
-                            "map_session " + std::to_string(map.map_session())});
-  const auto ids = map.segment_ids().ids();
-  for (const SliceRecord& slice : cloud.slices()) {
-    for (PointIndex i = slice.first; i < slice.first + slice.count; ++i) {
-      writer.append(cloud[i], ids[i], slice.slice_id);
+void write_map_ply(const MapSnapshot& map, const std::filesystem::path& path) {
+  LabelledPlyWriter writer(
+      path, std::ssize(map.points_W),
+      {"kintsugi segment map, frame W, metres", "map_session " + std::to_string(map.map_session)});
+  std::size_t point = 0;
+  for (const SliceRecord& slice : map.slices) {
+    for (const std::size_t end = point + slice.count; point < end; ++point) {
+      writer.append(map.points_W[point], map.segment_ids[point], slice.slice_id);
     }
   }
   writer.commit();
 }
 
-void write_segments_json(const SegmentMap& map, const std::filesystem::path& path) {
+void write_segments_json(const MapSnapshot& map, const std::filesystem::path& path) {
   Json root = header_json(map);
-  root["rejected"] = rejected_json(map.cloud());
+  root["revisions"] = revisions_json(map.slices);
+  root["rejected"] = rejected_json(map.slices);
   AtomicFile file(path);
   std::ostream& out = file.stream();
   // One line for each segment: a person can read it, and the text of millions is never in memory.
@@ -97,7 +107,7 @@ void write_segments_json(const SegmentMap& map, const std::filesystem::path& pat
   head.resize(head.rfind('\n'));
   out << head << ",\n \"segments\": [";
   const char* separator = "\n";
-  for (const SegmentStatistics& segment : map.statistics().all()) {
+  for (const SegmentStatistics& segment : map.segments) {
     out << separator << "  " << segment_json(segment).dump();
     separator = ",\n";
   }
@@ -105,7 +115,7 @@ void write_segments_json(const SegmentMap& map, const std::filesystem::path& pat
   file.commit();
 }
 
-void write_map_files(const SegmentMap& map, const std::filesystem::path& folder,
+void write_map_files(const MapSnapshot& map, const std::filesystem::path& folder,
                      const std::string& stem) {
   std::filesystem::create_directories(folder);
   write_map_ply(map, folder / (stem + ".ply"));

@@ -82,6 +82,28 @@ void SegmentMap::store(const CloudSlice& slice) {
   }
 }
 
+std::vector<SegmentUpdate> SegmentMap::describe() const {
+  std::vector<SegmentUpdate> updates;
+  std::int64_t num_points = 0;
+  for (const SliceRecord& slice : cloud_.slices()) {
+    SegmentUpdate& update = updates.emplace_back();
+    update.session = session_;
+    update.map_session = map_session_;
+    update.map_name = map_name_;
+    update.slice_id = slice.slice_id;
+    update.slice_revision = slice.revision;
+    update.num_slices = static_cast<std::int32_t>(updates.size());
+    update.num_points = num_points += slice.count;
+    update.num_segments = ids_.num_segments();
+    update.labels = slice_labels(slice, ids_.ids());
+  }
+  if (!updates.empty()) {
+    updates.back().is_final = is_complete();
+    updates.back().statistics = statistics_.all();
+  }
+  return updates;
+}
+
 bool SegmentMap::is_complete() const {
   return has_final_slice() &&
          std::distance(slice_ids_.begin(), slice_ids_.upper_bound(final_slice_id_)) ==

@@ -45,6 +45,10 @@ class SegmentMap {
   ///   resolution, is in the map already in this revision or a higher one, or comes twice
   std::vector<SegmentUpdate> add(std::span<const CloudSlice> slices);
 
+  /// The whole map for a listener that knows nothing of it: an update for each slice, in the order
+  /// of their arrival; the statistics of all segments come with the last.
+  [[nodiscard]] std::vector<SegmentUpdate> describe() const;
+
   /// True when the final slice is in the map.
   [[nodiscard]] bool has_final_slice() const { return final_slice_id_ >= 0; }
 

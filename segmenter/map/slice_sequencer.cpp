@@ -6,19 +6,40 @@
 #include <utility>
 
 namespace kintsugi::segmenter {
+namespace {
 
-void SliceSequencer::Config::validate() const {
-  if (gap_timeout.count() <= 0) {
-    throw std::invalid_argument("gap_timeout is " + std::to_string(gap_timeout.count()) +
+void require_positive(const char* field, std::chrono::milliseconds value) {
+  if (value.count() <= 0) {
+    throw std::invalid_argument(std::string(field) + " is " + std::to_string(value.count()) +
                                 " ms, must be > 0");
   }
 }
 
-SliceSequencer::SliceSequencer(const Config& config) : config_(config) { config_.validate(); }
+}  // namespace
+
+void SliceSequencer::Config::validate() const {
+  require_positive("gap_timeout", gap_timeout);
+  require_positive("correction_quiet", correction_quiet);
+}
+
+SliceSequencer::SliceSequencer(const Config& config, Revisions done)
+    : config_(config), known_(std::move(done)) {
+  config_.validate();
+  if (!known_.empty()) {
+    next_id_ = end_id_ = std::int64_t{known_.rbegin()->first} + 1;
+  }
+}
 
 SliceSequencer::Verdict SliceSequencer::offer(CloudSlice slice, Clock::time_point now) {
-  if (const auto done = handed_on_.find(slice.id); done != handed_on_.end()) {
-    return slice.revision > done->second ? Verdict::kRevision : Verdict::kDuplicate;
+  if (known_.contains(slice.id)) {
+    return correct(std::move(slice), now);
+  }
+  end_id_ = std::max(end_id_, std::int64_t{slice.id} + 1);
+  if (slice.id <= next_id_) {
+    make_ready(std::move(slice));
+    take_turns();
+    last_progress_ = now;
+    return Verdict::kTaken;
   }
   const auto [place, is_new] = waiting_.try_emplace(slice.id);
   if (!is_new && slice.revision <= place->second.revision) {
@@ -27,25 +48,68 @@ SliceSequencer::Verdict SliceSequencer::offer(CloudSlice slice, Clock::time_poin
   if (waiting_.size() == 1) {
     last_progress_ = now;
   }
-  end_id_ = std::max(end_id_, std::int64_t{slice.id} + 1);
   place->second = std::move(slice);
   return is_new ? Verdict::kTaken : Verdict::kReplaced;
 }
 
-std::optional<CloudSlice> SliceSequencer::pop(Clock::time_point now) {
-  if (waiting_.empty() || waiting_.begin()->first > next_id_) {
+SliceSequencer::Verdict SliceSequencer::correct(CloudSlice slice, Clock::time_point now) {
+  std::int32_t& known = known_.at(slice.id);
+  if (slice.revision <= known) {
+    return Verdict::kDuplicate;
+  }
+  known = slice.revision;
+  last_correction_ = now;
+  if (ready_.empty() || !ready_.back().is_correction) {
+    ready_.push_back({{}, true});
+    first_correction_ = now;
+  }
+  auto& slices = ready_.back().slices;
+  const auto place = std::ranges::lower_bound(slices, slice.id, {}, &CloudSlice::id);
+  if (place != slices.end() && place->id == slice.id) {
+    *place = std::move(slice);
+  } else {
+    slices.insert(place, std::move(slice));
+    ++num_ready_;
+  }
+  return Verdict::kCorrected;
+}
+
+void SliceSequencer::make_ready(CloudSlice slice) {
+  known_.emplace(slice.id, slice.revision);
+  next_id_ = std::max(next_id_, std::int64_t{slice.id} + 1);
+  ready_.push_back({});
+  ready_.back().slices.push_back(std::move(slice));
+  ++num_ready_;
+}
+
+void SliceSequencer::take_turns() {
+  while (!waiting_.empty() && waiting_.begin()->first == next_id_) {
+    make_ready(std::move(waiting_.extract(waiting_.begin()).mapped()));
+  }
+}
+
+std::optional<SliceRun> SliceSequencer::pop(Clock::time_point now, bool stream_has_ended) {
+  if (ready_.empty() || (!stream_has_ended && may_grow(now))) {
     return std::nullopt;
   }
-  CloudSlice slice = std::move(waiting_.begin()->second);
-  waiting_.erase(waiting_.begin());
-  handed_on_.emplace(slice.id, slice.revision);
-  next_id_ = std::max(next_id_, std::int64_t{slice.id} + 1);
-  last_progress_ = now;
-  return slice;
+  SliceRun run = std::move(ready_.front());
+  ready_.pop_front();
+  num_ready_ -= std::ssize(run.slices);
+  if (!run.is_correction) {
+    last_progress_ = now;
+  }
+  return run;
+}
+
+// Whether the first run in ready_ waits for more corrections.
+bool SliceSequencer::may_grow(Clock::time_point now) const {
+  return ready_.size() == 1 && ready_.front().is_correction &&
+         now - last_correction_ < config_.correction_quiet &&
+         now - first_correction_ < config_.gap_timeout;
 }
 
 std::optional<SliceGap> SliceSequencer::give_up_gap(Clock::time_point now, bool stream_has_ended) {
-  if (waiting_.empty() || waiting_.begin()->first <= next_id_) {
+  if (waiting_.empty() || !ready_.empty()) {
     return std::nullopt;
   }
   if (!stream_has_ended && now - last_progress_ < config_.gap_timeout) {
@@ -53,17 +117,18 @@ std::optional<SliceGap> SliceSequencer::give_up_gap(Clock::time_point now, bool 
   }
   const SliceGap gap{static_cast<std::int32_t>(next_id_), waiting_.begin()->first - 1};
   next_id_ = std::int64_t{gap.last} + 1;
+  take_turns();
   return gap;
 }
 
+std::int64_t SliceSequencer::num_waiting() const { return num_ready_ + std::ssize(waiting_); }
+
 std::int64_t SliceSequencer::num_missing() const {
-  return end_id_ - static_cast<std::int64_t>(handed_on_.size() + waiting_.size());
+  return end_id_ - static_cast<std::int64_t>(known_.size() + waiting_.size());
 }
 
 std::int64_t SliceSequencer::num_given_up() const {
-  const auto num_late = std::count_if(waiting_.begin(), waiting_.end(),
-                                      [&](const auto& entry) { return entry.first < next_id_; });
-  return next_id_ - static_cast<std::int64_t>(handed_on_.size()) - num_late;
+  return next_id_ - static_cast<std::int64_t>(known_.size());
 }
 
 }  // namespace kintsugi::segmenter

@@ -57,7 +57,7 @@ void write_labelled_cloud(const SegmentMap& map, const CloudSlices& slices, cons
   }
   writer.commit();
   if (!options.json.empty()) {
-    write_segments_json(map, options.json);
+    write_segments_json(take_snapshot(map), options.json);
   }
 }
 

@@ -46,7 +46,7 @@ std::unique_ptr<SegmentMap> small_map() {
 TEST(MapFiles, PlyHoldsExactlyWhatWasSegmented) {
   const TemporaryFolder folder;
   const auto map = small_map();
-  write_map_ply(*map, folder / "map.ply");
+  write_map_ply(take_snapshot(*map), folder / "map.ply");
   const PlyCloud cloud = read_ply(folder / "map.ply");
   const auto points_W = map->cloud().points_W();
   EXPECT_EQ(cloud.points_W, std::vector<CloudPoint>(points_W.begin(), points_W.end()));
@@ -59,7 +59,7 @@ TEST(MapFiles, PlyHoldsExactlyWhatWasSegmented) {
 
 TEST(MapFiles, PlyHasTheDocumentedProperties) {
   const TemporaryFolder folder;
-  write_map_ply(*small_map(), folder / "map.ply");
+  write_map_ply(take_snapshot(*small_map()), folder / "map.ply");
   const std::string text = contents(folder / "map.ply");
   EXPECT_THAT(text,
               HasSubstr("element vertex 158\n"
@@ -74,7 +74,7 @@ TEST(MapFiles, PlyHasTheDocumentedProperties) {
 TEST(MapFiles, JsonTellsOfEverySegment) {
   const TemporaryFolder folder;
   const auto map = small_map();
-  write_segments_json(*map, folder / "map.json");
+  write_segments_json(take_snapshot(*map), folder / "map.json");
   const auto root = nlohmann::json::parse(contents(folder / "map.json"));
   EXPECT_EQ(root["mode"], "batch");
   EXPECT_EQ(root["parameters"]["threshold"], 0.001);
@@ -115,7 +115,7 @@ TEST(MapFiles, OfAMapWithoutPointsAreValid) {
   slices[0].points_W.clear();
   SegmentMap map({}, 1, slices[0]);
   map.add(slices);
-  write_map_files(map, folder / "new" / "folder", "empty");
+  write_map_files(take_snapshot(map), folder / "new" / "folder", "empty");
   EXPECT_TRUE(read_ply(folder / "new" / "folder" / "empty.ply").points_W.empty());
   const auto root = nlohmann::json::parse(contents(folder / "new" / "folder" / "empty.json"));
   EXPECT_TRUE(root["segments"].empty());
@@ -123,8 +123,8 @@ TEST(MapFiles, OfAMapWithoutPointsAreValid) {
 
 TEST(MapFiles, AreTheSameBytesForTheSameMap) {
   const TemporaryFolder folder;
-  write_map_files(*small_map(), folder.path(), "a");
-  write_map_files(*small_map(), folder.path(), "b");
+  write_map_files(take_snapshot(*small_map()), folder.path(), "a");
+  write_map_files(take_snapshot(*small_map()), folder.path(), "b");
   EXPECT_EQ(contents(folder / "a.ply"), contents(folder / "b.ply"));
   EXPECT_EQ(contents(folder / "a.json"), contents(folder / "b.json"));
   EXPECT_EQ(num_files(folder.path()), 4U);  // nothing partial is left
@@ -133,9 +133,10 @@ TEST(MapFiles, AreTheSameBytesForTheSameMap) {
 TEST(MapFiles, NameTheFileThatCannotBeWritten) {
   const TemporaryFolder folder;
   std::ofstream(folder / "taken") << "a file, not a folder";
-  EXPECT_THROW(write_map_files(*small_map(), folder / "taken", "map"), std::runtime_error);
+  EXPECT_THROW(write_map_files(take_snapshot(*small_map()), folder / "taken", "map"),
+               std::runtime_error);
   try {
-    write_map_ply(*small_map(), folder / "absent" / "map.ply");
+    write_map_ply(take_snapshot(*small_map()), folder / "absent" / "map.ply");
     FAIL() << "wrote into a folder that is not there";
   } catch (const std::runtime_error& error) {
     EXPECT_THAT(error.what(), HasSubstr((folder / "absent" / "map").string()));

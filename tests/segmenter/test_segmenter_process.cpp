@@ -75,7 +75,7 @@ TEST(SegmenterStreams, MapIsTheSameHoweverTheChunksArrive) {
     config.map.mode = "voting";
     SliceProcessor processor(
         config, 1,
-        {[](const SegmentUpdate&) {}, [](const SegmentMap&, SliceProcessor::Save) { return true; },
+        {[](const SegmentUpdate&) {}, [](const SegmentMap&, SliceProcessor::Save) {},
          [](const std::string&) {}});
     for (CloudSlice& slice : received) {
       processor.offer(std::move(slice), {});

@@ -33,8 +33,7 @@ class SliceProcessorTest : public ::testing::Test {
             99,
             {[this](SegmentUpdate update) { updates_.push_back(std::move(update)); },
              [this](const SegmentMap& map, SliceProcessor::Save why) {
-               saves_.push_back({map.map_session(), map.cloud().size(), why});
-               return can_save_;
+               saves_.push_back({map.map_session(), map.cloud().num_live(), why});
              },
              [this](const std::string& text) { warnings_.push_back(text); }}};
   }
@@ -53,7 +52,6 @@ class SliceProcessorTest : public ::testing::Test {
   SliceProcessor::Clock::time_point now_{seconds(1000)};
   std::vector<SegmentUpdate> updates_;
   std::vector<Saved> saves_;
-  bool can_save_ = true;
   std::vector<std::string> warnings_;
 };
 
@@ -203,18 +201,45 @@ TEST_F(SliceProcessorTest, FollowsOnlyTheMapItIsToldTo) {
   EXPECT_NE(processor.map(), nullptr);
 }
 
-TEST_F(SliceProcessorTest, DropsCorrectionsAndOtherResolutionsAndSaysSo) {
+TEST_F(SliceProcessorTest, DropsOtherResolutionsAndSaysSo) {
   auto slices = wavy_session(2, 50);
   SliceProcessor processor = make("batch");
   processor.offer(slices[0], now_);
-  run(processor);
-  ++slices[0].revision;
-  processor.offer(slices[0], now_);
   slices[1].resolution_m = 0.02F;
   processor.offer(slices[1], now_);
-  EXPECT_EQ(processor.counts().dropped, 2);
-  EXPECT_THAT(warnings_, ElementsAre(HasSubstr("slice 0 of session 5 came again"),
-                                     HasSubstr("slice 1 of session 5 is dropped: its resolution")));
+  EXPECT_EQ(processor.counts().dropped, 1);
+  EXPECT_THAT(warnings_, ElementsAre(HasSubstr("slice 1 of session 5 is dropped: its resolution")));
+}
+
+TEST_F(SliceProcessorTest, CoalescingTakesTheNewestRevisionOfEachSlice) {
+  auto slices = wavy_session(3, 100);
+  SliceProcessor processor = make("batch", true);
+  processor.offer(slices[0], now_);
+  run(processor);
+  for (const int i : {1, 0, 1, 2}) {
+    processor.offer(slices[i], now_);
+    slices[i].points_W.pop_back();
+    ++slices[i].revision;
+    processor.offer(slices[i], now_);
+  }
+  processor.finish(now_);
+  ASSERT_EQ(updates_.size(), 4U);
+  EXPECT_EQ(processor.map()->cloud().find_slice(1)->revision, 2);
+  EXPECT_EQ(processor.counts().points, 99 + 98 + 99);
+  EXPECT_EQ(processor.counts().segmented, 3);
+  EXPECT_EQ(processor.counts().corrected, 1);
+}
+
+TEST_F(SliceProcessorTest, SavesWhatCanBeSavedWhenSegmentingFails) {
+  SliceProcessor processor = make("batch");
+  auto slices = wavy_session(2, 50);
+  processor.offer(slices[0], now_);
+  run(processor);
+  slices[1].id = -1;  // refused by the map, and by the codec before it
+  processor.offer(slices[1], now_);
+  EXPECT_THROW(run(processor), std::invalid_argument);
+  processor.save();
+  EXPECT_EQ(saves_.back().why, SliceProcessor::Save::kBroken);
 }
 
 TEST_F(SliceProcessorTest, LabelsRejectedPointsZeroAndCountsThem) {
@@ -266,15 +291,15 @@ TEST_F(SliceProcessorTest, SavesWhenAskedAndWhenDue) {
   EXPECT_EQ(saves_.back().num_points, 250U);
 }
 
-TEST_F(SliceProcessorTest, TriesAgainToSaveWhatCouldNotBeSaved) {
-  can_save_ = false;
+TEST_F(SliceProcessorTest, SavesAgainWhenTold) {
   SliceProcessor processor = make("batch");
+  processor.save(true);  // there is nothing
   processor.offer(wavy_session(1, 50)[0], now_);
   run(processor);
   EXPECT_EQ(saves_.size(), 1U);  // it is complete
-  can_save_ = true;
   processor.save();
-  processor.save();
+  EXPECT_EQ(saves_.size(), 1U);
+  processor.save(true);
   EXPECT_EQ(saves_.size(), 2U);
 }
 

@@ -22,21 +22,37 @@ class SliceSequencerTest : public ::testing::Test {
  protected:
   std::vector<std::int32_t> pop_all() {
     std::vector<std::int32_t> ids;
-    while (const auto next = sequencer_.pop(now_)) {
-      ids.push_back(next->id);
+    for (const auto& run : pop_runs()) {
+      ids.insert(ids.end(), run.begin(), run.end());
     }
     return ids;
   }
 
+  // Ids of each run.
+  std::vector<std::vector<std::int32_t>> pop_runs(bool stream_has_ended = false) {
+    std::vector<std::vector<std::int32_t>> runs;
+    while (const auto run = sequencer_.pop(now_, stream_has_ended)) {
+      EXPECT_TRUE(run->is_correction || run->slices.size() == 1);
+      auto& ids = runs.emplace_back();
+      for (const CloudSlice& slice : run->slices) {
+        ids.push_back(slice.id);
+      }
+    }
+    return runs;
+  }
+
   using Ids = std::vector<std::int32_t>;
   SliceSequencer::Clock::time_point now_{seconds(1000)};
-  SliceSequencer sequencer_{{.gap_timeout = seconds(10)}};
+  using Runs = std::vector<Ids>;
+  static constexpr SliceSequencer::Config kConfig{.gap_timeout = seconds(10),
+                                                  .correction_quiet = seconds(1)};
+  SliceSequencer sequencer_{kConfig};
 };
 
 TEST_F(SliceSequencerTest, HandsOnEveryPermutationInOrder) {
   Ids order{0, 1, 2, 3, 4};
   do {
-    sequencer_ = SliceSequencer({.gap_timeout = seconds(10)});
+    sequencer_ = SliceSequencer(kConfig);
     Ids handed_on;
     for (const std::int32_t id : order) {
       EXPECT_EQ(sequencer_.offer(slice(id), now_), Verdict::kTaken);
@@ -92,16 +108,112 @@ TEST_F(SliceSequencerTest, HandsOnASliceThatWasGivenUpWhenItComesAfterAll) {
   EXPECT_EQ(sequencer_.num_missing(), 0);
 }
 
-TEST_F(SliceSequencerTest, TellsDuplicatesFromCorrections) {
+TEST_F(SliceSequencerTest, TellsDuplicatesFromRevisions) {
   sequencer_.offer(slice(1), now_);
   EXPECT_EQ(sequencer_.offer(slice(1), now_), Verdict::kDuplicate);
   EXPECT_EQ(sequencer_.offer(slice(1, 5), now_), Verdict::kReplaced);
   EXPECT_EQ(sequencer_.offer(slice(1, 4), now_), Verdict::kDuplicate);
   sequencer_.offer(slice(0), now_);
-  ASSERT_EQ(sequencer_.pop(now_)->id, 0);
-  EXPECT_EQ(sequencer_.pop(now_)->revision, 5);
+  ASSERT_EQ(sequencer_.pop(now_, false)->slices[0].id, 0);
+  EXPECT_EQ(sequencer_.pop(now_, false)->slices[0].revision, 5);
   EXPECT_EQ(sequencer_.offer(slice(1, 5), now_), Verdict::kDuplicate);
-  EXPECT_EQ(sequencer_.offer(slice(1, 6), now_), Verdict::kRevision);
+  EXPECT_EQ(sequencer_.offer(slice(1, 7), now_), Verdict::kCorrected);
+  EXPECT_EQ(sequencer_.offer(slice(1, 6), now_), Verdict::kDuplicate);
+  EXPECT_EQ(sequencer_.num_waiting(), 1);
+  const auto correction = sequencer_.pop(now_, true);
+  ASSERT_TRUE(correction && correction->is_correction);
+  EXPECT_EQ(correction->slices[0].revision, 7);
+}
+
+TEST_F(SliceSequencerTest, GathersCorrectionsIntoOneRunUntilTheyPause) {
+  for (const std::int32_t id : {0, 1, 2, 3}) {
+    sequencer_.offer(slice(id), now_);
+  }
+  EXPECT_EQ(pop_runs(), (Runs{{0}, {1}, {2}, {3}}));
+  for (const std::int32_t id : {2, 0, 3}) {
+    sequencer_.offer(slice(id, 1), now_);
+    EXPECT_FALSE(sequencer_.pop(now_, false));
+    now_ += std::chrono::milliseconds(900);
+  }
+  sequencer_.offer(slice(0, 2), now_);  // the newest stands for the slice
+  EXPECT_EQ(sequencer_.num_waiting(), 3);
+  now_ += seconds(1);
+  const auto run = sequencer_.pop(now_, false);
+  ASSERT_EQ(run->slices.size(), 3U);
+  EXPECT_EQ(run->slices[0].id, 0);
+  EXPECT_EQ(run->slices[0].revision, 2);
+  EXPECT_EQ(run->slices[1].id, 2);
+  EXPECT_EQ(run->slices[2].id, 3);
+  EXPECT_EQ(sequencer_.num_waiting(), 0);
+}
+
+TEST_F(SliceSequencerTest, DoesNotWaitForeverForCorrectionsToPause) {
+  sequencer_.offer(slice(0), now_);
+  EXPECT_EQ(pop_all(), Ids{0});
+  std::int32_t revision = 0;
+  for (int tenth = 0; tenth < 100; ++tenth) {
+    sequencer_.offer(slice(0, ++revision), now_);
+    EXPECT_FALSE(sequencer_.pop(now_, false));
+    now_ += std::chrono::milliseconds(100);
+  }
+  EXPECT_EQ(sequencer_.pop(now_, false)->slices[0].revision, 100);
+}
+
+TEST_F(SliceSequencerTest, PutsCorrectionsBehindWhatIsReadyAndBeforeWhatComesLater) {
+  sequencer_.offer(slice(0), now_);
+  sequencer_.offer(slice(1), now_);
+  sequencer_.offer(slice(0, 1), now_);  // 0 was not fetched: its turn had come all the same
+  sequencer_.offer(slice(1, 1), now_);
+  sequencer_.offer(slice(3), now_);     // waits for 2
+  sequencer_.offer(slice(0, 2), now_);  // still the same run
+  sequencer_.offer(slice(2), now_);
+  sequencer_.offer(slice(3, 1), now_);
+  EXPECT_EQ(pop_runs(), (Runs{{0}, {1}, {0, 1}, {2}, {3}}));
+  EXPECT_EQ(sequencer_.num_waiting(), 1);
+  EXPECT_EQ(pop_runs(true), Runs{{3}});
+}
+
+TEST_F(SliceSequencerTest, RunsDependOnTheOrderOfArrivalAndNotOnWhenTheyAreFetched) {
+  std::mt19937 random(3);
+  for (int round = 0; round < 50; ++round) {
+    std::vector<CloudSlice> arrivals;
+    for (std::int32_t revision = 0; revision < 3; ++revision) {
+      for (std::int32_t id = 0; id < 8; ++id) {
+        arrivals.push_back(slice(id, revision));
+      }
+    }
+    std::ranges::shuffle(arrivals, random);
+    const auto runs_when_fetched_after_each = [&](int one_in) {
+      sequencer_ = SliceSequencer(kConfig);
+      Runs runs;
+      for (const CloudSlice& arrival : arrivals) {
+        sequencer_.offer(arrival, now_);
+        if (one_in > 0 && static_cast<int>(random() % 3) < one_in) {
+          std::ranges::move(pop_runs(), std::back_inserter(runs));
+        }
+      }
+      std::ranges::move(pop_runs(true), std::back_inserter(runs));
+      EXPECT_EQ(sequencer_.num_waiting(), 0);
+      EXPECT_EQ(sequencer_.num_missing(), 0);
+      return runs;
+    };
+    const Runs expected = runs_when_fetched_after_each(0);
+    EXPECT_EQ(runs_when_fetched_after_each(1), expected);
+    EXPECT_EQ(runs_when_fetched_after_each(3), expected);
+  }
+}
+
+TEST_F(SliceSequencerTest, GoesOnWhereAnEarlierSegmenterStopped) {
+  sequencer_ = SliceSequencer(kConfig, {{0, 0}, {1, 2}, {3, 0}});
+  EXPECT_EQ(sequencer_.num_given_up(), 1);
+  EXPECT_EQ(sequencer_.num_missing(), 1);
+  EXPECT_EQ(sequencer_.offer(slice(0), now_), Verdict::kDuplicate);
+  EXPECT_EQ(sequencer_.offer(slice(1, 2), now_), Verdict::kDuplicate);
+  EXPECT_EQ(sequencer_.offer(slice(1, 3), now_), Verdict::kCorrected);
+  EXPECT_EQ(sequencer_.offer(slice(4), now_), Verdict::kTaken);
+  EXPECT_EQ(sequencer_.offer(slice(2), now_), Verdict::kTaken);
+  EXPECT_EQ(pop_runs(), (Runs{{1}, {4}, {2}}));
+  EXPECT_EQ(sequencer_.num_missing(), 0);
 }
 
 TEST_F(SliceSequencerTest, SurvivesTheLargestId) {
@@ -112,8 +224,9 @@ TEST_F(SliceSequencerTest, SurvivesTheLargestId) {
   EXPECT_FALSE(sequencer_.give_up_gap(now_, true));
 }
 
-TEST(SliceSequencerConfig, RefusesATimeoutThatIsNotPositive) {
+TEST(SliceSequencerConfig, RefusesATimeThatIsNotPositive) {
   EXPECT_THROW(SliceSequencer({.gap_timeout = seconds(0)}), std::invalid_argument);
+  EXPECT_THROW(SliceSequencer({.correction_quiet = seconds(0)}), std::invalid_argument);
 }
 
 }  // namespace
