@@ -73,14 +73,15 @@ Replay replay_incrementally(std::span<const CloudSlice> slices, const std::strin
     run.slice_index = static_cast<std::int32_t>(replay.runs.size()) - 1;
     cloud.add_slice(slice.id, slice.points_W);
 
+    const CloudChange change = cloud.take_change();
     const auto start = Clock::now();
-    run.statistics = engine->update(cloud.take_change());
+    run.statistics = engine->update(change);
     run.engine_ms = ms_since(start);
     const auto ids_start = Clock::now();
-    ids.update(engine->components(), engine->changed());
+    ids.update(cloud, change, engine->components(), engine->changed());
     run.ids_ms = ms_since(ids_start);
 
-    run.map_points = cloud.size();
+    run.map_points = cloud.num_live();
     teller.tell(run, static_cast<double>(slice.points_W.size()));
   }
   replay.resident_growth_bytes = process_memory().resident_bytes - resident_before;
@@ -114,7 +115,7 @@ Replay replay_batch(std::span<const CloudSlice> slices, int every, const EngineC
     if (!is_due(i)) continue;
     SliceRun& run = replay.runs.emplace_back();
     run.slice_index = static_cast<std::int32_t>(i);
-    run.map_points = cloud.size();
+    run.map_points = cloud.num_live();
 
     const CloudChange everything = cloud.everything();
     const auto start = Clock::now();
@@ -122,7 +123,7 @@ Replay replay_batch(std::span<const CloudSlice> slices, int every, const EngineC
     run.statistics = engine->update(everything);
     run.engine_ms = ms_since(start);
 
-    teller.tell(run, static_cast<double>(cloud.size()));
+    teller.tell(run, static_cast<double>(cloud.num_live()));
     if (i + 1 < slices.size()) continue;
     replay.resident_growth_bytes = process_memory().resident_bytes - resident_before;
     replay.labels = canonical_labels(engine->components());

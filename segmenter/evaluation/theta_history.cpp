@@ -4,7 +4,7 @@
 #include <cassert>
 #include <numeric>
 
-#include "segmenter/core/edge.hpp"
+#include "segmenter/core/felzenszwalb.hpp"
 #include "segmenter/core/graph.hpp"
 #include "segmenter/core/neighbour_index.hpp"
 #include "segmenter/core/segment_forest.hpp"
@@ -21,33 +21,28 @@ struct Piece {
   std::int32_t larger = kNone;  // of the two
 };
 
-/// The tree of joins of a cloud whose edges are taken in ascending order.
+/// The tree of joins of a cloud: told by join_segments() over `forest`.
 class JoinTree {
  public:
-  JoinTree(PointIndex num_points, const EngineConfig& config)
-      : forest_(config.threshold, config.scale),
-        pieces_(num_points, Piece{config.threshold, 1, kNone}),
-        piece_of_(num_points) {
-    forest_.grow(num_points);
+  JoinTree(const SegmentForest& forest, double threshold)
+      : forest_(forest),
+        pieces_(forest.size(), Piece{threshold, 1, kNone}),
+        piece_of_(forest.size()) {
     std::iota(piece_of_.begin(), piece_of_.end(), 0);
   }
 
-  void offer(const Edge& edge) {
-    const std::int32_t a = piece_of_[forest_.find(edge.i)];
-    const std::int32_t b = piece_of_[forest_.find(edge.j)];
-    if (!forest_.join(edge.i, edge.j, edge.weight)) return;
-    const PointIndex root = forest_.find(edge.i);
-    const bool a_is_larger = pieces_[a].num_points != pieces_[b].num_points
-                                 ? pieces_[a].num_points > pieces_[b].num_points
-                                 : a < b;
-    piece_of_[root] = static_cast<std::int32_t>(pieces_.size());
-    pieces_.push_back({forest_.theta_at(root), pieces_[a].num_points + pieces_[b].num_points,
-                       a_is_larger ? a : b});
+  void joined(const Edge& /*edge*/, PointIndex host, PointIndex guest) {
+    const std::int32_t a = std::min(piece_of_[host], piece_of_[guest]);
+    const std::int32_t b = std::max(piece_of_[host], piece_of_[guest]);
+    piece_of_[host] = static_cast<std::int32_t>(pieces_.size());
+    pieces_.push_back({forest_.theta_at(host), pieces_[a].num_points + pieces_[b].num_points,
+                       pieces_[b].num_points > pieces_[a].num_points ? b : a});
   }
+  void rejected(const Edge& /*edge*/) {}
 
-  ThetaHistory history_of(PointIndex point) {
+  ThetaHistory history_of(PointIndex point) const {
     ThetaHistory history;
-    for (std::int32_t i = piece_of_[forest_.find(point)]; i != kNone; i = pieces_[i].larger) {
+    for (std::int32_t i = piece_of_[forest_.root(point)]; i != kNone; i = pieces_[i].larger) {
       history.theta.push_back(pieces_[i].theta);
       history.num_points.push_back(pieces_[i].num_points);
     }
@@ -57,7 +52,7 @@ class JoinTree {
   }
 
  private:
-  SegmentForest forest_;
+  const SegmentForest& forest_;
   std::vector<Piece> pieces_;           // the points, then one for each join
   std::vector<std::int32_t> piece_of_;  // the last one, by root
 };
@@ -79,13 +74,14 @@ std::vector<ThetaHistory> theta_histories(const PointCloud& cloud,
   PointCloud part;
   part.add_slice(0, points_W);
   const auto index = make_neighbour_index(config.neighbour_search, part, config.radius_m());
-  index->update();
+  index->insert(part.take_change().added);
   std::vector<Edge> edges = build_graph(part, *index, config.threshold + config.scale);
   std::erase_if(edges, [&](const Edge& edge) { return label_of[edge.i] != label_of[edge.j]; });
-  std::sort(edges.begin(), edges.end(), AscendingWeight());
 
-  JoinTree tree(part.size(), config);
-  for (const Edge& edge : edges) tree.offer(edge);
+  SegmentForest forest(config.threshold, config.scale);
+  forest.grow(part.size());
+  JoinTree tree(forest, config.threshold);
+  join_segments(edges, forest, tree);
   std::vector<ThetaHistory> histories;
   for (const PointIndex segment : segments) {
     const auto member = std::find(label_of.begin(), label_of.end(), segment);

@@ -11,7 +11,7 @@ namespace kintsugi::segmenter {
 /// How the join threshold theta of one segment developed while batch joined it (Fig. 2).
 ///
 /// A segment is the result of a tree of joins. Its history is the path in it that follows the
-/// larger of both pieces back from the end (of equal ones the one with the smaller first point):
+/// larger of both pieces back from the end (of equal ones the one that was there first):
 /// `theta[n]` and `num_points[n]` are those of the segment after the n-th join on the path.
 struct ThetaHistory {
   PointIndex label = 0;                  ///< canonical
