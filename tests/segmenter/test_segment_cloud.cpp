@@ -186,7 +186,7 @@ TEST_F(SegmentCloud, RefusesParametersOutOfRange) {
   expect_error("--beta 1.5", "beta");
   expect_error("--resolution -0.01", "--resolution");
   expect_error("--radius-factor nan", "radius_factor");
-  expect_error("--mode exact-ish", "mode is 'exact-ish', must be one of: batch, voting");
+  expect_error("--mode exact-ish", "mode is 'exact-ish', must be one of: exact, batch, voting");
   expect_error("--neighbours tree", "--neighbours");
   expect_error("--normals-k 2", "num_neighbours is 2, must be >= 3");
   expect_error("--viewpoint 1 2", "--viewpoint");
