@@ -88,11 +88,11 @@ void SliceSequencer::take_turns() {
   }
 }
 
-std::optional<SliceRun> SliceSequencer::pop(Clock::time_point now, bool stream_has_ended) {
+std::optional<SliceGroup> SliceSequencer::pop(Clock::time_point now, bool stream_has_ended) {
   if (ready_.empty() || (!stream_has_ended && may_grow(now))) {
     return std::nullopt;
   }
-  SliceRun run = std::move(ready_.front());
+  SliceGroup run = std::move(ready_.front());
   ready_.pop_front();
   num_ready_ -= std::ssize(run.slices);
   if (!run.is_correction) {

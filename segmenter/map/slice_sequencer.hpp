@@ -21,7 +21,7 @@ struct SliceGap {
 };
 
 /// Slices that belong into one run of the engine.
-struct SliceRun {
+struct SliceGroup {
   std::vector<CloudSlice> slices;  ///< one new slice, or corrections by ascending id
   bool is_correction = false;
 };
@@ -72,7 +72,7 @@ class SliceSequencer {
   Verdict offer(CloudSlice slice, Clock::time_point now);
 
   /// The next run that is complete, when there is one.
-  std::optional<SliceRun> pop(Clock::time_point now, bool stream_has_ended);
+  std::optional<SliceGroup> pop(Clock::time_point now, bool stream_has_ended);
 
   /// Gives up the first gap when it is time to; returns it. Then pop() again.
   std::optional<SliceGap> give_up_gap(Clock::time_point now, bool stream_has_ended);
@@ -94,7 +94,7 @@ class SliceSequencer {
 
   Config config_;
   std::map<std::int32_t, CloudSlice> waiting_;  // for an earlier one, by id
-  std::deque<SliceRun> ready_;                  // their turn has come
+  std::deque<SliceGroup> ready_;                  // their turn has come
   std::int64_t num_ready_ = 0;                  // slices in ready_
   Revisions known_;                             // of slices whose turn has come
   std::int64_t next_id_ = 0;                    // the one to wait for
