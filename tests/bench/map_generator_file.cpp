@@ -32,6 +32,10 @@ Slices read_bin(const std::filesystem::path& file) {
                              " slices");
   }
   const auto first = read_values<std::uint64_t>(in, num_slices + 1, file);
+  if (first.back() > std::filesystem::file_size(file) / (6 * sizeof(float))) {
+    throw std::runtime_error(file.string() + ": cannot hold " + std::to_string(first.back()) +
+                             " points");
+  }
   Slices slices(num_slices);
   for (std::size_t s = 0; s < num_slices; ++s) {
     if (first[s + 1] < first[s]) throw std::runtime_error(file.string() + ": slices overlap");

@@ -12,8 +12,9 @@
 #include <iostream>
 
 #include <CLI/CLI.hpp>
+#include <oneapi/tbb/global_control.h>
 
-#include "tests/bench/map_generator_file.hpp"
+#include "tests/bench/map_generator.hpp"
 #include "tests/fuzz/isolated_run.hpp"
 #include "tests/fuzz/random_scenario.hpp"
 #include "tests/fuzz/shrink.hpp"
@@ -44,7 +45,8 @@ Options parse_command_line(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--steps", options.steps, "to check")->capture_default_str();
   app.add_option("--minutes", options.minutes, "go on for so long instead");
-  app.add_option("--map", options.maps, "take pieces of these: PLY or oracle .bin")
+  app.add_option("--map", options.maps,
+                 "take pieces of these (PLY with normals, .bin); rooms of our own otherwise")
       ->check(CLI::ExistingFile);
   app.add_option("--max-points", options.bounds.max_points, "of a cloud")->capture_default_str();
   app.add_option("--replay", options.replay, "run this scenario only")->check(CLI::ExistingFile);
@@ -92,9 +94,14 @@ int replay(const Options& options) {
   return outcome.failure ? 1 : 0;
 }
 
+std::vector<CloudPoint> generated_map() {
+  return bench::all_points(bench::generate_map({.num_points = 300'000, .num_rooms = 4}));
+}
+
 int fuzz(const Options& options) {
   std::vector<std::vector<CloudPoint>> maps;
   for (const auto& file : options.maps) maps.push_back(bench::all_points(bench::read_map(file)));
+  if (maps.empty()) maps.push_back(generated_map());
 
   using Clock = std::chrono::steady_clock;
   const auto start = Clock::now();
@@ -107,8 +114,7 @@ int fuzz(const Options& options) {
     return options.minutes > 0.0 ? seconds() >= 60.0 * options.minutes : num_steps >= options.steps;
   };
   for (std::uint64_t seed = options.seed; !is_done(); ++seed) {
-    const auto map_W = maps.empty() ? std::span<const CloudPoint>() : maps[seed % maps.size()];
-    const Scenario scenario = random_scenario(seed, options.bounds, map_W);
+    const Scenario scenario = random_scenario(seed, options.bounds, maps[seed % maps.size()]);
     const Outcome outcome = run(scenario, options.mode);
     num_steps += outcome.num_steps;
     ++num_scenarios;
@@ -134,6 +140,9 @@ int main(int argc, char** argv) {
   using namespace kintsugi::segmenter::fuzz;
   try {
     const Options options = parse_command_line(argc, argv);
+    // run_isolated() wants no other thread.
+    const oneapi::tbb::global_control one_thread(
+        oneapi::tbb::global_control::max_allowed_parallelism, 1);
     return options.replay.empty() ? fuzz(options) : replay(options);
   } catch (const std::exception& error) {
     std::cerr << "fuzz_exact: " << error.what() << '\n';

@@ -7,6 +7,7 @@
 
 #include <gmock/gmock.h>
 
+#include "tests/bench/map_generator.hpp"
 #include "tests/fuzz/changing_cloud.hpp"
 #include "tests/fuzz/faulty_engine.hpp"
 #include "tests/fuzz/isolated_run.hpp"
@@ -192,6 +193,11 @@ TEST(ExactFuzz, EqualsBatchInSmallMaps) {
 
 TEST(ExactFuzz, EqualsBatchInMaps) {
   expect_equals_batch(30'000, 30, {.min_points = 400, .max_points = 3000, .max_steps = 40});
+}
+
+TEST(ExactFuzz, EqualsBatchInPiecesOfRooms) {
+  const auto map_W = bench::all_points(bench::generate_map({.num_points = 60'000, .num_rooms = 2}));
+  expect_equals_batch(40'000, 100, {.min_points = 40, .max_points = 2000, .max_steps = 40}, map_W);
 }
 
 }  // namespace
