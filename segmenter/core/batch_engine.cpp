@@ -1,38 +1,43 @@
 #include "segmenter/core/batch_engine.hpp"
 
-#include "segmenter/core/felzenszwalb.hpp"
 #include "segmenter/core/graph.hpp"
 
 namespace kintsugi::segmenter {
 
 BatchEngine::BatchEngine(const PointCloud& cloud, const EngineConfig& config)
-    : cloud_(cloud),
-      config_(config),
-      index_(make_neighbour_index(config.neighbour_search, cloud, config.radius_m())),
-      forest_(config.threshold, config.scale) {}
-
-RunStatistics BatchEngine::update(const CloudChange& change) {
-  index_->remove(change.removed);
-  index_->insert(change.added);
-  const std::vector<Edge> edges = build_graph(cloud_, *index_, config_.threshold + config_.scale);
-
-  forest_ = SegmentForest(config_.threshold, config_.scale);
-  forest_.grow(cloud_.size());
-  RunStatistics statistics{.num_iterations = 1};
-  statistics.num_edges = static_cast<std::int64_t>(edges.size());
-  statistics.num_joins = join_segments(edges, forest_);
-
-  const std::vector<ComponentId> before = take_over(change);
-  statistics.num_points = name_components();
-  changed_.clear();
-  for (PointIndex i = 0; i < cloud_.size(); ++i) {
-    if (components_[i] != before[i]) changed_.push_back(i);
+    : cloud_(cloud), config_(config), forest_(config.threshold, config.scale) {
+  if (config.neighbour_search != NeighbourSearch::kGrid) {
+    index_ = make_neighbour_index(config.neighbour_search, cloud, config.radius_m());
   }
-  return statistics;
 }
 
-/// Marks who is there in components_; returns the names there were, none for new points.
+RunStatistics BatchEngine::update(const CloudChange& change) {
+  const std::vector<ComponentId> before = take_over(change);
+  std::vector<PointIndex> points;
+  for (PointIndex i = 0; i < cloud_.size(); ++i) {
+    if (components_[i] != kNoComponent) points.push_back(i);
+  }
+  const BatchStatistics batch = segment(points);
+
+  for (const PointIndex i : points) components_[i] = forest_.find(i);
+  components_ = canonical_labels(components_);
+  changed_.clear();
+  for (const PointIndex i : points) {
+    if (components_[i] != before[i]) changed_.push_back(i);
+  }
+  return {.num_edges = batch.num_edges,
+          .num_joins = batch.num_joins,
+          .num_points = static_cast<std::int64_t>(points.size()),
+          .num_iterations = 1};
+}
+
+/// Marks the points that are there in components_; returns the names there were, none for new
+/// points.
 std::vector<ComponentId> BatchEngine::take_over(const CloudChange& change) {
+  if (index_) {
+    index_->remove(change.removed);
+    index_->insert(change.added);
+  }
   components_.resize(cloud_.size(), kNoComponent);
   for (const PointIndex i : change.removed) components_[i] = kNoComponent;
   for (const PointIndex i : change.added) components_[i] = kNoComponent;
@@ -41,16 +46,17 @@ std::vector<ComponentId> BatchEngine::take_over(const CloudChange& change) {
   return before;
 }
 
-/// Returns the number of points there are.
-std::int64_t BatchEngine::name_components() {
-  std::int64_t num_points = 0;
-  for (PointIndex i = 0; i < cloud_.size(); ++i) {
-    if (components_[i] == kNoComponent) continue;
-    components_[i] = forest_.find(i);
-    ++num_points;
+BatchStatistics BatchEngine::segment(std::span<const PointIndex> points) {
+  const double max_weight = config_.threshold + config_.scale;
+  forest_ = SegmentForest(config_.threshold, config_.scale);
+  forest_.grow(cloud_.size());
+  if (index_) {
+    const std::vector<Edge> edges = build_graph(cloud_, *index_, max_weight);
+    return {.num_edges = static_cast<std::int64_t>(edges.size()),
+            .num_joins = join_segments(edges, forest_)};
   }
-  components_ = canonical_labels(components_);
-  return num_points;
+  JoinObserver nobody;
+  return segment_points(cloud_, points, config_.radius_m(), max_weight, forest_, nobody);
 }
 
 double BatchEngine::theta(ComponentId component) const {

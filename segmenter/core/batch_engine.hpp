@@ -3,6 +3,7 @@
 #include <memory>
 #include <vector>
 
+#include "segmenter/core/batch_segmentation.hpp"
 #include "segmenter/core/engine.hpp"
 #include "segmenter/core/segment_forest.hpp"
 
@@ -21,11 +22,11 @@ class BatchEngine final : public SegmentationEngine {
 
  private:
   std::vector<ComponentId> take_over(const CloudChange& change);
-  std::int64_t name_components();
+  BatchStatistics segment(std::span<const PointIndex> points);
 
   const PointCloud& cloud_;
   EngineConfig config_;
-  std::unique_ptr<NeighbourIndex> index_;
+  std::unique_ptr<NeighbourIndex> index_;  ///< none for the grid: all neighbours are found at once
   SegmentForest forest_;
   std::vector<ComponentId> components_;  ///< by the smallest point of each
   std::vector<PointIndex> changed_;

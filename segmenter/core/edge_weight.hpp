@@ -6,25 +6,45 @@
 
 namespace kintsugi::segmenter {
 
-/// Eq. 2 for the edge from point i to point j: c = 1 - n_i . n_j, squared where the surface is
-/// convex
-/// ((p_j - p_i) . n_j > 0). In double, each dot product summed as (x + y) + z, rounded once to
-/// float32; c is clamped to >= 0, so a weight never is negative. Points and normals are finite.
-inline float directed_edge_weight(const CloudPoint& i, const CloudPoint& j) {
-  const auto dot = [](double ax, double ay, double az, double bx, double by, double bz) {
-    return (ax * bx + ay * by) + az * bz;
-  };
-  const double c = std::max(0.0, 1.0 - dot(i.nx, i.ny, i.nz, j.nx, j.ny, j.nz));
-  const double rise = dot(static_cast<double>(j.x) - i.x, static_cast<double>(j.y) - i.y,
-                          static_cast<double>(j.z) - i.z, j.nx, j.ny, j.nz);
+// A Point has a position x, y, z and a unit normal nx, ny, nz, finite float32 all.
+
+/// In double, summed as (x + y) + z: like each rounding below, part of the definition of weights.
+inline double dot_product(double ax, double ay, double az, double bx, double by, double bz) {
+  return (ax * bx + ay * by) + az * bz;
+}
+
+/// c of Eq. 2, 1 - n_i . n_j, clamped to >= 0, so that no weight is negative.
+template <typename Point>
+double normal_difference(const Point& i, const Point& j) {
+  return std::max(0.0, 1.0 - dot_product(i.nx, i.ny, i.nz, j.nx, j.ny, j.nz));
+}
+
+/// Eq. 2 for the edge from point i to point j: c, squared where the surface is convex
+/// ((p_j - p_i) . n_j > 0), rounded once to float32.
+template <typename Point>
+float directed_edge_weight(const Point& i, const Point& j) {
+  const double c = normal_difference(i, j);
+  const double rise = dot_product(static_cast<double>(j.x) - i.x, static_cast<double>(j.y) - i.y,
+                                  static_cast<double>(j.z) - i.z, j.nx, j.ny, j.nz);
   return static_cast<float>(rise > 0.0 ? c * c : c);
 }
 
-/// The weight of the undirected edge. Algorithm 2 inserts both directions; the smaller of the two
-/// alone gives the same partition, because an edge is either joined at its first chance or one of
-/// its sides has frozen for good.
-inline float edge_weight(const CloudPoint& a, const CloudPoint& b) {
-  return std::min(directed_edge_weight(a, b), directed_edge_weight(b, a));
+/// The weight of the undirected edge, the smaller of both directions. Algorithm 2 inserts the two;
+/// the smaller alone gives the same partition, because an edge is either joined at its first chance
+/// or one of its sides has frozen for good.
+template <typename Point>
+float edge_weight(const Point& a, const Point& b) {
+  // What the directions share is computed once: c is the same to the bit, and p_a - p_b is
+  // -(p_b - p_a) exactly.
+  const double c = normal_difference(a, b);
+  const double dx = static_cast<double>(b.x) - a.x;
+  const double dy = static_cast<double>(b.y) - a.y;
+  const double dz = static_cast<double>(b.z) - a.z;
+  const bool is_convex_ab = dot_product(dx, dy, dz, b.nx, b.ny, b.nz) > 0.0;
+  const bool is_convex_ba = dot_product(dx, dy, dz, a.nx, a.ny, a.nz) < 0.0;
+  const auto flat = static_cast<float>(c);
+  const auto convex = static_cast<float>(c * c);
+  return std::min(is_convex_ab ? convex : flat, is_convex_ba ? convex : flat);
 }
 
 }  // namespace kintsugi::segmenter

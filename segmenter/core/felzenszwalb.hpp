@@ -4,62 +4,76 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "segmenter/core/edge.hpp"
+#include "segmenter/core/edge_buckets.hpp"
 #include "segmenter/core/segment_forest.hpp"
 
 namespace kintsugi::segmenter {
 
-/// Edges sorted roughly: bucket after bucket in ascending order of weight, in any order within.
-struct EdgeBuckets {
-  explicit EdgeBuckets(std::span<const Edge> unsorted);
-
-  std::size_t size() const { return first.size() - 1; }
-  std::span<Edge> operator[](std::size_t b) {
-    return std::span(edges).subspan(first[b], first[b + 1] - first[b]);
-  }
-
-  std::vector<Edge> edges;
-  std::vector<std::size_t> first;  ///< where each bucket begins, and the end
+/// Is told, in the order in which they are looked at, of all edges between two segments. Edges
+/// within one segment are passed over.
+class JoinObserver {
+ public:
+  virtual ~JoinObserver() = default;
+  /// `host` and `guest` were the roots of the two segments; the host's stays a root.
+  virtual void joined(const Edge& /*edge*/, PointIndex /*host*/, PointIndex /*guest*/) {}
+  virtual void rejected(const Edge& /*edge*/) {}
 };
 
-/// Algorithm 1, lines 6-13: takes the edges in ascending order (AscendingWeight) and joins what may
-/// be joined; `edges` come in any order. Returns the number of joins.
-///
-/// Tells `observer`, in the order of the edges, of each edge between two segments:
-///   joined(const Edge&, PointIndex host, PointIndex guest)  the roots; the host's stays the root
-///   rejected(const Edge&)
-/// Edges within one segment are passed over.
+/// Copies the edges between two segments. Most edges lie inside one when their turn comes: only
+/// what this leaves needs to be sorted.
+inline void append_edges_between_segments(std::span<const Edge> edges, SegmentForest& forest,
+                                          std::vector<Edge>& between) {
+  for (const Edge& edge : edges) {
+    if (forest.find(edge.i) != forest.find(edge.j)) between.push_back(edge);
+  }
+}
+
+/// Algorithm 1, lines 6-13: sorts `edges` in ascending order (AscendingWeight), takes one after the
+/// other and joins what may be joined. Returns the number of joins. `observer` is a JoinObserver or
+/// has its functions.
 template <typename Observer>
-std::int64_t join_segments(std::span<const Edge> edges, SegmentForest& forest,
-                           Observer&& observer) {
-  EdgeBuckets buckets(edges);
+std::int64_t join_in_order(std::span<Edge> edges, SegmentForest& forest, Observer&& observer) {
   std::int64_t num_joins = 0;
-  for (std::size_t b = 0; b < buckets.size(); ++b) {
-    // Most edges lie inside a segment when their turn comes: only the others are sorted.
-    const std::span<Edge> bucket = buckets[b];
-    const auto last = std::remove_if(bucket.begin(), bucket.end(), [&](const Edge& e) {
-      return forest.find(e.i) == forest.find(e.j);
-    });
-    std::sort(bucket.begin(), last, AscendingWeight());
-    for (auto e = bucket.begin(); e != last; ++e) {
-      PointIndex host = forest.find(e->i);
-      PointIndex guest = forest.find(e->j);
-      if (host == guest) continue;
-      if (forest.join_roots(host, guest, e->weight)) {
-        observer.joined(*e, host, guest);
-        ++num_joins;
-      } else {
-        observer.rejected(*e);
-      }
+  std::sort(edges.begin(), edges.end(), AscendingWeight());
+  for (const Edge& edge : edges) {
+    PointIndex host = forest.find(edge.i);
+    PointIndex guest = forest.find(edge.j);
+    if (host == guest) continue;
+    if (forest.join_roots(host, guest, edge.weight)) {
+      observer.joined(edge, host, guest);
+      ++num_joins;
+    } else {
+      observer.rejected(edge);
     }
   }
   return num_joins;
 }
 
-/// As above, unobserved.
-std::int64_t join_segments(std::span<const Edge> edges, SegmentForest& forest);
+/// join_in_order() for many edges, bucket by bucket.
+template <typename Observer>
+std::int64_t join_segments(std::span<const Edge> edges, SegmentForest& forest,
+                           Observer&& observer) {
+  EdgeBuckets buckets;
+  for (const Edge& edge : edges) buckets.add(edge);
+  std::int64_t num_joins = 0;
+  std::vector<Edge> between;
+  for (std::size_t b = 0; b < EdgeBuckets::kNumBuckets; ++b) {
+    between.clear();
+    append_edges_between_segments(buckets[b], forest, between);
+    num_joins += join_in_order(std::span(between), forest, observer);
+  }
+  return num_joins;
+}
+
+inline std::int64_t join_segments(std::span<const Edge> edges, SegmentForest& forest) {
+  struct {
+    void joined(const Edge& /*edge*/, PointIndex /*host*/, PointIndex /*guest*/) const {}
+    void rejected(const Edge& /*edge*/) const {}
+  } nobody;
+  return join_segments(edges, forest, nobody);
+}
 
 }  // namespace kintsugi::segmenter

@@ -1,0 +1,118 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "segmenter/core/point_cloud.hpp"
+
+namespace kintsugi::segmenter {
+
+/// Copies of points sorted into rows, for passes over all pairs of neighbours.
+///
+/// A row is a beam along x with a section of one cell, a trifle wider than r, in y and z. The
+/// neighbours of a point lie in its own row and in the eight around. Rows are sorted by x, so while
+/// a pass goes along one, the stretch of each other row that is within r in x slides along with it:
+/// no look-ups, and memory is read in order.
+class PointRows {
+ public:
+  struct Point {
+    float x, y, z;     ///< metres, W
+    float nx, ny, nz;  ///< unit normal, W
+    PointIndex index;  ///< in the cloud
+  };
+  /// Position of a point in points().
+  using Slot = std::uint32_t;
+
+  /// `points` are in the cloud, each once; `radius_m` > 0.
+  PointRows(const PointCloud& cloud, std::span<const PointIndex> points, float radius_m);
+
+  std::span<const Point> points() const { return points_; }
+  std::size_t num_rows() const { return rows_.size() - 1; }
+
+  /// Calls fn(Slot a, Slot b) for each two neighbours of which the first in the order of rows lies
+  /// in `row` and which keep(a, b): over all rows, each pair once. May be called concurrently.
+  template <typename Keep, typename Fn>
+  void for_each_pair(std::size_t row, const Keep& keep, const Fn& fn) const;
+
+ private:
+  struct Row {
+    std::int32_t z;
+    std::int32_t y;
+    Slot first;
+  };
+  /// The part of a row that is within reach in x. Moves with the point it is asked for.
+  struct Window {
+    Slot begin;
+    Slot end;
+    Slot limit;
+  };
+
+  bool is_within_reach(float from_x, float to_x) const { return to_x - from_x < reach_m_; }
+  void slide(Window& window, float x) const {
+    while (window.begin < window.limit && !is_within_reach(points_[window.begin].x, x)) {
+      ++window.begin;
+    }
+    extend(window, x);
+  }
+  void extend(Window& window, float x) const {
+    if (window.end < window.begin) window.end = window.begin;
+    while (window.end < window.limit && is_within_reach(x, points_[window.end].x)) ++window.end;
+  }
+  std::size_t find_row(std::int32_t z, std::int32_t y) const;
+
+  float squared_radius_m2_;
+  float reach_m_;
+  std::vector<Point> points_;
+  std::vector<Row> rows_;  ///< by z, then y; one more at the end
+};
+
+template <typename Keep, typename Fn>
+void PointRows::for_each_pair(std::size_t row, const Keep& keep, const Fn& fn) const {
+  // Half of the rows around are enough: the next one, and the three above in z.
+  Window windows[4];
+  int num_windows = 0;
+  const auto add_window = [&](std::size_t other) {
+    const Slot first = rows_[other].first;
+    windows[num_windows++] = {first, first, rows_[other + 1].first};
+  };
+  const auto [z, y, first_slot] = rows_[row];
+  const Slot last_slot = rows_[row + 1].first;
+  if (rows_[row + 1].z == z && rows_[row + 1].y == y + 1) add_window(row + 1);
+  for (std::size_t above = find_row(z + 1, y - 1);
+       above < num_rows() && rows_[above].z == z + 1 && rows_[above].y <= y + 1; ++above) {
+    add_window(above);
+  }
+
+  std::vector<Slot> near;
+  Window own{first_slot, first_slot, last_slot};
+  for (Slot a = first_slot; a < last_slot; ++a) {
+    const Point& p = points_[a];
+    std::size_t num_near = 0;
+    const auto scan = [&](const Window& window) {
+      if (near.size() < num_near + (window.end - window.begin)) {
+        near.resize(2 * (num_near + (window.end - window.begin)));
+      }
+      for (Slot b = window.begin; b < window.end; ++b) {
+        if (!keep(a, b)) continue;
+        const float dx = p.x - points_[b].x;
+        const float dy = p.y - points_[b].y;
+        const float dz = p.z - points_[b].z;
+        // The order of squared_distance(). No branch: there would be no guessing it.
+        near[num_near] = b;
+        num_near += static_cast<std::size_t>((dx * dx + dy * dy) + dz * dz < squared_radius_m2_);
+      }
+    };
+    own.begin = a + 1;
+    extend(own, p.x);
+    scan(own);
+    for (int k = 0; k < num_windows; ++k) {
+      slide(windows[k], p.x);
+      scan(windows[k]);
+    }
+    for (std::size_t k = 0; k < num_near; ++k) fn(a, near[k]);
+  }
+}
+
+}  // namespace kintsugi::segmenter
