@@ -1,29 +1,34 @@
 // The engines and their stages on a map of 1 M points, one wavy sheet of 10 m x 10 m that comes in
-// strips, or on a cloud of one's own (normals and slice_id needed):
+// strips, or on a map of one's own (see read_map()):
 //
 //   build/release/bench/bench_segmenter --benchmark_repetitions=5
-//   --benchmark_report_aggregates_only KINTSUGI_BENCH_PLY=map.ply
+//   --benchmark_report_aggregates_only KINTSUGI_BENCH_MAP=map.ply
 //   build/release/bench/bench_segmenter
 
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
-#include <map>
+#include <fstream>
+#include <numeric>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include <benchmark/benchmark.h>
+#include <malloc.h>
+#include <oneapi/tbb/global_control.h>
 
 #include "segmenter/core/engine.hpp"
-#include "segmenter/core/felzenszwalb.hpp"
-#include "segmenter/core/graph.hpp"
+#include "segmenter/core/grid_index.hpp"
+#include "segmenter/core/point_rows.hpp"
 #include "segmenter/core/segment_ids.hpp"
-#include "segmenter/io/ply_reader.hpp"
+#include "tests/bench/map_generator_file.hpp"
 #include "tests/segmenter/random_clouds.hpp"
 
 namespace kintsugi::segmenter {
 namespace {
 
-using Slices = std::map<std::int32_t, std::vector<CloudPoint>>;
+using bench::Slices;
 
 Slices sheet_in_strips() {
   constexpr std::size_t kSlicePoints = 4000;
@@ -32,21 +37,16 @@ Slices sheet_in_strips() {
                    [](const CloudPoint& a, const CloudPoint& b) { return a.x < b.x; });
   Slices slices;
   for (std::size_t k = 0; k < points.size(); ++k) {
-    slices[static_cast<std::int32_t>(k / kSlicePoints)].push_back(points[k]);
+    if (k % kSlicePoints == 0) slices.emplace_back();
+    slices.back().push_back(points[k]);
   }
   return slices;
 }
 
 const Slices& map_slices() {
   static const Slices slices = [] {
-    const char* const path = std::getenv("KINTSUGI_BENCH_PLY");
-    if (path == nullptr) return sheet_in_strips();
-    const PlyCloud cloud = read_ply(path);
-    Slices read;
-    for (std::size_t k = 0; k < cloud.points_W.size(); ++k) {
-      read[cloud.slice_ids.empty() ? 0 : cloud.slice_ids[k]].push_back(cloud.points_W[k]);
-    }
-    return read;
+    const char* const path = std::getenv("KINTSUGI_BENCH_MAP");
+    return path == nullptr ? sheet_in_strips() : bench::read_map(path);
   }();
   return slices;
 }
@@ -54,13 +54,56 @@ const Slices& map_slices() {
 const PointCloud& map_cloud() {
   static const PointCloud cloud = [] {
     PointCloud all;
-    for (const auto& [id, points_W] : map_slices()) all.add_slice(id, points_W);
+    std::int32_t id = 0;
+    for (const std::vector<CloudPoint>& points_W : map_slices()) all.add_slice(id++, points_W);
     return all;
   }();
   return cloud;
 }
 
 const EngineConfig kConfig;
+
+using Clock = std::chrono::steady_clock;
+
+double milliseconds_since(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+void report_slices(benchmark::State& state, std::vector<double> slice_ms) {
+  std::sort(slice_ms.begin(), slice_ms.end());
+  const auto quantile = [&](double q) {
+    return slice_ms[static_cast<std::size_t>(q * static_cast<double>(slice_ms.size() - 1))];
+  };
+  state.counters["slices"] = static_cast<double>(slice_ms.size());
+  state.counters["mean_ms"] =
+      std::accumulate(slice_ms.begin(), slice_ms.end(), 0.0) / static_cast<double>(slice_ms.size());
+  state.counters["median_ms"] = quantile(0.5);
+  state.counters["p99_ms"] = quantile(0.99);
+  state.counters["max_ms"] = slice_ms.back();
+}
+
+/// How far the process's memory rises above what it takes at the beginning.
+class PeakMemory {
+ public:
+  PeakMemory() {
+    ::malloc_trim(0);
+    std::ofstream("/proc/self/clear_refs") << 5;  // VmHWM = VmRSS
+    at_start_bytes_ = status_bytes("VmRSS:");
+  }
+  std::size_t peak_bytes() const { return status_bytes("VmHWM:") - at_start_bytes_; }
+
+ private:
+  static std::size_t status_bytes(std::string_view field) {
+    std::ifstream status("/proc/self/status");
+    std::string word;
+    std::size_t kilobytes = 0;
+    while (status >> word && word != field) {
+    }
+    status >> kilobytes;
+    return kilobytes * 1024;
+  }
+  std::size_t at_start_bytes_;
+};
 
 void neighbours_of_all(benchmark::State& state, NeighbourSearch search) {
   for (auto _ : state) {
@@ -81,76 +124,109 @@ BENCHMARK_CAPTURE(neighbours_of_all, flann, NeighbourSearch::kFlann)
     ->MeasureProcessCPUTime()
     ->UseRealTime();
 
-void graph(benchmark::State& state) {
-  const auto index = make_neighbour_index(NeighbourSearch::kGrid, map_cloud(), kConfig.radius_m());
-  index->insert(map_cloud().everything().added);
-  std::size_t num_edges = 0;
+/// A slice's points into the grid and their neighbours out of it, in one thread, as a map grows.
+void grid_slice_by_slice(benchmark::State& state) {
+  std::vector<double> slice_ms;
   for (auto _ : state) {
-    num_edges = build_graph(map_cloud(), *index, kConfig.threshold + kConfig.scale).size();
+    PointCloud cloud;
+    GridIndex index(cloud, kConfig.radius_m());
+    std::int32_t id = 0;
+    for (const std::vector<CloudPoint>& points_W : map_slices()) {
+      cloud.add_slice(id++, points_W);
+      const std::vector<PointIndex> points = cloud.take_change().added;
+      const auto start = Clock::now();
+      index.insert(points);
+      GridIndex::Cursor cursor(index);
+      std::size_t num_neighbours = 0;
+      for (const PointIndex i : points) {
+        cursor.for_each_neighbour(i, [&](PointIndex) { ++num_neighbours; });
+      }
+      benchmark::DoNotOptimize(num_neighbours);
+      slice_ms.push_back(milliseconds_since(start));
+    }
+    state.counters["bytes_per_point"] = static_cast<double>(index.bytes()) / cloud.size();
   }
-  state.counters["edges"] = static_cast<double>(num_edges);
+  report_slices(state, slice_ms);
 }
-BENCHMARK(graph)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
+BENCHMARK(grid_slice_by_slice)->Unit(benchmark::kMillisecond)->Iterations(1);
 
-void joins(benchmark::State& state) {
-  const auto index = make_neighbour_index(NeighbourSearch::kGrid, map_cloud(), kConfig.radius_m());
-  index->insert(map_cloud().everything().added);
-  const auto edges = build_graph(map_cloud(), *index, kConfig.threshold + kConfig.scale);
+std::size_t num_pairs(const PointRows& rows) {
+  std::size_t count = 0;
+  for (std::size_t row = 0; row < rows.num_rows(); ++row) {
+    rows.for_each_pair(
+        row, [](PointRows::Slot, PointRows::Slot) { return true; },
+        [&](PointRows::Slot, PointRows::Slot) { ++count; });
+  }
+  return count;
+}
+
+void rows(benchmark::State& state) {
+  const std::vector<PointIndex> points = map_cloud().everything().added;
   for (auto _ : state) {
-    state.PauseTiming();
-    SegmentForest forest(kConfig.threshold, kConfig.scale);
-    forest.grow(map_cloud().size());
-    state.ResumeTiming();
-    benchmark::DoNotOptimize(join_segments(edges, forest));
+    benchmark::DoNotOptimize(PointRows(map_cloud(), points, kConfig.radius_m()).num_rows());
   }
 }
-BENCHMARK(joins)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
+BENCHMARK(rows)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
+
+/// In one thread.
+void pairs_of_rows(benchmark::State& state) {
+  const PointRows rows(map_cloud(), map_cloud().everything().added, kConfig.radius_m());
+  std::size_t count = 0;
+  for (auto _ : state) count = num_pairs(rows);
+  state.counters["pairs"] = static_cast<double>(count);
+}
+BENCHMARK(pairs_of_rows)->Unit(benchmark::kMillisecond);
 
 /// Everything from points to a partition, at once.
 void batch(benchmark::State& state, NeighbourSearch search) {
+  using oneapi::tbb::global_control;
+  const global_control threads(global_control::max_allowed_parallelism,
+                               static_cast<std::size_t>(state.range(0)));
+  const CloudChange change = map_cloud().everything();
   for (auto _ : state) {
     EngineConfig config = kConfig;
     config.neighbour_search = search;
+    const PeakMemory memory;
     const auto engine = make_engine("batch", map_cloud(), config);
-    benchmark::DoNotOptimize(engine->update(map_cloud().everything()).num_joins);
+    benchmark::DoNotOptimize(engine->update(change).num_joins);
+    state.counters["peak_bytes_per_point"] =
+        static_cast<double>(memory.peak_bytes()) / map_cloud().size();
   }
 }
 BENCHMARK_CAPTURE(batch, grid, NeighbourSearch::kGrid)
+    ->ArgName("threads")
+    ->Arg(1)
+    ->Arg(2)
     ->Unit(benchmark::kMillisecond)
     ->MeasureProcessCPUTime()
     ->UseRealTime();
 BENCHMARK_CAPTURE(batch, flann, NeighbourSearch::kFlann)
+    ->ArgName("threads")
+    ->Arg(2)
     ->Unit(benchmark::kMillisecond)
     ->MeasureProcessCPUTime()
     ->UseRealTime();
 
 /// The whole map slice by slice, ids included; times per slice as counters.
 void slice_by_slice(benchmark::State& state, std::string_view mode) {
-  using Clock = std::chrono::steady_clock;
   std::vector<double> slice_ms;
   double rounds = 0.0;
   for (auto _ : state) {
     PointCloud cloud;
     SegmentIds ids;
     const auto engine = make_engine(mode, cloud, kConfig);
-    for (const auto& [id, points_W] : map_slices()) {
-      cloud.add_slice(id, points_W);
+    std::int32_t id = 0;
+    for (const std::vector<CloudPoint>& points_W : map_slices()) {
+      cloud.add_slice(id++, points_W);
       const auto start = Clock::now();
       const CloudChange change = cloud.take_change();
       rounds += engine->update(change).num_iterations;
       ids.update(cloud, change, engine->components(), engine->changed());
-      slice_ms.push_back(std::chrono::duration<double, std::milli>(Clock::now() - start).count());
+      slice_ms.push_back(milliseconds_since(start));
     }
   }
-  std::sort(slice_ms.begin(), slice_ms.end());
-  const auto quantile = [&](double q) {
-    return slice_ms[static_cast<std::size_t>(q * static_cast<double>(slice_ms.size() - 1))];
-  };
-  state.counters["slices"] = static_cast<double>(map_slices().size());
   state.counters["rounds_per_slice"] = rounds / static_cast<double>(slice_ms.size());
-  state.counters["median_ms"] = quantile(0.5);
-  state.counters["p99_ms"] = quantile(0.99);
-  state.counters["max_ms"] = slice_ms.back();
+  report_slices(state, slice_ms);
 }
 BENCHMARK_CAPTURE(slice_by_slice, voting, "voting")
     ->Unit(benchmark::kMillisecond)
