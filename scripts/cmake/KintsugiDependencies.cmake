@@ -11,6 +11,7 @@ find_package(CLI11 REQUIRED)
 find_package(spdlog REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(TBB REQUIRED)
+find_package(ZLIB REQUIRED)
 find_package(flann REQUIRED CONFIG)
 find_library(LZ4_LIBRARY lz4 REQUIRED)  # FLANN's headers call it
 

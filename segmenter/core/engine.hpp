@@ -61,6 +61,15 @@ class SegmentationEngine {
   /// only on the points that are in the cloud; for `voting` also on how they came.
   virtual RunStatistics update(const CloudChange& change) = 0;
 
+  /// Instead of the first update(), which would be given `everything`: takes over a partition that
+  /// was saved. `components` by point, each named by its smallest point; `thetas` by that name. An
+  /// engine whose partition depends only on the points makes it anew.
+  virtual void resume(const CloudChange& everything,
+                      [[maybe_unused]] std::span<const ComponentId> components,
+                      [[maybe_unused]] std::span<const double> thetas) {
+    update(everything);
+  }
+
   /// The component of each point, size() of the cloud at the last update(); kNoComponent for those
   /// that are gone.
   virtual std::span<const ComponentId> components() const = 0;

@@ -31,6 +31,13 @@ class SegmentForest {
     sets_[point] = {threshold_, 1};
   }
 
+  /// Puts `point`, a singleton, into the set of `root`, which has this theta: a set that was saved.
+  void restore(PointIndex point, PointIndex root, double theta) {
+    parents_[point] = root;
+    if (point != root) ++sets_[root].size;
+    sets_[root].theta = theta;
+  }
+
   PointIndex find(PointIndex point) {
     while (parents_[point] != point) {
       parents_[point] = parents_[parents_[point]];

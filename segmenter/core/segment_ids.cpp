@@ -1,6 +1,9 @@
 #include "segmenter/core/segment_ids.hpp"
 
 #include <algorithm>
+#include <cassert>
+#include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "segmenter/core/succession.hpp"
@@ -42,6 +45,29 @@ class PointRanker {
 };
 
 }  // namespace
+
+SegmentIds::SegmentIds(std::span<const ComponentId> components, std::span<const std::uint32_t> ids,
+                       std::uint32_t next_id) {
+  assert(components.size() == ids.size());
+  grow(static_cast<PointIndex>(components.size()));
+  segments_.resize(std::max(next_id, 1U));
+  for (PointIndex p = 0; p < components.size(); ++p) {
+    if (components[p] == kNoComponent) continue;
+    const auto name = [&] {
+      return "point " + std::to_string(p) + " of segment " + std::to_string(ids[p]);
+    };
+    if (ids[p] == kNoSegment || ids[p] >= next_id) {
+      throw std::invalid_argument(name() + ": must be in 1 to " + std::to_string(next_id - 1));
+    }
+    const auto [known, is_new] = id_of_component_.try_emplace(components[p], ids[p]);
+    Segment& segment = segments_[ids[p]];
+    if (known->second != ids[p] || (is_new && segment.num_points > 0)) {
+      throw std::invalid_argument(name() + ": the points make other segments than these");
+    }
+    segment.component = components[p];
+    attach(p, ids[p]);
+  }
+}
 
 IdUpdate SegmentIds::update(const PointCloud& cloud, const CloudChange& change,
                             std::span<const ComponentId> components,

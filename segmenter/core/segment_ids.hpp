@@ -49,6 +49,14 @@ struct IdUpdate {
 /// whatever an engine calls its components and wherever the cloud keeps its points.
 class SegmentIds {
  public:
+  SegmentIds() = default;
+
+  /// Goes on with ids that were given before: those of all points of a partition that are in the
+  /// cloud. Throws std::invalid_argument naming the point when they are not one id in
+  /// [1, next_id) for each component.
+  SegmentIds(std::span<const ComponentId> components, std::span<const std::uint32_t> ids,
+             std::uint32_t next_id);
+
   /// Takes over the partition after an update of the engine with `change`; `cloud` is as it was
   /// then, `components` and `changed` as in SegmentationEngine (more points may be given as
   /// changed). Costs time in proportion to `change`, `changed` and the changes returned.
@@ -60,6 +68,10 @@ class SegmentIds {
   /// The points of a segment, in no particular order; none when there is no such segment.
   MemberLists::List points_of(std::uint32_t segment_id) const;
   std::int64_t num_points_of(std::uint32_t segment_id) const;
+  /// What the engine calls a segment that has points.
+  ComponentId component_of(std::uint32_t segment_id) const {
+    return segments_[segment_id].component;
+  }
   /// Segments there are now.
   std::int64_t num_segments() const { return static_cast<std::int64_t>(id_of_component_.size()); }
   /// Every id handed out so far is smaller.

@@ -43,6 +43,16 @@ RunStatistics VotingEngine::update(const CloudChange& change) {
   return statistics;
 }
 
+void VotingEngine::resume(const CloudChange& everything, std::span<const ComponentId> components,
+                          std::span<const double> thetas) {
+  add_points(everything.added);
+  for (const PointIndex i : everything.added) {
+    forest_.restore(i, components[i], thetas[components[i]]);
+  }
+  D_ = everything.added;
+  commit();
+}
+
 /// Returns what is left of the segments that lost a point.
 std::vector<PointIndex> VotingEngine::remove_points(std::span<const PointIndex> removed) {
   index_->remove(removed);

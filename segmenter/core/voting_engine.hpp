@@ -26,6 +26,8 @@ class VotingEngine final : public SegmentationEngine {
   VotingEngine(const PointCloud& cloud, const EngineConfig& config);
 
   RunStatistics update(const CloudChange& change) override;
+  void resume(const CloudChange& everything, std::span<const ComponentId> components,
+              std::span<const double> thetas) override;
   std::span<const ComponentId> components() const override { return components_; }
   std::span<const PointIndex> changed() const override { return changed_; }
   double theta(ComponentId component) const override;

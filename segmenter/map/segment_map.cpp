@@ -15,18 +15,6 @@ SegmentMapConfig at_resolution(SegmentMapConfig config, float resolution_m) {
 
 }  // namespace
 
-void SegmentMapConfig::validate() const {
-  const auto modes = engine_modes();
-  if (std::find(modes.begin(), modes.end(), mode) == modes.end()) {
-    std::string known;
-    for (const std::string_view name : modes) {
-      known += (known.empty() ? "" : ", ") + std::string(name);
-    }
-    throw std::invalid_argument("mode is '" + mode + "', must be one of: " + known);
-  }
-  engine.validate();
-}
-
 SegmentMap::SegmentMap(const SegmentMapConfig& config, std::int64_t session,
                        const CloudSlice& first)
     : config_(at_resolution(config, first.resolution_m)),

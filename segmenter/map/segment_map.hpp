@@ -12,17 +12,10 @@
 #include "segmenter/core/engine.hpp"
 #include "segmenter/core/point_cloud.hpp"
 #include "segmenter/core/segment_ids.hpp"
+#include "segmenter/map/segment_map_state.hpp"
 #include "segmenter/map/segment_statistics.hpp"
 
 namespace kintsugi::segmenter {
-
-struct SegmentMapConfig {
-  std::string mode = "batch";  ///< one of engine_modes()
-  EngineConfig engine;         ///< its resolution_m is replaced by that of the slices
-
-  /// Throws std::invalid_argument naming field, value and bound.
-  void validate() const;
-};
 
 /// Composes cloud, engine, segment ids and statistics. Replaying the updates of a map, labels and
 /// then runs of each, gives the labels that segment_ids() has.
@@ -32,6 +25,10 @@ class SegmentMap {
   /// @param first a slice of the map, for its name, mapper session and resolution; it is not added
   /// @throws std::invalid_argument for an invalid config or a resolution that is not > 0
   SegmentMap(const SegmentMapConfig& config, std::int64_t session, const CloudSlice& first);
+
+  /// Goes on where the map was whose state() this is.
+  /// @throws std::invalid_argument naming what is wrong when it is no state of a map
+  explicit SegmentMap(const SegmentMapState& state);
 
   SegmentMap(const SegmentMap&) = delete;  // the engine refers to the cloud
   SegmentMap& operator=(const SegmentMap&) = delete;
@@ -48,6 +45,14 @@ class SegmentMap {
   /// The whole map for a listener that knows nothing of it: an update for each slice, in the order
   /// of their arrival; the statistics of all segments come with the last.
   [[nodiscard]] std::vector<SegmentUpdate> describe() const;
+
+  /// What a SegmentMap can be made of again.
+  [[nodiscard]] SegmentMapState state() const;
+
+  /// The join threshold theta of a segment that has points.
+  [[nodiscard]] double theta(std::uint32_t segment_id) const {
+    return engine_->theta(ids_.component_of(segment_id));
+  }
 
   /// True when the final slice is in the map.
   [[nodiscard]] bool has_final_slice() const { return final_slice_id_ >= 0; }

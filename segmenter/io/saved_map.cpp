@@ -1,0 +1,219 @@
+#include "segmenter/io/saved_map.hpp"
+
+#include <array>
+#include <new>
+#include <numeric>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+
+#include "lcmtypes/atomic_file.hpp"
+#include "segmenter/io/record_file.hpp"
+
+namespace kintsugi::segmenter {
+namespace {
+
+// The file: Start, Header; the mode and the name of the map as text; then for all slices one after
+// another SliceHeader, the indices of rejected points (int32), accepted points (CloudPoint), their
+// segment ids (uint32); thetas (double); the checksum. A change of any of this is a new version.
+constexpr std::array<char, 8> kMagic = {'K', 'S', 'E', 'G', 'M', 'A', 'P', '\n'};
+constexpr std::uint32_t kVersion = 1;
+
+struct Start {
+  std::array<char, 8> magic = kMagic;
+  std::uint32_t version = kVersion;
+  std::uint32_t neighbour_search = 0;
+};
+
+struct Header {
+  std::int64_t session = 0;
+  std::int64_t map_session = 0;
+  double threshold = 0.0;
+  double scale = 0.0;
+  double beta = 0.0;
+  double resolution_m = 0.0;
+  double radius_factor = 0.0;
+  std::int32_t final_slice_id = 0;
+  std::uint32_t next_id = 0;
+  std::uint32_t num_mode_bytes = 0;
+  std::uint32_t num_name_bytes = 0;
+  std::uint32_t num_slices = 0;
+  std::uint32_t num_rejected = 0;
+  std::uint32_t num_points = 0;
+  std::uint32_t num_thetas = 0;
+};
+
+struct SliceHeader {
+  std::int32_t slice_id = 0;
+  std::int32_t revision = 0;
+  std::int32_t num_points = 0;
+  std::uint32_t num_rejected = 0;
+};
+static_assert(sizeof(Start) == 16 && sizeof(Header) == 88 && sizeof(SliceHeader) == 16,
+              "no padding, which would be written with whatever is in it");
+
+Header header_of(const SegmentMapState& state) {
+  const EngineConfig& engine = state.config.engine;
+  Header header;
+  header.session = state.session;
+  header.map_session = state.map_session;
+  header.threshold = engine.threshold;
+  header.scale = engine.scale;
+  header.beta = engine.beta;
+  header.resolution_m = engine.resolution_m;
+  header.radius_factor = engine.radius_factor;
+  header.final_slice_id = state.final_slice_id;
+  header.next_id = state.next_id;
+  header.num_mode_bytes = static_cast<std::uint32_t>(state.config.mode.size());
+  header.num_name_bytes = static_cast<std::uint32_t>(state.map_name.size());
+  header.num_slices = static_cast<std::uint32_t>(state.slices.size());
+  for (const SliceRecord& slice : state.slices) {
+    header.num_rejected += static_cast<std::uint32_t>(slice.rejected.size());
+  }
+  header.num_points = static_cast<std::uint32_t>(state.points_W.size());
+  header.num_thetas = static_cast<std::uint32_t>(state.thetas.size());
+  return header;
+}
+
+std::uint64_t num_bytes_after(const Header& header) {
+  constexpr std::uint64_t kPointBytes = sizeof(CloudPoint) + sizeof(std::uint32_t);
+  return std::uint64_t{header.num_mode_bytes} + header.num_name_bytes +
+         header.num_slices * sizeof(SliceHeader) + header.num_rejected * sizeof(std::int32_t) +
+         header.num_points * kPointBytes + header.num_thetas * sizeof(double) +
+         sizeof(std::uint32_t);
+}
+
+/// Everything that can be told from the first bytes and the size of the file.
+Start read_start(RecordReader& file) {
+  if (file.size() < sizeof(Start)) {
+    file.fail("is no saved segment map: " + std::to_string(file.size()) + " bytes, expected " +
+              std::to_string(sizeof(Start)) + " at least");
+  }
+  const auto start = file.read<Start>();
+  if (start.magic != kMagic) {
+    file.fail("is no saved segment map: expected KSEGMAP at its beginning");
+  }
+  if (start.version != kVersion) {
+    file.fail("is a saved segment map of version " + std::to_string(start.version) + ", expected " +
+              std::to_string(kVersion) + ", which this program reads");
+  }
+  if (start.neighbour_search > static_cast<std::uint32_t>(NeighbourSearch::kFlann)) {
+    file.fail("neighbour search " + std::to_string(start.neighbour_search) + ", expected 0 or 1");
+  }
+  return start;
+}
+
+Header read_header(RecordReader& file) {
+  const auto header = file.read<Header>();
+  if (const std::uint64_t expected = num_bytes_after(header); file.left() != expected) {
+    file.fail(std::to_string(file.left()) + " bytes follow, expected " + std::to_string(expected) +
+              " for what the header tells: the file is cut off or damaged");
+  }
+  return header;
+}
+
+SegmentMapConfig config_of(const Start& start, const Header& header) {
+  SegmentMapConfig config;
+  config.engine.threshold = header.threshold;
+  config.engine.scale = header.scale;
+  config.engine.beta = header.beta;
+  config.engine.resolution_m = header.resolution_m;
+  config.engine.radius_factor = header.radius_factor;
+  config.engine.neighbour_search = static_cast<NeighbourSearch>(start.neighbour_search);
+  return config;
+}
+
+std::string read_text(RecordReader& file, std::uint32_t num_bytes) {
+  const auto text = file.read_all<char>(num_bytes);
+  return {text.begin(), text.end()};
+}
+
+template <class Record>
+void append(RecordReader& file, std::uint64_t count, std::vector<Record>& records) {
+  const auto more = file.read_all<Record>(count);
+  records.insert(records.end(), more.begin(), more.end());
+}
+
+void read_slice(RecordReader& file, SegmentMapState& state) {
+  const auto header = file.read<SliceHeader>();
+  if (header.num_points < 0 || std::int64_t{header.num_rejected} > header.num_points) {
+    file.fail("slice " + std::to_string(header.slice_id) + " of " +
+              std::to_string(header.num_points) + " points, " +
+              std::to_string(header.num_rejected) + " of them rejected: expected no more");
+  }
+  SliceRecord slice;
+  slice.slice_id = header.slice_id;
+  slice.revision = header.revision;
+  slice.num_points = header.num_points;
+  slice.first = static_cast<PointIndex>(state.points_W.size());
+  slice.count = static_cast<PointIndex>(header.num_points) - header.num_rejected;
+  slice.rejected = file.read_all<std::int32_t>(header.num_rejected);
+  append(file, slice.count, state.points_W);
+  append(file, slice.count, state.segment_ids);
+  state.slices.push_back(std::move(slice));
+}
+
+}  // namespace
+
+void write_map_state(const SegmentMapState& state, const std::filesystem::path& path) {
+  AtomicFile file(path);
+  RecordWriter out(file.stream());
+  Start start;
+  start.neighbour_search = static_cast<std::uint32_t>(state.config.engine.neighbour_search);
+  out.write(start);
+  out.write(header_of(state));
+  out.write_all(std::span<const char>(state.config.mode));
+  out.write_all(std::span<const char>(state.map_name));
+  for (const SliceRecord& slice : state.slices) {
+    out.write(SliceHeader{slice.slice_id, slice.revision, slice.num_points,
+                          static_cast<std::uint32_t>(slice.rejected.size())});
+    out.write_all(std::span(slice.rejected));
+    out.write_all(std::span(state.points_W).subspan(slice.first, slice.count));
+    out.write_all(std::span(state.segment_ids).subspan(slice.first, slice.count));
+  }
+  out.write_all(std::span(state.thetas));
+  out.write_checksum();
+  file.commit();
+}
+
+SegmentMapState read_map_state(const std::filesystem::path& path) {
+  RecordReader file(path);
+  const Start start = read_start(file);
+  const Header header = read_header(file);
+  file.check_checksum();
+  SegmentMapState state;
+  state.config = config_of(start, header);
+  state.session = header.session;
+  state.map_session = header.map_session;
+  state.final_slice_id = header.final_slice_id;
+  state.next_id = header.next_id;
+  state.config.mode = read_text(file, header.num_mode_bytes);
+  state.map_name = read_text(file, header.num_name_bytes);
+  state.points_W.reserve(header.num_points);
+  state.segment_ids.reserve(header.num_points);
+  for (std::uint32_t i = 0; i < header.num_slices; ++i) read_slice(file, state);
+  state.thetas = file.read_all<double>(header.num_thetas);
+  if (file.left() != sizeof(std::uint32_t)) {
+    file.fail("expected the checksum here: the slices have not the points the header tells");
+  }
+  return state;
+}
+
+void save_map(const SegmentMap& map, const std::filesystem::path& path) {
+  write_map_state(map.state(), path);
+}
+
+std::unique_ptr<SegmentMap> load_map(const std::filesystem::path& path) {
+  const SegmentMapState state = read_map_state(path);
+  try {
+    return std::make_unique<SegmentMap>(state);
+  } catch (const std::logic_error& error) {  // what it holds is no state of a map
+    throw std::runtime_error(std::string("'") + path.string() + "': " + error.what());
+  } catch (const std::bad_alloc&) {
+    throw std::runtime_error(std::string("'") + path.string() + "': not enough memory for its " +
+                             std::to_string(state.points_W.size()) + " points and " +
+                             std::to_string(state.next_id) + " segment ids");
+  }
+}
+
+}  // namespace kintsugi::segmenter

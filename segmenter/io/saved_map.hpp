@@ -1,0 +1,27 @@
+#pragma once
+// A segment map in one file, to be gone on with later.
+
+#include <filesystem>
+#include <memory>
+
+#include "segmenter/map/segment_map.hpp"
+#include "segmenter/map/segment_map_state.hpp"
+
+namespace kintsugi::segmenter {
+
+/// Writes beside `path` and renames, so that under `path` there is the old file or all of the new.
+/// The same state gives the same bytes. Throws std::runtime_error naming the file and the reason.
+void write_map_state(const SegmentMapState& state, const std::filesystem::path& path);
+
+/// Reads what write_map_state() wrote. Counts are held against the size of the file, and all of it
+/// against its checksum, before anything is made of it. Throws std::runtime_error naming the file,
+/// the place, the reason and what was expected.
+SegmentMapState read_map_state(const std::filesystem::path& path);
+
+/// Both for the map itself. A map that was loaded tells the same from then on as the one that was
+/// saved: partition, thetas, ids, events, statistics. load_map() refuses a file also when its
+/// points give other segments than it says.
+void save_map(const SegmentMap& map, const std::filesystem::path& path);
+std::unique_ptr<SegmentMap> load_map(const std::filesystem::path& path);
+
+}  // namespace kintsugi::segmenter

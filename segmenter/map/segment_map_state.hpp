@@ -1,0 +1,40 @@
+#pragma once
+// A segment map as plain data: to be saved, and to be gone on with.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "lcmtypes/messages.hpp"
+#include "segmenter/core/engine.hpp"
+#include "segmenter/core/point_cloud.hpp"
+
+namespace kintsugi::segmenter {
+
+struct SegmentMapConfig {
+  std::string mode = "batch";  ///< one of engine_modes()
+  EngineConfig engine;         ///< its resolution_m is replaced by that of the slices
+
+  /// Throws std::invalid_argument naming field, value and bound.
+  void validate() const;
+};
+
+/// Everything that the later behaviour of a SegmentMap depends on: one made from its state tells
+/// the same as the map itself from then on. A copy: 36 bytes a point.
+struct SegmentMapState {
+  SegmentMapConfig config;
+  std::int64_t session = 0;  ///< of the segmenter
+  std::int64_t map_session = 0;
+  std::string map_name;
+  std::int32_t final_slice_id = -1;  ///< -1: not seen
+  std::uint32_t next_id = 1;         ///< the segment id to be given next
+
+  std::vector<SliceRecord> slices;         ///< in order of arrival; `first` is a place in points_W
+  std::vector<CloudPoint> points_W;        ///< accepted points, slice after slice
+  std::vector<std::uint32_t> segment_ids;  ///< of each of points_W
+
+  /// Mode `voting`, else empty: theta of each segment by ascending id. It depends on the history.
+  std::vector<double> thetas;
+};
+
+}  // namespace kintsugi::segmenter
