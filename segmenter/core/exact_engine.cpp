@@ -10,7 +10,6 @@ namespace kintsugi::segmenter {
 namespace {
 
 using exact::EdgeKey;
-using exact::Vertex;
 
 // Small maps: fewer explored points than this are no reason to build anew.
 constexpr std::int64_t kAlwaysExplored = 20'000;
@@ -62,10 +61,8 @@ void ExactEngine::take_over(const CloudChange& change) {
   });
   index_->remove(change.removed);
   index_->insert(change.added);
-  Vertex nobody;
-  nobody.is_gone = 1;
-  state_.vertices.resize(cloud_.size(), nobody);
-  for (const PointIndex x : change.added) state_.vertices[x] = {};
+  state_.vertices.resize(cloud_.size());
+  for (const PointIndex x : change.added) state_.vertices.reset(x);
   num_points_ += std::ssize(change.added) - std::ssize(change.removed);
 }
 

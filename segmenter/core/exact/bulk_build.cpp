@@ -17,13 +17,11 @@ class Recorder {
 
   void joined(const Edge& edge, PointIndex host, PointIndex guest) {
     const EdgeKey key = EdgeKey::of(edge.weight, edge.i, edge.j);
-    Vertex& v = state_.vertices[guest];
-    v.edge = state_.edges.add(key);
-    v.host = host;
-    v.weight_bits = key.weight_bits;
-    v.left = std::exchange(state_.vertices[host].history, guest);
-    state_.edges.set_owner(v.edge, guest);
-    state_.edges.link(v.edge);
+    const TreeEdgeId id = state_.edges.add(key);
+    state_.edges.set_owner(id, guest);
+    state_.edges.link(id);
+    state_.vertices.set_absorbed(guest, host, id, key.weight_bits);
+    state_.vertices[guest].left = std::exchange(state_.vertices[host].history, guest);
   }
 
   void rejected(const Edge& edge) {
@@ -63,7 +61,7 @@ std::int64_t build_state(std::span<const Edge> edges, const JoinRule& rule, Stat
     state.vertices[guest].size = state.forest.history().total(guest);
   }
   for (PointIndex x = 0; x < num_vertices; ++x) {
-    if (state.vertices[x].is_root()) build_history(x, state, children);
+    if (state.vertices.is_root(x)) build_history(x, state, children);
   }
   return num_joins;
 }

@@ -42,7 +42,7 @@ void ComponentNames::update_all(std::span<const PointIndex> removed) {
   names_.resize(vertices_.size(), kNoComponent);
   std::vector<PointIndex> roots;
   for (PointIndex x = 0; x < vertices_.size(); ++x) {
-    if (vertices_[x].is_gone || !vertices_[x].is_root()) continue;
+    if (vertices_[x].is_gone || !vertices_.is_root(x)) continue;
     place(vertices_[x]) = static_cast<std::uint32_t>(roots.size());
     roots.push_back(x);
   }
@@ -75,9 +75,9 @@ std::vector<ComponentNames::Share> ComponentNames::count_pieces(
     shares[k].component = vertices_[forest_.root(x)].visit;
     shares[k].old_name = names_[x];
     shares[k].num_points += total;
-    if (vertices_[x].is_root()) continue;
-    PointIndex above = vertices_[x].host;
-    while (!vertices_[above].is_touched) above = vertices_[above].host;
+    if (vertices_.is_root(x)) continue;
+    PointIndex above = vertices_.host(x);
+    while (!vertices_[above].is_touched) above = vertices_.host(above);
     shares[vertices_[above].visit].num_points -= total;
   }
   return shares;

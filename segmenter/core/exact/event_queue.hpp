@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -27,6 +28,9 @@ struct Event {
   }
 };
 
+/// Sorts keys; in time proportional to their number, but for those of equal weight.
+void sort_keys(std::vector<EdgeKey>& keys);
+
 /// The events of a run in order. Most are known at its start, the edges of the new points: those
 /// are sorted once; the others, a few hundred, come and go in a binary heap.
 class EventQueue {
@@ -34,7 +38,7 @@ class EventQueue {
   /// Begins a run. `edges`, in any order, are its plain edges.
   void start(std::vector<EdgeKey> edges) {
     edges_ = std::move(edges);
-    std::sort(edges_.begin(), edges_.end());
+    sort_keys(edges_);
     next_ = 0;
     heap_.clear();
   }
@@ -59,6 +63,11 @@ class EventQueue {
     const Event event = heap_.back();
     heap_.pop_back();
     return event;
+  }
+
+  /// The plain edge that comes `ahead` edges from now; nullptr when there are not so many.
+  const EdgeKey* upcoming(std::size_t ahead) const {
+    return edges_.size() - next_ > ahead ? &edges_[next_ + ahead] : nullptr;
   }
 
  private:

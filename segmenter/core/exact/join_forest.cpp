@@ -6,19 +6,16 @@
 namespace kintsugi::segmenter::exact {
 
 void JoinForest::absorb(PointIndex host, PointIndex guest, TreeEdgeId edge) {
-  Vertex& v = vertices_[guest];
-  assert(v.is_root() && host != guest);
-  v.host = host;
-  v.edge = edge;
-  v.weight_bits = edges_.key(edge).weight_bits;
-  v.size = history_.total(guest);
+  assert(vertices_.is_root(guest) && host != guest);
+  vertices_.set_absorbed(guest, host, edge, edges_.key(edge).weight_bits);
+  vertices_[guest].size = history_.total(guest);
   edges_.set_owner(edge, guest);
   history_.update_end(guest);
   history_.insert(guest);
 }
 
 PointIndex JoinForest::release(PointIndex guest) {
-  const PointIndex host = vertices_[guest].host;
+  const PointIndex host = vertices_.host(guest);
   assert(host != kNone);
   history_.erase(guest);
   set_free(guest);
@@ -36,12 +33,9 @@ void JoinForest::release_after(PointIndex host, const EdgeKey& time, std::vector
 }
 
 void JoinForest::set_free(PointIndex guest) {
-  Vertex& v = vertices_[guest];
-  edges_.set_owner(v.edge, kNone);
-  v.host = kNone;
-  v.edge = kNone;
-  v.weight_bits = UINT32_MAX;
-  v.is_queued = 0;
+  edges_.set_owner(vertices_[guest].edge, kNone);
+  vertices_.set_free(guest);
+  vertices_[guest].is_queued = 0;
   history_.update_end(guest);
 }
 
@@ -58,7 +52,7 @@ PointIndex JoinForest::step_down(PointIndex x) {
   if (heir == kNone) return kNone;
   const TreeEdgeId edge = vertices_[heir].edge;
   const TreeEdgeId own_edge = vertices_[x].edge;
-  const PointIndex host = vertices_[x].host;
+  const PointIndex host = vertices_.host(x);
   release(heir);
   if (host != kNone) release(x);
   const PointIndex later = history_.take_after(x, edges_.key(edge));

@@ -23,16 +23,16 @@ class JoinForest {
 
   /// The representative of x just before `time`.
   PointIndex representative_before(PointIndex x, const EdgeKey& time) const {
-    while (is_absorbed_before(x, time)) x = vertices_[x].host;
+    while (is_absorbed_before(x, time)) x = vertices_.host(x);
     return x;
   }
   /// The representative of x just after `time`.
   PointIndex representative_after(PointIndex x, const EdgeKey& time) const {
-    while (is_absorbed_up_to(x, time)) x = vertices_[x].host;
+    while (is_absorbed_up_to(x, time)) x = vertices_.host(x);
     return x;
   }
   PointIndex root(PointIndex x) const {
-    while (vertices_[x].host != kNone) x = vertices_[x].host;
+    while (!vertices_.is_root(x)) x = vertices_.host(x);
     return x;
   }
 
@@ -41,14 +41,14 @@ class JoinForest {
     return vertices_[x].edge == kNone ? kNever : edges_.key(vertices_[x].edge);
   }
   bool is_absorbed_before(PointIndex x, const EdgeKey& time) const {
-    const Vertex& v = vertices_[x];
-    if (v.weight_bits != time.weight_bits) return v.weight_bits < time.weight_bits;
-    return v.edge != kNone && edges_.key(v.edge) < time;
+    const std::uint32_t weight_bits = vertices_.absorption(x).weight_bits;
+    if (weight_bits != time.weight_bits) return weight_bits < time.weight_bits;
+    return !vertices_.is_root(x) && edges_.key(vertices_[x].edge) < time;
   }
   bool is_absorbed_up_to(PointIndex x, const EdgeKey& time) const {
-    const Vertex& v = vertices_[x];
-    if (v.weight_bits != time.weight_bits) return v.weight_bits < time.weight_bits;
-    return v.edge != kNone && !(time < edges_.key(v.edge));
+    const std::uint32_t weight_bits = vertices_.absorption(x).weight_bits;
+    if (weight_bits != time.weight_bits) return weight_bits < time.weight_bits;
+    return !vertices_.is_root(x) && !(time < edges_.key(vertices_[x].edge));
   }
 
   /// Whether the component that x stands for just before `time` is alive: the weight is below its

@@ -67,7 +67,7 @@ void JoinHistory::refresh_path(PointIndex host, PointIndex child) {
 void JoinHistory::set_capacity(PointIndex child, PointIndex next) {
   Vertex& v = vertices_[child];
   const std::uint32_t next_bits =
-      next != kNone ? vertices_[next].weight_bits : vertices_[v.host].weight_bits;
+      next != kNone ? vertices_[next].weight_bits : vertices_[vertices_.host(child)].weight_bits;
   // One less: the host itself is a point that it did not gain.
   v.capacity = next_bits == UINT32_MAX ? JoinRule::kUnbounded
                                        : rule_.capacity(std::bit_cast<float>(v.weight_bits),
@@ -92,6 +92,11 @@ PointIndex JoinHistory::first(PointIndex host) const {
   return t;
 }
 
+void JoinHistory::note_last(PointIndex host) {
+  const PointIndex child = last(host);
+  vertices_[host].last_weight_bits = child == kNone ? 0 : vertices_[child].weight_bits;
+}
+
 PointIndex JoinHistory::last(PointIndex host) const {
   PointIndex t = vertices_[host].history;
   while (t != kNone && vertices_[t].right != kNone) t = vertices_[t].right;
@@ -99,10 +104,12 @@ PointIndex JoinHistory::last(PointIndex host) const {
 }
 
 void JoinHistory::insert(PointIndex child) {
-  const PointIndex host = vertices_[child].host;
+  const PointIndex host = vertices_.host(child);
   set_capacity(child, neighbour(host, child, false));
   vertices_[child].left = vertices_[child].right = kNone;
-  vertices_[host].history = insert_below(vertices_[host].history, child);
+  Vertex& h = vertices_[host];
+  h.history = insert_below(h.history, child);
+  h.last_weight_bits = std::max(h.last_weight_bits, vertices_[child].weight_bits);
   const PointIndex previous = neighbour(host, child, true);
   if (previous != kNone) {
     set_capacity(previous, child);
@@ -128,8 +135,9 @@ PointIndex JoinHistory::insert_below(PointIndex t, PointIndex child) {
 }
 
 void JoinHistory::erase(PointIndex child) {
-  const PointIndex host = vertices_[child].host;
+  const PointIndex host = vertices_.host(child);
   vertices_[host].history = erase_below(vertices_[host].history, child);
+  if (vertices_[child].weight_bits == vertices_[host].last_weight_bits) note_last(host);
   const PointIndex previous = neighbour(host, child, true);
   if (previous != kNone) {
     set_capacity(previous, neighbour(host, child, false));
@@ -185,6 +193,7 @@ PointIndex JoinHistory::take_after(PointIndex host, const EdgeKey& time) {
   if (final_child == kNone || is_up_to(final_child, time)) return kNone;
   const Halves halves = split(vertices_[host].history, time);
   vertices_[host].history = halves.up_to;
+  note_last(host);
   update_end(host);
   return halves.after;
 }
@@ -216,13 +225,14 @@ void JoinHistory::build(PointIndex host, std::span<const PointIndex> children) {
     vertices_[host].history = spine.back();
     spine.pop_back();
   }
+  note_last(host);
 }
 
 void JoinHistory::append(PointIndex host, PointIndex taken) {
   if (taken == kNone) return;
   PointIndex next = kNone;
   for_each_in_order(taken, [&](PointIndex child) {
-    vertices_[child].host = host;
+    vertices_.set_host(child, host);
     if (next == kNone) next = child;
   });
   const PointIndex previous = last(host);
@@ -231,6 +241,7 @@ void JoinHistory::append(PointIndex host, PointIndex taken) {
     set_capacity(previous, next);
     refresh_path(host, previous);
   }
+  note_last(host);
   update_end(host);
 }
 
@@ -242,8 +253,12 @@ void JoinHistory::update_end(PointIndex host) {
 }
 
 JoinHistory::State JoinHistory::state_before(PointIndex host, const EdgeKey& time) const {
+  const Vertex& h = vertices_[host];
+  if (h.last_weight_bits < time.weight_bits) {  // as all was, for whoever has no future
+    return {total(host), std::bit_cast<float>(h.last_weight_bits)};
+  }
   State state;
-  for (PointIndex t = vertices_[host].history; t != kNone;) {
+  for (PointIndex t = h.history; t != kNone;) {
     const Vertex& v = vertices_[t];
     const bool is_before_time = v.weight_bits != time.weight_bits ? v.weight_bits < time.weight_bits
                                                                   : edges_.key(v.edge) < time;
@@ -259,9 +274,7 @@ JoinHistory::State JoinHistory::state_before(PointIndex host, const EdgeKey& tim
 }
 
 double JoinHistory::final_theta(PointIndex host) const {
-  const PointIndex child = last(host);
-  if (child == kNone) return rule_.threshold;
-  return rule_.theta(std::bit_cast<float>(vertices_[child].weight_bits), total(host));
+  return rule_.theta(std::bit_cast<float>(vertices_[host].last_weight_bits), total(host));
 }
 
 PointIndex JoinHistory::first_broken(PointIndex host) const {

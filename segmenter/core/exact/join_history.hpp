@@ -40,7 +40,7 @@ class JoinHistory {
   void append(PointIndex host, PointIndex taken);
 
   /// Takes notice that the size of `child` is another now.
-  void update_size(PointIndex child) { refresh_path(vertices_[child].host, child); }
+  void update_size(PointIndex child) { refresh_path(vertices_.host(child), child); }
   /// Takes notice that `host` itself was absorbed, or freed: its last child has another capacity.
   void update_end(PointIndex host);
 
@@ -103,6 +103,7 @@ class JoinHistory {
   PointIndex neighbour(PointIndex host, PointIndex child, bool before) const;
   PointIndex first(PointIndex host) const;
   PointIndex last(PointIndex host) const;
+  void note_last(PointIndex host);
   PointIndex insert_below(PointIndex t, PointIndex child);
   PointIndex erase_below(PointIndex t, PointIndex child);
   PointIndex merge(PointIndex a, PointIndex b);

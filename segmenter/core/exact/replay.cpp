@@ -9,6 +9,8 @@ namespace {
 /// Before every edge: two points of one index are no edge.
 constexpr EdgeKey kStart{0, 0, 0};
 
+constexpr std::size_t kPrefetchDistance = 8;  // edges
+
 }  // namespace
 
 Replay::Replay(State& state, const EdgeFinder& edges_of)
@@ -22,6 +24,10 @@ bool Replay::run(std::span<const PointIndex> removed, std::vector<EdgeKey> new_e
   for (const PointIndex x : removed) state_.vertices[x].is_gone = 1;
   for (const PointIndex x : removed) remove(x);
   while (!queue_.empty()) {
+    if (const EdgeKey* const soon = queue_.upcoming(kPrefetchDistance)) {
+      state_.vertices.prefetch(soon->a);
+      state_.vertices.prefetch(soon->b);
+    }
     handle(queue_.pop());
     if (num_explored_ > max_explored) return false;
   }
@@ -94,7 +100,7 @@ void Replay::settle(TreeEdgeId edge) {
 /// Whether `guest` joins its host as it did, with the points that it has now.
 bool Replay::still_holds(PointIndex guest) {
   const JoinForest& forest = state_.forest;
-  const PointIndex host = state_.vertices[guest].host;
+  const PointIndex host = state_.vertices.host(guest);
   const PointIndex a = forest.representative_before(now_.a, now_);
   const PointIndex b = forest.representative_before(now_.b, now_);
   if (!(a == guest && b == host) && !(a == host && b == guest)) return false;
@@ -151,7 +157,7 @@ void Replay::give_up(PointIndex guest) {
 
 /// Takes back whatever `x`, a representative now, does later.
 void Replay::give_up_future(PointIndex x) {
-  if (!state_.vertices[x].is_root() && !state_.forest.is_absorbed_up_to(x, now_)) give_up(x);
+  if (!state_.vertices.is_root(x) && !state_.forest.is_absorbed_up_to(x, now_)) give_up(x);
   freed_.clear();
   state_.forest.release_after(x, now_, freed_);
   if (freed_.empty()) return;
@@ -198,7 +204,7 @@ void Replay::offer_watches(PointIndex holder) {
 
 /// The component of x has more or fewer points, now or at some later time.
 void Replay::size_changed(PointIndex x) {
-  if (state_.vertices[x].is_root()) {
+  if (state_.vertices.is_root(x)) {
     open_heap(x);
   } else {
     queue_tree_edge_of(x);
@@ -209,7 +215,7 @@ void Replay::size_changed(PointIndex x) {
 
 void Replay::queue_tree_edge_of(PointIndex x) {
   Vertex& v = state_.vertices[x];
-  if (v.is_root() || v.is_queued || !(now_ < state_.edges.key(v.edge))) return;
+  if (state_.vertices.is_root(x) || v.is_queued || !(now_ < state_.edges.key(v.edge))) return;
   v.is_queued = 1;
   queue_.push({state_.edges.key(v.edge), EventKind::kTreeEdge, v.edge});
 }
@@ -252,7 +258,7 @@ void Replay::finish(std::span<const PointIndex> removed) {
   }
   cut_search_.finish();
   for ([[maybe_unused]] const PointIndex x : removed) {
-    assert(state_.vertices[x].is_root() && state_.vertices[x].history == kNone);
+    assert(state_.vertices.is_root(x) && state_.vertices[x].history == kNone);
     assert(state_.vertices[x].half_edges == kNone && state_.vertices[x].watches == kNone);
   }
 }

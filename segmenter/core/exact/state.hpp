@@ -18,10 +18,10 @@ struct State {
 
   /// Forgets everything but who is gone.
   void clear() {
-    for (Vertex& v : vertices) {
-      const bool is_gone = v.is_gone;
-      v = {};
-      v.is_gone = is_gone;
+    for (PointIndex x = 0; x < vertices.size(); ++x) {
+      const bool is_gone = vertices[x].is_gone;
+      vertices.reset(x);
+      vertices[x].is_gone = is_gone;
     }
     edges.clear();
     watches.clear();
