@@ -107,6 +107,7 @@ int fuzz(const Options& options) {
   const auto start = Clock::now();
   const auto seconds = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
   std::size_t num_steps = 0;
+  std::size_t num_rebuilt = 0;
   std::size_t num_scenarios = 0;
   int num_failures = 0;
   const auto is_done = [&] {
@@ -117,6 +118,7 @@ int fuzz(const Options& options) {
     const Scenario scenario = random_scenario(seed, options.bounds, maps[seed % maps.size()]);
     const Outcome outcome = run(scenario, options.mode);
     num_steps += outcome.num_steps;
+    num_rebuilt += outcome.num_rebuilt;
     ++num_scenarios;
     if (outcome.failure) {
       ++num_failures;
@@ -128,8 +130,8 @@ int fuzz(const Options& options) {
   }
   std::cout << options.mode << ": " << num_steps << " steps of " << num_scenarios
             << " scenarios checked against batch (seeds " << options.seed << " to "
-            << options.seed + num_scenarios - 1 << ", " << static_cast<int>(seconds())
-            << " s): " << num_failures << " failures" << std::endl;
+            << options.seed + num_scenarios - 1 << ", " << static_cast<int>(seconds()) << " s; "
+            << num_rebuilt << " steps built anew): " << num_failures << " failures" << std::endl;
   return num_failures == 0 ? 0 : 1;
 }
 

@@ -18,9 +18,10 @@ namespace {
   throw std::system_error(errno, std::generic_category(), what);
 }
 
-/// "<steps> <failure>", the failure empty when there is none.
+/// "<steps> <rebuilt> <failure>", the failure empty when there is none.
 void send(int out, const Outcome& outcome) {
-  const std::string text = std::to_string(outcome.num_steps) + ' ' + outcome.failure.value_or("");
+  const std::string text = std::to_string(outcome.num_steps) + ' ' +
+                           std::to_string(outcome.num_rebuilt) + ' ' + outcome.failure.value_or("");
   for (std::size_t sent = 0; sent < text.size();) {
     const ssize_t count = ::write(out, text.data() + sent, text.size() - sent);
     if (count < 0) return;  // the parent sees a message that is too short
@@ -43,7 +44,7 @@ Outcome parse(const std::string& text) {
   Outcome outcome;
   std::istringstream in(text);
   std::string failure;
-  in >> outcome.num_steps;
+  in >> outcome.num_steps >> outcome.num_rebuilt;
   in.ignore(1);
   if (std::getline(in, failure)) outcome.failure = failure;
   return outcome;

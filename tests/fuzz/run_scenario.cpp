@@ -25,7 +25,7 @@ Outcome run_scenario(const Scenario& scenario, const EngineFactory& make_engine)
     ++outcome.num_steps;
     try {
       const CloudChange change = map.apply(step);
-      engine->update(change);
+      outcome.num_rebuilt += engine->update(change).is_rebuilt;
       outcome.failure = check(change, map.live());
     } catch (const std::exception& error) {
       outcome.failure = std::string("threw: ") + error.what();

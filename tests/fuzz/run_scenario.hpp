@@ -18,6 +18,7 @@ EngineFactory engine_factory(const std::string& mode);
 
 struct Outcome {
   std::size_t num_steps = 0;           ///< checked, the one that failed included
+  std::size_t num_rebuilt = 0;         ///< of them, in which the engine began anew
   std::optional<std::string> failure;  ///< what was wrong after the last of them
 };
 

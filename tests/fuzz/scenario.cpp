@@ -48,7 +48,7 @@ void write_scenario(std::ostream& out, const Scenario& scenario) {
   out.precision(std::numeric_limits<double>::max_digits10);
   const EngineConfig& config = scenario.config;
   out << "config " << config.threshold << ' ' << config.scale << ' ' << config.resolution_m << ' '
-      << config.radius_factor << '\n';
+      << config.radius_factor << ' ' << config.rebuild_share << ' ' << config.explore_share << '\n';
   out << "slice_points " << scenario.slice_points << '\n';
   out << "points " << scenario.pool.size() << '\n';
   for (const CloudPoint& p : scenario.pool) {
@@ -66,7 +66,8 @@ Scenario read_scenario(std::istream& in) {
   expect_word(in, "config");
   EngineConfig& config = scenario.config;
   for (double* const value :
-       {&config.threshold, &config.scale, &config.resolution_m, &config.radius_factor}) {
+       {&config.threshold, &config.scale, &config.resolution_m, &config.radius_factor,
+        &config.rebuild_share, &config.explore_share}) {
     *value = read_number<double>(in, "a parameter");
   }
   expect_word(in, "slice_points");

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "segmenter/core/engine.hpp"
+#include "tests/bench/map_generator_file.hpp"
+
+namespace kintsugi::segmenter::bench {
+
+/// Takes a map slice by slice through an engine, segment ids and statistics, and prints time and
+/// memory as Markdown tables. With `csv` not empty, each slice is a line of that file.
+void bench_slices(const std::string& mode, const EngineConfig& config, const Slices& slices,
+                  const std::filesystem::path& csv);
+
+/// Segments the whole map at once, several times, and prints time and memory.
+void bench_batch(const EngineConfig& config, const Slices& slices);
+
+}  // namespace kintsugi::segmenter::bench
