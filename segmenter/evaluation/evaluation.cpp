@@ -1,9 +1,9 @@
 #include "segmenter/evaluation/evaluation.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <set>
+#include <functional>
+#include <numeric>
 #include <stdexcept>
 #include <utility>
 
@@ -21,53 +21,55 @@ void require(bool holds, const std::string& what) {
 int affordable_interval(const RecordedSession& session, double final_ms, double budget_s) {
   double points = 0.0;
   double points_of_all_runs = 0.0;
-  for (const CloudSlice& slice : session.slices) {
-    points += static_cast<double>(slice.points_W.size());
+  for (const auto& step : session.steps) {
+    for (const CloudSlice& slice : step.slices)
+      points += static_cast<double>(slice.points_W.size());
     points_of_all_runs += points;
   }
   const double all_runs_s = 1e-3 * final_ms * points_of_all_runs / points;
   const double interval = std::ceil(all_runs_s / budget_s);
-  return static_cast<int>(std::clamp(interval, 1.0, static_cast<double>(session.slices.size())));
+  return static_cast<int>(std::clamp(interval, 1.0, static_cast<double>(session.steps.size())));
 }
 
 std::vector<std::int64_t> lag_of(const Replay& replay, const RecordedSession& session) {
-  std::vector<std::int64_t> ready_us;
+  std::vector<std::int64_t> all_ready_us;
   std::vector<double> run_ms;
-  for (const SliceRun& run : replay.runs) {
-    ready_us.push_back(session.slices[static_cast<std::size_t>(run.slice_index)].utime);
+  for (const MeasuredRun& run : replay.runs) {
+    all_ready_us.push_back(ready_us(session.steps[static_cast<std::size_t>(run.step)]));
     run_ms.push_back(run.engine_ms);
   }
-  return slices_behind(ready_us, run_ms);
+  return slices_behind(all_ready_us, run_ms);
 }
 
-/// Canonical labels by the size of their segments, largest first, of equal ones the smaller label.
-std::vector<PointIndex> labels_by_size(std::span<const PointIndex> labels) {
-  std::vector<std::int64_t> sizes(labels.size(), 0);
-  for (const PointIndex label : labels) {
-    if (label != kNoComponent) ++sizes[label];
+/// Labels by the size of their segments, largest first, of equal ones the smaller label.
+std::vector<std::uint32_t> labels_by_size(std::span<const std::uint32_t> labels) {
+  std::vector<std::int64_t> sizes;
+  for (const std::uint32_t label : labels) {
+    if (label >= sizes.size()) sizes.resize(std::size_t{label} + 1, 0);
+    ++sizes[label];
   }
-  std::vector<PointIndex> by_size;
-  for (PointIndex i = 0; i < sizes.size(); ++i) {
-    if (sizes[i] > 0) by_size.push_back(i);
-  }
-  std::stable_sort(by_size.begin(), by_size.end(),
-                   [&](PointIndex a, PointIndex b) { return sizes[a] > sizes[b]; });
+  std::vector<std::uint32_t> by_size(sizes.size());
+  std::iota(by_size.begin(), by_size.end(), 0);
+  std::ranges::stable_sort(by_size, std::greater<>(),
+                           [&](std::uint32_t label) { return sizes[label]; });
   return by_size;
 }
 
 /// Of the segments asked for that there are.
 std::vector<ChosenSegment> choose_thetas(const RecordedSession& session, const Replay& batch,
                                          const EvaluationConfig& config) {
-  const std::vector<PointIndex> by_size = labels_by_size(batch.labels);
+  const std::vector<std::uint32_t> by_size = labels_by_size(batch.labels);
   std::vector<ChosenSegment> chosen;
-  std::vector<PointIndex> labels;
+  std::vector<std::uint32_t> labels;
   for (const int rank : config.segments) {
     if (static_cast<std::size_t>(rank) > by_size.size()) continue;
     chosen.emplace_back().rank = rank;
     labels.push_back(by_size[static_cast<std::size_t>(rank) - 1]);
   }
-  PointCloud cloud;
-  for (const CloudSlice& slice : session.slices) cloud.add_slice(slice.id, slice.points_W);
+  PointCloud cloud;  // its points stand in the order of batch.labels
+  for (const CloudSlice* slice : session.newest_slices()) {
+    cloud.add_slice(slice->id, slice->points_W);
+  }
   auto histories = theta_histories(cloud, batch.labels, labels, config.engine);
   for (std::size_t i = 0; i < chosen.size(); ++i) chosen[i].history = std::move(histories[i]);
   return chosen;
@@ -111,12 +113,11 @@ Evaluation evaluate(RecordedSession session, EvaluationConfig config,
   config.engine.resolution_m = session.resolution_m();
   config.validate();
   Evaluation result;
-  const auto num_slices = static_cast<int>(session.slices.size());
-  const Replay reference = replay_batch(session.slices, num_slices, config.engine, on_progress);
+  const auto num_steps = static_cast<int>(session.steps.size());
+  const Replay reference = replay_batch(session.steps, num_steps, config.engine, on_progress);
   result.num_vertices = reference.runs.back().map_points;
   result.batch_final_ms = reference.runs.back().engine_ms;
-  result.num_segments =
-      static_cast<std::int64_t>(mutual_overlap(reference.labels, reference.labels).size());
+  result.num_segments = std::int64_t{std::ranges::max(reference.labels)} + 1;
   result.batch_every = config.batch_every > 0 ? config.batch_every
                                               : affordable_interval(session, result.batch_final_ms,
                                                                     config.batch_budget_s);
@@ -124,9 +125,9 @@ Evaluation evaluate(RecordedSession session, EvaluationConfig config,
     ModeResult& of_mode = result.modes.emplace_back();
     of_mode.replay =
         mode == "batch"
-            ? replay_batch(session.slices, result.batch_every, config.engine, on_progress)
-            : replay_incrementally(session.slices, mode, config.engine, on_progress);
-    of_mode.is_complete = of_mode.replay.runs.size() == session.slices.size();
+            ? replay_batch(session.steps, result.batch_every, config.engine, on_progress)
+            : replay_incrementally(session.steps, mode, config.engine, on_progress);
+    of_mode.is_complete = of_mode.replay.runs.size() == session.steps.size();
     of_mode.agreements = mutual_overlap(of_mode.replay.labels, reference.labels);
     if (session.has_times && of_mode.is_complete) {
       of_mode.slices_behind = lag_of(of_mode.replay, session);

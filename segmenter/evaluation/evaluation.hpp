@@ -20,7 +20,7 @@ std::vector<std::string> evaluation_modes();
 struct EvaluationConfig {
   std::vector<std::string> modes = evaluation_modes();  ///< at least one, each once
   EngineConfig engine;           ///< its resolution_m is replaced by that of the session
-  int batch_every = 0;           ///< mode `batch` runs after every so many slices; 0: see next
+  int batch_every = 0;           ///< mode `batch` runs after every so many steps; 0: see next
   double batch_budget_s = 60.0;  ///< then as often as fits into this time, > 0
   std::vector<int> segments = {1, 2, 3};  ///< whose theta is shown, by rank: 1 is the largest
 
@@ -37,8 +37,8 @@ struct ChosenSegment {
 /// One mode over the session.
 struct ModeResult {
   Replay replay;
-  bool is_complete = true;  ///< ran after every slice; else it was sampled (`batch`)
-  std::vector<std::int64_t> slices_behind;   ///< of each slice; empty: no times, or sampled
+  bool is_complete = true;                  ///< ran after every step; else it was sampled (`batch`)
+  std::vector<std::int64_t> slices_behind;  ///< of each step; empty: no times, or sampled
   std::vector<SegmentAgreement> agreements;  ///< with batch, on the final map
 };
 

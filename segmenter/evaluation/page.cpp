@@ -62,7 +62,7 @@ std::string processor() {
 std::string session_facts(const Evaluation& evaluation) {
   const RecordedSession& session = evaluation.session;
   Facts facts{{"Source", session.source},
-              {"Slices", grouped(static_cast<std::int64_t>(session.slices.size()))},
+              {"Slices", grouped(session.num_slices)},
               {"Points", grouped(evaluation.num_vertices)},
               {"Resolution", decimal(1e3 * evaluation.config.engine.resolution_m, 3) + " mm"},
               {"Segments (batch)", grouped(evaluation.num_segments)}};
@@ -81,7 +81,7 @@ std::string sampling_note(const Evaluation& evaluation) {
     if (mode.is_complete) continue;
     return note("~ Batch ran after every " + std::to_string(evaluation.batch_every) +
                 " slices and after the last only (--batch-every 1 runs it after each): average "
-                "and total are estimated, maximum and minimum are of the runs.");
+                "and total are estimated, the other figures are of the runs.");
   }
   return "";
 }

@@ -1,8 +1,8 @@
 #include "segmenter/evaluation/recorded_session.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <map>
-#include <set>
 #include <stdexcept>
 #include <utility>
 
@@ -16,19 +16,35 @@ namespace {
 
 /// What a log holds of one session of a mapper.
 struct LoggedSession {
-  std::map<std::int32_t, CloudSlice> slices;  // the newest revision, by id
-  std::set<std::int32_t> corrected;           // ids that came in several revisions
-  std::map<std::int64_t, CameraPose> poses;   // by time
-  std::int64_t num_wrong_resolution = 0;      // slices left out
+  SliceSequencer order{{}};
+  std::vector<SliceGroup> steps;
+  std::int64_t num_slices = 0;
+  std::int64_t num_corrections = 0;
+  std::int64_t num_wrong_resolution = 0;     // slices left out
+  std::optional<float> resolution_m;         // of the first
+  std::map<std::int64_t, CameraPose> poses;  // by time
 
   void add(CloudSlice slice) {
-    if (!slices.empty() && slice.resolution_m != slices.begin()->second.resolution_m) {
+    if (slice.resolution_m != resolution_m.value_or(slice.resolution_m)) {
       ++num_wrong_resolution;
       return;
     }
-    const auto [place, is_new] = slices.try_emplace(slice.id);
-    if (!is_new && slice.revision != place->second.revision) corrected.insert(slice.id);
-    if (is_new || slice.revision > place->second.revision) place->second = std::move(slice);
+    resolution_m = slice.resolution_m;
+    const auto verdict = order.offer(std::move(slice), {});
+    num_slices += verdict == SliceSequencer::Verdict::kTaken;
+    num_corrections += verdict == SliceSequencer::Verdict::kCorrected;
+    take(false);
+  }
+
+  /// Gives up what is missing.
+  void end() {
+    do take(true);
+    while (order.give_up_gap({}, true));
+  }
+
+ private:
+  void take(bool stream_has_ended) {
+    while (auto step = order.pop({}, stream_has_ended)) steps.push_back(*std::move(step));
   }
 };
 
@@ -68,7 +84,7 @@ LoggedSessions read_log(const std::filesystem::path& path, std::vector<std::stri
 
 LoggedSessions::iterator largest(LoggedSessions& sessions) {
   return std::max_element(sessions.begin(), sessions.end(), [](const auto& a, const auto& b) {
-    return a.second.slices.size() < b.second.slices.size();
+    return a.second.num_slices < b.second.num_slices;
   });
 }
 
@@ -82,42 +98,40 @@ double path_length_m(const std::vector<Pose>& X_WC) {
 
 /// Build time and path, from camera poses or, without them, from the slices.
 void measure_path(const LoggedSession& logged, RecordedSession& session) {
+  const std::vector<const CloudSlice*> slices = session.newest_slices();
   std::vector<Pose> path;
-  std::int64_t first_us = session.slices.front().utime;
+  std::int64_t first_us = slices.front()->utime;
   for (const auto& [utime, pose] : logged.poses) {
     if (pose.state != TrackingState::kTracking && pose.state != TrackingState::kGiven) continue;
     if (path.empty()) first_us = std::min(first_us, utime);
     path.push_back(pose.X_WC);
   }
   if (path.empty()) {
-    for (const CloudSlice& slice : session.slices) path.push_back(slice.X_WC);
+    for (const CloudSlice* slice : slices) path.push_back(slice->X_WC);
     session.remarks.push_back(
-        "No camera poses in the log: build time and length count from the "
-        "first slice and along the cameras of the slices only.");
+        "No camera poses in the log: build time and length count from the first slice and along "
+        "the cameras of the slices only.");
   }
   std::int64_t last_us = first_us;
-  for (const CloudSlice& slice : session.slices) last_us = std::max(last_us, slice.utime);
+  for (const CloudSlice* slice : slices) last_us = std::max(last_us, slice->utime);
   session.build_time_s = static_cast<double>(last_us - first_us) * 1e-6;
   session.path_length_m = path_length_m(path);
 }
 
-/// What is missing or was left out of the session.
-void remark_gaps(const LoggedSession& logged, RecordedSession& session) {
-  const std::int64_t num_missing =
-      std::int64_t{session.slices.back().id} + 1 - static_cast<std::int64_t>(session.slices.size());
-  if (num_missing > 0) {
+/// What is missing, was left out or was corrected.
+void add_remarks(const LoggedSession& logged, RecordedSession& session) {
+  if (const auto num_missing = logged.order.num_missing(); num_missing > 0) {
     session.is_whole = false;
     session.remarks.push_back(std::to_string(num_missing) +
                               " slices are missing from the log; it was evaluated without them.");
   }
-  if (session.slices.back().kind != SliceKind::kFinal) {
+  if (session.newest_slices().back()->kind != SliceKind::kFinal) {
     session.is_whole = false;
     session.remarks.push_back("The log ends before the final slice of the map.");
   }
-  if (!logged.corrected.empty()) {
-    session.remarks.push_back(std::to_string(logged.corrected.size()) +
-                              " slices came with corrections; the newest revision of each was "
-                              "replayed in its place.");
+  if (logged.num_corrections > 0) {
+    session.remarks.push_back(std::to_string(logged.num_corrections) +
+                              " corrections of slices were replayed as they came.");
   }
   if (logged.num_wrong_resolution > 0) {
     session.is_whole = false;
@@ -128,10 +142,24 @@ void remark_gaps(const LoggedSession& logged, RecordedSession& session) {
 
 }  // namespace
 
+std::vector<const CloudSlice*> RecordedSession::newest_slices() const {
+  std::map<std::int32_t, const CloudSlice*> by_id;
+  for (const auto& step : steps) {
+    for (const CloudSlice& slice : step.slices) by_id[slice.id] = &slice;
+  }
+  std::vector<const CloudSlice*> slices;
+  for (const auto& [id, slice] : by_id) slices.push_back(slice);
+  return slices;
+}
+
 std::int64_t RecordedSession::num_points() const {
   std::int64_t count = 0;
-  for (const CloudSlice& slice : slices) count += static_cast<std::int64_t>(slice.points_W.size());
+  for (const CloudSlice* slice : newest_slices()) count += std::ssize(slice->points_W);
   return count;
+}
+
+std::int64_t ready_us(const SliceGroup& step) {
+  return std::ranges::max_element(step.slices, {}, &CloudSlice::utime)->utime;
 }
 
 RecordedSession read_session_log(const std::filesystem::path& path) {
@@ -143,24 +171,25 @@ RecordedSession read_session_log(const std::filesystem::path& path) {
 
   const auto chosen = largest(sessions);
   const std::string damage = session.is_whole ? "" : " (" + session.remarks.front() + ")";
-  if (chosen == sessions.end() || chosen->second.slices.empty()) {
+  if (chosen == sessions.end() || chosen->second.num_slices == 0) {
     throw std::runtime_error(path.string() + ": holds no slice that could be read on " +
                              channels::kCloudSlice + damage);
   }
   LoggedSession& logged = chosen->second;
-  for (auto& [id, slice] : logged.slices) session.slices.push_back(std::move(slice));
+  logged.end();
+  session.steps = std::move(logged.steps);
+  session.num_slices = logged.num_slices;
   if (session.num_points() == 0) {
     throw std::runtime_error(path.string() + ": its slices hold no points" + damage);
   }
-  const auto with_slices = std::count_if(sessions.begin(), sessions.end(), [](const auto& entry) {
-    return !entry.second.slices.empty();
-  });
+  const auto with_slices = std::ranges::count_if(
+      sessions, [](const auto& entry) { return entry.second.num_slices > 0; });
   if (with_slices > 1) {
     session.remarks.push_back("The log holds " + std::to_string(with_slices) +
                               " sessions with slices; the one with most, " +
                               std::to_string(chosen->first) + ", was evaluated.");
   }
-  remark_gaps(logged, session);
+  add_remarks(logged, session);
   measure_path(logged, session);
   return session;
 }
@@ -170,8 +199,12 @@ RecordedSession read_session_cloud(const std::filesystem::path& path,
   const CloudInput input = read_cloud(path, config);
   RecordedSession session;
   session.source = path.string();
-  session.slices =
-      cut_into_slices(input.cloud, input.resolution_m, path.filename().string()).slices;
+  CloudSlices cut = cut_into_slices(input.cloud, input.resolution_m, path.filename().string());
+  for (CloudSlice& slice : cut.slices) {
+    session.steps.push_back({});
+    session.steps.back().slices.push_back(std::move(slice));
+  }
+  session.num_slices = std::ssize(session.steps);
   session.remarks.push_back("A cloud has no times: build time, length and Table II are left out.");
   if (input.cloud.slice_ids.empty()) {
     session.remarks.push_back("The cloud has no slice_id: it was evaluated as a single slice.");

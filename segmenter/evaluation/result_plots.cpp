@@ -27,23 +27,23 @@ bool is_incremental(const ModeResult& mode) { return mode.replay.mode != "batch"
 
 Series times_of(const ModeResult& mode) {
   Series series{.name = mode.replay.mode, .color = color_of(mode.replay.mode), .points = {}};
-  for (const SliceRun& run : mode.replay.runs) {
-    series.points.emplace_back(run.slice_index, run.engine_ms);
+  for (const MeasuredRun& run : mode.replay.runs) {
+    series.points.emplace_back(run.step, run.engine_ms);
   }
   return series;
 }
 
 Series time_between_slices(const RecordedSession& session) {
   Series series{.name = "time between slices", .color = kIntervalColor, .points = {}};
-  for (std::size_t i = 1; i < session.slices.size(); ++i) {
-    const auto interval_us = session.slices[i].utime - session.slices[i - 1].utime;
+  for (std::size_t i = 1; i < session.steps.size(); ++i) {
+    const auto interval_us = ready_us(session.steps[i]) - ready_us(session.steps[i - 1]);
     series.points.emplace_back(i, 1e-3 * static_cast<double>(interval_us));
   }
   return series;
 }
 
 std::pair<double, double> slice_range(const Evaluation& evaluation) {
-  return {0.0, std::max(1.0, static_cast<double>(evaluation.session.slices.size()) - 1.0)};
+  return {0.0, std::max(1.0, static_cast<double>(evaluation.session.steps.size()) - 1.0)};
 }
 
 Plot time_plot(const Evaluation& evaluation, bool with_batch) {

@@ -9,17 +9,16 @@
 namespace kintsugi::segmenter {
 namespace {
 
-/// Over all slices: exact where each was run, else by trapezoids from the point (0, 0).
-double total_ms(const std::vector<SliceRun>& runs) {
+/// Over all steps: exact where each was run, else by trapezoids from the point (0, 0).
+double total_ms(const std::vector<MeasuredRun>& runs) {
   double total = 0.0;
-  std::int32_t before_index = -1;
-  double before_ms = 0.0;
-  for (const SliceRun& run : runs) {
-    const std::int32_t step = run.slice_index - before_index;
-    // The slices of the step, at even steps from the run before to this one.
-    total += step * before_ms + (run.engine_ms - before_ms) * (step + 1) / 2.0;
-    before_index = run.slice_index;
-    before_ms = run.engine_ms;
+  std::int32_t step_before = -1;
+  double ms_before = 0.0;
+  for (const MeasuredRun& run : runs) {
+    const std::int32_t num_steps = run.step - step_before;
+    total += num_steps * ms_before + (run.engine_ms - ms_before) * (num_steps + 1) / 2.0;
+    step_before = run.step;
+    ms_before = run.engine_ms;
   }
   return total;
 }
@@ -52,9 +51,9 @@ class ReadableRows {
   Table table_;
 };
 
-double mean_ids_ms(const Replay& replay) {
+double mean(const Replay& replay, double MeasuredRun::*value) {
   double total = 0.0;
-  for (const SliceRun& run : replay.runs) total += run.ids_ms;
+  for (const MeasuredRun& run : replay.runs) total += run.*value;
   return total / static_cast<double>(replay.runs.size());
 }
 
@@ -69,7 +68,7 @@ std::string percent(double share) { return decimal(100.0 * share, 1) + " %"; }
 
 SliceTimes slice_times(const Replay& replay) {
   std::vector<double> times_ms;
-  for (const SliceRun& run : replay.runs) times_ms.push_back(run.engine_ms);
+  for (const MeasuredRun& run : replay.runs) times_ms.push_back(run.engine_ms);
   std::sort(times_ms.begin(), times_ms.end());
   const auto rank =
       static_cast<std::size_t>(std::ceil(0.99 * static_cast<double>(times_ms.size())));
@@ -78,25 +77,28 @@ SliceTimes slice_times(const Replay& replay) {
   times.min_ms = times_ms.front();
   times.p99_ms = times_ms[rank - 1];
   times.total_s = 1e-3 * total_ms(replay.runs);
-  times.average_ms = 1e3 * times.total_s / (replay.runs.back().slice_index + 1);
+  times.average_ms = 1e3 * times.total_s / (replay.runs.back().step + 1);
   return times;
 }
 
 Table table1(const Evaluation& evaluation) {
+  const RecordedSession& session = evaluation.session;
   Table table;
-  table.header = {"mode",    "vertices", "slices",         "build_time_s",       "length_m",
-                  "runs",    "max_ms",   "min_ms",         "average_ms",         "p99_ms",
-                  "total_s", "segments", "ids_average_ms", "memory_growth_bytes"};
+  table.header = {
+      "mode",   "vertices",       "slices",         "build_time_s", "length_m",
+      "runs",   "max_ms",         "min_ms",         "average_ms",   "total_s",
+      "p99_ms", "cpu_average_ms", "ids_average_ms", "segments",     "memory_growth_bytes"};
   for (const ModeResult& mode : evaluation.modes) {
-    const SliceTimes times = slice_times(mode.replay);
+    const Replay& replay = mode.replay;
+    const SliceTimes times = slice_times(replay);
     table.rows.push_back(
-        {mode.replay.mode, std::to_string(evaluation.num_vertices),
-         std::to_string(evaluation.session.slices.size()),
-         decimal(evaluation.session.build_time_s, 6), decimal(evaluation.session.path_length_m, 6),
-         std::to_string(mode.replay.runs.size()), decimal(times.max_ms, 3),
-         decimal(times.min_ms, 3), decimal(times.average_ms, 3), decimal(times.p99_ms, 3),
-         decimal(times.total_s, 6), std::to_string(mode.agreements.size()),
-         decimal(mean_ids_ms(mode.replay), 3), std::to_string(mode.replay.resident_growth_bytes)});
+        {replay.mode, std::to_string(evaluation.num_vertices), std::to_string(session.num_slices),
+         decimal(session.build_time_s, 6), decimal(session.path_length_m, 6),
+         std::to_string(replay.runs.size()), decimal(times.max_ms, 3), decimal(times.min_ms, 3),
+         decimal(times.average_ms, 3), decimal(times.total_s, 6), decimal(times.p99_ms, 3),
+         decimal(mean(replay, &MeasuredRun::engine_cpu_ms), 3),
+         decimal(mean(replay, &MeasuredRun::ids_ms), 3), std::to_string(mode.agreements.size()),
+         std::to_string(replay.resident_growth_bytes)});
   }
   return table;
 }
@@ -132,20 +134,25 @@ Table agreement_table(const Evaluation& evaluation) {
 
 Table slices_table(const Evaluation& evaluation, const ModeResult& mode) {
   Table table;
-  table.header = {"slice",     "slice_id",  "utime_us",      "points",           "map_points",
-                  "engine_ms", "ids_ms",    "slices_behind", "points_segmented", "edges",
-                  "joins",     "iterations"};
-  for (const SliceRun& run : mode.replay.runs) {
-    const auto index = static_cast<std::size_t>(run.slice_index);
-    const CloudSlice& slice = evaluation.session.slices[index];
+  table.header = {"run",    "slice_id",      "corrections",      "ready_us",
+                  "points", "map_points",    "engine_ms",        "engine_cpu_ms",
+                  "ids_ms", "slices_behind", "points_segmented", "edges",
+                  "joins",  "iterations"};
+  for (const MeasuredRun& run : mode.replay.runs) {
+    const auto index = static_cast<std::size_t>(run.step);
+    const SliceGroup& step = evaluation.session.steps[index];
+    std::size_t num_points = 0;
+    for (const CloudSlice& slice : step.slices) num_points += slice.points_W.size();
+    const RunStatistics& statistics = run.statistics;
     table.rows.push_back(
-        {std::to_string(run.slice_index), std::to_string(slice.id),
-         evaluation.session.has_times ? std::to_string(slice.utime) : "",
-         std::to_string(slice.points_W.size()), std::to_string(run.map_points),
-         decimal(run.engine_ms, 3), decimal(run.ids_ms, 3),
+        {std::to_string(run.step), std::to_string(step.slices.front().id),
+         std::to_string(step.is_correction ? step.slices.size() : 0),
+         evaluation.session.has_times ? std::to_string(ready_us(step)) : "",
+         std::to_string(num_points), std::to_string(run.map_points), decimal(run.engine_ms, 3),
+         decimal(run.engine_cpu_ms, 3), decimal(run.ids_ms, 3),
          mode.slices_behind.empty() ? "" : std::to_string(mode.slices_behind[index]),
-         std::to_string(run.statistics.num_points), std::to_string(run.statistics.num_edges),
-         std::to_string(run.statistics.num_joins), std::to_string(run.statistics.num_iterations)});
+         std::to_string(statistics.num_points), std::to_string(statistics.num_edges),
+         std::to_string(statistics.num_joins), std::to_string(statistics.num_iterations)});
   }
   return table;
 }
@@ -172,8 +179,7 @@ Table readable_table1(const Evaluation& evaluation) {
       "Vertices", [&](Mode) { return grouped(evaluation.num_vertices); },
       [](Paper p) { return grouped(p.num_vertices); });
   rows.add(
-      "Cloud slices",
-      [&](Mode) { return grouped(static_cast<std::int64_t>(session.slices.size())); },
+      "Cloud slices", [&](Mode) { return grouped(session.num_slices); },
       [](Paper p) { return grouped(p.num_slices); });
   rows.add(
       "Map build time (s)", [&](Mode) { return decimal(session.build_time_s, 2); },
@@ -198,7 +204,10 @@ Table readable_table1(const Evaluation& evaluation) {
   rows.add("99th percentile per slice (ms)",
            [](Mode m) { return decimal(slice_times(m.replay).p99_ms, 2); }, {});
   rows.add("Segment ids, average per slice (ms)",
-           [](Mode m) { return m.replay.mode == "batch" ? "" : decimal(mean_ids_ms(m.replay), 2); },
+           [](Mode m) {
+             return m.replay.mode == "batch" ? ""
+                                             : decimal(mean(m.replay, &MeasuredRun::ids_ms), 2);
+           },
            {});
   rows.add("Memory growth (bytes per point)",
            [&](Mode m) {

@@ -17,7 +17,7 @@ struct SliceTimes {
   double total_s = 0.0;
 };
 
-/// Of a mode that ran at least once. Where it was sampled, average and total are over all slices,
+/// Of a mode that ran at least once. Where it was sampled, average and total are over all steps,
 /// the time between two runs taken to grow evenly; the others are over the runs.
 SliceTimes slice_times(const Replay& replay);
 

@@ -60,12 +60,12 @@ class JoinTree {
 }  // namespace
 
 std::vector<ThetaHistory> theta_histories(const PointCloud& cloud,
-                                          std::span<const PointIndex> labels,
-                                          std::span<const PointIndex> segments,
+                                          std::span<const std::uint32_t> labels,
+                                          std::span<const std::uint32_t> segments,
                                           const EngineConfig& config) {
   assert(labels.size() == cloud.size());
   std::vector<CloudPoint> points_W;
-  std::vector<PointIndex> label_of;  // of each of them
+  std::vector<std::uint32_t> label_of;  // of each of them
   for (PointIndex i = 0; i < cloud.size(); ++i) {
     if (std::find(segments.begin(), segments.end(), labels[i]) == segments.end()) continue;
     points_W.push_back(cloud[i]);
@@ -83,7 +83,7 @@ std::vector<ThetaHistory> theta_histories(const PointCloud& cloud,
   JoinTree tree(forest, config.threshold);
   join_segments(edges, forest, tree);
   std::vector<ThetaHistory> histories;
-  for (const PointIndex segment : segments) {
+  for (const std::uint32_t segment : segments) {
     const auto member = std::find(label_of.begin(), label_of.end(), segment);
     assert(member != label_of.end());
     histories.push_back(tree.history_of(static_cast<PointIndex>(member - label_of.begin())));

@@ -58,10 +58,10 @@ class ProgressLog {
  public:
   void operator()(const ReplayProgress& progress) {
     const auto now = std::chrono::steady_clock::now();
-    if (now < next_ && progress.slice < progress.num_slices) return;
+    if (now < next_ && progress.step < progress.num_steps) return;
     next_ = now + std::chrono::seconds(1);
     spdlog::info("{}: slice {} of {}, {} points, {:.1f} ms, {:.0f} s left", progress.mode,
-                 progress.slice, progress.num_slices, progress.map_points, progress.last_ms,
+                 progress.step, progress.num_steps, progress.map_points, progress.last_ms,
                  progress.rest_s);
   }
 
@@ -80,7 +80,7 @@ RecordedSession read(const Options& options) {
   RecordedSession session = options.input.extension() == ".ply"
                                 ? read_session_cloud(options.input, options.cloud)
                                 : read_session_log(options.input);
-  spdlog::info("{}: {} slices, {} points", session.source, session.slices.size(),
+  spdlog::info("{}: {} slices, {} points", session.source, session.num_slices,
                session.num_points());
   for (const std::string& remark : session.remarks) spdlog::warn("{}", remark);
   return session;

@@ -20,6 +20,7 @@ namespace {
 using kintsugi::testing::TemporaryFolder;
 using ::testing::AllOf;
 using ::testing::Contains;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
@@ -54,8 +55,9 @@ TEST_F(SessionLog, HoldsSlicesTimesAndPath) {
   testing::append_pose(lost, messages_);
   testing::append_pose(pose_at(50.0, 800, 6), messages_);  // of another session
   const RecordedSession session = read();
-  EXPECT_EQ(session.slices.size(), 3U);
+  EXPECT_EQ(session.num_slices, 3);
   EXPECT_EQ(session.num_points(), 300);
+  EXPECT_EQ(ready_us(session.steps[2]), 1002);
   EXPECT_TRUE(session.has_times);
   EXPECT_TRUE(session.is_whole);
   EXPECT_THAT(session.remarks, IsEmpty());
@@ -74,27 +76,33 @@ TEST_F(SessionLog, WithoutPosesMeasuresAlongTheSlices) {
   EXPECT_THAT(session.remarks, Contains(HasSubstr("No camera poses")));
 }
 
-TEST_F(SessionLog, PutsSlicesInOrderAndTakesTheNewestRevision) {
+TEST_F(SessionLog, PutsSlicesInOrderAndCorrectionsWhereTheyCame) {
   auto slices = testing::wavy_session(4, 100);
   CloudSlice corrected = slices[1];
   corrected.revision = 2;
-  corrected.points_W[0].x += 1.0F;
-  testing::append_slices({slices[3], corrected, slices[1], slices[0], slices[2]}, messages_);
+  corrected.points_W.pop_back();
+  testing::append_slices({slices[1], slices[0], corrected, slices[3], slices[1], slices[2]},
+                         messages_);
   const RecordedSession session = read();
-  ASSERT_EQ(session.slices.size(), 4U);
-  for (int i = 0; i < 4; ++i) EXPECT_EQ(session.slices[i].id, i);
-  EXPECT_EQ(session.slices[1].revision, 2);
-  EXPECT_EQ(session.slices[1].points_W[0], corrected.points_W[0]);
+  EXPECT_EQ(session.num_slices, 4);
+  EXPECT_EQ(session.num_points(), 399);
+  std::vector<std::pair<int, int>> replayed;  // id and revision
+  for (const SliceGroup& step : session.steps) {
+    ASSERT_EQ(step.slices.size(), 1U);
+    replayed.emplace_back(step.slices[0].id, step.slices[0].revision);
+  }
+  EXPECT_THAT(replayed, ElementsAre(std::pair(0, 0), std::pair(1, 0), std::pair(1, 2),
+                                    std::pair(2, 0), std::pair(3, 0)));
   EXPECT_TRUE(session.is_whole);
-  EXPECT_THAT(session.remarks, Contains(HasSubstr("1 slices came with corrections")));
+  EXPECT_THAT(session.remarks, Contains(HasSubstr("1 corrections of slices")));
 }
 
 TEST_F(SessionLog, TakesTheSessionWithMostSlicesAndSaysSo) {
   testing::append_slices(testing::wavy_session(2, 50, 4), messages_);
   testing::append_slices(testing::wavy_session(3, 50, 7), messages_);
   const RecordedSession session = read();
-  EXPECT_EQ(session.slices.size(), 3U);
-  EXPECT_EQ(session.slices[0].session, 7);
+  EXPECT_EQ(session.num_slices, 3);
+  EXPECT_EQ(session.steps[0].slices[0].session, 7);
   EXPECT_THAT(session.remarks, Contains(HasSubstr("2 sessions")));
 }
 

@@ -1,6 +1,7 @@
 // Replays, tables and the page of an evaluation.
 
 #include <fstream>
+#include <map>
 #include <sstream>
 
 #include <gmock/gmock.h>
@@ -20,37 +21,41 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-RecordedSession session_of(std::vector<CloudSlice> slices) {
+std::vector<SliceGroup> steps_of(const std::vector<CloudSlice>& slices) {
+  std::vector<SliceGroup> steps;
+  for (const CloudSlice& slice : slices) steps.push_back({{slice}, false});
+  return steps;
+}
+
+RecordedSession session_of(std::vector<SliceGroup> steps) {
   RecordedSession session;
   session.source = "test";
-  session.slices = std::move(slices);
+  session.steps = std::move(steps);
+  session.num_slices = std::ssize(session.steps);
   session.has_times = true;
   return session;
 }
 
-std::vector<std::uint32_t> labels_by_replaying(const std::vector<CloudSlice>& slices,
-                                               const std::string& mode) {
+EngineConfig config_for(const std::vector<SliceGroup>& steps) {
   EngineConfig config;
-  config.resolution_m = slices.front().resolution_m;
-  return replay_incrementally(slices, mode, config).labels;
+  config.resolution_m = steps.front().slices.front().resolution_m;
+  return config;
 }
 
 TEST(Replay, RunsOnceForEachSliceAndTellsHowFarItIs) {
-  const auto slices = testing::wavy_session(4, 200);
+  const auto steps = steps_of(testing::wavy_session(4, 200));
   for (const std::string& mode : evaluation_modes()) {
     std::vector<std::int32_t> told;
-    EngineConfig config;
-    config.resolution_m = slices.front().resolution_m;
     const Replay replay =
-        replay_incrementally(slices, mode, config, [&](const ReplayProgress& progress) {
-          EXPECT_EQ(progress.num_slices, 4);
+        replay_incrementally(steps, mode, config_for(steps), [&](const ReplayProgress& progress) {
+          EXPECT_EQ(progress.num_steps, 4);
           EXPECT_GE(progress.rest_s, 0.0);
-          told.push_back(progress.slice);
+          told.push_back(progress.step);
         });
     EXPECT_THAT(told, ElementsAre(1, 2, 3, 4));
     ASSERT_EQ(replay.runs.size(), 4U);
     for (int i = 0; i < 4; ++i) {
-      EXPECT_EQ(replay.runs[i].slice_index, i);
+      EXPECT_EQ(replay.runs[i].step, i);
       EXPECT_EQ(replay.runs[i].map_points, 200 * (i + 1));
       EXPECT_GT(replay.runs[i].engine_ms, 0.0);
     }
@@ -59,20 +64,47 @@ TEST(Replay, RunsOnceForEachSliceAndTellsHowFarItIs) {
 }
 
 TEST(Replay, OfBatchLeavesOutRunsButNotTheLast) {
-  const auto slices = testing::wavy_session(5, 100);
-  EngineConfig config;
-  config.resolution_m = slices.front().resolution_m;
-  const Replay replay = replay_batch(slices, 2, config);
+  const auto steps = steps_of(testing::wavy_session(5, 100));
+  const Replay replay = replay_batch(steps, 2, config_for(steps));
   ASSERT_EQ(replay.runs.size(), 3U);
-  EXPECT_EQ(replay.runs[0].slice_index, 1);
+  EXPECT_EQ(replay.runs[0].step, 1);
   EXPECT_EQ(replay.runs[1].map_points, 400);
-  EXPECT_EQ(replay.runs[2].slice_index, 4);
-  EXPECT_EQ(replay.labels, labels_by_replaying(slices, "batch"));
-  EXPECT_THROW(replay_batch(slices, 0, config), std::invalid_argument);
+  EXPECT_EQ(replay.runs[2].step, 4);
+  EXPECT_EQ(replay.labels, replay_incrementally(steps, "batch", config_for(steps)).labels);
+  EXPECT_THROW(replay_batch(steps, 0, config_for(steps)), std::invalid_argument);
+}
+
+/// A session in which slices 0 and 2 move by 2 cm, and 0 loses half its points.
+std::vector<SliceGroup> corrected_session() {
+  const auto slices = testing::wavy_session(5, 200);
+  auto steps = steps_of(slices);
+  SliceGroup corrections{{slices[0], slices[2]}, true};
+  corrections.slices[0].points_W.resize(100);
+  for (CloudSlice& slice : corrections.slices) {
+    slice.revision = 1;
+    for (CloudPoint& point : slice.points_W) point.z += 0.02F;
+  }
+  steps.push_back(std::move(corrections));
+  std::swap(steps[4], steps[5]);
+  return steps;
+}
+
+TEST(Replay, ComparesMapsThatWereCorrectedOnTheWay) {
+  const auto steps = corrected_session();
+  const Replay batch = replay_batch(steps, 6, config_for(steps));
+  EXPECT_EQ(batch.runs.at(0).map_points, 900);
+  EXPECT_EQ(batch.labels.size(), 900U);
+  std::vector<CloudSlice> newest = {steps[4].slices[0], steps[1].slices[0], steps[4].slices[1],
+                                    steps[3].slices[0], steps[5].slices[0]};
+  EXPECT_EQ(batch.labels, replay_batch(steps_of(newest), 5, config_for(steps)).labels);
+  for (const std::string& mode : evaluation_modes()) {
+    if (mode == "voting") continue;
+    EXPECT_EQ(replay_incrementally(steps, mode, config_for(steps)).labels, batch.labels) << mode;
+  }
 }
 
 TEST(Evaluate, ComparesEachModeWithBatch) {
-  const Evaluation result = evaluate(session_of(testing::wavy_session(5, 300)), {});
+  const Evaluation result = evaluate(session_of(steps_of(testing::wavy_session(5, 300))), {});
   EXPECT_EQ(result.num_vertices, 1500);
   ASSERT_EQ(result.modes.size(), evaluation_modes().size());
   for (const ModeResult& mode : result.modes) {
@@ -91,12 +123,22 @@ TEST(Evaluate, ComparesEachModeWithBatch) {
   EXPECT_GT(result.resident_bytes, 0);
 }
 
+TEST(Evaluate, ShowsTheThetaOfSegmentsOfTheCorrectedMap) {
+  const auto steps = corrected_session();
+  const Evaluation result = evaluate(session_of(steps), {});
+  std::map<std::uint32_t, std::int64_t> sizes;
+  for (const std::uint32_t label : result.modes.back().replay.labels) ++sizes[label];
+  for (const ChosenSegment& segment : result.thetas) {
+    EXPECT_EQ(segment.history.num_points.back(), sizes[segment.history.label]);
+  }
+}
+
 TEST(Evaluate, SamplesBatchWhenItsBudgetIsSmall) {
   EvaluationConfig config;
   config.modes = {"batch"};
   config.batch_budget_s = 1e-9;
   config.segments = {1, 100'000};  // there are not so many
-  const Evaluation result = evaluate(session_of(testing::wavy_session(6, 100)), config);
+  const Evaluation result = evaluate(session_of(steps_of(testing::wavy_session(6, 100))), config);
   EXPECT_EQ(result.batch_every, 6);
   EXPECT_EQ(result.modes[0].replay.runs.size(), 1U);
   EXPECT_FALSE(result.modes[0].is_complete);
@@ -129,10 +171,11 @@ Replay replay_with_times(const std::string& mode, const std::vector<double>& tim
   Replay replay;
   replay.mode = mode;
   for (const double time_ms : times_ms) {
-    SliceRun& run = replay.runs.emplace_back();
-    run.slice_index = static_cast<std::int32_t>(replay.runs.size()) - 1;
-    run.map_points = 4 * (run.slice_index + 1);
+    MeasuredRun& run = replay.runs.emplace_back();
+    run.step = static_cast<std::int32_t>(replay.runs.size()) - 1;
+    run.map_points = 4 * (run.step + 1);
     run.engine_ms = time_ms;
+    run.engine_cpu_ms = 2.0 * time_ms;
     run.ids_ms = 0.5;
   }
   return replay;
@@ -148,7 +191,7 @@ Evaluation hand_made() {
     slices[i].utime = 1'000'000 + 10'000 * i;
     slices[i].points_W.resize(4);
   }
-  result.session = session_of(std::move(slices));
+  result.session = session_of(steps_of(slices));
   result.session.source = "some <hand-made> session";
   result.session.build_time_s = 0.02;
   result.session.path_length_m = 1.25;
@@ -185,7 +228,7 @@ TEST(SliceTimes, OfASampledModeAreExactWhereTimeGrowsEvenly) {
   std::vector<double> times_ms;
   for (int i = 1; i <= 10; ++i) times_ms.push_back(i);
   Replay replay = replay_with_times("batch", times_ms);
-  std::erase_if(replay.runs, [](const SliceRun& run) { return run.slice_index % 3 != 0; });
+  std::erase_if(replay.runs, [](const MeasuredRun& run) { return run.step % 3 != 0; });
   const SliceTimes times = slice_times(replay);
   EXPECT_DOUBLE_EQ(times.total_s, 0.055);
   EXPECT_DOUBLE_EQ(times.average_ms, 5.5);
@@ -193,11 +236,12 @@ TEST(SliceTimes, OfASampledModeAreExactWhereTimeGrowsEvenly) {
 
 TEST(Tables, HoldTheHandMadeResults) {
   const Evaluation result = hand_made();
-  EXPECT_EQ(to_csv(table1(result)),
-            "mode,vertices,slices,build_time_s,length_m,runs,max_ms,min_ms,average_ms,p99_ms,"
-            "total_s,segments,ids_average_ms,memory_growth_bytes\n"
-            "voting,12,3,0.020000,1.250000,3,15.000,5.000,10.000,15.000,0.030000,2,0.500,0\n"
-            "batch,12,3,0.020000,1.250000,2,3.000,2.000,2.000,3.000,0.006000,2,0.500,0\n");
+  EXPECT_EQ(
+      to_csv(table1(result)),
+      "mode,vertices,slices,build_time_s,length_m,runs,max_ms,min_ms,average_ms,total_s,p99_ms,"
+      "cpu_average_ms,ids_average_ms,segments,memory_growth_bytes\n"
+      "voting,12,3,0.020000,1.250000,3,15.000,5.000,10.000,0.030000,15.000,20.000,0.500,2,0\n"
+      "batch,12,3,0.020000,1.250000,2,3.000,2.000,2.000,0.006000,3.000,5.000,0.500,2,0\n");
   // Voting is done after 15, 20 and 30 ms: the second slice finds one, the third none.
   EXPECT_EQ(to_csv(table2(result)),
             "mode,max_slices_behind,average_slices_behind\nvoting,1,0.333333\n");
@@ -212,8 +256,8 @@ TEST(Tables, HoldTheHandMadeResults) {
               ElementsAre("batch", "1", "2", "12", "1.000000", "1.000000", "1.000000", "1.000000"));
   const Table slices = slices_table(result, result.modes[0]);
   ASSERT_EQ(slices.rows.size(), 3U);
-  EXPECT_THAT(slices.rows[1], ElementsAre("1", "1", "1010000", "4", "8", "5.000", "0.500", "1", "0",
-                                          "0", "0", "0"));
+  EXPECT_THAT(slices.rows[1], ElementsAre("1", "1", "0", "1010000", "4", "8", "5.000", "10.000",
+                                          "0.500", "1", "0", "0", "0", "0"));
   EXPECT_EQ(to_csv(theta_table(result)),
             "rank,join,theta,points\n1,0,0.001000000,1\n1,1,0.000500000,2\n");
 }
