@@ -64,7 +64,8 @@ double BatchEngine::theta(ComponentId component) const {
 }
 
 std::size_t BatchEngine::bytes() const {
-  return index_->bytes() + forest_.bytes() +
+  const std::size_t index_bytes = index_ ? index_->bytes() : 0;
+  return index_bytes + forest_.bytes() +
          (components_.capacity() + changed_.capacity()) * sizeof(PointIndex);
 }
 

@@ -20,6 +20,19 @@ TEST(MakeEngine, KnowsItsModes) {
   }
 }
 
+TEST(MakeEngine, EveryModeTellsItsMemory) {
+  PointCloud cloud;
+  cloud.add_slice(0, std::vector<CloudPoint>(3, CloudPoint{.nz = 1.0F}));
+  const CloudChange change = cloud.take_change();
+  for (const std::string_view mode : engine_modes()) {
+    for (const NeighbourSearch search : {NeighbourSearch::kGrid, NeighbourSearch::kFlann}) {
+      const auto engine = make_engine(mode, cloud, {.neighbour_search = search});
+      engine->update(change);
+      EXPECT_GT(engine->bytes(), 0U);
+    }
+  }
+}
+
 TEST(MakeEngine, NamesTheModesThereAre) {
   const PointCloud cloud;
   EXPECT_THAT([&] { make_engine("spectral", cloud, {}); },
