@@ -27,8 +27,7 @@ struct Options {
   MapConfig generated;
   EngineConfig engine;
   std::vector<std::string> modes = {"exact"};
-  std::size_t corrections = 0;
-  std::uint64_t seed = 3;
+  CorrectionsConfig corrections = {.num_single = 0};
   bool measures_batch = true;
   std::filesystem::path csv;
   std::size_t threads = 0;  ///< 0: one for each core
@@ -49,10 +48,12 @@ Options parse_command_line(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--resolution", options.engine.resolution_m, "voxel size of the map, m")
       ->capture_default_str();
-  app.add_option("--corrections", options.corrections,
+  app.add_option("--corrections", options.corrections.num_single,
                  "correct the finished map; so many single points")
       ->capture_default_str();
-  app.add_option("--seed", options.seed, "of the corrections")->capture_default_str();
+  app.add_option("--seed", options.corrections.seed, "of the corrections")->capture_default_str();
+  app.add_flag("--cpu", options.corrections.measures_cpu,
+               "CPU time of corrections: on a busy machine");
   app.add_flag("--batch,!--no-batch", options.measures_batch, "the whole map at once, too");
   app.add_option("--csv", options.csv, "times of each slice (of the mode named last)");
   app.add_option("--threads", options.threads, "for what uses several; 0: one for each core")
@@ -78,9 +79,9 @@ int run(const Options& options) {
     bench_slices(mode, options.engine, slices, options.csv);
   }
   if (options.measures_batch) bench_batch(options.engine, slices);
-  if (options.corrections == 0) return 0;
-  const bool agrees = bench_corrections(options.modes.front(), options.engine, slices,
-                                        options.corrections, options.seed);
+  if (options.corrections.num_single == 0) return 0;
+  const bool agrees =
+      bench_corrections(options.modes.front(), options.engine, slices, options.corrections);
   return agrees ? 0 : 1;
 }
 

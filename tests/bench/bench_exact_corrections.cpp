@@ -18,8 +18,9 @@ using fuzz::Random;
 /// too large to be replaced for one point.
 class EditableMap {
  public:
-  EditableMap(const std::string& mode, const EngineConfig& config, const Slices& slices)
-      : engine_(make_engine(mode, cloud_, config)) {
+  EditableMap(const std::string& mode, const EngineConfig& config, const Slices& slices,
+              bool measures_cpu)
+      : engine_(make_engine(mode, cloud_, config)), measures_cpu_(measures_cpu) {
     for (const auto& slice : slices) edit({}, slice);
   }
 
@@ -39,7 +40,8 @@ class EditableMap {
     for (const PointIndex i : change.removed) is_gone_[i] = true;
     const Stopwatch stopwatch;
     const RunStatistics run = engine_->update(change);
-    return {stopwatch.wall_ms(), run.is_rebuilt, first};
+    const double ms = measures_cpu_ ? stopwatch.cpu_ms() : stopwatch.wall_ms();
+    return {ms, run.is_rebuilt, first};
   }
 
   [[nodiscard]] PointIndex random_point(Random& random) const {
@@ -70,6 +72,7 @@ class EditableMap {
  private:
   PointCloud cloud_;
   std::unique_ptr<SegmentationEngine> engine_;
+  bool measures_cpu_;
   std::vector<bool> is_gone_;
 };
 
@@ -188,7 +191,8 @@ double move_third(EditableMap& map) {
 }
 
 /// Prints batch's time; tells whether the engine agrees with it.
-bool equals_batch(const EditableMap& map, const EngineConfig& config, double max_ms) {
+bool equals_batch(const EditableMap& map, const EngineConfig& config, bool measures_cpu,
+                  double max_ms) {
   const auto live = map.all_points();
   std::vector<CloudPoint> points_W;
   for (const PointIndex i : live) points_W.push_back(map[i]);
@@ -198,7 +202,7 @@ bool equals_batch(const EditableMap& map, const EngineConfig& config, double max
   const CloudChange change = cloud.take_change();
   const Stopwatch stopwatch;
   batch->update(change);
-  const double batch_ms = stopwatch.wall_ms();
+  const double batch_ms = measures_cpu ? stopwatch.cpu_ms() : stopwatch.wall_ms();
   print_row({"batch over the points at the end", "1", count(live.size()), number(batch_ms), "", "",
              "", "", ""});
   const auto expected = fuzz::partition_of(*batch, change.added);
@@ -213,16 +217,17 @@ bool equals_batch(const EditableMap& map, const EngineConfig& config, double max
 }  // namespace
 
 bool bench_corrections(const std::string& mode, const EngineConfig& config, const Slices& slices,
-                       std::size_t num_single, std::uint64_t seed) {
-  EditableMap map(mode, config, slices);
-  Random random(seed);
-  print_head({mode + ", correction", "updates", "points each", "p50, ms", "p90, ms", "p99, ms",
-              "max, ms", "us a point", "built anew"});
-  double max_ms = move_points(map, random, num_single);
-  max_ms = std::max(max_ms, remove_points(map, random, num_single / 10));
+                       const CorrectionsConfig& corrections) {
+  EditableMap map(mode, config, slices, corrections.measures_cpu);
+  Random random(corrections.seed);
+  print_head({mode + ", correction" + (corrections.measures_cpu ? " (CPU time)" : ""), "updates",
+              "points each", "p50, ms", "p90, ms", "p99, ms", "max, ms", "us a point",
+              "built anew"});
+  double max_ms = move_points(map, random, corrections.num_single);
+  max_ms = std::max(max_ms, remove_points(map, random, corrections.num_single / 10));
   max_ms = std::max(max_ms, move_balls(map, random));
   max_ms = std::max(max_ms, move_third(map));
-  return equals_batch(map, config, max_ms);
+  return equals_batch(map, config, corrections.measures_cpu, max_ms);
 }
 
 }  // namespace kintsugi::segmenter::bench

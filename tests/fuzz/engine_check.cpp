@@ -21,7 +21,7 @@ std::string text(const Parts&... parts) {
 std::optional<std::string> EngineCheck::operator()(const CloudChange& change,
                                                    std::span<const PointIndex> live) {
   if (auto wrong = check_names(live)) return wrong;
-  if (auto wrong = check_partition(live)) return wrong;
+  if (auto wrong = partition(live)) return wrong;
   return check_changed(change, live);
 }
 
@@ -69,7 +69,7 @@ std::optional<std::string> EngineCheck::check_changed(const CloudChange& change,
   return std::nullopt;
 }
 
-std::optional<std::string> EngineCheck::check_partition(std::span<const PointIndex> live) const {
+std::optional<std::string> EngineCheck::partition(std::span<const PointIndex> live) const {
   std::vector<CloudPoint> points_W;
   points_W.reserve(live.size());
   for (const PointIndex i : live) points_W.push_back(cloud_[i]);

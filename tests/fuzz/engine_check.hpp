@@ -22,11 +22,13 @@ class EngineCheck {
   std::optional<std::string> operator()(const CloudChange& change,
                                         std::span<const PointIndex> live);
 
+  /// The partition and the thetas alone.
+  [[nodiscard]] std::optional<std::string> partition(std::span<const PointIndex> live) const;
+
  private:
   [[nodiscard]] std::optional<std::string> check_names(std::span<const PointIndex> live) const;
   std::optional<std::string> check_changed(const CloudChange& change,
                                            std::span<const PointIndex> live);
-  [[nodiscard]] std::optional<std::string> check_partition(std::span<const PointIndex> live) const;
 
   const SegmentationEngine& engine_;
   const PointCloud& cloud_;

@@ -10,6 +10,8 @@
 #include <gmock/gmock.h>
 
 #include "segmenter/core/edge_weight.hpp"
+#include "tests/fuzz/changing_cloud.hpp"
+#include "tests/fuzz/engine_check.hpp"
 #include "tests/fuzz/partition.hpp"
 #include "tests/fuzz/random.hpp"
 #include "tests/fuzz/run_scenario.hpp"
@@ -321,6 +323,45 @@ TEST(ExactPitfalls, ManyPointsShareOnePlace) {
   expect_equals_batch(each_leaves_and_returns(pool));
   for (CloudPoint& p : pool) p = pool.front();
   expect_equals_batch(each_leaves_and_returns(pool));
+}
+
+TEST(ExactPitfalls, CorrectionsLeaveMemoryFlat) {
+  // A piece moves and moves back. The engine's arrays grow by 2 MB: 400 updates that each lost a
+  // word for each point of the piece would show.
+  Scenario scenario{.config = {.rebuild_share = 1e9},
+                    .pool = testing::random_cloud(testing::CloudShape::kWaves, 2000, 6),
+                    .steps = {}};
+  std::vector<CloudPoint>& pool = scenario.pool;
+  const Points all = all_of(pool);
+  Points piece;
+  Points moved;
+  for (const PoolIndex i : all) {
+    if (pool[i].x > 0.15F) continue;
+    piece.push_back(i);
+    moved.push_back(static_cast<PoolIndex>(pool.size()));
+    pool.push_back(pool[i]);
+    pool.back().z += 0.004F;
+  }
+  ASSERT_GT(piece.size(), 600U);
+  scenario.slice_points = 50;
+
+  ChangingCloud map(scenario);
+  const auto engine = make_engine(mode_under_test(), map.cloud(), scenario.config);
+  engine->update(map.apply({.add = all, .remove = {}}));
+  std::size_t bytes = 0;
+  PointIndex num_places = 0;
+  for (int round = 0; round < 200; ++round) {
+    engine->update(map.apply({.add = moved, .remove = piece}));
+    engine->update(map.apply({.add = piece, .remove = moved}));
+    if (round == 9) {
+      bytes = engine->bytes();
+      num_places = map.cloud().size();
+    }
+  }
+  EXPECT_LE(engine->bytes(), bytes);
+  EXPECT_LE(map.cloud().size(), num_places);
+  EngineCheck check(*engine, map.cloud(), scenario.config);
+  EXPECT_EQ(check.partition(map.live()), std::nullopt);
 }
 
 TEST(ExactPitfalls, EverythingLeavesAndReturns) {
