@@ -4,7 +4,9 @@
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
+#include "segmenter/core/audited_engine.hpp"
 #include "segmenter/core/batch_engine.hpp"
 #include "segmenter/core/exact_engine.hpp"
 #include "segmenter/core/voting_engine.hpp"
@@ -34,6 +36,9 @@ void EngineConfig::validate() const {
   require_positive("radius_factor", radius_factor);
   if (!(rebuild_share >= 0.0)) throw_invalid("rebuild_share", rebuild_share, ">= 0");
   if (!(explore_share >= 0.0)) throw_invalid("explore_share", explore_share, ">= 0");
+  if (explore_at_least < 0) {
+    throw_invalid("explore_at_least", static_cast<double>(explore_at_least), ">= 0");
+  }
   // A float32 whose square vanishes or overflows compares with no distance.
   const float squared_radius_m2 = radius_m() * radius_m();
   if (!std::isnormal(squared_radius_m2)) {
@@ -47,7 +52,15 @@ std::span<const std::string_view> engine_modes() { return kModes; }
 std::unique_ptr<SegmentationEngine> make_engine(std::string_view mode, const PointCloud& cloud,
                                                 const EngineConfig& config) {
   config.validate();
-  if (mode == "exact") return std::make_unique<ExactEngine>(cloud, config);
+  if (mode == "exact") {
+    auto engine = std::make_unique<ExactEngine>(cloud, config);
+    if (!config.audit) return engine;
+    return std::make_unique<AuditedEngine>(std::move(engine), cloud, config);
+  }
+  if (config.audit) {
+    throw std::invalid_argument("audit is on, and mode is \"" + std::string(mode) +
+                                "\", must be \"exact\": no other mode is to equal batch");
+  }
   if (mode == "batch") return std::make_unique<BatchEngine>(cloud, config);
   if (mode == "voting") return std::make_unique<VotingEngine>(cloud, config);
   std::string known;

@@ -23,7 +23,10 @@ struct EngineConfig {
   /// Mode `exact` builds its state anew where more of the map than this came and went,
   double rebuild_share = 0.1;  ///< >= 0
   /// or where the points to look at again turn out to be more of it than this.
-  double explore_share = 0.04;  ///< >= 0
+  double explore_share = 0.04;             ///< >= 0
+  std::int64_t explore_at_least = 20'000;  ///< points, >= 0: small maps are not worth it
+  /// Mode `exact`: hold each update against batch, and throw AuditError at the first difference.
+  bool audit = false;
   NeighbourSearch neighbour_search = NeighbourSearch::kGrid;
 
   /// r, as the float32 that squared distances are compared with.

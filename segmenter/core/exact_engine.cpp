@@ -1,18 +1,15 @@
 #include "segmenter/core/exact_engine.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <utility>
 
 #include "segmenter/core/exact/bulk_build.hpp"
-#include "segmenter/core/graph.hpp"
 
 namespace kintsugi::segmenter {
 namespace {
 
 using exact::EdgeKey;
-
-// Small maps: fewer explored points than this are no reason to build anew.
-constexpr std::int64_t kAlwaysExplored = 20'000;
 
 class Stopwatch {
  public:
@@ -85,9 +82,10 @@ bool ExactEngine::replay(const CloudChange& change, RunStatistics& statistics) {
   statistics.num_edges = std::ssize(edges);
   statistics.neighbours_ms += stopwatch.lap_ms();
 
-  const double max_explored = config_.explore_share * static_cast<double>(num_points_);
-  const bool is_done = replay_.run(change.removed, std::move(edges),
-                                   kAlwaysExplored + static_cast<std::int64_t>(max_explored));
+  const auto max_explored =
+      std::max(config_.explore_at_least,
+               static_cast<std::int64_t>(config_.explore_share * static_cast<double>(num_points_)));
+  const bool is_done = replay_.run(change.removed, std::move(edges), max_explored);
   statistics.replay_ms = stopwatch.lap_ms();
   if (!is_done) return false;
   names_.update(touched, change.removed);
@@ -103,15 +101,20 @@ void ExactEngine::rebuild(const CloudChange& change, RunStatistics& statistics) 
   for (const PointIndex x : change.removed) state_.vertices[x].is_gone = 1;
   replay_.reset();
   state_.clear();
-  const std::vector<Edge> edges = build_graph(cloud_, *index_, config_.threshold + config_.scale);
-  statistics.num_edges = std::ssize(edges);
-  statistics.neighbours_ms += stopwatch.lap_ms();
-  statistics.num_joins = exact::build_state(edges, rule_, state_);
-  statistics.num_points = num_points_;
-  statistics.is_rebuilt = true;
+  std::vector<PointIndex> points;
+  points.reserve(static_cast<std::size_t>(num_points_));
+  for (PointIndex x = 0; x < state_.vertices.size(); ++x) {
+    if (!state_.vertices[x].is_gone) points.push_back(x);
+  }
+  const BatchStatistics batch =
+      exact::build_state(cloud_, points, config_.radius_m(), rule_, state_);
   statistics.replay_ms += stopwatch.lap_ms();
   names_.update_all(change.removed);
   statistics.naming_ms = stopwatch.lap_ms();
+  statistics.num_edges = batch.num_edges;
+  statistics.num_joins = batch.num_joins;
+  statistics.num_points = num_points_;
+  statistics.is_rebuilt = true;
 }
 
 double ExactEngine::theta(ComponentId component) const {
