@@ -443,6 +443,41 @@ TEST(SegmentIds, ListTheirPoints) {
   EXPECT_TRUE(ids.points_of(ids.next_id()).empty());
 }
 
+TEST(SegmentIds, DoNotDependOnTheNamesThatAnEngineGives) {
+  std::mt19937 random(8);
+  const auto points = testing::random_cloud(testing::CloudShape::kWaves, 2000, 6);
+  PointCloud cloud;
+  const auto engine = make_engine("batch", cloud, {});
+  SegmentIds ids;
+  SegmentIds ids_by_other_names;
+  Components other_names;
+  Components permutation;
+  for (int step = 0; step < 25; ++step) {
+    const std::int32_t slice = step < 10 ? step : static_cast<std::int32_t>(random() % 10);
+    std::vector<CloudPoint> part(points.begin() + slice * 200, points.begin() + slice * 200 + 200);
+    for (CloudPoint& point : part) point.z += 0.01F * static_cast<float>(random() % 2);
+    step < 10 ? cloud.add_slice(slice, part) : cloud.replace_slice(slice, part);
+    const CloudChange change = cloud.take_change();
+    engine->update(change);
+    const IdUpdate update = ids.update(cloud, change, engine->components(), engine->changed());
+
+    // Now and then every component gets another name.
+    while (permutation.size() < cloud.size()) {
+      permutation.push_back(static_cast<ComponentId>(permutation.size()));
+    }
+    if (step % 3 == 2) std::shuffle(permutation.begin(), permutation.end(), random);
+    const Components before = std::exchange(other_names, {});
+    for (const ComponentId name : engine->components()) {
+      other_names.push_back(name == kNoComponent ? kNoComponent : permutation[name]);
+    }
+    const IdUpdate other = ids_by_other_names.update(cloud, change, other_names,
+                                                     differing(before, other_names, change));
+    EXPECT_THAT(other.events, ElementsAreArray(update.events));
+    EXPECT_THAT(other.changes, ElementsAreArray(update.changes));
+    EXPECT_THAT(ids_by_other_names.ids(), ElementsAreArray(ids.ids()));
+  }
+}
+
 class SegmentIdsOfEngine : public ::testing::TestWithParam<std::string_view> {};
 
 TEST_P(SegmentIdsOfEngine, RunsAndEventsReplayedGiveTheLabels) {

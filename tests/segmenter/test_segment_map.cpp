@@ -10,6 +10,7 @@
 
 #include "segmenter/map/segment_map.hpp"
 #include "tests/segmenter/slice_session.hpp"
+#include "tests/support/message_equality.hpp"
 
 namespace kintsugi::segmenter {
 namespace {
@@ -166,6 +167,34 @@ TEST_P(SegmentMapTest, RandomCorrectionsReplayToTheMap) {
     for (const auto& [id, slice] : group) given.push_back(slice);
     std::shuffle(given.begin(), given.end(), random);
     add(map, given);
+  }
+}
+
+/// The partition is the same, so is what becomes of the ids: whatever the engine calls components.
+TEST(SegmentMap, ModesExactAndBatchTellTheSame) {
+  for (unsigned seed = 1; seed <= 3; ++seed) {
+    const auto slices = wavy_session(10, 250, 5, seed);
+    SegmentMap exact = make_map("exact", slices[0]);
+    SegmentMap batch = make_map("batch", slices[0]);
+    std::mt19937 random(seed);
+    const auto expect_same = [&](std::span<const CloudSlice> group) {
+      EXPECT_EQ(exact.add(group), batch.add(group));
+    };
+    for (const CloudSlice& slice : slices) expect_same({&slice, 1});
+    std::size_t num_events = 0;
+    for (int step = 1; step < 12; ++step) {
+      std::vector<CloudSlice> group;
+      const auto num_slices = 1 + random() % 4;
+      for (auto i = random() % 6; group.size() < num_slices; ++i) {
+        group.push_back(moved(slices[i], 0.004F * static_cast<float>(random() % 4)));
+        group.back().revision = step;
+        if (random() % 5 == 0) group.back().points_W.resize(100);
+      }
+      const auto updates = batch.add(group);
+      num_events += updates.back().events.size();
+      EXPECT_EQ(exact.add(group), updates) << "seed " << seed << " step " << step;
+    }
+    EXPECT_GT(num_events, 100U);
   }
 }
 
