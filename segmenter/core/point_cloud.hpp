@@ -137,4 +137,22 @@ class PointCloud {
   bool is_taken_ = false;          ///< the change that retired_ tells of
 };
 
+/// slice_of() for many points, quick where neighbours follow one another. Valid while the cloud
+/// does not change.
+class SliceFinder {
+ public:
+  explicit SliceFinder(const PointCloud& cloud) : cloud_(cloud) {}
+
+  const SliceRecord& operator()(PointIndex point) {
+    if (slice_ == nullptr || point - slice_->first >= slice_->count) {
+      slice_ = &cloud_.slice_of(point);
+    }
+    return *slice_;
+  }
+
+ private:
+  const PointCloud& cloud_;
+  const SliceRecord* slice_ = nullptr;
+};
+
 }  // namespace kintsugi::segmenter

@@ -27,23 +27,6 @@ std::vector<Overlap> count_overlaps(std::span<const ComponentId> components,
   return overlaps;
 }
 
-/// Ranks points quickly when neighbours follow one another.
-class PointRanker {
- public:
-  explicit PointRanker(const PointCloud& cloud) : cloud_(cloud) {}
-
-  PointRank operator()(PointIndex point) {
-    if (slice_ == nullptr || point - slice_->first >= slice_->count) {
-      slice_ = &cloud_.slice_of(point);
-    }
-    return {slice_->slice_id, point};
-  }
-
- private:
-  const PointCloud& cloud_;
-  const SliceRecord* slice_ = nullptr;
-};
-
 }  // namespace
 
 SegmentIds::SegmentIds(std::span<const ComponentId> components, std::span<const std::uint32_t> ids,
@@ -160,14 +143,15 @@ void SegmentIds::find_first_points(const PointCloud& cloud, std::span<const Comp
                                    std::span<const PointIndex> changed,
                                    std::span<const std::uint32_t> old_ids,
                                    std::vector<Succession>& successions) const {
-  PointRanker rank(cloud);
+  SliceFinder slice_of(cloud);
   auto look_at = [&, last = std::size_t{0}](PointIndex p) mutable {
     if (successions[last].component != components[p]) {  // neighbouring points mostly agree
       const Succession& found = find_succession(successions, components[p]);
       last = static_cast<std::size_t>(&found - successions.data());
     }
     Succession& succession = successions[last];
-    if (!succession.is_unrivalled) succession.first = std::min(succession.first, rank(p));
+    if (!succession.is_unrivalled)
+      succession.first = std::min(succession.first, PointRank{slice_of(p).slice_id, p});
   };
   for (const PointIndex p : changed) look_at(p);
   for (const std::uint32_t id : old_ids) {
@@ -250,21 +234,23 @@ std::vector<std::uint32_t> slice_labels(const SliceRecord& slice,
 
 std::vector<LabelRun> label_runs(const PointCloud& cloud, std::span<const IdChange> changes) {
   std::vector<std::pair<PointRank, std::uint32_t>> relabelled;
-  PointRanker rank(cloud);
+  SliceFinder slice_of(cloud);
   for (const IdChange& change : changes) {
     if (change.old_id == kNoSegment || change.new_id == kNoSegment) continue;
-    relabelled.emplace_back(rank(change.point), change.new_id);
+    relabelled.emplace_back(PointRank{slice_of(change.point).slice_id, change.point},
+                            change.new_id);
   }
   std::sort(relabelled.begin(), relabelled.end());
 
   std::vector<LabelRun> runs;
   for (const auto& [place, new_id] : relabelled) {
-    const PointId id = cloud.id_of(place.point);
+    const SliceRecord& slice = slice_of(place.point);
+    const PointId id{slice.slice_id, slice.index_of(place.point - slice.first)};
     const bool goes_on = !runs.empty() && runs.back().slice_id == id.slice_id &&
                          runs.back().first + runs.back().count == id.index &&
                          runs.back().segment_id == new_id;
     if (!goes_on) {
-      runs.push_back({id.slice_id, id.index, 0, new_id, cloud.slice_of(place.point).revision});
+      runs.push_back({id.slice_id, id.index, 0, new_id, slice.revision});
     }
     ++runs.back().count;
   }

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <limits>
+#include <utility>
 
 namespace kintsugi::segmenter {
 namespace {
@@ -13,43 +13,17 @@ constexpr double kUnits = 1099511627776.0;  // 2^40
 // Below 2^63: a coordinate is below 2^20 m (admission.hpp).
 std::int64_t to_units(float value) { return std::llround(static_cast<double>(value) * kUnits); }
 
-std::array<float, 3> position(const CloudPoint& point) { return {point.x, point.y, point.z}; }
+// A segment of more points than this keeps its extent by blocks: looking at all of them takes
+// longer than a face of its box is worth. One of less than half as many does no longer.
+constexpr std::int64_t kLargePoints = 1024;
 
 }  // namespace
-
-SegmentStatisticsTable::Extent SegmentStatisticsTable::Extent::none() {
-  constexpr float kInfinity = std::numeric_limits<float>::infinity();
-  return {{kInfinity, kInfinity, kInfinity},
-          {-kInfinity, -kInfinity, -kInfinity},
-          std::numeric_limits<std::int32_t>::max(),
-          std::numeric_limits<std::int32_t>::min()};
-}
-
-void SegmentStatisticsTable::Extent::include(const CloudPoint& point, std::int32_t slice_id) {
-  const auto p_W = position(point);
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    min_W[axis] = std::min(min_W[axis], p_W[axis]);
-    max_W[axis] = std::max(max_W[axis], p_W[axis]);
-  }
-  first_slice = std::min(first_slice, slice_id);
-  last_slice = std::max(last_slice, slice_id);
-}
-
-bool SegmentStatisticsTable::Extent::touches(const CloudPoint& point, std::int32_t slice_id) const {
-  const auto p_W = position(point);
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (p_W[axis] <= min_W[axis] || p_W[axis] >= max_W[axis]) {
-      return true;
-    }
-  }
-  return slice_id == first_slice || slice_id == last_slice;
-}
 
 void SegmentStatisticsTable::Sums::add(const CloudPoint& point, std::int64_t sign) {
   num_points += sign;
   const std::array<float, 3> normal_W{point.nx, point.ny, point.nz};
   const std::array<std::int64_t, 3> rgb{point.red, point.green, point.blue};
-  const auto p_W = segmenter::position(point);
+  const std::array<float, 3> p_W{point.x, point.y, point.z};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::int64_t signed_position = sign * to_units(p_W[axis]);
     const std::int64_t signed_normal = sign * to_units(normal_W[axis]);
@@ -61,49 +35,112 @@ void SegmentStatisticsTable::Sums::add(const CloudPoint& point, std::int64_t sig
 
 std::vector<std::uint32_t> SegmentStatisticsTable::apply(const PointCloud& cloud,
                                                          const SegmentIds& ids,
-                                                         const std::vector<IdChange>& changes) {
-  sums_.resize(ids.next_id());
-  std::vector<std::uint32_t> touched;
+                                                         std::span<const IdChange> changes) {
+  place_.resize(ids.next_id());
+  const std::vector<Touched> touched = add_up(cloud, changes);
+  std::vector<std::uint32_t> changed_ids;
+  std::vector<std::uint32_t> blocks;
+  for (auto first = touched.begin(); first != touched.end();) {
+    const std::uint32_t id = first->segment_id;
+    blocks.clear();
+    for (; first != touched.end() && first->segment_id == id; ++first) {
+      blocks.push_back(first->block);
+    }
+    if (sums_of(id).num_points == 0) {
+      remove(id);
+    } else {
+      refresh_extent(cloud, ids, id, blocks);
+      changed_ids.push_back(id);
+    }
+  }
+  return changed_ids;
+}
+
+/// Returns what was touched, ascending, each once.
+std::vector<SegmentStatisticsTable::Touched> SegmentStatisticsTable::add_up(
+    const PointCloud& cloud, std::span<const IdChange> changes) {
+  std::vector<Touched> touched;
+  const auto touch = [&](std::uint32_t segment_id, PointIndex point) {
+    const Touched now{segment_id, point / BlockExtents::kBlockPoints};
+    if (touched.empty() || touched.back() != now) touched.push_back(now);
+  };
+  SliceFinder slice_of(cloud);
   for (const IdChange& change : changes) {
     const CloudPoint& point = cloud[change.point];
-    const std::int32_t slice_id = cloud.slice_of(change.point).slice_id;
+    const std::int32_t slice_id = slice_of(change.point).slice_id;
     if (change.old_id != kNoSegment) {
-      Sums& old = sums_[change.old_id];
+      Sums& old = sums_of(change.old_id);
       old.add(point, -1);
       old.extent_is_stale = old.extent_is_stale || old.extent.touches(point, slice_id);
-      touched.push_back(change.old_id);
+      touch(change.old_id, change.point);
     }
     if (change.new_id != kNoSegment) {
-      Sums& heir = sums_[change.new_id];
+      Sums& heir = sums_of(change.new_id);
       heir.add(point, 1);
       heir.extent.include(point, slice_id);
-      touched.push_back(change.new_id);
+      touch(change.new_id, change.point);
     }
   }
-
   std::sort(touched.begin(), touched.end());
   touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
-  for (const std::uint32_t id : touched) {
-    if (sums_[id].extent_is_stale) {
-      rebuild_extent(cloud, ids, id);
-    }
-  }
-  std::erase_if(touched, [&](std::uint32_t id) { return sums_[id].num_points == 0; });
   return touched;
 }
 
-void SegmentStatisticsTable::rebuild_extent(const PointCloud& cloud, const SegmentIds& ids,
-                                            std::uint32_t segment_id) {
-  Sums& sums = sums_[segment_id];
-  sums.extent = Extent::none();
+/// `blocks` are those where the segment gained or lost points.
+void SegmentStatisticsTable::refresh_extent(const PointCloud& cloud, const SegmentIds& ids,
+                                            std::uint32_t segment_id,
+                                            std::span<const std::uint32_t> blocks) {
+  Sums& sums = sums_of(segment_id);
+  auto by_block = by_block_.find(segment_id);
+  std::vector<std::uint32_t> all_blocks;
+  if (by_block == by_block_.end() && sums.num_points > kLargePoints) {
+    by_block = by_block_.try_emplace(segment_id).first;
+    for (const PointIndex point : ids.points_of(segment_id)) {
+      all_blocks.push_back(point / BlockExtents::kBlockPoints);
+    }
+    std::sort(all_blocks.begin(), all_blocks.end());
+    all_blocks.erase(std::unique(all_blocks.begin(), all_blocks.end()), all_blocks.end());
+    blocks = all_blocks;
+  } else if (by_block != by_block_.end() && 2 * sums.num_points < kLargePoints) {
+    by_block_.erase(by_block);
+    by_block = by_block_.end();
+  }
+  const bool is_large = by_block != by_block_.end();
+  if (is_large) by_block->second.refresh(blocks, cloud, ids.ids(), segment_id);
+  if (!sums.extent_is_stale) return;
+
   sums.extent_is_stale = false;
-  for (const PointIndex point : ids.points_of(segment_id)) {
-    sums.extent.include(cloud[point], cloud.slice_of(point).slice_id);
+  if (is_large) {
+    sums.extent = by_block->second.fold();
+  } else {
+    sums.extent = {};
+    SliceFinder slice_of(cloud);
+    for (const PointIndex point : ids.points_of(segment_id)) {
+      sums.extent.include(cloud[point], slice_of(point).slice_id);
+    }
   }
 }
 
+SegmentStatisticsTable::Sums& SegmentStatisticsTable::sums_of(std::uint32_t segment_id) {
+  std::uint32_t& place = place_[segment_id];
+  if (place == 0 && !free_places_.empty()) {
+    place = free_places_.back();
+    free_places_.pop_back();
+    sums_[place] = {};
+  } else if (place == 0) {
+    place = static_cast<std::uint32_t>(sums_.size());
+    sums_.push_back({});
+  }
+  return sums_[place];
+}
+
+void SegmentStatisticsTable::remove(std::uint32_t segment_id) {
+  free_places_.push_back(std::exchange(place_[segment_id], 0));
+  by_block_.erase(segment_id);
+}
+
 SegmentStatistics SegmentStatisticsTable::operator()(std::uint32_t segment_id) const {
-  const Sums& sums = sums_.at(segment_id);
+  const Sums& sums = sums_[place_[segment_id]];
   assert(sums.num_points > 0);
   const auto count = static_cast<double>(sums.num_points);
   SegmentStatistics result;
@@ -136,12 +173,19 @@ SegmentStatistics SegmentStatisticsTable::operator()(std::uint32_t segment_id) c
 
 std::vector<SegmentStatistics> SegmentStatisticsTable::all() const {
   std::vector<SegmentStatistics> result;
-  for (std::size_t id = 0; id < sums_.size(); ++id) {
-    if (sums_[id].num_points > 0) {
+  for (std::size_t id = 0; id < place_.size(); ++id) {
+    if (place_[id] != 0) {
       result.push_back((*this)(static_cast<std::uint32_t>(id)));
     }
   }
   return result;
+}
+
+std::size_t SegmentStatisticsTable::bytes() const {
+  std::size_t bytes =
+      place_.bytes() + sums_.bytes() + free_places_.capacity() * sizeof(free_places_[0]);
+  for (const auto& [id, blocks] : by_block_) bytes += blocks.bytes() + sizeof(blocks) + 48;
+  return bytes;
 }
 
 }  // namespace kintsugi::segmenter

@@ -3,11 +3,15 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
+#include <span>
 #include <vector>
 
 #include "lcmtypes/messages.hpp"
 #include "segmenter/core/point_cloud.hpp"
 #include "segmenter/core/segment_ids.hpp"
+#include "segmenter/map/block_extents.hpp"
+#include "segmenter/map/extent.hpp"
 
 namespace kintsugi::segmenter {
 
@@ -22,10 +26,10 @@ class SegmentStatisticsTable {
   explicit SegmentStatisticsTable(float resolution_m) : resolution_m_(resolution_m) {}
 
   /// Takes over `changes`; `cloud` and `ids` are those after them. Returns the ids of the segments
-  /// that changed and still have points, ascending. Costs time in proportion to the changes, and to
-  /// the size of the segments that lost a point on the face of their box.
+  /// that changed and still have points, ascending. Costs time in proportion to the changes; only
+  /// for segments that lost a point on the face of their box a little that grows with their size.
   std::vector<std::uint32_t> apply(const PointCloud& cloud, const SegmentIds& ids,
-                                   const std::vector<IdChange>& changes);
+                                   std::span<const IdChange> changes);
 
   /// Of a segment that has points.
   [[nodiscard]] SegmentStatistics operator()(std::uint32_t segment_id) const;
@@ -33,33 +37,40 @@ class SegmentStatisticsTable {
   /// Of every segment that has points, by ascending id.
   [[nodiscard]] std::vector<SegmentStatistics> all() const;
 
- private:
-  struct Extent {
-    std::array<float, 3> min_W;
-    std::array<float, 3> max_W;
-    std::int32_t first_slice;
-    std::int32_t last_slice;
+  /// Memory in use.
+  [[nodiscard]] std::size_t bytes() const;
 
-    static Extent none();
-    void include(const CloudPoint& point, std::int32_t slice_id);
-    [[nodiscard]] bool touches(const CloudPoint& point, std::int32_t slice_id) const;
-  };
+ private:
   __extension__ using WideInteger = __int128;  // 2^60 for each coordinate, and room for 2^67 points
   struct Sums {
     std::int64_t num_points = 0;
     std::array<WideInteger, 3> position{};
     std::array<WideInteger, 3> normal{};
     std::array<std::int64_t, 3> color{};
-    Extent extent = Extent::none();
+    Extent extent;
     bool extent_is_stale = false;  ///< a point that touched it has left
 
     void add(const CloudPoint& point, std::int64_t sign);
   };
+  /// A segment and a block of places in the cloud where it gained or lost points.
+  struct Touched {
+    std::uint32_t segment_id;
+    std::uint32_t block;
 
-  void rebuild_extent(const PointCloud& cloud, const SegmentIds& ids, std::uint32_t segment_id);
+    auto operator<=>(const Touched&) const = default;
+  };
+
+  Sums& sums_of(std::uint32_t segment_id);
+  std::vector<Touched> add_up(const PointCloud& cloud, std::span<const IdChange> changes);
+  void refresh_extent(const PointCloud& cloud, const SegmentIds& ids, std::uint32_t segment_id,
+                      std::span<const std::uint32_t> blocks);
+  void remove(std::uint32_t segment_id);
 
   float resolution_m_;
-  std::vector<Sums> sums_;  // by segment id
+  GrowingArray<std::uint32_t> place_;               ///< in sums_, by segment id
+  GrowingArray<Sums> sums_{1};                      ///< place 0: of the ids that have no points
+  std::vector<std::uint32_t> free_places_;          ///< in sums_
+  std::map<std::uint32_t, BlockExtents> by_block_;  ///< of large segments, by id
 };
 
 }  // namespace kintsugi::segmenter

@@ -94,7 +94,7 @@ class SliceSequencer {
 
   Config config_;
   std::map<std::int32_t, CloudSlice> waiting_;  // for an earlier one, by id
-  std::deque<SliceGroup> ready_;                  // their turn has come
+  std::deque<SliceGroup> ready_;                // their turn has come
   std::int64_t num_ready_ = 0;                  // slices in ready_
   Revisions known_;                             // of slices whose turn has come
   std::int64_t next_id_ = 0;                    // the one to wait for

@@ -51,7 +51,7 @@ std::vector<SegmentStatistics> from_scratch(const PointCloud& cloud, const Segme
                                             float resolution_m) {
   SegmentStatisticsTable table(resolution_m);
   std::vector<IdChange> changes;
-  for (PointIndex i = 0; i < cloud.size(); ++i) {
+  for (const PointIndex i : cloud.everything().added) {
     changes.push_back({i, kNoSegment, ids.ids()[i]});
   }
   table.apply(cloud, ids, changes);
@@ -82,6 +82,48 @@ TEST(SegmentStatistics, EqualThoseFromScratchAfterEveryChange) {
     table.apply(cloud, ids, update.changes);
     before = after;
     EXPECT_EQ(table.all(), from_scratch(cloud, ids, kResolution_m)) << "slice " << slice;
+  }
+}
+
+// Segments of some thousand points, which keep their extents by blocks, shrink to a few and grow
+// again; slices move and go, so faces of boxes are lost all the time.
+TEST(SegmentStatistics, OfLargeSegmentsEqualThoseFromScratchUnderCorrections) {
+  std::mt19937 random(9);
+  PointCloud cloud;
+  SegmentIds ids;
+  SegmentStatisticsTable table(0.01F);
+  std::map<PointId, ComponentId> component;
+  std::vector<ComponentId> before;
+  for (int step = 0; step < 60; ++step) {
+    for (int k = 0; k < 3; ++k) {
+      const auto slice = static_cast<std::int32_t>(random() % 15);
+      std::vector<CloudPoint> points;
+      for (auto i = random() % 700; i > 0; --i) points.push_back(random_point(random));
+      if (cloud.find_slice(slice) == nullptr) {
+        cloud.add_slice(slice, points);
+      } else if (random() % 4 == 0) {
+        cloud.remove_slice(slice);
+      } else {
+        cloud.replace_slice(slice, points);
+      }
+    }
+    const CloudChange change = cloud.take_change();
+    const ComponentId favourite = random() % 4;
+    std::vector<ComponentId> after(cloud.size(), kNoComponent);
+    for (const PointIndex i : cloud.everything().added) {
+      const auto [known, is_new] = component.try_emplace(cloud.id_of(i), favourite);
+      if (random() % 10 == 0) known->second = step % 20 < 10 ? favourite : random() % 4;
+      after[i] = known->second;
+    }
+    std::vector<PointIndex> changed = change.added;
+    for (PointIndex i = 0; i < before.size(); ++i) {
+      const bool is_added = std::binary_search(change.added.begin(), change.added.end(), i);
+      if (after[i] != kNoComponent && after[i] != before[i] && !is_added) changed.push_back(i);
+    }
+    std::sort(changed.begin(), changed.end());
+    table.apply(cloud, ids, ids.update(cloud, change, after, changed).changes);
+    before = after;
+    ASSERT_EQ(table.all(), from_scratch(cloud, ids, 0.01F)) << "step " << step;
   }
 }
 
