@@ -2,7 +2,6 @@
 
 #include <Eigen/Geometry>
 #include <array>
-#include <compare>
 #include <cstdint>
 #include <map>
 #include <vector>
@@ -21,7 +20,6 @@ struct Block {
   int x = 0;
   int y = 0;
   int z = 0;
-  auto operator<=>(const Block&) const = default;
 };
 
 /// The signed distance to a scene as a camera would have measured it, and its zero surface.

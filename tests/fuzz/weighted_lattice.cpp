@@ -29,7 +29,7 @@ PoolIndex WeightedLattice::add_row(PoolIndex first, Site direction,
 
 PoolIndex WeightedLattice::add_point(Site site, double length) {
   assert(std::abs(length - 1.0) < 0.01);  // more, and the cloud would not admit the normal
-  const bool is_free = at_.emplace(site, size()).second;
+  const bool is_free = taken_.emplace(site.x, site.y).second;
   assert(is_free);
   static_cast<void>(is_free);
   sites_.push_back(site);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <map>
+#include <set>
 #include <span>
 #include <utility>
 #include <vector>
@@ -21,7 +21,6 @@ class WeightedLattice {
   struct Site {
     int x;
     int y;
-    auto operator<=>(const Site&) const = default;
   };
 
   /// The first point.
@@ -42,7 +41,7 @@ class WeightedLattice {
   PoolIndex add_point(Site site, double length);
 
   std::vector<Site> sites_;
-  std::map<Site, PoolIndex> at_;
+  std::set<std::pair<int, int>> taken_;
   std::vector<CloudPoint> points_;
 };
 
