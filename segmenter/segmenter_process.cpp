@@ -73,6 +73,7 @@ int SegmenterProcess::run() {
   if (failure_) {
     std::rethrow_exception(failure_);
   }
+  tell_what_was_done();
   if (counts().missing > 0) {
     fail(std::to_string(counts().missing) + " slices are missing from the map");
   }
@@ -216,6 +217,15 @@ void SegmenterProcess::try_to_write(Action&& action) {
 SliceProcessor::Counts SegmenterProcess::counts() const {
   const std::lock_guard lock(mutex_);
   return counts_;
+}
+
+void SegmenterProcess::tell_what_was_done() const {
+  const SliceProcessor::Counts counts = this->counts();
+  if (counts.segmented > 0) {
+    spdlog::info("session {}: {} slices and {} corrections, {:.1f} ms each, {:.1f} ms at most",
+                 counts.map_session, counts.segmented, counts.corrected, counts.slice_mean_ms,
+                 counts.slice_max_ms);
+  }
 }
 
 void SegmenterProcess::fail(const std::string& what) {

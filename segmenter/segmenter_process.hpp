@@ -65,6 +65,7 @@ class SegmenterProcess {
   void save(const SegmentMap& map, SliceProcessor::Save why);
   template <class Action>
   void try_to_write(Action&& action);
+  void tell_what_was_done() const;
   void fail(const std::string& what);
   void publish_status();
   void wait_for_end();

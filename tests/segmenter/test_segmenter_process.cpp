@@ -14,6 +14,7 @@
 #include "segmenter/process_status.hpp"
 #include "segmenter/segmenter_process.hpp"
 #include "tests/segmenter/program.hpp"
+#include "tests/segmenter/room_session.hpp"
 #include "tests/segmenter/slice_session.hpp"
 #include "tests/support/private_bus.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -237,62 +238,149 @@ class SegmenterOnTheBus : public ::testing::Test {
   }
 };
 
-TEST_F(SegmenterOnTheBus, PublishesUpdatesAndStatusUntilTheFinalSlice) {
-  const TemporaryFolder folder;
-  const auto slices = wavy_session(6, 300);
+// A segmenter on the bus, and everything a listener hears of it.
+class Listener {
+ public:
+  explicit Listener(const SegmenterProcess::Config& config)
+      : process_(config),
+        bus_(kPrivateBusUrl),
+        updates_(channels::kSegmentUpdate, [this](SegmentUpdate update) {
+          mirror.apply(update);
+          last = std::move(update);
+        }) {
+    updates_.subscribe(bus_);
+    subscribe<SegmenterStatus>(bus_, channels::kSegmenterStatus,
+                               [this](const SegmenterStatus& s) { status = s; });
+    segmenter_ = std::thread([this] { exit_code_ = process_.run(); });
+    // The first status tells that the segmenter listens.
+    EXPECT_TRUE(hears([&] { return status.has_value(); }));
+  }
+  ~Listener() {
+    if (segmenter_.joinable()) {
+      request_stop();
+      segmenter_.join();
+    }
+  }
+
+  Bus& bus() { return bus_; }
+
+  template <class Condition>
+  bool hears(const Condition& condition) {
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(15);
+    while (!condition() && std::chrono::steady_clock::now() < deadline) {
+      bus_.handle(std::chrono::milliseconds(100));
+    }
+    return condition();
+  }
+
+  int hear_the_end() {
+    if (!hears([&] { return last && last->is_final && status && status->finished; })) {
+      ADD_FAILURE() << "the segmenter does not end";
+      request_stop();
+    }
+    segmenter_.join();
+    return exit_code_;
+  }
+
+  LabelMirror mirror;
+  std::optional<SegmentUpdate> last;
+  std::optional<SegmenterStatus> status;
+
+ private:
+  SegmenterProcess process_;
+  Bus bus_;
+  StreamSubscriber<SegmentUpdate> updates_;
+  int exit_code_ = -1;
+  std::thread segmenter_;
+};
+
+SegmenterProcess::Config on_the_bus(const TemporaryFolder& folder, const std::string& mode) {
   SegmenterProcess::Config config;
   config.lcm_url = kPrivateBusUrl;
   config.output_folder = folder.path();
   config.exit_on_final = true;
-  config.processor.map.mode = "voting";
-  SegmenterProcess process(config);
+  config.processor.map.mode = mode;
+  return config;
+}
 
-  Bus bus(kPrivateBusUrl);
-  LabelMirror mirror;
-  std::optional<SegmentUpdate> last;
-  StreamSubscriber<SegmentUpdate> updates(channels::kSegmentUpdate, [&](SegmentUpdate update) {
-    mirror.apply(update);
-    last = std::move(update);
-  });
-  updates.subscribe(bus);
-  std::optional<SegmenterStatus> status;
-  subscribe<SegmenterStatus>(bus, channels::kSegmenterStatus,
-                             [&](const SegmenterStatus& s) { status = s; });
+testing::Labels labels_in(const std::filesystem::path& ply) {
+  const PlyCloud cloud = read_ply(ply);
+  testing::Labels labels;
+  for (std::size_t i = 0; i < cloud.points_W.size(); ++i) {
+    labels[cloud.slice_ids[i]].push_back(cloud.segment_ids[i]);
+  }
+  return labels;
+}
 
-  int exit_code = -1;
-  std::thread segmenter([&] { exit_code = process.run(); });
-  // The first status tells that the segmenter listens.
-  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(15);
-  const auto handle_until = [&](const auto& done) {
-    while (!done() && std::chrono::steady_clock::now() < deadline) {
-      bus.handle(std::chrono::milliseconds(100));
-    }
-    return done();
-  };
-  EXPECT_TRUE(handle_until([&] { return status.has_value(); }));
-  StreamPublisher publisher(bus, channels::kCloudSlice, slices[0].session, {});
+TEST_F(SegmenterOnTheBus, PublishesUpdatesAndStatusUntilTheFinalSlice) {
+  const TemporaryFolder folder;
+  const auto slices = wavy_session(6, 300);
+  Listener listener(on_the_bus(folder, "voting"));
+  StreamPublisher publisher(listener.bus(), channels::kCloudSlice, slices[0].session, {});
   for (const CloudSlice& slice : slices) {
     publisher.publish(slice);
   }
-  const bool is_done =
-      handle_until([&] { return last && last->is_final && status && status->finished; });
-  if (!is_done) request_stop();
-  segmenter.join();
-
-  ASSERT_TRUE(is_done);
-  EXPECT_EQ(exit_code, 0);
+  EXPECT_EQ(listener.hear_the_end(), 0);
+  const auto& status = listener.status;
   EXPECT_EQ(status->slices_segmented, 6);
   EXPECT_EQ(status->lag_slices, 0);
   EXPECT_EQ(status->points, 1800);
   EXPECT_EQ(status->mode, "voting");
-  EXPECT_EQ(status->segments, mirror.num_segments());
+  EXPECT_EQ(status->segments, listener.mirror.num_segments());
   EXPECT_GT(status->memory_bytes, 0);
-  const PlyCloud cloud = read_ply(folder / "segments.ply");
-  testing::Labels written;
-  for (std::size_t i = 0; i < cloud.points_W.size(); ++i) {
-    written[cloud.slice_ids[i]].push_back(cloud.segment_ids[i]);
+  EXPECT_EQ(labels_in(folder / "segments.ply"), listener.mirror.labels());
+}
+
+TEST_F(SegmenterOnTheBus, SegmentsEverySliceOfABurstHoweverSlowEngineAndFilesAre) {
+  const TemporaryFolder folder;
+  const auto slices = wavy_session(80, 300);
+  SegmenterProcess::Config config = on_the_bus(folder, "batch");  // all of the map for each slice
+  config.processor.write_every = 1;
+  Listener listener(config);
+  StreamPublisher publisher(listener.bus(), channels::kCloudSlice, slices[0].session, {});
+  for (const CloudSlice& slice : slices) {
+    publisher.publish(slice);
   }
-  EXPECT_EQ(written, mirror.labels());
+  EXPECT_EQ(listener.hear_the_end(), 0);
+  EXPECT_EQ(listener.status->slices_segmented, 80);
+  EXPECT_EQ(listener.status->lag_slices, 0);
+  EXPECT_EQ(listener.status->chunks_missing, 0);
+  EXPECT_EQ(labels_in(folder / "segments.ply"), listener.mirror.labels());
+}
+
+TEST_F(SegmenterOnTheBus, FollowsCorrections) {
+  const TemporaryFolder folder;
+  const auto slices = testing::RoomRow(1, 0.05).cut(0.4);
+  std::vector<CloudSlice> moved;
+  for (std::size_t i = slices.size() / 3; i < 2 * slices.size() / 3; ++i) {
+    moved.push_back(testing::moved(slices[i], testing::small_motion()));
+  }
+  const auto num_moved = std::ssize(moved);
+  Listener listener(on_the_bus(folder, "exact"));
+  StreamPublisher publisher(listener.bus(), channels::kCloudSlice, slices[0].session, {});
+  const auto publish = [&](const std::vector<CloudSlice>& some) {
+    for (const CloudSlice& slice : some) {
+      publisher.publish(slice);
+    }
+  };
+  publish({slices.begin(), slices.end() - 1});
+  publish(moved);
+  EXPECT_TRUE(listener.hears([&] { return listener.status->slices_corrected == num_moved; }));
+  for (CloudSlice& slice : moved) {
+    slice.points_W = slices[static_cast<std::size_t>(slice.id)].points_W;
+    ++slice.revision;
+  }
+  publish(moved);
+  EXPECT_TRUE(listener.hears([&] { return listener.status->slices_corrected == 2 * num_moved; }));
+  publish({slices.back()});
+  EXPECT_EQ(listener.hear_the_end(), 0);
+
+  EXPECT_EQ(labels_in(folder / "segments.ply"), listener.mirror.labels());
+  SegmentMapConfig config;
+  config.mode = "batch";
+  SegmentMap batch(config, 1, slices[0]);
+  batch.add(slices);
+  EXPECT_TRUE(testing::same_partition(listener.mirror.labels(), testing::labels_of(batch)));
 }
 
 }  // namespace

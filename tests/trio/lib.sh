@@ -4,6 +4,7 @@ set -euo pipefail
 
 root="$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)"
 export KINTSUGI_BIN="${KINTSUGI_BIN:-$root/build/release/bin}"
+export KINTSUGI_TEST_BIN="${KINTSUGI_TEST_BIN:-$root/build/release/tests}"
 work="$(mktemp -d)"
 trap 'rm -rf "$work"' EXIT
 cd "$work"
