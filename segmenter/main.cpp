@@ -30,6 +30,12 @@ void add_options(CLI::App& app, Options& options) {
   app.add_option("--write-every", process.processor.write_every,
                  "also write them after so many slices; 0: do not")
       ->capture_default_str();
+  app.add_option("--save", process.save_file,
+                 "whenever these are written, also keep the whole map in this file, to go on with "
+                 "it; a map whose mapper has ended is not kept");
+  app.add_option("--resume", process.resume_file,
+                 "go on with the map that --save kept: slices it has are duplicates; mode and "
+                 "parameters must be those it was saved with");
   app.add_flag("--coalesce", process.processor.coalesce,
                "mode batch: one run for all slices that are waiting: catches up sooner, gives the "
                "same partition, but the segment ids may differ from one time to the next");

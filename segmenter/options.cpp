@@ -9,7 +9,8 @@ void add_segmentation_options(CLI::App& app, SegmentMapConfig& config) {
                                                         {"flann", NeighbourSearch::kFlann}};
   EngineConfig& engine = config.engine;
   app.add_option("--mode", config.mode,
-                 "batch: Algorithm 1 over all points; voting: Algorithms 2-5")
+                 "exact: after each slice what batch gives, from what the slice changed; batch: "
+                 "Algorithm 1 over all points each time; voting: Algorithms 2-5, close to batch")
       ->capture_default_str();
   app.add_option("--threshold", engine.threshold, "T: join threshold of a single point, > 0")
       ->capture_default_str();

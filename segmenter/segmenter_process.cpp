@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include "lcmtypes/bus_thread.hpp"
@@ -11,6 +12,7 @@
 #include "lcmtypes/log_reader.hpp"
 #include "lcmtypes/stop_signal.hpp"
 #include "segmenter/io/map_files.hpp"
+#include "segmenter/io/saved_map.hpp"
 #include "segmenter/process_status.hpp"
 
 namespace kintsugi::segmenter {
@@ -20,11 +22,35 @@ using std::chrono::milliseconds;
 
 constexpr milliseconds kPollPeriod{50};
 
-void write(const MapSnapshot& map, const std::filesystem::path& folder, const std::string& stem) {
+void write_files(const MapSnapshot& map, const std::filesystem::path& folder,
+                 const std::string& stem) {
   write_map_files(map, folder, stem);
   spdlog::info("wrote {}.ply and .json: {} slices, {} points, {} segments",
-               (folder / stem).string(), map.slices.size(), map.points_W.size(),
+               (folder / stem).string(), map.state.slices.size(), map.state.points_W.size(),
                map.segments.size());
+}
+
+void keep(const MapSnapshot& map, const std::filesystem::path& file) {
+  write_map_state(map.state, file);
+  spdlog::info("saved {}: {} slices to go on with", file.string(), map.state.slices.size());
+}
+
+// A map goes on with the parameters it began with; those that do not matter to it may differ.
+void require_same(const std::filesystem::path& file, const SegmentMapConfig& saved,
+                  const SegmentMapConfig& wanted) {
+  const auto require = [&](const char* option, const auto& was, const auto& is) {
+    if (was != is) {
+      throw std::runtime_error(
+          fmt::format("'{}' was saved with {} {}, and here it is {}: give {} {} "
+                      "to go on with it",
+                      file.string(), option, was, is, option, was));
+    }
+  };
+  require("--mode", saved.mode, wanted.mode);
+  require("--threshold", saved.engine.threshold, wanted.engine.threshold);
+  require("--scale", saved.engine.scale, wanted.engine.scale);
+  require("--beta", saved.engine.beta, wanted.engine.beta);
+  require("--radius-factor", saved.engine.radius_factor, wanted.engine.radius_factor);
 }
 
 }  // namespace
@@ -35,6 +61,10 @@ void SegmenterProcess::Config::validate() const {
   if (status_period.count() <= 0) {
     throw std::invalid_argument("status_period is " + std::to_string(status_period.count()) +
                                 " ms, must be > 0");
+  }
+  if (save_file.has_parent_path() && !std::filesystem::is_directory(save_file.parent_path())) {
+    throw std::invalid_argument("save_file is " + save_file.string() + ": there is no folder " +
+                                save_file.parent_path().string());
   }
 }
 
@@ -148,6 +178,9 @@ void SegmenterProcess::work() {
 }
 
 void SegmenterProcess::work_until_end() {
+  if (!config_.resume_file.empty()) {
+    resume();
+  }
   while (!ending_ && !queue_.is_exhausted()) {
     offer_all(queue_.take(kPollPeriod));
     while (!ending_ && processor_.step(SliceProcessor::Clock::now())) {
@@ -167,6 +200,18 @@ void SegmenterProcess::work_until_end() {
   offer_all({});
   writer_.wait();  // what is being written may fail
   processor_.save(is_write_due_);
+}
+
+// What is received meanwhile waits in the queue.
+void SegmenterProcess::resume() {
+  SegmentMapState state = read_map_state(config_.resume_file);
+  require_same(config_.resume_file, state.config, config_.processor.map);
+  state.config.engine.neighbour_search = config_.processor.map.engine.neighbour_search;
+  state.session = session_;  // listeners tell the streams of two segmenters apart by it
+  processor_.resume(make_map(state, config_.resume_file));
+  spdlog::info("resumed {}: {} slices, {} points of session {}", config_.resume_file.string(),
+               state.slices.size(), state.points_W.size(), state.map_session);
+  offer_all({});
 }
 
 void SegmenterProcess::offer_all(std::vector<CloudSlice> slices) {
@@ -190,16 +235,18 @@ void SegmenterProcess::publish(SegmentUpdate update) {
 
 // Copies what is written, and leaves the writing to the writer.
 void SegmenterProcess::save(const SegmentMap& map, SliceProcessor::Save why) {
-  const std::string stem = why == SliceProcessor::Save::kSessionEnded
-                               ? "segments_" + std::to_string(map.map_session())
-                               : "segments";
+  const bool is_current = why != SliceProcessor::Save::kSessionEnded;
+  const std::string stem =
+      is_current ? "segments" : "segments_" + std::to_string(map.map_session());
+  const bool is_kept = why == SliceProcessor::Save::kCurrent && !config_.save_file.empty();
   try_to_write([&] {
     const auto snapshot = std::make_shared<const MapSnapshot>(take_snapshot(map));
-    writer_.put(stem, [this, stem, snapshot] {
-      try_to_write([&] {
-        write(*snapshot, config_.output_folder, stem);
-        is_write_due_ = false;
-      });
+    writer_.put(stem, [this, stem, snapshot, is_kept] {
+      is_write_due_ = false;
+      try_to_write([&] { write_files(*snapshot, config_.output_folder, stem); });
+      if (is_kept) {
+        try_to_write([&] { keep(*snapshot, config_.save_file); });
+      }
     });
   });
 }

@@ -36,7 +36,9 @@ class SegmenterProcess {
     std::filesystem::path log;  ///< read slices from this log; empty: from the bus
     bool publish = true;        ///< updates and status on the bus
     std::filesystem::path output_folder = ".";
-    bool exit_on_final = false;  ///< end when the final slice is segmented and published
+    std::filesystem::path save_file;    ///< also keep the map here, to go on with; empty: do not
+    std::filesystem::path resume_file;  ///< go on with the map kept here; empty: begin anew
+    bool exit_on_final = false;         ///< end when the final slice is segmented and published
     std::chrono::milliseconds status_period{250};  ///< > 0
     StreamPublisher::Config publisher;
 
@@ -60,6 +62,7 @@ class SegmenterProcess {
   void receive_from_log();
   void work();
   void work_until_end();
+  void resume();
   void offer_all(std::vector<CloudSlice> slices);
   void publish(SegmentUpdate update);
   void save(const SegmentMap& map, SliceProcessor::Save why);

@@ -94,6 +94,8 @@ void SliceProcessor::resume(std::unique_ptr<SegmentMap> map) {
 
 void SliceProcessor::end_session(Clock::time_point now) {
   finish(now);
+  outputs_.warn("session " + std::to_string(map_->map_session()) +
+                " has ended: a slice of another one came");
   outputs_.save(*map_, Save::kSessionEnded);
   ended_sessions_.insert(map_->map_session());
   sequencer_.reset();

@@ -41,9 +41,16 @@ std::string_view name_of(NeighbourSearch search) {
   return search == NeighbourSearch::kGrid ? "grid" : "flann";
 }
 
+std::int64_t count_rejected(const std::vector<SliceRecord>& slices) {
+  std::int64_t count = 0;
+  for (const SliceRecord& slice : slices) count += std::ssize(slice.rejected);
+  return count;
+}
+
 Json header_json(const MapSnapshot& map) {
-  const EngineConfig& engine = map.config.engine;
-  return {{"mode", map.config.mode},
+  const SegmentMapState& state = map.state;
+  const EngineConfig& engine = state.config.engine;
+  return {{"mode", state.config.mode},
           {"parameters",
            {{"threshold", engine.threshold},
             {"scale", engine.scale},
@@ -51,13 +58,13 @@ Json header_json(const MapSnapshot& map) {
             {"resolution", readable(static_cast<float>(engine.resolution_m))},
             {"radius", readable(engine.radius_m())},
             {"neighbours", name_of(engine.neighbour_search)}}},
-          {"map_name", map.map_name},
-          {"map_session", map.map_session},
-          {"session", map.session},
+          {"map_name", state.map_name},
+          {"map_session", state.map_session},
+          {"session", state.session},
           {"complete", map.is_complete},
-          {"num_slices", map.slices.size()},
-          {"num_points", map.points_W.size()},
-          {"num_points_rejected", map.num_points_rejected},
+          {"num_slices", state.slices.size()},
+          {"num_points", state.points_W.size()},
+          {"num_points_rejected", count_rejected(state.slices)},
           {"num_segments", map.segments.size()}};
 }
 
@@ -84,13 +91,13 @@ Json revisions_json(const std::vector<SliceRecord>& records) {
 }  // namespace
 
 void write_map_ply(const MapSnapshot& map, const std::filesystem::path& path) {
-  LabelledPlyWriter writer(
-      path, std::ssize(map.points_W),
-      {"kintsugi segment map, frame W, metres", "map_session " + std::to_string(map.map_session)});
-  std::size_t point = 0;
-  for (const SliceRecord& slice : map.slices) {
-    for (const std::size_t end = point + slice.count; point < end; ++point) {
-      writer.append(map.points_W[point], map.segment_ids[point], slice.slice_id);
+  const SegmentMapState& state = map.state;
+  LabelledPlyWriter writer(path, std::ssize(state.points_W),
+                           {"kintsugi segment map, frame W, metres",
+                            "map_session " + std::to_string(state.map_session)});
+  for (const SliceRecord& slice : state.slices) {
+    for (PointIndex i = slice.first; i < slice.first + slice.count; ++i) {
+      writer.append(state.points_W[i], state.segment_ids[i], slice.slice_id);
     }
   }
   writer.commit();
@@ -98,8 +105,8 @@ void write_map_ply(const MapSnapshot& map, const std::filesystem::path& path) {
 
 void write_segments_json(const MapSnapshot& map, const std::filesystem::path& path) {
   Json root = header_json(map);
-  root["revisions"] = revisions_json(map.slices);
-  root["rejected"] = rejected_json(map.slices);
+  root["revisions"] = revisions_json(map.state.slices);
+  root["rejected"] = rejected_json(map.state.slices);
   AtomicFile file(path);
   std::ostream& out = file.stream();
   // One line for each segment: a person can read it, and the text of millions is never in memory.

@@ -203,8 +203,8 @@ void save_map(const SegmentMap& map, const std::filesystem::path& path) {
   write_map_state(map.state(), path);
 }
 
-std::unique_ptr<SegmentMap> load_map(const std::filesystem::path& path) {
-  const SegmentMapState state = read_map_state(path);
+std::unique_ptr<SegmentMap> make_map(const SegmentMapState& state,
+                                     const std::filesystem::path& path) {
   try {
     return std::make_unique<SegmentMap>(state);
   } catch (const std::logic_error& error) {  // what it holds is no state of a map
@@ -214,6 +214,10 @@ std::unique_ptr<SegmentMap> load_map(const std::filesystem::path& path) {
                              std::to_string(state.points_W.size()) + " points and " +
                              std::to_string(state.next_id) + " segment ids");
   }
+}
+
+std::unique_ptr<SegmentMap> load_map(const std::filesystem::path& path) {
+  return make_map(read_map_state(path), path);
 }
 
 }  // namespace kintsugi::segmenter

@@ -18,6 +18,11 @@ void write_map_state(const SegmentMapState& state, const std::filesystem::path& 
 /// the place, the reason and what was expected.
 SegmentMapState read_map_state(const std::filesystem::path& path);
 
+/// The map whose state this is. Throws std::runtime_error naming `path`, where it was read, and
+/// what is wrong when it is no state of a map.
+std::unique_ptr<SegmentMap> make_map(const SegmentMapState& state,
+                                     const std::filesystem::path& path);
+
 /// Both for the map itself. A map that was loaded tells the same from then on as the one that was
 /// saved: partition, thetas, ids, events, statistics. load_map() refuses a file also when its
 /// points give other segments than it says.

@@ -46,7 +46,8 @@ class SegmentMap {
   /// of their arrival; the statistics of all segments come with the last.
   [[nodiscard]] std::vector<SegmentUpdate> describe() const;
 
-  /// What a SegmentMap can be made of again.
+  /// What a SegmentMap can be made of again. After add() has thrown it is good to look at only:
+  /// points that were to come have kNoSegment then.
   [[nodiscard]] SegmentMapState state() const;
 
   /// The join threshold theta of a segment that has points.

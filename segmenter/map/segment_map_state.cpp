@@ -143,10 +143,12 @@ SegmentMapState SegmentMap::state() const {
   state.segment_ids.reserve(cloud_.num_live());
   for (SliceRecord slice : cloud_.slices()) {
     const auto points_W = cloud_.points_W().subspan(slice.first, slice.count);
-    const auto ids = ids_.ids().subspan(slice.first, slice.count);
+    const PointIndex first = slice.first;
     slice.first = static_cast<PointIndex>(state.points_W.size());
     state.points_W.insert(state.points_W.end(), points_W.begin(), points_W.end());
-    state.segment_ids.insert(state.segment_ids.end(), ids.begin(), ids.end());
+    for (PointIndex i = first; i < first + slice.count; ++i) {
+      state.segment_ids.push_back(i < ids_.ids().size() ? ids_.ids()[i] : kNoSegment);
+    }
     state.slices.push_back(std::move(slice));
   }
   if (config_.mode == "voting") {

@@ -12,7 +12,7 @@
 namespace kintsugi::segmenter {
 
 struct SegmentMapConfig {
-  std::string mode = "batch";  ///< one of engine_modes()
+  std::string mode = "exact";  ///< one of engine_modes()
   EngineConfig engine;         ///< its resolution_m is replaced by that of the slices
 
   /// Throws std::invalid_argument naming field, value and bound.

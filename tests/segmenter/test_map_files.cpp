@@ -76,7 +76,7 @@ TEST(MapFiles, JsonTellsOfEverySegment) {
   const auto map = small_map();
   write_segments_json(take_snapshot(*map), folder / "map.json");
   const auto root = nlohmann::json::parse(contents(folder / "map.json"));
-  EXPECT_EQ(root["mode"], "batch");
+  EXPECT_EQ(root["mode"], "exact");
   EXPECT_EQ(root["parameters"]["threshold"], 0.001);
   EXPECT_EQ(root["parameters"]["resolution"], 0.01);
   EXPECT_EQ(root["parameters"]["radius"], 0.02);

@@ -108,6 +108,15 @@ TEST(SegmenterStatus, TellsWhatIsMissingAndWhatWasDropped) {
   EXPECT_EQ(status.messages_bad, 3);
 }
 
+testing::Labels labels_in(const std::filesystem::path& ply) {
+  const PlyCloud cloud = read_ply(ply);
+  testing::Labels labels;
+  for (std::size_t i = 0; i < cloud.points_W.size(); ++i) {
+    labels[cloud.slice_ids[i]].push_back(cloud.segment_ids[i]);
+  }
+  return labels;
+}
+
 class SegmenterProgram : public ::testing::Test {
  protected:
   testing::ProgramResult run(const std::string& arguments) {
@@ -230,6 +239,53 @@ TEST_F(SegmenterProgram, ReadsTheConfigThatItPrints) {
   EXPECT_EQ(again.output, printed.output);
 }
 
+TEST_F(SegmenterProgram, GoesOnWithTheMapThatWasSavedAfterAnySlice) {
+  auto slices = wavy_session(6, 150);
+  CloudSlice corrected = testing::moved(slices[1], testing::small_motion());
+  slices.insert(slices.begin() + 4, corrected);
+  write_log(path("all.lcm"), messages_of(slices));
+  for (const std::string mode : {"exact", "batch", "voting"}) {
+    const std::string options = " --mode " + mode + " --out " + path("out");
+    EXPECT_EQ(run("--log " + path("all.lcm") + options).exit_code, 0);
+    const auto expected = labels_in(path("out") + "/segments.ply");
+    for (std::size_t count = 1; count <= slices.size(); ++count) {
+      write_log(path("some.lcm"), messages_of({slices.begin(), slices.begin() + count}));
+      const auto saved = run("--log " + path("some.lcm") + options + " --save " + path("map.kseg"));
+      EXPECT_EQ(saved.exit_code, 0) << saved.output;
+      const auto resumed = run("--log " + path("all.lcm") + options + " --resume " +
+                               path("map.kseg") + " --save " + path("map.kseg"));
+      EXPECT_EQ(resumed.exit_code, 0) << resumed.output;
+      EXPECT_THAT(resumed.output, HasSubstr("resumed " + path("map.kseg")));
+      EXPECT_EQ(labels_in(path("out") + "/segments.ply"), expected) << mode << count;
+    }
+    const auto nothing_new = run("--log " + path("all.lcm") + options + " --resume " +
+                                 path("map.kseg") + " --exit-on-final");
+    EXPECT_EQ(nothing_new.exit_code, 0) << nothing_new.output;
+  }
+}
+
+TEST_F(SegmenterProgram, RefusesToGoOnWithWhatIsNoMapOfItsOwn) {
+  write_log(path("slices.lcm"), messages_of(wavy_session(3, 100)));
+  const std::string log = "--log " + path("slices.lcm") + " --out " + path("out");
+  ASSERT_EQ(run(log + " --save " + path("map.kseg")).exit_code, 0);
+  std::filesystem::remove_all(path("out"));
+  const auto refusal = [&](const std::string& arguments) {
+    const auto result = run(log + " " + arguments);
+    EXPECT_EQ(result.exit_code, 1) << arguments;
+    EXPECT_FALSE(std::filesystem::exists(path("out"))) << arguments;
+    return result.output;
+  };
+  EXPECT_THAT(refusal("--resume " + path("map.kseg") + " --threshold 0.002"),
+              HasSubstr("was saved with --threshold 0.001, and here it is 0.002"));
+  EXPECT_THAT(refusal("--resume " + path("map.kseg") + " --mode voting"),
+              HasSubstr("was saved with --mode exact"));
+  EXPECT_THAT(refusal("--resume " + path("absent.kseg")), HasSubstr("absent.kseg"));
+  EXPECT_THAT(refusal("--resume " + path("slices.lcm")), HasSubstr("is no saved segment map"));
+  EXPECT_THAT(refusal("--save " + path("absent") + "/map.kseg"), HasSubstr("there is no folder"));
+  std::filesystem::resize_file(path("map.kseg"), std::filesystem::file_size(path("map.kseg")) - 1);
+  EXPECT_THAT(refusal("--resume " + path("map.kseg")), HasSubstr("cut off or damaged"));
+}
+
 class SegmenterOnTheBus : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -301,15 +357,6 @@ SegmenterProcess::Config on_the_bus(const TemporaryFolder& folder, const std::st
   config.exit_on_final = true;
   config.processor.map.mode = mode;
   return config;
-}
-
-testing::Labels labels_in(const std::filesystem::path& ply) {
-  const PlyCloud cloud = read_ply(ply);
-  testing::Labels labels;
-  for (std::size_t i = 0; i < cloud.points_W.size(); ++i) {
-    labels[cloud.slice_ids[i]].push_back(cloud.segment_ids[i]);
-  }
-  return labels;
 }
 
 TEST_F(SegmenterOnTheBus, PublishesUpdatesAndStatusUntilTheFinalSlice) {

@@ -55,9 +55,9 @@ Recording read(const std::string& path) {
           {utime, event->channel, Bytes(event->data.begin(), event->data.end()), {}});
     }
   }
-  if (recording.slices.size() < 6) {
+  if (recording.slices.size() < 3) {
     throw std::runtime_error(path + ": " + std::to_string(recording.slices.size()) +
-                             " slices, expected 6 at least");
+                             " slices, expected 3 at least");
   }
   return recording;
 }
@@ -144,7 +144,8 @@ void revise(const std::string& in, const std::string& out) {
   const auto slice = [&](std::size_t i) { return &recording.events[recording.slices[i]]; };
   const std::size_t num_slices = recording.slices.size();
   std::vector<const Event*> third;
-  for (std::size_t i = num_slices / 3; i < 2 * num_slices / 3; ++i) third.push_back(slice(i));
+  const std::size_t first = (num_slices - 2 - num_slices / 3) / 2;
+  for (std::size_t i = 0; i < num_slices / 3; ++i) third.push_back(slice(first + i));
 
   Writer writer(out, slice(0)->slice.session);
   for (const Event& event : recording.events) {
