@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <utility>
 #include <vector>
 
 #include <oneapi/tbb/enumerable_thread_specific.h>
@@ -40,7 +39,7 @@ EdgesByThread find_edges(const PointRows& rows, const WeightRange& range, const 
     rows.for_each_pair(row, keep, [&](PointRows::Slot a, PointRows::Slot b) {
       const PointRows::Point& p = rows.points()[a];
       const PointRows::Point& q = rows.points()[b];
-      const float weight = edge_weight(p, q);
+      const float weight = edge_weight_below(range.to, p, q);
       if (weight >= range.from && weight < range.to) {
         edges.add({weight, std::min(p.index, q.index), std::max(p.index, q.index)});
       }
@@ -49,16 +48,17 @@ EdgesByThread find_edges(const PointRows& rows, const WeightRange& range, const 
   return found;
 }
 
-/// Joins along the edges, in ascending order. Frees them as it goes.
+/// Joins along the edges, in ascending order.
 BatchStatistics join(EdgesByThread& found, SegmentForest& forest, JoinObserver& observer) {
   BatchStatistics statistics;
   std::vector<Edge> between;
   for (std::size_t b = 0; b < EdgeBuckets::kNumBuckets; ++b) {
     between.clear();
     for (EdgeBuckets& edges : found) {
-      const std::vector<Edge> bucket = std::exchange(edges[b], {});
-      statistics.num_edges += static_cast<std::int64_t>(bucket.size());
-      append_edges_between_segments(bucket, forest, between);
+      edges.take(b, [&](std::span<const Edge> some) {
+        statistics.num_edges += static_cast<std::int64_t>(some.size());
+        append_edges_between_segments(some, forest, between);
+      });
     }
     statistics.num_joins += join_in_order(std::span(between), forest, observer);
   }

@@ -3,13 +3,17 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "segmenter/core/edge.hpp"
+#include "segmenter/core/growing_array.hpp"
 
 namespace kintsugi::segmenter {
 
 /// Edges roughly sorted as they are found: into buckets of ascending weight, in any order within.
+/// A bucket is a chain of chunks, so that it grows without copying.
 class EdgeBuckets {
  public:
   // The upper bits of a float32 that is not negative order as its value does. 64 buckets for each
@@ -23,12 +27,51 @@ class EdgeBuckets {
 
   EdgeBuckets() : buckets_(kNumBuckets) {}
 
-  void add(const Edge& edge) { buckets_[bucket_of(edge.weight)].push_back(edge); }
+  void add(const Edge& edge) {
+    Bucket& bucket = buckets_[bucket_of(edge.weight)];
+    if (bucket.room == 0) start_chunk(bucket);
+    --bucket.room;
+    edges_[bucket.chunk * kChunkEdges + bucket.room] = edge;
+  }
 
-  std::vector<Edge>& operator[](std::size_t bucket) { return buckets_[bucket]; }
+  /// Empties a bucket: calls fn(std::span<const Edge>) with all its edges, some at a time.
+  template <typename Fn>
+  void take(std::size_t index, Fn&& fn) {
+    Bucket bucket = std::exchange(buckets_[index], {});
+    while (bucket.chunk != kNoChunk) {
+      fn(edges_.span().subspan(bucket.chunk * kChunkEdges, kChunkEdges).subspan(bucket.room));
+      free_.push_back(bucket.chunk);
+      bucket = {.chunk = previous_[bucket.chunk], .room = 0};
+    }
+  }
 
  private:
-  std::vector<std::vector<Edge>> buckets_;
+  static constexpr std::size_t kChunkEdges = 256;
+  static constexpr std::uint32_t kNoChunk = UINT32_MAX;
+
+  struct Bucket {
+    std::uint32_t chunk = kNoChunk;  ///< the last one, filled from its end
+    std::uint32_t room = 0;          ///< in it
+  };
+
+  void start_chunk(Bucket& bucket) {
+    std::uint32_t chunk = 0;
+    if (free_.empty()) {
+      chunk = static_cast<std::uint32_t>(previous_.size());
+      previous_.push_back(kNoChunk);
+      edges_.resize(edges_.size() + kChunkEdges);
+    } else {
+      chunk = free_.back();
+      free_.pop_back();
+    }
+    previous_[chunk] = bucket.chunk;
+    bucket = {.chunk = chunk, .room = kChunkEdges};
+  }
+
+  std::vector<Bucket> buckets_;
+  GrowingArray<Edge> edges_;             ///< chunk after chunk
+  std::vector<std::uint32_t> previous_;  ///< of the same bucket, by chunk
+  std::vector<std::uint32_t> free_;      ///< chunks to use again
 };
 
 }  // namespace kintsugi::segmenter

@@ -26,8 +26,13 @@ class JoinObserver {
 /// what this leaves needs to be sorted.
 inline void append_edges_between_segments(std::span<const Edge> edges, SegmentForest& forest,
                                           std::vector<Edge>& between) {
-  for (const Edge& edge : edges) {
-    if (forest.find(edge.i) != forest.find(edge.j)) between.push_back(edge);
+  constexpr std::size_t kAhead = 16;
+  for (std::size_t k = 0; k < edges.size(); ++k) {
+    if (k + kAhead < edges.size()) {
+      forest.prefetch(edges[k + kAhead].i);
+      forest.prefetch(edges[k + kAhead].j);
+    }
+    if (forest.find(edges[k].i) != forest.find(edges[k].j)) between.push_back(edges[k]);
   }
 }
 
@@ -38,7 +43,13 @@ template <typename Observer>
 std::int64_t join_in_order(std::span<Edge> edges, SegmentForest& forest, Observer&& observer) {
   std::int64_t num_joins = 0;
   std::sort(edges.begin(), edges.end(), AscendingWeight());
-  for (const Edge& edge : edges) {
+  constexpr std::size_t kAhead = 16;
+  for (std::size_t k = 0; k < edges.size(); ++k) {
+    if (k + kAhead < edges.size()) {
+      forest.prefetch(edges[k + kAhead].i);
+      forest.prefetch(edges[k + kAhead].j);
+    }
+    const Edge& edge = edges[k];
     PointIndex host = forest.find(edge.i);
     PointIndex guest = forest.find(edge.j);
     if (host == guest) continue;
@@ -52,17 +63,24 @@ std::int64_t join_in_order(std::span<Edge> edges, SegmentForest& forest, Observe
   return num_joins;
 }
 
-/// join_in_order() for many edges, bucket by bucket.
+/// join_in_order() for any number of edges: many of them are sorted bucket by bucket.
 template <typename Observer>
 std::int64_t join_segments(std::span<const Edge> edges, SegmentForest& forest,
                            Observer&& observer) {
+  constexpr std::size_t kFewEdges = 50'000;
+  if (edges.size() < kFewEdges) {
+    std::vector<Edge> copy(edges.begin(), edges.end());
+    return join_in_order(std::span(copy), forest, observer);
+  }
   EdgeBuckets buckets;
   for (const Edge& edge : edges) buckets.add(edge);
   std::int64_t num_joins = 0;
   std::vector<Edge> between;
   for (std::size_t b = 0; b < EdgeBuckets::kNumBuckets; ++b) {
     between.clear();
-    append_edges_between_segments(buckets[b], forest, between);
+    buckets.take(b, [&](std::span<const Edge> some) {
+      append_edges_between_segments(some, forest, between);
+    });
     num_joins += join_in_order(std::span(between), forest, observer);
   }
   return num_joins;

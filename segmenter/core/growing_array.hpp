@@ -90,8 +90,10 @@ class GrowingArray {
     void* const range = ::mmap(nullptr, kReservedBytes, PROT_NONE,
                                MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
     if (range == MAP_FAILED) throw std::bad_alloc();
-    // Random access to gigabytes costs a page walk each time in pages of 4 kB. Only a wish.
-    ::madvise(range, kReservedBytes, MADV_HUGEPAGE);
+    // Random access to gigabytes costs a page walk each time in pages of 4 kB. Only a wish; and not
+    // for the first step, so that a small array does not take a huge page.
+    ::madvise(static_cast<std::byte*>(range) + kStepBytes, kReservedBytes - kStepBytes,
+              MADV_HUGEPAGE);
     data_ = static_cast<T*>(range);
   }
 

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cassert>
 #include <limits>
+#include <utility>
 
 #include <oneapi/tbb/parallel_for.h>
 
@@ -39,11 +40,11 @@ std::int32_t from_ordered_bits(std::uint32_t bits) {
 }
 
 /// Stable radix sort by one member; passes over digits that are the same everywhere.
-void sort_by(std::uint32_t Key::*member, std::vector<Key>& keys, std::vector<Key>& scratch) {
+void sort_by(std::uint32_t Key::*member, GrowingArray<Key>& keys, GrowingArray<Key>& scratch) {
   constexpr int kDigitBits = 11;
   constexpr std::size_t kNumDigits = std::size_t{1} << kDigitBits;
   std::uint32_t varying = 0;
-  for (const Key& key : keys) varying |= key.*member ^ keys.front().*member;
+  for (const Key& key : keys) varying |= key.*member ^ (*keys.begin()).*member;
   for (int shift = 0; shift < std::numeric_limits<std::uint32_t>::digits; shift += kDigitBits) {
     const auto digit = [&](std::uint32_t value) { return (value >> shift) & (kNumDigits - 1); };
     if (digit(varying) == 0) continue;
@@ -51,19 +52,19 @@ void sort_by(std::uint32_t Key::*member, std::vector<Key>& keys, std::vector<Key
     for (const Key& key : keys) ++next[digit(key.*member) + 1];
     for (std::size_t d = 0; d < kNumDigits; ++d) next[d + 1] += next[d];
     for (const Key& key : keys) scratch[next[digit(key.*member)]++] = key;
-    keys.swap(scratch);
+    std::swap(keys, scratch);
   }
 }
 
-std::vector<Key> sorted_keys(const PointCloud& cloud, std::span<const PointIndex> points,
-                             double cell_m) {
-  std::vector<Key> keys(points.size());
+GrowingArray<Key> sorted_keys(const PointCloud& cloud, std::span<const PointIndex> points,
+                              double cell_m) {
+  GrowingArray<Key> keys(points.size());
   oneapi::tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t k) {
     const CloudPoint& p = cloud[points[k]];
     keys[k] = {ordered_bits(p.x), ordered_bits(cell_coordinate(p.y, cell_m)),
                ordered_bits(cell_coordinate(p.z, cell_m)), points[k]};
   });
-  std::vector<Key> scratch(points.size());
+  GrowingArray<Key> scratch(points.size());
   sort_by(&Key::x, keys, scratch);
   sort_by(&Key::y, keys, scratch);
   sort_by(&Key::z, keys, scratch);
@@ -76,7 +77,7 @@ PointRows::PointRows(const PointCloud& cloud, std::span<const PointIndex> points
     : squared_radius_m2_(radius_m * radius_m),
       reach_m_(static_cast<float>(radius_m * kReachPerRadius)) {
   assert(radius_m > 0.0F);
-  const std::vector<Key> keys = sorted_keys(cloud, points, radius_m * kReachPerRadius);
+  const GrowingArray<Key> keys = sorted_keys(cloud, points, radius_m * kReachPerRadius);
   points_.resize(keys.size());
   oneapi::tbb::parallel_for(std::size_t{0}, keys.size(), [&](std::size_t k) {
     const CloudPoint& p = cloud[keys[k].index];

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "segmenter/core/growing_array.hpp"
 #include "segmenter/core/point_cloud.hpp"
 
 namespace kintsugi::segmenter {
@@ -28,7 +29,7 @@ class PointRows {
   /// `points` are in the cloud, each once; `radius_m` > 0.
   PointRows(const PointCloud& cloud, std::span<const PointIndex> points, float radius_m);
 
-  std::span<const Point> points() const { return points_; }
+  std::span<const Point> points() const { return points_.span(); }
   std::size_t num_rows() const { return rows_.size() - 1; }
 
   /// Calls fn(Slot a, Slot b) for each two neighbours of which the first in the order of rows lies
@@ -64,7 +65,7 @@ class PointRows {
 
   float squared_radius_m2_;
   float reach_m_;
-  std::vector<Point> points_;
+  GrowingArray<Point> points_;
   std::vector<Row> rows_;  ///< by z, then y; one more at the end
 };
 
