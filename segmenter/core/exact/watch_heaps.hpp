@@ -38,6 +38,7 @@ class WatchHeaps {
   bool empty(PointIndex holder) const { return vertices_[holder].heap == kNone; }
   /// The lightest watch of `holder`, which has one.
   const Watch& top(PointIndex holder) const { return watches_[vertices_[holder].heap]; }
+  const Watch& operator[](WatchId id) const { return watches_[id]; }
   void pop(PointIndex holder) { erase(vertices_[holder].heap); }
   /// Moves all watches of `from` to `to`.
   void meld(PointIndex to, PointIndex from);
