@@ -71,7 +71,7 @@ std::string to_gnuplot(const Plot& plot) {
          "set key outside above center horizontal Left reverse samplen 2\n"
       << "set xlabel " << gnuplot_quoted(plot.x_label) << "\nset ylabel "
       << gnuplot_quoted(plot.y_label) << "\n";
-  if (plot.log_y) out << "set logscale y\n";
+  if (plot.log_y) out << "set logscale y\nset format y '%g'\n";
   write_range(out, 'x', plot.x_range);
   write_range(out, 'y', plot.y_range);
   for (std::size_t i = 0; i < plot.series.size(); ++i) {

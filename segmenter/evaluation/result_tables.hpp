@@ -21,6 +21,9 @@ struct SliceTimes {
 /// the time between two runs taken to grow evenly; the others are over the runs.
 SliceTimes slice_times(const Replay& replay);
 
+/// Of a mode that ran at least once.
+double mean_over_runs(const Replay& replay, double MeasuredRun::*value);
+
 /// Segments of at least so many points count as large.
 inline constexpr std::int64_t kLargeSegment = 100;
 
@@ -32,7 +35,8 @@ Table slices_table(const Evaluation& evaluation, const ModeResult& mode);
 /// One row a join: rank of the segment, number of the join, theta, points.
 Table theta_table(const Evaluation& evaluation);
 
-// For people: one row a quantity, one column a mode, then the paper's datasets.
+// For people (readable_tables.cpp): one row a quantity, one column a mode, then the paper's
+// datasets.
 Table readable_table1(const Evaluation& evaluation);
 Table readable_table2(const Evaluation& evaluation);
 Table readable_agreement(const Evaluation& evaluation);
