@@ -36,6 +36,7 @@ void add_options(CLI::App& app, Options& options) {
       ->required();
   app.add_option("--modes", evaluation.modes, "what to compare, in this order")
       ->delimiter(',')
+      ->allow_extra_args(false)
       ->capture_default_str();
   app.add_option("--batch-every", evaluation.batch_every,
                  "mode batch: after every so many slices; 0: as often as --batch-budget allows")
@@ -46,6 +47,7 @@ void add_options(CLI::App& app, Options& options) {
   app.add_option("--segments", evaluation.segments,
                  "whose theta is shown: ranks by size, 1 is the largest")
       ->delimiter(',')
+      ->allow_extra_args(false)
       ->capture_default_str();
   add_segmentation_options(app, options.map);
   app.remove_option(app.get_option("--mode"));

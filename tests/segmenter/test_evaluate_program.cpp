@@ -180,7 +180,7 @@ TEST_F(EvaluateProgram, WritesTablesAndPageOfALog) {
 
 TEST_F(EvaluateProgram, TakesModesInTheOrderGiven) {
   write_session_log(2);
-  run(path("in.lcm") + " --modes batch,voting --out " + path("out"));
+  run("--segments 2 --modes batch,voting " + path("in.lcm") + " --out " + path("out"));
   const auto lines = lines_of("table1.csv");
   ASSERT_EQ(lines.size(), 3U);
   EXPECT_EQ(lines[1].rfind("batch,400,2,", 0), 0U) << lines[1];
