@@ -24,6 +24,7 @@ class AuditedEngine final : public SegmentationEngine {
 
   /// Throws AuditError, naming the first point that differs.
   RunStatistics update(const CloudChange& change) override;
+  void look_ahead(std::span<const CloudPoint> slice_W) override { engine_->look_ahead(slice_W); }
   std::span<const ComponentId> components() const override { return engine_->components(); }
   std::span<const PointIndex> changed() const override { return engine_->changed(); }
   double theta(ComponentId component) const override { return engine_->theta(component); }

@@ -73,6 +73,11 @@ class SegmentationEngine {
     update(everything);
   }
 
+  /// A hint, before an update: the update after it will add the points of this slice, as far as is
+  /// known. An engine may look for their neighbours meanwhile, on another thread; nothing but time
+  /// depends on it.
+  virtual void look_ahead(std::span<const CloudPoint> /*slice_W*/) {}
+
   /// The component of each point, size() of the cloud at the last update(); kNoComponent for those
   /// that are gone.
   virtual std::span<const ComponentId> components() const = 0;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <optional>
 #include <utility>
 
 #include "segmenter/core/exact/bulk_build.hpp"
@@ -30,6 +31,7 @@ ExactEngine::ExactEngine(const PointCloud& cloud, const EngineConfig& config)
       rule_{config.threshold, config.scale},
       index_(make_neighbour_index(config.neighbour_search, cloud, config.radius_m())),
       edges_of_(cloud, *index_, config.threshold + config.scale),
+      edges_ahead_(cloud, *index_, config.radius_m(), config.threshold + config.scale),
       state_(rule_),
       replay_(state_, edges_of_),
       names_(state_.vertices, state_.forest) {}
@@ -38,12 +40,28 @@ ExactEngine::~ExactEngine() = default;
 
 RunStatistics ExactEngine::update(const CloudChange& change) {
   RunStatistics statistics{.num_iterations = 1};
-  const bool is_rebuilt = is_cheaper_to_rebuild(change);
   Stopwatch stopwatch;
+  std::optional<std::vector<EdgeKey>> edges = edges_ahead_.take(change.added);
+  if (!change.removed.empty()) edges.reset();
+  const bool is_rebuilt = is_cheaper_to_rebuild(change);
   take_over(change);
+  if (!is_rebuilt && !edges) edges = find_new_edges(change.added);
+  begin_to_look_ahead();
   statistics.neighbours_ms = stopwatch.lap_ms();
-  if (is_rebuilt || !replay(change, statistics)) rebuild(change, statistics);
+  if (is_rebuilt || !replay(change, std::move(*edges), statistics)) rebuild(change, statistics);
+  edges_ahead_.finish();
   return statistics;
+}
+
+void ExactEngine::look_ahead(std::span<const CloudPoint> slice_W) {
+  next_slice_W_.assign(slice_W.begin(), slice_W.end());
+}
+
+/// While index and cloud stay as they are.
+void ExactEngine::begin_to_look_ahead() {
+  if (next_slice_W_.empty()) return;
+  edges_ahead_.start(next_slice_W_);
+  next_slice_W_.clear();
 }
 
 bool ExactEngine::is_cheaper_to_rebuild(const CloudChange& change) const {
@@ -51,7 +69,7 @@ bool ExactEngine::is_cheaper_to_rebuild(const CloudChange& change) const {
   return num_changed > config_.rebuild_share * static_cast<double>(num_points_);
 }
 
-/// Vertices and index; the watches at those that are gone are taken out.
+/// Vertices, the added ones touched, and index; the watches at those that are gone are taken out.
 void ExactEngine::take_over(const CloudChange& change) {
   edges_of_.for_each(change.removed, [&](PointIndex x, PointIndex neighbour, const EdgeKey&) {
     state_.watches.erase(neighbour, x);
@@ -59,11 +77,14 @@ void ExactEngine::take_over(const CloudChange& change) {
   index_->remove(change.removed);
   index_->insert(change.added);
   state_.vertices.resize(cloud_.size());
-  for (const PointIndex x : change.added) state_.vertices.reset(x);
+  for (const PointIndex x : change.added) {
+    state_.vertices.reset(x);
+    state_.vertices[x].is_touched = 1;
+  }
   num_points_ += std::ssize(change.added) - std::ssize(change.removed);
 }
 
-/// Each edge of the added points once.
+/// Each edge of the added points once; those are touched.
 std::vector<EdgeKey> ExactEngine::find_new_edges(std::span<const PointIndex> added) const {
   std::vector<EdgeKey> edges;
   edges_of_.for_each(added, [&](PointIndex x, PointIndex other, const EdgeKey& key) {
@@ -73,15 +94,12 @@ std::vector<EdgeKey> ExactEngine::find_new_edges(std::span<const PointIndex> add
   return edges;
 }
 
-bool ExactEngine::replay(const CloudChange& change, RunStatistics& statistics) {
+bool ExactEngine::replay(const CloudChange& change, std::vector<EdgeKey> edges,
+                         RunStatistics& statistics) {
   Stopwatch stopwatch;
   std::vector<PointIndex>& touched = replay_.touched();
   touched = change.added;
-  for (const PointIndex x : touched) state_.vertices[x].is_touched = 1;
-  std::vector<EdgeKey> edges = find_new_edges(change.added);
   statistics.num_edges = std::ssize(edges);
-  statistics.neighbours_ms += stopwatch.lap_ms();
-
   const auto max_explored =
       std::max(config_.explore_at_least,
                static_cast<std::int64_t>(config_.explore_share * static_cast<double>(num_points_)));

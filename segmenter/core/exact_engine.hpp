@@ -6,6 +6,7 @@
 
 #include "segmenter/core/engine.hpp"
 #include "segmenter/core/exact/component_names.hpp"
+#include "segmenter/core/exact/edges_ahead.hpp"
 #include "segmenter/core/exact/replay.hpp"
 #include "segmenter/core/exact/state.hpp"
 
@@ -46,6 +47,7 @@ class ExactEngine final : public SegmentationEngine {
   ~ExactEngine() override;
 
   RunStatistics update(const CloudChange& change) override;
+  void look_ahead(std::span<const CloudPoint> slice_W) override;
   std::span<const ComponentId> components() const override { return names_.of_points(); }
   std::span<const PointIndex> changed() const override { return names_.changed(); }
   double theta(ComponentId component) const override;
@@ -55,7 +57,9 @@ class ExactEngine final : public SegmentationEngine {
   bool is_cheaper_to_rebuild(const CloudChange& change) const;
   void take_over(const CloudChange& change);
   std::vector<exact::EdgeKey> find_new_edges(std::span<const PointIndex> added) const;
-  bool replay(const CloudChange& change, RunStatistics& statistics);
+  void begin_to_look_ahead();
+  bool replay(const CloudChange& change, std::vector<exact::EdgeKey> edges,
+              RunStatistics& statistics);
   void rebuild(const CloudChange& change, RunStatistics& statistics);
 
   const PointCloud& cloud_;
@@ -63,6 +67,8 @@ class ExactEngine final : public SegmentationEngine {
   exact::JoinRule rule_;
   std::unique_ptr<NeighbourIndex> index_;
   exact::EdgeFinder edges_of_;
+  exact::EdgesAhead edges_ahead_;
+  std::vector<CloudPoint> next_slice_W_;  ///< what look_ahead() told of
   exact::State state_;
   exact::Replay replay_;
   exact::ComponentNames names_;

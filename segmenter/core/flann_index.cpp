@@ -94,8 +94,8 @@ void FlannIndex::remove(std::span<const PointIndex> points) {
   build(dirty);
 }
 
-void FlannIndex::find_neighbours(PointIndex query, std::vector<PointIndex>& neighbours) const {
-  const CloudPoint& p = cloud_[query];
+void FlannIndex::find_neighbours(const CloudPoint& p, PointIndex left_out,
+                                 std::vector<PointIndex>& neighbours) const {
   const float position_W[3] = {p.x, p.y, p.z};
   const double reach_m = static_cast<double>(radius_m_) * static_cast<double>(kSlack);
   Cell first;
@@ -119,7 +119,7 @@ void FlannIndex::find_neighbours(PointIndex query, std::vector<PointIndex>& neig
         tile->second->tree->findNeighbors(candidates, position_W, flann::SearchParams(-1));
         for (const std::size_t k : found) {
           const PointIndex candidate = tile->second->points[k];
-          if (candidate != query && are_neighbours(p, cloud_[candidate], radius_m_)) {
+          if (candidate != left_out && are_neighbours(p, cloud_[candidate], radius_m_)) {
             neighbours.push_back(candidate);
           }
         }
@@ -131,8 +131,18 @@ void FlannIndex::find_neighbours(PointIndex query, std::vector<PointIndex>& neig
 void FlannIndex::visit(std::span<const PointIndex> points, const Visit& visit_point) const {
   std::vector<PointIndex> neighbours;
   for (const PointIndex point : points) {
-    find_neighbours(point, neighbours);
+    find_neighbours(cloud_[point], point, neighbours);
     visit_point(point, neighbours);
+  }
+}
+
+void FlannIndex::visit_places(std::span<const CloudPoint> places_W,
+                              const Visit& visit_place) const {
+  constexpr PointIndex kNoPoint = UINT32_MAX;
+  std::vector<PointIndex> neighbours;
+  for (PointIndex k = 0; k < places_W.size(); ++k) {
+    find_neighbours(places_W[k], kNoPoint, neighbours);
+    visit_place(k, neighbours);
   }
 }
 

@@ -20,6 +20,7 @@ class FlannIndex final : public NeighbourIndex {
   void insert(std::span<const PointIndex> points) override;
   void remove(std::span<const PointIndex> points) override;
   void visit(std::span<const PointIndex> points, const Visit& visit_point) const override;
+  void visit_places(std::span<const CloudPoint> places_W, const Visit& visit_place) const override;
   void visit_concurrently(std::span<const PointIndex> points,
                           const Visit& visit_point) const override;
   void visit_all(const Visit& visit_point) const override;
@@ -30,7 +31,8 @@ class FlannIndex final : public NeighbourIndex {
 
   std::unique_ptr<Tile>& tile_at(PointIndex point);
   void build(std::span<Tile* const> tiles) const;
-  void find_neighbours(PointIndex query, std::vector<PointIndex>& neighbours) const;
+  void find_neighbours(const CloudPoint& place_W, PointIndex left_out,
+                       std::vector<PointIndex>& neighbours) const;
 
   const PointCloud& cloud_;
   float radius_m_;

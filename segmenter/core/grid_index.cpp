@@ -14,6 +14,8 @@ constexpr double kCellsPerRadius = 1.0 + 1e-5;
 
 constexpr std::size_t kPointsPerTask = 2048;
 
+constexpr PointIndex kNoPoint = UINT32_MAX;
+
 }  // namespace
 
 GridIndex::GridIndex(const PointCloud& cloud, float radius_m)
@@ -101,6 +103,17 @@ void GridIndex::visit(std::span<const PointIndex> points, const Visit& visit_poi
     neighbours.clear();
     cursor.for_each_neighbour(point, [&](PointIndex j) { neighbours.push_back(j); });
     visit_point(point, neighbours);
+  }
+}
+
+void GridIndex::visit_places(std::span<const CloudPoint> places_W,
+                             const Visit& visit_place) const {
+  Cursor cursor(*this);
+  std::vector<PointIndex> neighbours;
+  for (PointIndex k = 0; k < places_W.size(); ++k) {
+    neighbours.clear();
+    cursor.for_each_near(places_W[k], kNoPoint, [&](PointIndex j) { neighbours.push_back(j); });
+    visit_place(k, neighbours);
   }
 }
 

@@ -33,6 +33,7 @@ class GridIndex final : public NeighbourIndex {
   void insert(std::span<const PointIndex> points) override;
   void remove(std::span<const PointIndex> points) override;
   void visit(std::span<const PointIndex> points, const Visit& visit_point) const override;
+  void visit_places(std::span<const CloudPoint> places_W, const Visit& visit_place) const override;
   void visit_concurrently(std::span<const PointIndex> points,
                           const Visit& visit_point) const override;
   void visit_all(const Visit& visit_point) const override;
@@ -111,14 +112,18 @@ class GridIndex::Cursor {
   /// As GridIndex::for_each_neighbour().
   template <typename Fn>
   void for_each_neighbour(PointIndex point, Fn&& fn) {
-    const CloudPoint& p = index_.cloud_[point];
+    for_each_near(index_.cloud_[point], point, fn);
+  }
+  /// The same for any place, but for the point `left_out`.
+  template <typename Fn>
+  void for_each_near(const CloudPoint& p, PointIndex left_out, Fn&& fn) {
     const Cell cell = index_.cell_of(p.x, p.y, p.z);
     const Cell first = block_of({cell.x - 1, cell.y - 1, cell.z - 1});
     const Cell last = block_of({cell.x + 1, cell.y + 1, cell.z + 1});
     for (Cell at = first; at.z <= last.z; ++at.z) {
       for (at.y = first.y; at.y <= last.y; ++at.y) {
         for (at.x = first.x; at.x <= last.x; ++at.x) {
-          if (const Block* const block = find_block(at)) scan(*block, at, cell, p, point, fn);
+          if (const Block* const block = find_block(at)) scan(*block, at, cell, p, left_out, fn);
         }
       }
     }
@@ -137,7 +142,7 @@ class GridIndex::Cursor {
   /// The rows of `block` that touch `cell`: for each z one run of memory, since y is fastest.
   template <typename Fn>
   void scan(const Block& block, const Cell& at, const Cell& cell, const CloudPoint& p,
-            PointIndex point, Fn& fn) const {
+            PointIndex left_out, Fn& fn) const {
     const auto first_in_block = [](std::int32_t b) { return b * kBlockSide; };
     const auto last_in_block = [](std::int32_t b) { return b * kBlockSide + kBlockSide - 1; };
     const std::int32_t first_y = std::max(cell.y - 1, first_in_block(at.y));
@@ -152,7 +157,7 @@ class GridIndex::Cursor {
         const float dz = p.z - e->z;
         // The order of squared_distance().
         const bool is_near = (dx * dx + dy * dy) + dz * dz < index_.squared_radius_m2_;
-        if (is_near && e->point != point) fn(e->point);
+        if (is_near && e->point != left_out) fn(e->point);
       }
     }
   }

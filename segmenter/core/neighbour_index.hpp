@@ -41,6 +41,10 @@ class NeighbourIndex {
 
   /// Visits `points`, which must be in the index, in this order and in the calling thread.
   virtual void visit(std::span<const PointIndex> points, const Visit& visit_point) const = 0;
+  /// As visit(), for places that need not be points of the cloud: they are told by their number in
+  /// `places_W`.
+  virtual void visit_places(std::span<const CloudPoint> places_W,
+                            const Visit& visit_place) const = 0;
   /// As visit(), in any order, from several threads at once.
   virtual void visit_concurrently(std::span<const PointIndex> points,
                                   const Visit& visit_point) const = 0;
