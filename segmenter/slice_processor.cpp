@@ -156,6 +156,9 @@ void SliceProcessor::segment(const std::vector<CloudSlice>& slices) {
   const auto start = Clock::now();
   is_saved_ = false;
   is_broken_ = true;  // should this throw
+  if (const CloudSlice* const next = sequencer_->upcoming()) {
+    map_->look_ahead(*next);
+  }
   std::vector<SegmentUpdate> updates = map_->add(slices);
   is_broken_ = false;
   const std::chrono::duration<double, std::milli> run = Clock::now() - start;

@@ -42,6 +42,9 @@ class SegmentMap {
   ///   resolution, is in the map already in this revision or a higher one, or comes twice
   std::vector<SegmentUpdate> add(std::span<const CloudSlice> slices);
 
+  /// A hint, before add(): `slice` is what the add() after it will bring.
+  void look_ahead(const CloudSlice& slice) { engine_->look_ahead(slice.points_W); }
+
   /// The whole map for a listener that knows nothing of it: an update for each slice, in the order
   /// of their arrival; the statistics of all segments come with the last.
   [[nodiscard]] std::vector<SegmentUpdate> describe() const;

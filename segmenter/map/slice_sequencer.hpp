@@ -74,6 +74,12 @@ class SliceSequencer {
   /// The next run that is complete, when there is one.
   std::optional<SliceGroup> pop(Clock::time_point now, bool stream_has_ended);
 
+  /// The slice that pop() will give next if nothing else comes; nullptr when there is none, or when
+  /// corrections come first.
+  [[nodiscard]] const CloudSlice* upcoming() const {
+    return ready_.empty() || ready_.front().is_correction ? nullptr : &ready_.front().slices.front();
+  }
+
   /// Gives up the first gap when it is time to; returns it. Then pop() again.
   std::optional<SliceGap> give_up_gap(Clock::time_point now, bool stream_has_ended);
 

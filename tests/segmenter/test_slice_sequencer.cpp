@@ -63,6 +63,21 @@ TEST_F(SliceSequencerTest, HandsOnEveryPermutationInOrder) {
   } while (std::ranges::next_permutation(order).found);
 }
 
+TEST_F(SliceSequencerTest, TellsWhatComesNext) {
+  EXPECT_EQ(sequencer_.upcoming(), nullptr);
+  sequencer_.offer(slice(1), now_);
+  EXPECT_EQ(sequencer_.upcoming(), nullptr);  // waits for 0
+  sequencer_.offer(slice(0), now_);
+  ASSERT_NE(sequencer_.upcoming(), nullptr);
+  EXPECT_EQ(sequencer_.upcoming()->id, 0);
+  sequencer_.pop(now_, false);
+  ASSERT_NE(sequencer_.upcoming(), nullptr);
+  EXPECT_EQ(sequencer_.upcoming()->id, 1);
+  sequencer_.offer(slice(0, 1), now_);
+  sequencer_.pop(now_, false);
+  EXPECT_EQ(sequencer_.upcoming(), nullptr);  // the correction comes first
+}
+
 TEST_F(SliceSequencerTest, WaitsForAMissingSliceUntilTheTimeout) {
   sequencer_.offer(slice(0), now_);
   sequencer_.offer(slice(3), now_);
