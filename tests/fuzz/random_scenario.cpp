@@ -20,9 +20,12 @@ EngineConfig random_config(Random& random) {
   config.resolution_m = kResolution_m;
   if (random.chance(0.3)) config.threshold = random.log_uniform(1e-4, 1e-2);
   if (random.chance(0.4)) config.scale = random.log_uniform(1e-5, 2e-1);
-  // What would rather be built anew is worth replaying here, too.
+  // Replayed, whatever the cost; or given up in the middle and built anew.
   if (random.chance(0.8)) config.rebuild_share = 1e9;
-  if (random.chance(0.2)) config.explore_share = 0.0;
+  if (random.chance(0.2)) {
+    config.explore_share = 0.0;
+    config.explore_at_least = static_cast<std::int64_t>(random.log_uniform(1.0, 300.0)) - 1;
+  }
   return config;
 }
 

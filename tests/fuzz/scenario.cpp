@@ -48,7 +48,8 @@ void write_scenario(std::ostream& out, const Scenario& scenario) {
   out.precision(std::numeric_limits<double>::max_digits10);
   const EngineConfig& config = scenario.config;
   out << "config " << config.threshold << ' ' << config.scale << ' ' << config.resolution_m << ' '
-      << config.radius_factor << ' ' << config.rebuild_share << ' ' << config.explore_share << '\n';
+      << config.radius_factor << ' ' << config.rebuild_share << ' ' << config.explore_share << ' '
+      << config.explore_at_least << '\n';
   out << "slice_points " << scenario.slice_points << '\n';
   out << "points " << scenario.pool.size() << '\n';
   for (const CloudPoint& p : scenario.pool) {
@@ -70,6 +71,7 @@ Scenario read_scenario(std::istream& in) {
         &config.rebuild_share, &config.explore_share}) {
     *value = read_number<double>(in, "a parameter");
   }
+  config.explore_at_least = read_number<std::int64_t>(in, "a number of points");
   expect_word(in, "slice_points");
   scenario.slice_points = read_number<std::size_t>(in, "the number of points in a slice");
   if (scenario.slice_points == 0) throw std::runtime_error("scenario: slice_points is 0");
