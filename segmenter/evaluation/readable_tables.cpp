@@ -65,7 +65,7 @@ Table readable_table1(const Evaluation& evaluation) {
       "Maximum per slice (ms)", [](Mode m) { return decimal(slice_times(m.replay).max_ms, 2); },
       [](Paper p) { return decimal(p.max_ms, 2); });
   rows.add(
-      "Minimum per slice (ms)", [](Mode m) { return decimal(slice_times(m.replay).min_ms, 2); },
+      "Minimum per slice (ms)", [](Mode m) { return decimal(slice_times(m.replay).min_ms, 3); },
       [](Paper p) { return decimal(p.min_ms, 2); });
   rows.add(
       "Average per slice (ms)",
@@ -77,6 +77,9 @@ Table readable_table1(const Evaluation& evaluation) {
       [](Paper p) { return decimal(p.total_s, 2); });
   rows.add("99th percentile per slice (ms)",
            [](Mode m) { return decimal(slice_times(m.replay).p99_ms, 2); }, {});
+  rows.add("CPU of all threads, average per run (ms)",
+           [](Mode m) { return decimal(mean_over_runs(m.replay, &MeasuredRun::engine_cpu_ms), 2); },
+           {});
   rows.add("Segment ids, average per slice (ms)",
            [](Mode m) {
              return m.replay.mode == "batch"

@@ -71,7 +71,7 @@ double slowest_incremental_ms(const Evaluation& evaluation) {
 void add_time_figures(const Evaluation& evaluation, std::vector<Figure>& figures) {
   figures.push_back({"fig5a", "Fig. 5 a: time per slice",
                      evaluation.session.has_times
-                         ? "Grey: the time between slices, which there is for each."
+                         ? "Grey: the time between slices; a mode that stays below it keeps up."
                          : "",
                      time_plot(evaluation, true)});
   const double slowest_ms = slowest_incremental_ms(evaluation);
