@@ -31,10 +31,9 @@ void add_options(CLI::App& app, Options& options) {
                  "also write them after so many slices; 0: do not")
       ->capture_default_str();
   app.add_option("--save", process.save_file,
-                 "whenever these are written, also keep the whole map in this file, to go on with "
-                 "it; a map whose mapper has ended is not kept");
+                 "keep the map in this file too, whenever segments.ply is written, for --resume");
   app.add_option("--resume", process.resume_file,
-                 "go on with the map that --save kept: slices it has are duplicates; mode and "
+                 "go on with the map in this file: slices it has are not segmented again; mode and "
                  "parameters must be those it was saved with");
   app.add_flag("--coalesce", process.processor.coalesce,
                "mode batch: one run for all slices that are waiting: catches up sooner, gives the "

@@ -9,8 +9,8 @@
 
 namespace kintsugi::segmenter {
 
-/// --mode, --threshold, --scale, --beta, --radius-factor and --neighbours, into `config`, whose
-/// values are the defaults. Ranges are checked by config.validate().
+/// --mode, --audit, --threshold, --scale, --beta, --radius-factor and --neighbours, into `config`,
+/// whose values are the defaults. Ranges are checked by config.validate().
 void add_segmentation_options(CLI::App& app, SegmentMapConfig& config);
 
 }  // namespace kintsugi::segmenter

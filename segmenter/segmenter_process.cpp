@@ -207,6 +207,7 @@ void SegmenterProcess::resume() {
   SegmentMapState state = read_map_state(config_.resume_file);
   require_same(config_.resume_file, state.config, config_.processor.map);
   state.config.engine.neighbour_search = config_.processor.map.engine.neighbour_search;
+  state.config.engine.audit = config_.processor.map.engine.audit;
   state.session = session_;  // listeners tell the streams of two segmenters apart by it
   processor_.resume(make_map(state, config_.resume_file));
   spdlog::info("resumed {}: {} slices, {} points of session {}", config_.resume_file.string(),

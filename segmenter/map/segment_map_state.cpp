@@ -99,6 +99,10 @@ void SegmentMapConfig::validate() const {
     }
     throw std::invalid_argument("mode is '" + mode + "', must be one of: " + known);
   }
+  if (engine.audit && mode != "exact") {
+    throw std::invalid_argument("audit is on, but mode is '" + mode +
+                                "': only exact can be held against batch");
+  }
   engine.validate();
 }
 

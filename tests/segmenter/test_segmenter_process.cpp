@@ -223,6 +223,16 @@ TEST_F(SegmenterProgram, ReportsAFolderItCannotWriteTo) {
   EXPECT_THAT(result.output, AllOf(HasSubstr("the map is not written"), HasSubstr("taken")));
 }
 
+TEST_F(SegmenterProgram, AuditsModeExactAndNoOther) {
+  write_log(path("slices.lcm"), messages_of(wavy_session(4, 150)));
+  const std::string log = "--log " + path("slices.lcm") + " --out " + path("out") + " --audit";
+  const auto result = run(log);
+  EXPECT_EQ(result.exit_code, 0) << result.output;
+  const auto refused = run(log + " --mode voting");
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_THAT(refused.output, HasSubstr("audit is on, but mode is 'voting'"));
+}
+
 TEST_F(SegmenterProgram, RefusesParametersOutOfRange) {
   EXPECT_THAT(run("--mode none").output, HasSubstr("mode is 'none'"));
   EXPECT_EQ(run("--threshold -1").exit_code, 1);
