@@ -73,6 +73,14 @@ class Revisions : public ::testing::Test {
     EXPECT_EQ(mirror_.num_segments(), processor.counts().segments);
   }
 
+  std::vector<CloudSlice> every_revision_twice() const {
+    std::vector<CloudSlice> all;
+    for (const auto* slices : {&slices_, &moved_, &back_, &slices_, &moved_, &back_}) {
+      all.insert(all.end(), slices->begin(), slices->end());
+    }
+    return all;
+  }
+
   const std::vector<CloudSlice> slices_ = testing::RoomRow(2, 0.05).cut(0.4);
   std::vector<CloudSlice> moved_ = slices_;
   std::vector<CloudSlice> back_ = slices_;
@@ -129,12 +137,7 @@ TEST_F(Revisions, CorrectionsOfOneGoAreOneRun) {
 }
 
 TEST_F(Revisions, FinalMapIsTheSameInAnyOrderOfArrivalWithDuplicates) {
-  std::vector<CloudSlice> all = slices_;
-  for (const auto* revised : {&moved_, &back_}) {
-    std::ranges::copy_if(*revised, std::back_inserter(all),
-                         [](const CloudSlice& slice) { return slice.revision > 0; });
-  }
-  std::ranges::copy(slices_, std::back_inserter(all));
+  std::vector<CloudSlice> all = every_revision_twice();
   std::mt19937 random(17);
   for (const std::string& mode : modes_equal_to_batch()) {
     SliceProcessor in_order = make(mode);
@@ -157,6 +160,30 @@ TEST_F(Revisions, FinalMapIsTheSameInAnyOrderOfArrivalWithDuplicates) {
       for (const SliceRecord& slice : shuffled.map()->cloud().slices()) {
         EXPECT_EQ(slice.revision, back_[static_cast<std::size_t>(slice.slice_id)].revision);
       }
+    }
+  }
+}
+
+TEST_F(Revisions, FinalMapIsTheSameWhenASegmenterStopsAnywhereAndAnotherHearsEverything) {
+  std::vector<CloudSlice> all = every_revision_twice();
+  const Labels expected = batch_labels(back_);
+  std::mt19937 random(18);
+  for (const std::string& mode : modes_equal_to_batch()) {
+    for (int round = 0; round < 4; ++round) {
+      std::ranges::shuffle(all, random);
+      SliceProcessor first = make(mode);
+      const std::size_t num_heard = 1 + random() % all.size();
+      for (std::size_t i = 0; i < num_heard; ++i) {
+        first.offer(all[i], now_);
+        while (first.step(now_)) {
+        }
+      }
+      mirror_ = {};
+      SliceProcessor second = make(mode);
+      second.resume(std::make_unique<SegmentMap>(first.map()->state()));
+      std::ranges::shuffle(all, random);
+      run(second, all);
+      EXPECT_TRUE(testing::same_partition(mirror_.labels(), expected)) << mode;
     }
   }
 }

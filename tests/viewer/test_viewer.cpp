@@ -55,6 +55,29 @@ TEST_F(ViewerTest, WaitsForTheSegmentsOfTheSlicesItShows) {
   EXPECT_EQ(1U, captions_.size());
 }
 
+TEST_F(ViewerTest, DrawsCorrectedSlicesAgain) {
+  Viewer viewer = make_viewer();
+  for (std::size_t i = 0; i < 4; ++i) {
+    viewer.add(room_.slices[i]);
+    viewer.add(room_.updates[i]);
+  }
+  viewer.draw_if_due();
+  EXPECT_EQ(1U, captions_.size());
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(1U, captions_.size());
+    CloudSlice slice = room_.slices[i];
+    SegmentUpdate update = room_.updates[i];
+    slice.revision = update.slice_revision = 1;
+    update.sequence += 100;
+    viewer.add(update);
+    EXPECT_EQ(1, viewer.status().lag_slices);
+    viewer.add(slice);
+    EXPECT_EQ(0, viewer.status().lag_slices);
+    viewer.draw_if_due();
+  }
+  EXPECT_EQ(2U, captions_.size());
+}
+
 TEST_F(ViewerTest, IsFinishedWhenTheFinalUpdateIsDrawn) {
   Viewer viewer = make_viewer();
   for (std::size_t i = 0; i < room_.slices.size(); ++i) {
