@@ -31,6 +31,9 @@ void write_files(const MapSnapshot& map, const std::filesystem::path& folder,
 }
 
 void keep(const MapSnapshot& map, const std::filesystem::path& file) {
+  if (file.has_parent_path()) {
+    std::filesystem::create_directories(file.parent_path());
+  }
   write_map_state(map.state, file);
   spdlog::info("saved {}: {} slices to go on with", file.string(), map.state.slices.size());
 }
@@ -61,10 +64,6 @@ void SegmenterProcess::Config::validate() const {
   if (status_period.count() <= 0) {
     throw std::invalid_argument("status_period is " + std::to_string(status_period.count()) +
                                 " ms, must be > 0");
-  }
-  if (save_file.has_parent_path() && !std::filesystem::is_directory(save_file.parent_path())) {
-    throw std::invalid_argument("save_file is " + save_file.string() + ": there is no folder " +
-                                save_file.parent_path().string());
   }
 }
 
@@ -181,11 +180,10 @@ void SegmenterProcess::work_until_end() {
   if (!config_.resume_file.empty()) {
     resume();
   }
-  while (!ending_ && !queue_.is_exhausted()) {
-    offer_all(queue_.take(kPollPeriod));
-    while (!ending_ && processor_.step(SliceProcessor::Clock::now())) {
-      offer_all(queue_.take(milliseconds(0)));
-    }
+  bool is_behind = false;
+  while (!ending_ && (is_behind || !queue_.is_exhausted())) {
+    offer_all(queue_.take(is_behind ? milliseconds(0) : kPollPeriod));
+    is_behind = processor_.step(SliceProcessor::Clock::now());
     if (take_write_request()) {
       processor_.save(is_write_due_);
     }

@@ -277,7 +277,8 @@ TEST_F(SegmenterProgram, GoesOnWithTheMapThatWasSavedAfterAnySlice) {
 TEST_F(SegmenterProgram, RefusesToGoOnWithWhatIsNoMapOfItsOwn) {
   write_log(path("slices.lcm"), messages_of(wavy_session(3, 100)));
   const std::string log = "--log " + path("slices.lcm") + " --out " + path("out");
-  ASSERT_EQ(run(log + " --save " + path("map.kseg")).exit_code, 0);
+  ASSERT_EQ(run(log + " --save " + path("out") + "/new/map.kseg").exit_code, 0);
+  std::filesystem::rename(path("out") + "/new/map.kseg", path("map.kseg"));
   std::filesystem::remove_all(path("out"));
   const auto refusal = [&](const std::string& arguments) {
     const auto result = run(log + " " + arguments);
@@ -291,7 +292,6 @@ TEST_F(SegmenterProgram, RefusesToGoOnWithWhatIsNoMapOfItsOwn) {
               HasSubstr("was saved with --mode exact"));
   EXPECT_THAT(refusal("--resume " + path("absent.kseg")), HasSubstr("absent.kseg"));
   EXPECT_THAT(refusal("--resume " + path("slices.lcm")), HasSubstr("is no saved segment map"));
-  EXPECT_THAT(refusal("--save " + path("absent") + "/map.kseg"), HasSubstr("there is no folder"));
   std::filesystem::resize_file(path("map.kseg"), std::filesystem::file_size(path("map.kseg")) - 1);
   EXPECT_THAT(refusal("--resume " + path("map.kseg")), HasSubstr("cut off or damaged"));
 }
@@ -332,7 +332,7 @@ class Listener {
 
   template <class Condition>
   bool hears(const Condition& condition) {
-    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(15);
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
     while (!condition() && std::chrono::steady_clock::now() < deadline) {
       bus_.handle(std::chrono::milliseconds(100));
     }
@@ -390,7 +390,7 @@ TEST_F(SegmenterOnTheBus, PublishesUpdatesAndStatusUntilTheFinalSlice) {
 
 TEST_F(SegmenterOnTheBus, SegmentsEverySliceOfABurstHoweverSlowEngineAndFilesAre) {
   const TemporaryFolder folder;
-  const auto slices = wavy_session(80, 300);
+  const auto slices = wavy_session(50, 300);
   SegmenterProcess::Config config = on_the_bus(folder, "batch");  // all of the map for each slice
   config.processor.write_every = 1;
   Listener listener(config);
@@ -399,7 +399,7 @@ TEST_F(SegmenterOnTheBus, SegmentsEverySliceOfABurstHoweverSlowEngineAndFilesAre
     publisher.publish(slice);
   }
   EXPECT_EQ(listener.hear_the_end(), 0);
-  EXPECT_EQ(listener.status->slices_segmented, 80);
+  EXPECT_EQ(listener.status->slices_segmented, 50);
   EXPECT_EQ(listener.status->lag_slices, 0);
   EXPECT_EQ(listener.status->chunks_missing, 0);
   EXPECT_EQ(labels_in(folder / "segments.ply"), listener.mirror.labels());
