@@ -20,14 +20,12 @@ namespace kintsugi::segmenter {
 
 /// Threads that do not wait for each other, each in one stage of a slice's way:
 ///   receiving   decodes and joins chunks, from the bus or from a log as fast as it can be read
-///   working     drops duplicates, puts slices in order, finds neighbours, runs the engine
+///   working     drops duplicates, puts slices in order, runs the engine, which looks for the
+///               neighbours of the next slice meanwhile
 ///   publishing  (the publisher's) encodes updates and sends them at its pace
 ///   writing     (the writer's) puts copies of the map into files
 /// Between two stages lies a queue without a bound: a slice is never dropped, however far behind
 /// the engine is. run() itself publishes the status, the lag in it, and watches for the end.
-///
-/// Work on a slice that needs nothing of the map could have a stage of its own, between SliceQueue
-/// and SliceProcessor.
 class SegmenterProcess {
  public:
   struct Config {
