@@ -39,7 +39,7 @@ EdgesByThread find_edges(const PointRows& rows, const WeightRange& range, const 
     rows.for_each_pair(row, keep, [&](PointRows::Slot a, PointRows::Slot b) {
       const PointRows::Point& p = rows.points()[a];
       const PointRows::Point& q = rows.points()[b];
-      const float weight = edge_weight_below(range.to, p, q);
+      const float weight = edge_weight(p, q);
       if (weight >= range.from && weight < range.to) {
         edges.add({weight, std::min(p.index, q.index), std::max(p.index, q.index)});
       }

@@ -1,7 +1,8 @@
 #pragma once
 
 #include <algorithm>
-#include <limits>
+#include <array>
+#include <cstddef>
 
 #include "lcmtypes/messages.hpp"
 
@@ -33,29 +34,23 @@ float directed_edge_weight(const Point& i, const Point& j) {
 /// The weight of the undirected edge, the smaller of both directions. Algorithm 2 inserts the two;
 /// the smaller alone gives the same partition, because an edge is either joined at its first chance
 /// or one of its sides has frozen for good.
-///
-/// A weight that is not below `limit` may come out as another one that is not: that saves time.
 template <typename Point>
-[[gnu::always_inline]] inline float edge_weight_below(double limit, const Point& a,
-                                                      const Point& b) {
+float edge_weight(const Point& a, const Point& b) {
   // What the directions share is computed once: c is the same to the bit, and p_a - p_b is
   // -(p_b - p_a) exactly.
   const double c = normal_difference(a, b);
-  const auto flat = static_cast<float>(c);
-  const auto convex = static_cast<float>(c * c);
-  if (std::min(flat, convex) >= limit) return flat;
   const double dx = static_cast<double>(b.x) - a.x;
   const double dy = static_cast<double>(b.y) - a.y;
   const double dz = static_cast<double>(b.z) - a.z;
   const bool is_convex_ab = dot_product(dx, dy, dz, b.nx, b.ny, b.nz) > 0.0;
   const bool is_convex_ba = dot_product(dx, dy, dz, a.nx, a.ny, a.nz) < 0.0;
-  return std::min(is_convex_ab ? convex : flat, is_convex_ba ? convex : flat);
-}
-
-/// The weight of the undirected edge, however large.
-template <typename Point>
-float edge_weight(const Point& a, const Point& b) {
-  return edge_weight_below(std::numeric_limits<double>::infinity(), a, b);
+  // Of one direction squared and one not, the smaller. By arithmetic: on a noisy surface there is
+  // no guessing which way a branch would go.
+  const auto either =
+      static_cast<std::size_t>(is_convex_ab) | static_cast<std::size_t>(is_convex_ba);
+  const auto both = static_cast<std::size_t>(is_convex_ab) & static_cast<std::size_t>(is_convex_ba);
+  const std::array<float, 2> weights = {static_cast<float>(c), static_cast<float>(c * c)};
+  return weights[c <= 1.0 ? either : both];
 }
 
 }  // namespace kintsugi::segmenter

@@ -27,7 +27,8 @@ GridIndex::GridIndex(const PointCloud& cloud, float radius_m)
 
 GridIndex::~GridIndex() = default;
 
-GridIndex::Block& GridIndex::make_block(const Cell& block) {
+/// Makes the block if there is none.
+GridIndex::Block& GridIndex::block_at(const Cell& block) {
   std::unique_ptr<Tile>& tile = tiles_[tile_of(block)];
   if (!tile) tile = std::make_unique<Tile>();
   std::unique_ptr<Block>& place = tile->blocks[place_in_tile(block)];
@@ -44,7 +45,7 @@ void GridIndex::insert(std::span<const PointIndex> points) {
   std::vector<Block*> touched;
   for (const PointIndex i : points) {
     const CloudPoint& p = cloud_[i];
-    Block& block = make_block(block_of(cell_of(p.x, p.y, p.z)));
+    Block& block = block_at(block_of(cell_of(p.x, p.y, p.z)));
     if (block.num_arrivals++ == 0) touched.push_back(&block);
     block_of_point.push_back(&block);
   }
@@ -80,7 +81,7 @@ void GridIndex::remove(std::span<const PointIndex> points) {
 void GridIndex::remove(PointIndex point) {
   const CloudPoint& p = cloud_[point];
   const Cell cell = cell_of(p.x, p.y, p.z);
-  Block& block = make_block(block_of(cell));
+  Block& block = block_at(block_of(cell));
   const std::int32_t row = row_in_block(cell.y, cell.z);
   const auto first = block.entries.begin() + block.first[row];
   const auto last = block.entries.begin() + block.first[row + 1];

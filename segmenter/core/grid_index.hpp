@@ -91,7 +91,7 @@ class GridIndex final : public NeighbourIndex {
     const auto found = tiles_.find(tile);
     return found == tiles_.end() ? nullptr : found->second.get();
   }
-  Block& make_block(const Cell& block);
+  Block& block_at(const Cell& block);
   void sort_by_row(Block& block, std::vector<Entry>& scratch) const;
   void remove(PointIndex point);
 

@@ -91,6 +91,24 @@ PointRows::PointRows(const PointCloud& cloud, std::span<const PointIndex> points
   rows_.push_back({kNowhere, kNowhere, static_cast<Slot>(keys.size())});
 }
 
+std::array<PointRows::Window, 5> PointRows::windows_of(std::size_t row) const {
+  std::array<Window, 5> windows;
+  std::size_t num_windows = 0;
+  const auto add = [&](std::size_t other) {
+    const Slot first = rows_[other].first;
+    windows.at(num_windows++) = {.begin = first, .end = first, .limit = rows_[other + 1].first};
+  };
+  const std::int32_t y = rows_[row].y;
+  const std::int32_t z = rows_[row].z;
+  add(row);
+  if (rows_[row + 1].z == z && rows_[row + 1].y == y + 1) add(row + 1);
+  for (std::size_t above = find_row(z + 1, y - 1);
+       rows_[above].z == z + 1 && rows_[above].y <= y + 1; ++above) {
+    add(above);
+  }
+  return windows;
+}
+
 /// The first row that is not before (z, y).
 std::size_t PointRows::find_row(std::int32_t z, std::int32_t y) const {
   const auto found = std::partition_point(rows_.begin(), rows_.end(), [&](const Row& row) {

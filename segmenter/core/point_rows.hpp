@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -43,22 +45,21 @@ class PointRows {
     std::int32_t y;
     Slot first;
   };
-  /// The part of a row that is within reach in x. Moves with the point it is asked for.
+  /// The part of a row that is within reach in x. Slides along with the point it is asked for.
   struct Window {
-    Slot begin;
-    Slot end;
-    Slot limit;
+    Slot begin = 0;
+    Slot end = 0;
+    Slot limit = 0;  ///< end of the row
   };
 
+  /// Of the rows that `row` makes pairs with, itself first: all that are not before it.
+  std::array<Window, 5> windows_of(std::size_t row) const;
   bool is_within_reach(float from_x, float to_x) const { return to_x - from_x < reach_m_; }
   void slide(Window& window, float x) const {
     while (window.begin < window.limit && !is_within_reach(points_[window.begin].x, x)) {
       ++window.begin;
     }
-    extend(window, x);
-  }
-  void extend(Window& window, float x) const {
-    if (window.end < window.begin) window.end = window.begin;
+    window.end = std::max(window.end, window.begin);
     while (window.end < window.limit && is_within_reach(x, points_[window.end].x)) ++window.end;
   }
   std::size_t find_row(std::int32_t z, std::int32_t y) const;
@@ -71,30 +72,20 @@ class PointRows {
 
 template <typename Keep, typename Fn>
 void PointRows::for_each_pair(std::size_t row, const Keep& keep, const Fn& fn) const {
-  // Half of the rows around are enough: the next one, and the three above in z.
-  Window windows[4];
-  int num_windows = 0;
-  const auto add_window = [&](std::size_t other) {
-    const Slot first = rows_[other].first;
-    windows[num_windows++] = {first, first, rows_[other + 1].first};
-  };
-  const auto [z, y, first_slot] = rows_[row];
-  const Slot last_slot = rows_[row + 1].first;
-  if (rows_[row + 1].z == z && rows_[row + 1].y == y + 1) add_window(row + 1);
-  for (std::size_t above = find_row(z + 1, y - 1);
-       above < num_rows() && rows_[above].z == z + 1 && rows_[above].y <= y + 1; ++above) {
-    add_window(above);
-  }
-
+  std::array<Window, 5> windows = windows_of(row);
   std::vector<Slot> near;
-  Window own{first_slot, first_slot, last_slot};
-  for (Slot a = first_slot; a < last_slot; ++a) {
+  for (Slot a = rows_[row].first; a < rows_[row + 1].first; ++a) {
     const Point& p = points_[a];
+    std::size_t num_candidates = 0;
+    windows[0].begin = a + 1;
+    for (Window& window : windows) {
+      slide(window, p.x);
+      num_candidates += window.end - window.begin;
+    }
+    if (near.size() < num_candidates) near.resize(2 * num_candidates);
+
     std::size_t num_near = 0;
-    const auto scan = [&](const Window& window) {
-      if (near.size() < num_near + (window.end - window.begin)) {
-        near.resize(2 * (num_near + (window.end - window.begin)));
-      }
+    for (const Window& window : windows) {
       for (Slot b = window.begin; b < window.end; ++b) {
         if (!keep(a, b)) continue;
         const float dx = p.x - points_[b].x;
@@ -104,13 +95,6 @@ void PointRows::for_each_pair(std::size_t row, const Keep& keep, const Fn& fn) c
         near[num_near] = b;
         num_near += static_cast<std::size_t>((dx * dx + dy * dy) + dz * dz < squared_radius_m2_);
       }
-    };
-    own.begin = a + 1;
-    extend(own, p.x);
-    scan(own);
-    for (int k = 0; k < num_windows; ++k) {
-      slide(windows[k], p.x);
-      scan(windows[k]);
     }
     for (std::size_t k = 0; k < num_near; ++k) fn(a, near[k]);
   }

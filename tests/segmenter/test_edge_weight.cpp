@@ -1,4 +1,7 @@
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <random>
 
 #include <gtest/gtest.h>
 
@@ -61,6 +64,29 @@ TEST(EdgeWeight, OppositeNormalsWeighTwo) {
   const CloudPoint i = make_point(0, 0, 0, 0, 0, 1);
   const CloudPoint j = make_point(0.01, 0, 0, 0, 0, -1);
   EXPECT_EQ(edge_weight(i, j), 2.0F);
+}
+
+TEST(EdgeWeight, UndirectedIsTheSmallerDirectionToTheBit) {
+  std::mt19937 generator(3);
+  std::normal_distribution<double> normal;
+  std::array<int, 2> num_steep{};  // c <= 1, c > 1
+  for (int k = 0; k < 20000; ++k) {
+    // From nearly parallel normals to unrelated ones.
+    const double spread = std::pow(10.0, -0.5 * (k % 9)) * 2.0;
+    const auto random_point = [&] {
+      return make_point(0.01 * normal(generator), 0.01 * normal(generator),
+                        0.01 * normal(generator), spread * normal(generator),
+                        spread * normal(generator), 1.0 + spread * normal(generator));
+    };
+    const CloudPoint a = random_point();
+    const CloudPoint b = random_point();
+    const float smaller = std::min(directed_edge_weight(a, b), directed_edge_weight(b, a));
+    EXPECT_EQ(edge_weight(a, b), smaller);
+    EXPECT_EQ(edge_weight(b, a), smaller);
+    ++num_steep.at(normal_difference(a, b) > 1.0 ? 1 : 0);
+  }
+  EXPECT_GT(num_steep[0], 1000);
+  EXPECT_GT(num_steep[1], 1000);
 }
 
 TEST(EdgeWeight, IsComputedInDoubleAndRoundedOnce) {
