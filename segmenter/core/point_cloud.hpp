@@ -5,6 +5,7 @@
 #include <optional>
 #include <set>
 #include <span>
+#include <tuple>
 #include <vector>
 
 #include "lcmtypes/messages.hpp"
@@ -22,7 +23,10 @@ struct PointId {
   std::int32_t slice_id = 0;
   std::int32_t index = 0;  ///< in the slice as it was received, rejected points included
 
-  auto operator<=>(const PointId&) const = default;
+  bool operator==(const PointId&) const = default;
+  bool operator<(const PointId& other) const {
+    return std::tie(slice_id, index) < std::tie(other.slice_id, other.index);
+  }
 };
 
 /// A point that was there before and has another place now: its PointId stays.
@@ -104,6 +108,8 @@ class PointCloud {
   const SliceRecord& slice_of(PointIndex i) const;
   PointId id_of(PointIndex i) const;
   std::int64_t num_rejected() const { return num_rejected_; }
+  /// Memory of the points.
+  std::size_t bytes() const { return points_W_.bytes(); }
 
  private:
   /// Where the accepted points of slices_[slice] begin.

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <span>
+#include <tuple>
 #include <vector>
 
 #include "lcmtypes/messages.hpp"
@@ -23,7 +24,9 @@ struct PointRank {
   std::int32_t slice_id = INT32_MAX;
   PointIndex point = UINT32_MAX;
 
-  auto operator<=>(const PointRank&) const = default;
+  bool operator<(const PointRank& other) const {
+    return std::tie(slice_id, point) < std::tie(other.slice_id, other.point);
+  }
 };
 
 /// A component that changed, with the id it had most of and the id it gets.

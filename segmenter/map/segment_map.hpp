@@ -64,6 +64,11 @@ class SegmentMap {
   /// True when the final slice and every earlier one are in the map.
   [[nodiscard]] bool is_complete() const;
 
+  /// Memory of points, engine, ids and statistics.
+  [[nodiscard]] std::size_t bytes() const {
+    return cloud_.bytes() + engine_->bytes() + ids_.bytes() + statistics_.bytes();
+  }
+
   [[nodiscard]] const PointCloud& cloud() const { return cloud_; }
   [[nodiscard]] const SegmentIds& segment_ids() const { return ids_; }
   [[nodiscard]] const SegmentStatisticsTable& statistics() const { return statistics_; }

@@ -19,8 +19,9 @@ struct SegmentMapConfig {
   void validate() const;
 };
 
-/// Everything that the later behaviour of a SegmentMap depends on: one made from its state tells
-/// the same as the map itself from then on. A copy: 36 bytes a point.
+/// Everything that decides what a SegmentMap will tell: one made from its state tells the same as
+/// the map itself from then on. A copy: 36 bytes a point. Of the config, a file of it leaves out
+/// what decides on time alone (rebuild_share and the like) and audit.
 struct SegmentMapState {
   SegmentMapConfig config;
   std::int64_t session = 0;  ///< of the segmenter

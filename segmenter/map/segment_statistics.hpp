@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <span>
+#include <tuple>
 #include <vector>
 
 #include "lcmtypes/messages.hpp"
@@ -57,7 +58,10 @@ class SegmentStatisticsTable {
     std::uint32_t segment_id;
     std::uint32_t block;
 
-    auto operator<=>(const Touched&) const = default;
+    bool operator==(const Touched&) const = default;
+    bool operator<(const Touched& other) const {
+      return std::tie(segment_id, block) < std::tie(other.segment_id, other.block);
+    }
   };
 
   Sums& sums_of(std::uint32_t segment_id);
