@@ -1,9 +1,9 @@
 // The engines and their stages on a map of 1 M points, one wavy sheet of 10 m x 10 m that comes in
-// strips, or on a map of one's own (see read_map()):
+// strips; on a generated map of some size (generate_map()); or on one's own (read_map()):
 //
 //   build/release/bench/bench_segmenter --benchmark_repetitions=5
-//   --benchmark_report_aggregates_only KINTSUGI_BENCH_MAP=map.ply
-//   build/release/bench/bench_segmenter
+//   KINTSUGI_BENCH_POINTS=4000000 build/release/bench/bench_segmenter
+//   KINTSUGI_BENCH_MAP=map.ply build/release/bench/bench_segmenter
 
 #include <algorithm>
 #include <chrono>
@@ -22,7 +22,7 @@
 #include "segmenter/core/grid_index.hpp"
 #include "segmenter/core/point_rows.hpp"
 #include "segmenter/core/segment_ids.hpp"
-#include "tests/bench/map_generator_file.hpp"
+#include "tests/bench/map_generator.hpp"
 #include "tests/segmenter/random_clouds.hpp"
 
 namespace kintsugi::segmenter {
@@ -45,8 +45,11 @@ Slices sheet_in_strips() {
 
 const Slices& map_slices() {
   static const Slices slices = [] {
-    const char* const path = std::getenv("KINTSUGI_BENCH_MAP");
-    return path == nullptr ? sheet_in_strips() : bench::read_map(path);
+    if (const char* const path = std::getenv("KINTSUGI_BENCH_MAP")) return bench::read_map(path);
+    if (const char* const points = std::getenv("KINTSUGI_BENCH_POINTS")) {
+      return bench::generate_map({.num_points = std::stoul(points)});
+    }
+    return sheet_in_strips();
   }();
   return slices;
 }
