@@ -85,11 +85,12 @@ class NoisyField::Samples {
 
  private:
   static std::size_t index(const Vector3i& at) {
-    return static_cast<std::size_t>((at.x() * kSide + at.y()) * kSide + at.z());
+    const Eigen::Matrix<std::size_t, 3, 1> p = at.cast<std::size_t>();
+    return (p.x() * kSide + p.y()) * kSide + p.z();
   }
 
   Vector3i first_;
-  std::array<float, kSide * kSide * kSide> values_{};
+  std::array<float, std::size_t{kSide} * kSide * kSide> values_{};
 };
 
 NoisyField::NoisyField(const synthetic::Scene& scene, double noise, std::uint32_t seed)

@@ -55,7 +55,8 @@ synthetic::Scene make_building(int num_rooms, std::uint32_t seed) {
   }
   for (int room = 0; room < 2 * rooms_per_side(num_rooms); ++room) {
     const int side = room % 2 == 0 ? 1 : -1;
-    const double x0 = kRoomWidth_m * (room / 2);
+    const int place = room / 2;  // along the corridor
+    const double x0 = kRoomWidth_m * place;
     add_room_walls(builder, x0, side);
     const double middle_y = side * (kSide_m + 0.5 * (kRoomDepth_m + kWall_m));
     synthetic::furnish(builder, kKinds[static_cast<std::size_t>(room) % kKinds.size()],

@@ -57,7 +57,7 @@ class ReadMap : public ::testing::Test {
  protected:
   std::filesystem::path write(const std::vector<std::uint64_t>& header,
                               const std::vector<float>& values) const {
-    const auto file = folder_.path() / "map.bin";
+    auto file = folder_.path() / "map.bin";
     std::ofstream out(file, std::ios::binary);
     out.write(reinterpret_cast<const char*>(header.data()),
               static_cast<std::streamsize>(8 * header.size()));
