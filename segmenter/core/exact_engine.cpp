@@ -5,6 +5,8 @@
 #include <optional>
 #include <utility>
 
+#include <oneapi/tbb/parallel_invoke.h>
+
 #include "segmenter/core/exact/bulk_build.hpp"
 
 namespace kintsugi::segmenter {
@@ -40,16 +42,24 @@ ExactEngine::~ExactEngine() = default;
 
 RunStatistics ExactEngine::update(const CloudChange& change) {
   RunStatistics statistics{.num_iterations = 1};
-  Stopwatch stopwatch;
   std::optional<std::vector<EdgeKey>> edges = edges_ahead_.take(change.added);
   if (!change.removed.empty()) edges.reset();
   const bool is_rebuilt = is_cheaper_to_rebuild(change);
-  take_over(change);
-  if (!is_rebuilt && !edges) edges = find_new_edges(change.added);
-  begin_to_look_ahead();
-  statistics.neighbours_ms = stopwatch.lap_ms();
-  if (is_rebuilt || !replay(change, std::move(*edges), statistics)) rebuild(change, statistics);
-  edges_ahead_.finish();
+  add_vertices(change);
+  if (is_rebuilt) {
+    // At once: neither needs the other.
+    oneapi::tbb::parallel_invoke([&] { update_index(change); },
+                                 [&] { rebuild(change, statistics); });
+  } else {
+    Stopwatch stopwatch;
+    forget_watches_of(change.removed);
+    update_index(change);
+    if (!edges) edges = find_new_edges(change.added);
+    begin_to_look_ahead();
+    statistics.neighbours_ms = stopwatch.lap_ms();
+    if (!replay(change, std::move(*edges), statistics)) rebuild(change, statistics);
+    edges_ahead_.finish();
+  }
   return statistics;
 }
 
@@ -69,19 +79,26 @@ bool ExactEngine::is_cheaper_to_rebuild(const CloudChange& change) const {
   return num_changed > config_.rebuild_share * static_cast<double>(num_points_);
 }
 
-/// Vertices, the added ones touched, and index; the watches at those that are gone are taken out.
-void ExactEngine::take_over(const CloudChange& change) {
-  edges_of_.for_each(change.removed, [&](PointIndex x, PointIndex neighbour, const EdgeKey&) {
-    state_.watches.erase(neighbour, x);
-  });
-  index_->remove(change.removed);
-  index_->insert(change.added);
+/// The added ones are touched.
+void ExactEngine::add_vertices(const CloudChange& change) {
   state_.vertices.resize(cloud_.size());
   for (const PointIndex x : change.added) {
     state_.vertices.reset(x);
     state_.vertices[x].is_touched = 1;
   }
   num_points_ += std::ssize(change.added) - std::ssize(change.removed);
+}
+
+/// Those that stand at the other ends of their edges; the index still has the points.
+void ExactEngine::forget_watches_of(std::span<const PointIndex> removed) {
+  edges_of_.for_each(removed, [&](PointIndex x, PointIndex neighbour, const EdgeKey&) {
+    state_.watches.erase(neighbour, x);
+  });
+}
+
+void ExactEngine::update_index(const CloudChange& change) {
+  index_->remove(change.removed);
+  index_->insert(change.added);
 }
 
 /// Each edge of the added points once; those are touched.

@@ -55,7 +55,9 @@ class ExactEngine final : public SegmentationEngine {
 
  private:
   bool is_cheaper_to_rebuild(const CloudChange& change) const;
-  void take_over(const CloudChange& change);
+  void add_vertices(const CloudChange& change);
+  void forget_watches_of(std::span<const PointIndex> removed);
+  void update_index(const CloudChange& change);
   std::vector<exact::EdgeKey> find_new_edges(std::span<const PointIndex> added) const;
   void begin_to_look_ahead();
   bool replay(const CloudChange& change, std::vector<exact::EdgeKey> edges,

@@ -107,8 +107,7 @@ void GridIndex::visit(std::span<const PointIndex> points, const Visit& visit_poi
   }
 }
 
-void GridIndex::visit_places(std::span<const CloudPoint> places_W,
-                             const Visit& visit_place) const {
+void GridIndex::visit_places(std::span<const CloudPoint> places_W, const Visit& visit_place) const {
   Cursor cursor(*this);
   std::vector<PointIndex> neighbours;
   for (PointIndex k = 0; k < places_W.size(); ++k) {

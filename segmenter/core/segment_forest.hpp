@@ -49,6 +49,9 @@ class SegmentForest {
     return point;
   }
 
+  /// Points of the segment of `root`, also after it has been joined to another.
+  std::uint32_t size_at(PointIndex root) const { return nodes_[root].size; }
+
   /// theta of the segment of `root`, a result of find().
   double theta_at(PointIndex root) const { return nodes_[root].theta; }
 
@@ -75,7 +78,7 @@ class SegmentForest {
 
  private:
   struct Node {
-    double theta;  ///< of the set; valid at roots, as size is
+    double theta;  ///< of the set that it is, or was, the root of; as is size
     std::uint32_t size;
     PointIndex parent;  ///< itself: a root
   };

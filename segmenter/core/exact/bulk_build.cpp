@@ -4,10 +4,15 @@
 #include <utility>
 #include <vector>
 
+#include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/parallel_for.h>
+
 #include "segmenter/core/felzenszwalb.hpp"
 
 namespace kintsugi::segmenter::exact {
 namespace {
+
+constexpr std::size_t kPointsPerTask = 8192;
 
 /// Writes down what happens. The children of a host are a list meanwhile, the last one first:
 /// `history` of the host begins it, `left` goes on.
@@ -21,6 +26,7 @@ class Recorder final : public JoinObserver {
     state_.edges.set_owner(id, guest);
     state_.edges.link(id);
     state_.vertices.set_absorbed(guest, host, id, key.weight_bits);
+    state_.vertices[guest].size = forest_.size_at(guest);
     state_.vertices[guest].left = std::exchange(state_.vertices[host].history, guest);
   }
 
@@ -37,6 +43,7 @@ class Recorder final : public JoinObserver {
   State& state_;
 };
 
+/// Makes a balanced tree of the children that the recorder has listed.
 void build_history(PointIndex host, State& state, std::vector<PointIndex>& children) {
   children.clear();
   PointIndex child = std::exchange(state.vertices[host].history, kNone);
@@ -55,16 +62,13 @@ BatchStatistics build_state(const PointCloud& cloud, std::span<const PointIndex>
   const BatchStatistics statistics =
       segment_points(cloud, points, radius_m, rule.threshold + rule.scale, forest, recorder);
 
-  // Edges have their ids in the order of the joins: whoever is absorbed has made its own before.
-  std::vector<PointIndex> children;
-  for (TreeEdgeId id = 0; id < statistics.num_joins; ++id) {
-    const PointIndex guest = state.edges.owner(id);
-    build_history(guest, state, children);
-    state.vertices[guest].size = state.forest.history().total(guest);
-  }
-  for (const PointIndex x : points) {
-    if (state.vertices.is_root(x)) build_history(x, state, children);
-  }
+  using Range = oneapi::tbb::blocked_range<std::size_t>;
+  oneapi::tbb::parallel_for(Range(0, points.size(), kPointsPerTask), [&](const Range& range) {
+    std::vector<PointIndex> children;
+    for (const PointIndex x : points.subspan(range.begin(), range.size())) {
+      if (state.vertices[x].history != kNone) build_history(x, state, children);
+    }
+  });
   return statistics;
 }
 
