@@ -79,6 +79,17 @@ TEST(JoinRule, CapacityOfEqualWeightsIsUnbounded) {
   }
 }
 
+TEST(JoinRule, CapacityOfEqualWeightsIsBoundedWhereKVanishesBesideThem) {
+  // theta of size points is the weight itself once k / size is below half its last bit.
+  fuzz::Random random(4);
+  for (int n = 0; n < 1000; ++n) {
+    const JoinRule rule{kT, random.log_uniform(1e-24, 1e-8)};
+    const auto weight = static_cast<float>(random.log_uniform(1e-6, 1e-3));
+    expect_capacity_is_largest(rule, weight, weight);
+  }
+  EXPECT_EQ((JoinRule{kT, 1e-22}.capacity(1e-4F, 1e-4F)), 1);
+}
+
 TEST(JoinRule, CapacityIsLargestForRandomWeights) {
   fuzz::Random random(1);
   for (int n = 0; n < 20'000; ++n) {

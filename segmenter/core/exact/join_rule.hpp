@@ -21,17 +21,32 @@ struct JoinRule {
   /// The most points that a component may have after a join of `weight` to be alive at an edge of
   /// `next_weight` (>= weight); at least 1, though one point is not a join.
   std::int32_t capacity(float weight, float next_weight) const {
-    if (next_weight <= weight) return kUnbounded;
     const double w = next_weight;
+    const auto is_alive = [&](double size) {
+      return w < static_cast<double>(weight) + scale / size;
+    };
+    if (next_weight <= weight) return is_alive(kUnbounded) ? kUnbounded : largest(is_alive);
     const double estimate = scale / (w - static_cast<double>(weight));
     if (estimate >= kUnbounded - 2) return kUnbounded;
     // The division is rounded; the predicate itself decides.
     auto size = static_cast<std::uint32_t>(estimate) + 1;
-    while (w < static_cast<double>(weight) + scale / (size + 1.0)) ++size;
-    while (size > 1 && !(w < static_cast<double>(weight) + scale / static_cast<double>(size))) {
-      --size;
-    }
+    while (is_alive(size + 1.0)) ++size;
+    while (size > 1 && !is_alive(size)) --size;
     return static_cast<std::int32_t>(size);
+  }
+
+ private:
+  /// Where k / size vanishes beside a weight, theta is that weight, and even an equal one is too
+  /// much: the largest size, at least 1, for which is_alive(size); not so for kUnbounded.
+  template <typename IsAlive>
+  static std::int32_t largest(const IsAlive& is_alive) {
+    std::int32_t largest = 1;
+    std::int32_t too_large = kUnbounded;
+    while (too_large - largest > 1) {
+      const std::int32_t middle = largest + (too_large - largest) / 2;
+      (is_alive(middle) ? largest : too_large) = middle;
+    }
+    return largest;
   }
 };
 
