@@ -332,5 +332,15 @@ TEST(JoinHistoryDepth, IsLogarithmicWhateverTheOrderOfInsertion) {
   }
 }
 
+TEST(JoinHistoryDepth, StaysLogarithmicWhenMostJoinsAreTakenBack) {
+  Histories histories(kManyChildren);
+  fuzz::Random random(2);
+  while (histories.has_free()) histories.insert(0, static_cast<float>(1e-3 * random.unit()), 1);
+  while (histories.joins(0).size() > kManyChildren / 10) {
+    histories.erase(0, random.below(histories.joins(0).size()));
+  }
+  EXPECT_LE(histories.expect_sound(0), kDeepest);
+}
+
 }  // namespace
 }  // namespace kintsugi::segmenter::exact

@@ -162,6 +162,26 @@ TEST(Replay, CostsWhatTheSmallerSideHas) {
   EXPECT_LE(session.names().changed().size(), 4U);
 }
 
+TEST(Replay, AFrozenComponentBlocksAllItsWatchesAtOnce) {
+  // A row that freezes at about 150, and beside it points it cannot join. When it grows, one look
+  // at its first watch tells as much.
+  fuzz::WeightedLattice lattice;
+  const std::vector<double> weights(20, 100e-6);
+  lattice.add_row(0, {1, 0}, weights);
+  for (PointIndex x = 0; x <= 20; x += 2) lattice.add({static_cast<int>(x), 1}, x, 900e-6);
+  const PointIndex newcomer = lattice.add({-1, 0}, 0, 100e-6);
+  Session session(lattice.points());
+  Points others(newcomer);
+  std::iota(others.begin(), others.end(), 0);
+  session.update(others, {});
+  EXPECT_EQ(session.state().watches.size(), 11U);
+  session.update({newcomer}, {});
+  EXPECT_TRUE(are_one(session, newcomer, 20));
+  EXPECT_LE(session.replay().num_events(), 3);
+  EXPECT_EQ(session.state().watches.size(), 11U);
+  session.expect_invariants();
+}
+
 /// Points come, go, do both at once, and the state is built anew at times.
 class ReplaySession : public ::testing::TestWithParam<std::uint64_t> {
  protected:
