@@ -12,7 +12,6 @@
 namespace kintsugi::segmenter::exact {
 namespace {
 
-using ::testing::Each;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 using ::testing::UnorderedElementsAre;
