@@ -454,7 +454,8 @@ TEST(SegmentIds, DoNotDependOnTheNamesThatAnEngineGives) {
   Components permutation;
   for (int step = 0; step < 25; ++step) {
     const std::int32_t slice = step < 10 ? step : static_cast<std::int32_t>(random() % 10);
-    std::vector<CloudPoint> part(points.begin() + slice * 200, points.begin() + slice * 200 + 200);
+    const auto of_slice = std::span(points).subspan(static_cast<std::size_t>(slice) * 200, 200);
+    std::vector<CloudPoint> part(of_slice.begin(), of_slice.end());
     for (CloudPoint& point : part) point.z += 0.01F * static_cast<float>(random() % 2);
     step < 10 ? cloud.add_slice(slice, part) : cloud.replace_slice(slice, part);
     const CloudChange change = cloud.take_change();
