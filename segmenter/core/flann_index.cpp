@@ -87,7 +87,7 @@ void FlannIndex::remove(std::span<const PointIndex> points) {
   for (const PointIndex i : points) leaving[tile_at(i).get()].insert(i);
   std::vector<Tile*> dirty;
   for (const auto& [tile, gone] : leaving) {
-    std::erase_if(tile->points, [&](PointIndex i) { return gone.contains(i); });
+    std::erase_if(tile->points, [&gone = gone](PointIndex i) { return gone.contains(i); });
     tile->tree.reset();
     dirty.push_back(tile);
   }
