@@ -77,7 +77,8 @@ class SliceSequencer {
   /// The slice that pop() will give next if nothing else comes; nullptr when there is none, or when
   /// corrections come first.
   [[nodiscard]] const CloudSlice* upcoming() const {
-    return ready_.empty() || ready_.front().is_correction ? nullptr : &ready_.front().slices.front();
+    return ready_.empty() || ready_.front().is_correction ? nullptr
+                                                          : &ready_.front().slices.front();
   }
 
   /// Gives up the first gap when it is time to; returns it. Then pop() again.
