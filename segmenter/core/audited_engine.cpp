@@ -40,7 +40,7 @@ void AuditedEngine::compare() const {
   const std::vector<PointIndex> labels = canonical_labels(components);
   const std::vector<PointIndex> expected_labels = canonical_labels(expected);
   for (PointIndex i = 0; i < cloud_.size(); ++i) {
-    const auto theta_of = [i](const SegmentationEngine& engine, ComponentId component) {
+    const auto theta_of = [](const SegmentationEngine& engine, ComponentId component) {
       return component == kNoComponent ? 0.0 : engine.theta(component);
     };
     const double theta = theta_of(*engine_, components[i]);

@@ -66,6 +66,8 @@ class GrowingArray {
     resize(size);
     for (std::size_t i = old; i < size; ++i) data_[i] = value;
   }
+  /// Keeps the memory. New elements then are what they were before, until assigned.
+  void clear() { size_ = 0; }
   T& push_back(const T& value) {
     resize(size_ + 1);
     return back() = value;

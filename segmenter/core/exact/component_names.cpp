@@ -6,6 +6,8 @@
 #include <tuple>
 #include <utility>
 
+#include <oneapi/tbb/parallel_for.h>
+
 namespace kintsugi::segmenter::exact {
 namespace {
 
@@ -46,22 +48,31 @@ void ComponentNames::update_all(std::span<const PointIndex> removed) {
     place(vertices_[x]) = static_cast<std::uint32_t>(roots.size());
     roots.push_back(x);
   }
+  const std::vector<std::uint32_t> components = find_components();
   std::vector<Share> shares;
   for (PointIndex x = 0; x < vertices_.size(); ++x) {
-    if (vertices_[x].is_gone) continue;
-    const std::uint32_t component = place(vertices_[forest_.root(x)]);
-    if (shares.empty() || shares.back().component != component ||
+    if (components[x] == kNone) continue;
+    if (shares.empty() || shares.back().component != components[x] ||
         shares.back().old_name != names_[x]) {
-      shares.push_back({component, names_[x], 0});
+      shares.push_back({components[x], names_[x], 0});
     }
     ++shares.back().num_points;
   }
   const std::vector<ComponentId> new_names = give_names(std::move(shares), roots, removed);
   for (PointIndex x = 0; x < vertices_.size(); ++x) {
-    if (vertices_[x].is_gone) continue;
-    set_name(x, new_names[place(vertices_[forest_.root(x)])]);
+    if (components[x] != kNone) set_name(x, new_names[components[x]]);
   }
   for (const PointIndex root : roots) place(vertices_[root]) = 0;
+}
+
+/// For each point the place of its root; kNone for those that are gone.
+std::vector<std::uint32_t> ComponentNames::find_components() const {
+  std::vector<std::uint32_t> components(vertices_.size(), kNone);
+  oneapi::tbb::parallel_for(std::size_t{0}, components.size(), [&](std::size_t i) {
+    const auto x = static_cast<PointIndex>(i);
+    if (!vertices_[x].is_gone) components[x] = vertices_[forest_.root(x)].visit;
+  });
+  return components;
 }
 
 /// A piece is a touched vertex and what hangs on it down to the next touched ones: no point of it

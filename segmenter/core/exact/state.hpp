@@ -17,15 +17,7 @@ struct State {
   State& operator=(const State&) = delete;
 
   /// Forgets everything but who is gone.
-  void clear() {
-    for (PointIndex x = 0; x < vertices.size(); ++x) {
-      const bool is_gone = vertices[x].is_gone;
-      vertices.reset(x);
-      vertices[x].is_gone = is_gone;
-    }
-    edges.clear();
-    watches.clear();
-  }
+  void clear();
 
   std::size_t bytes() const { return vertices.bytes() + edges.bytes() + watches.bytes(); }
 

@@ -71,7 +71,7 @@ class TreeEdges {
 
   /// Forgets all, at the vertices excepted.
   void clear() {
-    edges_ = {};
+    edges_.clear();
     first_free_ = kNone;
   }
 

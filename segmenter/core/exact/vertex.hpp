@@ -85,8 +85,9 @@ class Vertices {
   }
   void set_host(PointIndex x, PointIndex host) { absorptions_[x].host = host; }
   void set_free(PointIndex x) { set_absorbed(x, kNone, kNone, UINT32_MAX); }
-  /// Memory is fetched ahead of its use.
+  /// Memory is fetched ahead of its use: the absorption, or the rest.
   void prefetch(PointIndex x) const { __builtin_prefetch(&absorptions_.data()[x]); }
+  void prefetch_record(PointIndex x) const { __builtin_prefetch(&records_.data()[x]); }
 
   std::size_t bytes() const { return records_.bytes() + absorptions_.bytes(); }
 

@@ -50,7 +50,7 @@ class WatchHeaps {
 
   /// Forgets all, at the vertices excepted.
   void clear() {
-    watches_ = {};
+    watches_.clear();
     first_free_ = kNone;
     num_free_ = 0;
   }
