@@ -93,9 +93,11 @@ void EvaluationConfig::validate() const {
   for (const std::string_view name : known) names.append(names.empty() ? "" : ", ").append(name);
   require(!modes.empty(), "modes is empty, must be at least one of: " + names);
   for (const std::string& mode : modes) {
+    const std::string quoted = "'" + mode + "'";
     require(std::find(known.begin(), known.end(), mode) != known.end(),
-            "mode is '" + mode + "', must be one of: " + names);
-    require(std::count(modes.begin(), modes.end(), mode) == 1, "mode '" + mode + "' comes twice");
+            std::string("mode is ").append(quoted).append(", must be one of: ").append(names));
+    require(std::count(modes.begin(), modes.end(), mode) == 1,
+            std::string("mode ").append(quoted).append(" comes twice"));
   }
   require(batch_every >= 0,
           "batch_every is " + std::to_string(batch_every) + ", must be >= 0 (0: chosen)");

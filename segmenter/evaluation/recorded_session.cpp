@@ -15,6 +15,7 @@ std::vector<const CloudSlice*> RecordedSession::newest_slices() const {
     for (const CloudSlice& slice : step.slices) by_id[slice.id] = &slice;
   }
   std::vector<const CloudSlice*> slices;
+  slices.reserve(by_id.size());
   for (const auto& [id, slice] : by_id) slices.push_back(slice);
   return slices;
 }

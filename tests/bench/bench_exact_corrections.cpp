@@ -155,6 +155,7 @@ double move_balls(EditableMap& map, Random& random) {
       const auto ball = map.points_where(
           [&](const CloudPoint& p) { return are_neighbours(p, centre, radius_m); });
       std::vector<CloudPoint> moved_W;
+      moved_W.reserve(ball.size());
       for (const PointIndex i : ball) moved_W.push_back(corrected(map[i], centre));
       row.add(ball.size(), map.edit(ball, moved_W));
     }
@@ -195,6 +196,7 @@ bool equals_batch(const EditableMap& map, const EngineConfig& config, bool measu
                   double max_ms) {
   const auto live = map.all_points();
   std::vector<CloudPoint> points_W;
+  points_W.reserve(live.size());
   for (const PointIndex i : live) points_W.push_back(map[i]);
   PointCloud cloud;
   cloud.add_slice(0, points_W);
