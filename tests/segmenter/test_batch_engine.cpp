@@ -98,6 +98,7 @@ TEST_P(BatchEngineTest, AfterRemovalsAsIfTheOtherPointsWereAll) {
 
       PointCloud remaining;
       std::vector<CloudPoint> points;
+      points.reserve(left.size());
       for (const PointIndex i : left) points.push_back(cloud[i]);
       remaining.add_slice(0, points);
       BatchEngine fresh(remaining, {.neighbour_search = GetParam()});

@@ -23,6 +23,7 @@ using ::testing::Not;
 
 std::vector<SliceGroup> steps_of(const std::vector<CloudSlice>& slices) {
   std::vector<SliceGroup> steps;
+  steps.reserve(slices.size());
   for (const CloudSlice& slice : slices) steps.push_back({{slice}, false});
   return steps;
 }
@@ -173,7 +174,7 @@ Replay replay_with_times(const std::string& mode, const std::vector<double>& tim
   for (const double time_ms : times_ms) {
     MeasuredRun& run = replay.runs.emplace_back();
     run.step = static_cast<std::int32_t>(replay.runs.size()) - 1;
-    run.map_points = 4 * (run.step + 1);
+    run.map_points = std::int64_t{4} * (run.step + 1);
     run.engine_ms = time_ms;
     run.engine_cpu_ms = 2.0 * time_ms;
     run.ids_ms = 0.5;
@@ -297,6 +298,7 @@ TEST(CumulativeV, IsTheShareOfSegmentsWithAtLeastV) {
 
 TEST(Thinned, KeepsLowestAndHighestInOrder) {
   std::vector<std::pair<double, double>> points;
+  points.reserve(1000);
   for (int i = 0; i < 1000; ++i) points.emplace_back(i, i == 333 ? 50.0 : i == 777 ? -50.0 : 0.0);
   const auto kept = thinned(points, 10);
   EXPECT_LE(kept.size(), 20U);

@@ -29,7 +29,9 @@ TEST(SlicesBehind, AreNoneForASegmenterThatIsFastEnough) {
 TEST(SlicesBehind, GrowByOneForEveryTwoSlicesAtHalfTheSpeed) {
   constexpr int kNumSlices = 100;
   Counts ready_us;
-  for (int i = 0; i < kNumSlices; ++i) ready_us.push_back(1'700'000'000'000'000 + 1'000 * i);
+  for (std::int64_t i = 0; i < kNumSlices; ++i) {
+    ready_us.push_back(1'700'000'000'000'000 + 1'000 * i);
+  }
   const Counts behind = slices_behind(ready_us, Times(kNumSlices, 2.0));
   for (int i = 0; i < kNumSlices; ++i) EXPECT_EQ(behind[i], (i + 1) / 2);
 }

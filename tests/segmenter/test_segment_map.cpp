@@ -164,6 +164,7 @@ TEST_P(SegmentMapTest, RandomCorrectionsReplayToTheMap) {
       group.insert_or_assign(slice.id, next);
     }
     std::vector<CloudSlice> given;
+    given.reserve(group.size());
     for (const auto& [id, slice] : group) given.push_back(slice);
     std::shuffle(given.begin(), given.end(), random);
     add(map, given);

@@ -107,7 +107,9 @@ class Scene {
   struct SliceKey {
     std::int32_t id = 0;
     std::int32_t revision = 0;
-    auto operator<=>(const SliceKey&) const = default;
+    bool operator<(const SliceKey& other) const {
+      return std::tie(id, revision) < std::tie(other.id, other.revision);
+    }
   };
   struct PendingRun {
     LabelRun run;

@@ -14,7 +14,9 @@ namespace kintsugi::segmenter::exact {
 /// Each segment has one heap of watches, lightest edge first, at a vertex that is called its
 /// holder (the root, between runs). A watch stands at the point that is the edge's end in the
 /// blocking segment, so that all watches of a point are found and can be taken out of whatever
-/// heap they are in. Pairing heaps: melding and insertion cost O(1), taking out O(log n) amortised.
+/// heap they are in. An edge that has come to lie inside a segment may stay watched until the
+/// segment is alive at it; it then joins nothing. Pairing heaps: melding and insertion cost O(1),
+/// taking out O(log n) amortised.
 class WatchHeaps {
  public:
   explicit WatchHeaps(Vertices& vertices) : vertices_(vertices) {}
