@@ -147,6 +147,9 @@ void SegmenterProcess::receive_from_log() {
   if (log.damage()) {
     fail(*log.damage());
   }
+  if (failure_) {
+    return;  // which says more than what it left undone; run() throws it
+  }
   if (counts().segmented == 0) {
     fail(name + ": holds no slice that could be read on " + channels::kCloudSlice);
   } else if (!counts().ended) {
@@ -170,7 +173,7 @@ void SegmenterProcess::work() {
   try {
     work_until_end();
   } catch (...) {
-    failure_ = std::current_exception();  // read after join()
+    failure_ = std::current_exception();  // read when working_ is false
     processor_.save();
   }
   working_ = false;
