@@ -147,6 +147,26 @@ TEST_P(NeighbourIndexTest, LatticeWhoseStepsAreExactlyTheRadius) {
   expect_as_brute_force(points);
 }
 
+TEST_P(NeighbourIndexTest, PlacesThatAreNoPointsHaveTheNeighboursOfAPointThere) {
+  const auto points = random_points(400, 0.0, 0.12, 9);
+  PointCloud cloud;
+  cloud.add_slice(0, points);
+  const auto index = make_neighbour_index(GetParam(), cloud, kRadius_m);
+  const auto all = cloud.take_change().added;
+  index->insert(std::span(all).first(200));
+  const std::span places_W = std::span(points).subspan(200);
+  PointIndex expected_place = 0;
+  index->visit_places(places_W, [&](PointIndex k, std::span<const PointIndex> neighbours) {
+    EXPECT_EQ(k, expected_place++);
+    std::vector<PointIndex> expected;
+    for (PointIndex i = 0; i < 200; ++i) {
+      if (are_neighbours(places_W[k], points[i], kRadius_m)) expected.push_back(i);
+    }
+    EXPECT_THAT(neighbours, ::testing::UnorderedElementsAreArray(expected));
+  });
+  EXPECT_EQ(expected_place, places_W.size());
+}
+
 TEST_P(NeighbourIndexTest, RadiusIsExclusive) {
   PointCloud cloud;
   const float below = std::nextafter(kRadius_m, 0.0F);

@@ -15,6 +15,7 @@
 #include "segmenter/segmenter_process.hpp"
 #include "tests/segmenter/program.hpp"
 #include "tests/segmenter/room_session.hpp"
+#include "tests/segmenter/session_log.hpp"
 #include "tests/segmenter/slice_session.hpp"
 #include "tests/support/private_bus.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -29,37 +30,12 @@ using ::testing::HasSubstr;
 using testing::LabelMirror;
 using ::testing::Not;
 using testing::wavy_session;
+using testing::write_log;
 
-// Chunks of the slices, as a mapper sends them.
-std::vector<std::pair<std::string, Bytes>> messages_of(const std::vector<CloudSlice>& slices) {
-  std::vector<std::pair<std::string, Bytes>> messages;
-  StreamPublisher::Config config;
-  config.rate_bytes_per_s = 1e12;  // nobody to overrun
-  config.max_chunk_bytes = 2000;   // several chunks for each slice
-  StreamPublisher publisher(
-      [&](const std::string& channel, ByteView message) {
-        messages.emplace_back(channel, Bytes(message.begin(), message.end()));
-      },
-      channels::kCloudSlice, slices[0].session, config);
-  for (const CloudSlice& slice : slices) {
-    publisher.publish(slice);
-  }
-  publisher.flush();
+testing::LogMessages messages_of(const std::vector<CloudSlice>& slices) {
+  testing::LogMessages messages;
+  testing::append_slices(slices, messages);
   return messages;
-}
-
-void write_log(const std::filesystem::path& path,
-               const std::vector<std::pair<std::string, Bytes>>& messages) {
-  lcm::LogFile log(path.string(), "w");
-  std::int64_t utime = 0;
-  for (const auto& [channel, message] : messages) {
-    lcm::LogEvent event;
-    event.timestamp = ++utime;
-    event.channel = channel;
-    event.datalen = static_cast<std::int32_t>(message.size());
-    event.data = const_cast<std::uint8_t*>(message.data());  // NOLINT: LCM does not write to it
-    log.writeEvent(&event);
-  }
 }
 
 TEST(SegmenterStreams, MapIsTheSameHoweverTheChunksArrive) {
