@@ -42,6 +42,7 @@ ExactEngine::~ExactEngine() = default;
 
 RunStatistics ExactEngine::update(const CloudChange& change) {
   RunStatistics statistics{.num_iterations = 1};
+  Stopwatch stopwatch;
   std::optional<std::vector<EdgeKey>> edges = edges_ahead_.take(change.added);
   if (!change.removed.empty()) edges.reset();
   const bool is_rebuilt = is_cheaper_to_rebuild(change);
@@ -51,7 +52,6 @@ RunStatistics ExactEngine::update(const CloudChange& change) {
     oneapi::tbb::parallel_invoke([&] { update_index(change); },
                                  [&] { rebuild(change, statistics); });
   } else {
-    Stopwatch stopwatch;
     forget_watches_of(change.removed);
     update_index(change);
     if (!edges) edges = find_new_edges(change.added);
@@ -60,6 +60,7 @@ RunStatistics ExactEngine::update(const CloudChange& change) {
     if (!replay(change, std::move(*edges), statistics)) rebuild(change, statistics);
     edges_ahead_.finish();
   }
+  next_slice_W_.clear();
   return statistics;
 }
 
@@ -69,9 +70,7 @@ void ExactEngine::look_ahead(std::span<const CloudPoint> slice_W) {
 
 /// While index and cloud stay as they are.
 void ExactEngine::begin_to_look_ahead() {
-  if (next_slice_W_.empty()) return;
-  edges_ahead_.start(next_slice_W_);
-  next_slice_W_.clear();
+  if (!next_slice_W_.empty()) edges_ahead_.start(next_slice_W_);
 }
 
 bool ExactEngine::is_cheaper_to_rebuild(const CloudChange& change) const {

@@ -19,12 +19,14 @@ class EdgesAhead {
   EdgesAhead(const PointCloud& cloud, const NeighbourIndex& index, float radius_m,
              double max_weight)
       : cloud_(cloud), index_(index), radius_m_(radius_m), max_weight_(max_weight) {}
-  ~EdgesAhead() { finish(); }
+  ~EdgesAhead() {
+    if (search_.valid()) search_.wait();  // what it throws is nobody's any more
+  }
 
   /// Begins to look for the edges among the points of a slice, and between them and the points in
   /// the index.
   void start(std::span<const CloudPoint> slice_W);
-  /// Waits for what start() began.
+  /// Waits for what start() began; throws what it threw.
   void finish();
 
   /// The edges, if `added`, points of the cloud, are those of start(); nothing otherwise. Nothing
