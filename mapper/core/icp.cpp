@@ -46,34 +46,31 @@ class Linearizer {
   BandSum sum_rows(int first, int last) const {
     BandSum sum;
     for (int v = first; v < last; ++v) {
-      for (int u = 0; u < frame_.points_C.cols; ++u) add_pixel(v, u, sum);
+      for (int u = 0; u < frame_.depth_m.cols; ++u) add_pixel(v, u, sum);
     }
     return sum;
   }
 
  private:
   void add_pixel(int v, int u, BandSum& sum) const {
-    const cv::Vec3f& point_C = frame_.points_C(v, u);
-    if (std::isnan(point_C[2])) return;
-    const cv::Vec3f& normal_C = frame_.normals_C(v, u);
-    if (std::isnan(normal_C[2])) return;
+    const Eigen::Vector3f normal_C = frame_.normal(v, u);
+    if (std::isnan(frame_.depth_m(v, u)) || std::isnan(normal_C.z())) return;
 
-    const Eigen::Vector3f p = R_VC_ * Eigen::Vector3f(point_C.val) + p_VC_;
+    const Eigen::Vector3f p = R_VC_ * frame_.point(v, u) + p_VC_;
     if (!(p.z() > 0.0F)) return;
     const float model_u = fx_ * p.x() / p.z() + cx_ + 0.5F;
     const float model_v = fy_ * p.y() / p.z() + cy_ + 0.5F;
-    if (!(model_u >= 0.0F && model_v >= 0.0F && model_u < model_.points_C.cols &&
-          model_v < model_.points_C.rows)) {
+    if (!(model_u >= 0.0F && model_v >= 0.0F && model_u < model_.depth_m.cols &&
+          model_v < model_.depth_m.rows)) {
       return;
     }
     const int row = static_cast<int>(model_v);
     const int col = static_cast<int>(model_u);
-    const Eigen::Vector3f m(model_.points_C(row, col).val);
-    const Eigen::Vector3f n(model_.normals_C(row, col).val);
-    const Eigen::Vector3f difference = m - p;
+    const Eigen::Vector3f n = model_.normal(row, col);
+    const Eigen::Vector3f difference = model_.point(row, col) - p;
     // Written so that a NaN on the model's side fails them.
     if (!(difference.squaredNorm() < max_squared_distance_)) return;
-    if (!((R_VC_ * Eigen::Vector3f(normal_C.val)).dot(n) > min_cosine_)) return;
+    if (!((R_VC_ * normal_C).dot(n) > min_cosine_)) return;
 
     // d(se3_retract(xi) p)/dxi = [I, -[p]x], so the prediction n . p changes by n for the
     // translation and by p x n for the rotation.
@@ -81,7 +78,7 @@ class Linearizer {
     const Eigen::Vector3d n_d = n.cast<double>();
     const Eigen::Vector3d moment = p_d.cross(n_d);
     const double residual_m = n_d.dot(difference.cast<double>());
-    const double sigma = depth_sigma_m(point_C[2]);
+    const double sigma = depth_sigma_m(frame_.depth_m(v, u));
     sum.add({n_d.x(), n_d.y(), n_d.z(), moment.x(), moment.y(), moment.z(), residual_m},
             1.0 / (sigma * sigma));
   }
@@ -129,7 +126,7 @@ Pose se3_retract(const Vector6d& xi) {
 NormalEquations linearize(const SurfaceMap& frame_C, const SurfaceMap& model_V, const Pose& X_VC,
                           const IcpGates& gates) {
   const Linearizer linearizer(frame_C, model_V, X_VC, gates);
-  const int rows = frame_C.points_C.rows;
+  const int rows = frame_C.depth_m.rows;
   std::vector<BandSum> bands((rows + kRowsPerBand - 1) / kRowsPerBand);
   tbb::parallel_for(std::size_t{0}, bands.size(), [&](std::size_t band) {
     const int first = static_cast<int>(band) * kRowsPerBand;

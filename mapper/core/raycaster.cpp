@@ -18,7 +18,7 @@
 namespace kintsugi::mapper {
 namespace {
 
-const cv::Vec3f kInvalid = cv::Vec3f::all(std::numeric_limits<float>::quiet_NaN());
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
 /// The pixels of a depth image under those of another size of the same view.
 class Guide {
@@ -71,14 +71,22 @@ class CubeFrame {
   Eigen::Matrix3f vox_per_m_;
 };
 
-cv::Vec3f to_cv(const Eigen::Vector3f& vector) { return {vector.x(), vector.y(), vector.z()}; }
-
-cv::Vec3f normal_C(const std::optional<Eigen::Vector3f>& gradient_W, const CameraView& view,
-                   const Eigen::Vector3f& ray_C) {
-  if (!gradient_W) return kInvalid;
+Eigen::Vector3f normal_C(const std::optional<Eigen::Vector3f>& gradient_W, const CameraView& view,
+                         const Eigen::Vector3f& ray_C) {
+  const Eigen::Vector3f invalid = Eigen::Vector3f::Constant(kNaN);
+  if (!gradient_W) return invalid;
   const Eigen::Vector3f normal = view.R_WC.transpose() * *gradient_W;
-  if (!(normal.dot(ray_C) < 0.0F)) return kInvalid;  // also where the gradient is zero
-  return to_cv(normal.normalized());
+  if (!(normal.dot(ray_C) < 0.0F)) return invalid;  // also where the gradient is zero
+  return normal.normalized();
+}
+
+SurfaceMap empty_surface(const Intrinsics& intrinsics) {
+  SurfaceMap surface(intrinsics);
+  for (cv::Mat* plane :
+       {&surface.depth_m, &surface.normal_x, &surface.normal_y, &surface.normal_z}) {
+    plane->setTo(kNaN);
+  }
+  return surface;
 }
 
 cv::Vec3b to_bytes(const Eigen::Vector3f& color) {
@@ -105,11 +113,10 @@ SurfaceMap Raycaster::raycast(const TsdfVolume& volume, const Pose& X_WC,
   const CubeFrame cube(volume, X_WC);
   const float guide_margin_m = 2.0F * volume.truncation_m();
 
-  const cv::Size size(view.width, view.height);
-  SurfaceMap surface{.intrinsics = intrinsics,
-                     .points_C = cv::Mat_<cv::Vec3f>(size, kInvalid),
-                     .normals_C = cv::Mat_<cv::Vec3f>(size, kInvalid)};
-  if (color_rgb != nullptr) *color_rgb = cv::Mat_<cv::Vec3b>(size, cv::Vec3b::all(0));
+  SurfaceMap surface = empty_surface(intrinsics);
+  if (color_rgb != nullptr) {
+    *color_rgb = cv::Mat_<cv::Vec3b>(view.height, view.width, cv::Vec3b::all(0));
+  }
 
   tbb::parallel_for(tbb::blocked_range<int>(0, view.height, 4), [&](const auto& rows) {
     TsdfSampler sampler(volume);
@@ -122,8 +129,8 @@ SurfaceMap Raycaster::raycast(const TsdfVolume& volume, const Pose& X_WC,
             cast_ray(marcher, ranges.at(u, v), guide.at(u, v), guide_margin_m);
         if (!depth_m) continue;
         const Eigen::Vector3f point_vox = ray.at(*depth_m);
-        surface.points_C(v, u) = to_cv(ray_C * *depth_m);
-        surface.normals_C(v, u) = normal_C(sampler.gradient(point_vox), view, ray_C);
+        surface.depth_m(v, u) = *depth_m;
+        surface.set_normal(v, u, normal_C(sampler.gradient(point_vox), view, ray_C));
         if (color_rgb != nullptr) (*color_rgb)(v, u) = to_bytes(sampler.color(point_vox));
       }
     }

@@ -22,9 +22,9 @@ class Raycaster {
 
   explicit Raycaster(const Config& config);
 
-  /// Points and normals in C of the first crossing from free space into a surface along each
+  /// Depths and normals in C of the first crossing from free space into a surface along each
   /// pixel's ray, at the resolution of `intrinsics` (no distortion). A pixel without one is NaN in
-  /// both; a pixel whose gradient does not face the camera is NaN in normals_C only.
+  /// both; a pixel whose gradient does not face the camera has a depth only.
   ///
   /// `guide_depth_m`: empty, or a depth image of the same field of view and any size; a ray starts
   /// two truncation distances before the guide's depth, which is faster and gives the same surface

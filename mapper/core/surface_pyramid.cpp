@@ -12,6 +12,7 @@ namespace kintsugi::mapper {
 namespace {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+const Eigen::Vector3f kInvalid = Eigen::Vector3f::Constant(kNaN);
 constexpr float kSameSurface_m = 0.05F;  ///< pixels averaged by a halving lie this close
 constexpr float kNormalReach_m = 0.10F;  ///< depth step across which no normal is taken
 constexpr int kRowsPerTask = 16;
@@ -40,44 +41,39 @@ float mean_of_nearest(const float (&depths_m)[4]) {
 }
 
 /// Normal at the middle of four neighbours, towards the camera; NaN where they are no one surface.
-cv::Vec3f normal_from_neighbours(const cv::Vec3f& left, const cv::Vec3f& right,
-                                 const cv::Vec3f& above, const cv::Vec3f& below) {
-  const cv::Vec3f du = right - left;
-  const cv::Vec3f dv = below - above;
+Eigen::Vector3f normal_from_neighbours(const Eigen::Vector3f& left, const Eigen::Vector3f& right,
+                                       const Eigen::Vector3f& above, const Eigen::Vector3f& below) {
+  const Eigen::Vector3f du = right - left;
+  const Eigen::Vector3f dv = below - above;
   // A NaN among the neighbours makes these comparisons false.
-  if (!(std::abs(du[2]) < kNormalReach_m && std::abs(dv[2]) < kNormalReach_m)) {
-    return {kNaN, kNaN, kNaN};
-  }
-  const cv::Vec3f n = dv.cross(du);  // v points down and u right: this one looks at the camera
-  const float length = std::sqrt(n.dot(n));
-  return length > 0.0F ? n * (1.0F / length) : cv::Vec3f(kNaN, kNaN, kNaN);
+  if (!(std::abs(du.z()) < kNormalReach_m && std::abs(dv.z()) < kNormalReach_m)) return kInvalid;
+  const Eigen::Vector3f n = dv.cross(du);  // v points down and u right: this looks at the camera
+  const float length = n.norm();
+  return length > 0.0F ? Eigen::Vector3f(n / length) : kInvalid;
 }
 
 SurfaceMap half_size_surface(const SurfaceMap& fine) {
-  SurfaceMap half;
-  half.intrinsics = half_size(fine.intrinsics);
-  half.points_C.create(half.intrinsics.height, half.intrinsics.width);
-  half.normals_C.create(half.points_C.size());
-  for_each_row(half.points_C.rows, [&](int v) {
-    for (int u = 0; u < half.points_C.cols; ++u) {
-      cv::Vec3f point(0, 0, 0);
-      cv::Vec3f normal(0, 0, 0);
+  SurfaceMap half(half_size(fine.intrinsics));
+  for_each_row(half.depth_m.rows, [&](int v) {
+    for (int u = 0; u < half.depth_m.cols; ++u) {
+      float depth_sum = 0.0F;
+      Eigen::Vector3f normal_sum = Eigen::Vector3f::Zero();
       float first_z = kNaN;
       int count = 0;
       for (int k = 0; k < 4; ++k) {
-        const cv::Vec3f& p = fine.points_C(2 * v + k / 2, 2 * u + k % 2);
-        const cv::Vec3f& n = fine.normals_C(2 * v + k / 2, 2 * u + k % 2);
-        if (std::isnan(p[2]) || std::isnan(n[2])) continue;
-        if (count == 0) first_z = p[2];
-        if (std::abs(p[2] - first_z) > kSameSurface_m) continue;
-        point += p;
-        normal += n;
+        const float z = fine.depth_m(2 * v + k / 2, 2 * u + k % 2);
+        const Eigen::Vector3f n = fine.normal(2 * v + k / 2, 2 * u + k % 2);
+        if (std::isnan(z) || std::isnan(n.z())) continue;
+        if (count == 0) first_z = z;
+        if (std::abs(z - first_z) > kSameSurface_m) continue;
+        depth_sum += z;
+        normal_sum += n;
         ++count;
       }
-      const float length = std::sqrt(normal.dot(normal));
+      const float length = normal_sum.norm();
       const bool valid = count > 0 && length > 0.0F;
-      half.points_C(v, u) = valid ? point / static_cast<float>(count) : cv::Vec3f::all(kNaN);
-      half.normals_C(v, u) = valid ? normal / length : cv::Vec3f::all(kNaN);
+      half.depth_m(v, u) = valid ? depth_sum / static_cast<float>(count) : kNaN;
+      half.set_normal(v, u, valid ? Eigen::Vector3f(normal_sum / length) : kInvalid);
     }
   });
   return half;
@@ -116,27 +112,18 @@ SurfaceMap surface_from_depth(const cv::Mat_<float>& depth_m, const Intrinsics& 
                                 std::to_string(intrinsics.width) + "x" +
                                 std::to_string(intrinsics.height));
   }
-  SurfaceMap surface;
-  surface.intrinsics = intrinsics;
-  surface.points_C.create(depth_m.size());
-  surface.normals_C.create(depth_m.size());
+  SurfaceMap surface(intrinsics);
+  depth_m.copyTo(surface.depth_m);
   for_each_row(depth_m.rows, [&](int v) {
-    const auto y = static_cast<float>((v - intrinsics.cy) / intrinsics.fy);
+    const bool inside_v = v > 0 && v + 1 < depth_m.rows;
     for (int u = 0; u < depth_m.cols; ++u) {
-      const auto x = static_cast<float>((u - intrinsics.cx) / intrinsics.fx);
-      const float z = depth_m(v, u);
-      surface.points_C(v, u) = {z * x, z * y, z};  // NaN in every coordinate when z is NaN
-    }
-  });
-  const cv::Mat_<cv::Vec3f>& points = surface.points_C;
-  for_each_row(depth_m.rows, [&](int v) {
-    const bool inside_v = v > 0 && v + 1 < points.rows;
-    for (int u = 0; u < points.cols; ++u) {
-      const bool inside = inside_v && u > 0 && u + 1 < points.cols;
-      surface.normals_C(v, u) = inside && !std::isnan(points(v, u)[2])
-                                    ? normal_from_neighbours(points(v, u - 1), points(v, u + 1),
-                                                             points(v - 1, u), points(v + 1, u))
-                                    : cv::Vec3f::all(kNaN);
+      const bool inside = inside_v && u > 0 && u + 1 < depth_m.cols;
+      surface.set_normal(
+          v, u,
+          inside && !std::isnan(depth_m(v, u))
+              ? normal_from_neighbours(surface.point(v, u - 1), surface.point(v, u + 1),
+                                       surface.point(v - 1, u), surface.point(v + 1, u))
+              : kInvalid);
     }
   });
   return surface;

@@ -34,8 +34,8 @@ SurfaceMap surface_from_depth(const cv::Mat_<float>& depth_m, const Intrinsics& 
 SurfacePyramid pyramid_from_depth(const cv::Mat_<float>& depth_m, const Intrinsics& intrinsics,
                                   int skip, int levels, float max_depth_m);
 
-/// The pyramid below a raycast surface: points and normals are averaged over 2x2 pixels where they
-/// lie within 5 cm of the first valid one.
+/// The pyramid below a raycast surface: depths and normals are averaged over those of 2x2 pixels
+/// that lie within 5 cm in depth of the first valid one.
 SurfacePyramid pyramid_from_surface(SurfaceMap finest, int levels);
 
 }  // namespace kintsugi::mapper

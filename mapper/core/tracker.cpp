@@ -41,7 +41,7 @@ RegistrationQuality quality_of(const NormalEquations& equations, const SurfaceMa
   RegistrationQuality quality;
   quality.solved = solved;
   quality.covered_share = covered;
-  const double candidates = covered * static_cast<double>(frame.points_C.total());
+  const double candidates = covered * static_cast<double>(frame.depth_m.total());
   if (candidates > 0.0) {
     quality.inlier_share = std::min(1.0, static_cast<double>(equations.inliers) / candidates);
   }
@@ -163,13 +163,13 @@ TrackingResult Tracker::lose(const Registration& registration, LossReason reason
 double covered_share(const SurfaceMap& frame_C, const Pose& X_WC,
                      const Eigen::AlignedBox3d& region_W) {
   std::size_t covered = 0;
-  for (const cv::Vec3f& point : frame_C.points_C) {
-    if (std::isnan(point[2])) continue;
-    const Eigen::Vector3d point_W =
-        X_WC * Eigen::Map<const Eigen::Vector3f>(point.val).cast<double>();
-    covered += region_W.contains(point_W) ? 1 : 0;
+  for (int v = 0; v < frame_C.depth_m.rows; ++v) {
+    for (int u = 0; u < frame_C.depth_m.cols; ++u) {
+      if (std::isnan(frame_C.depth_m(v, u))) continue;
+      covered += region_W.contains(X_WC * frame_C.point(v, u).cast<double>()) ? 1 : 0;
+    }
   }
-  return static_cast<double>(covered) / static_cast<double>(frame_C.points_C.total());
+  return static_cast<double>(covered) / static_cast<double>(frame_C.depth_m.total());
 }
 
 }  // namespace kintsugi::mapper

@@ -52,8 +52,7 @@ inline Hit intersect(const Box& box, const Eigen::Vector3d& origin_W, const Eige
 
 /// The exact surface seen from X_WC.
 inline SurfaceMap render_room(const Pose& X_WC, const Intrinsics& camera) {
-  SurfaceMap surface{camera, cv::Mat_<cv::Vec3f>(camera.height, camera.width),
-                     cv::Mat_<cv::Vec3f>(camera.height, camera.width)};
+  SurfaceMap surface(camera);
   for (int v = 0; v < camera.height; ++v) {
     for (int u = 0; u < camera.width; ++u) {
       const Eigen::Vector3d ray_C((u - camera.cx) / camera.fx, (v - camera.cy) / camera.fy, 1.0);
@@ -61,23 +60,15 @@ inline SurfaceMap render_room(const Pose& X_WC, const Intrinsics& camera) {
       const Hit wall = intersect(kRoom, X_WC.translation(), ray_W, true);
       const Hit crate = intersect(kCrate, X_WC.translation(), ray_W, false);
       const Hit& hit = crate.distance < wall.distance ? crate : wall;
-      const Eigen::Vector3f p = (hit.distance * ray_C).cast<float>();
-      const Eigen::Vector3f n = (X_WC.linear().transpose() * hit.normal_W).cast<float>();
-      surface.points_C(v, u) = {p.x(), p.y(), p.z()};
-      surface.normals_C(v, u) = {n.x(), n.y(), n.z()};
+      surface.depth_m(v, u) = static_cast<float>(hit.distance);  // the ray has unit z
+      surface.set_normal(v, u, (X_WC.linear().transpose() * hit.normal_W).cast<float>());
     }
   }
   return surface;
 }
 
-inline cv::Mat_<float> depth_of(const SurfaceMap& surface) {
-  cv::Mat_<float> depth_m;
-  cv::extractChannel(surface.points_C, depth_m, 2);
-  return depth_m;
-}
-
 inline cv::Mat_<float> render_depth(const Pose& X_WC, const Intrinsics& camera) {
-  return depth_of(render_room(X_WC, camera));
+  return render_room(X_WC, camera).depth_m;
 }
 
 /// Looks into the corner of the room with the crate in view.

@@ -26,14 +26,15 @@ struct Pair {
   SurfaceMap model;
 };
 
-Pair one_pair(const cv::Vec3f& point_C, const cv::Vec3f& point_V, const cv::Vec3f& normal_V) {
-  const Intrinsics camera{10.0, 10.0, 0.0, 0.0, 1, 1, {}};
-  Pair pair{{camera, cv::Mat_<cv::Vec3f>(1, 1), cv::Mat_<cv::Vec3f>(1, 1)},
-            {camera, cv::Mat_<cv::Vec3f>(1, 1), cv::Mat_<cv::Vec3f>(1, 1)}};
-  pair.frame.points_C(0, 0) = point_C;
-  pair.frame.normals_C(0, 0) = normal_V;
-  pair.model.points_C(0, 0) = point_V;
-  pair.model.normals_C(0, 0) = normal_V;
+/// Points with depths `frame_z` and `model_z` on the ray (x, y, 1), with the same normal.
+Pair one_pair(float frame_z, float model_z, const Eigen::Vector3f& normal, double x = 0.0,
+              double y = 0.0) {
+  const Intrinsics camera{10.0, 10.0, -10.0 * x, -10.0 * y, 1, 1, {}};
+  Pair pair{SurfaceMap(camera), SurfaceMap(camera)};
+  pair.frame.depth_m(0, 0) = frame_z;
+  pair.model.depth_m(0, 0) = model_z;
+  pair.frame.set_normal(0, 0, normal);
+  pair.model.set_normal(0, 0, normal);
   return pair;
 }
 
@@ -43,7 +44,7 @@ TEST(DepthSigma, FollowsNguyensModel) {
 }
 
 TEST(Linearize, WeighsAPairByTheInverseVarianceOfItsDepth) {
-  const Pair pair = one_pair({0, 0, 2.0F}, {0, 0, 2.01F}, {0, 0, -1});
+  const Pair pair = one_pair(2.0F, 2.01F, {0, 0, -1});
   const NormalEquations equations = linearize(pair.frame, pair.model, Pose::Identity(), {});
   const double weight = 1.0 / (depth_sigma_m(2.0) * depth_sigma_m(2.0));
   const double r = static_cast<double>(2.01F) - 2.0;  // n . (m - p) = -r
@@ -56,15 +57,14 @@ TEST(Linearize, WeighsAPairByTheInverseVarianceOfItsDepth) {
 }
 
 TEST(Linearize, JacobianIsTheNumericDerivativeOfTheResidual) {
-  const cv::Vec3f normal(0.36F, -0.48F, -0.8F);
-  const Pair pair = one_pair({0.02F, -0.01F, 1.5F}, {0.03F, 0.0F, 1.52F}, normal);
+  const Pair pair = one_pair(1.5F, 1.52F, {0.36F, -0.48F, -0.8F}, 0.02, -0.01);
   IcpGates open;
   open.max_distance_m = 1.0;
   const NormalEquations equations = linearize(pair.frame, pair.model, Pose::Identity(), open);
   ASSERT_EQ(equations.inliers, 1);
 
-  const Eigen::Vector3d p(0.02F, -0.01F, 1.5F);
-  const Eigen::Vector3d m(0.03F, 0.0F, 1.52F);
+  const Eigen::Vector3d p = 1.5 * Eigen::Vector3d(0.02, -0.01, 1.0);
+  const Eigen::Vector3d m = 1.52 * Eigen::Vector3d(0.02, -0.01, 1.0);
   const Eigen::Vector3d n(0.36F, -0.48F, -0.8F);
   const auto residual = [&](const Vector6d& xi) { return n.dot(m - se3_retract(xi) * p); };
   constexpr double kStep = 1e-6;
@@ -81,31 +81,32 @@ TEST(Linearize, JacobianIsTheNumericDerivativeOfTheResidual) {
 
 TEST(Linearize, RejectsPairsOutsideTheGates) {
   const IcpGates gates{0.1, 0.8};
-  EXPECT_EQ(linearize(one_pair({0, 0, 2}, {0, 0, 2.09F}, {0, 0, -1}).frame,
-                      one_pair({0, 0, 2}, {0, 0, 2.09F}, {0, 0, -1}).model, Pose::Identity(), gates)
-                .inliers,
-            1);
-  const Pair far_apart = one_pair({0, 0, 2}, {0, 0, 2.11F}, {0, 0, -1});
+  const Pair near = one_pair(2.0F, 2.09F, {0, 0, -1});
+  EXPECT_EQ(linearize(near.frame, near.model, Pose::Identity(), gates).inliers, 1);
+  const Pair far_apart = one_pair(2.0F, 2.11F, {0, 0, -1});
   EXPECT_EQ(linearize(far_apart.frame, far_apart.model, Pose::Identity(), gates).inliers, 0);
-  Pair tilted = one_pair({0, 0, 2}, {0, 0, 2}, {0, 0, -1});
-  tilted.frame.normals_C(0, 0) = {0.0F, 0.66F, -0.75F};  // cosine 0.75
+  Pair tilted = one_pair(2.0F, 2.0F, {0, 0, -1});
+  tilted.frame.set_normal(0, 0, {0.0F, 0.66F, -0.75F});  // cosine 0.75
   EXPECT_EQ(linearize(tilted.frame, tilted.model, Pose::Identity(), gates).inliers, 0);
 }
 
 TEST(Linearize, InvalidPixelsTakeNoPart) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
-  const cv::Vec3f invalid(nan, nan, nan);
-  Pair no_frame = one_pair(invalid, {0, 0, 2}, {0, 0, -1});
-  EXPECT_EQ(linearize(no_frame.frame, no_frame.model, Pose::Identity(), {}).inliers, 0);
-  Pair no_model = one_pair({0, 0, 2}, invalid, {0, 0, -1});
-  no_model.model.normals_C(0, 0) = invalid;
+  const Eigen::Vector3f invalid = Eigen::Vector3f::Constant(nan);
+  const Pair no_depth = one_pair(nan, 2.0F, {0, 0, -1});
+  EXPECT_EQ(linearize(no_depth.frame, no_depth.model, Pose::Identity(), {}).inliers, 0);
+  Pair no_normal = one_pair(2.0F, 2.0F, {0, 0, -1});
+  no_normal.frame.set_normal(0, 0, invalid);
+  EXPECT_EQ(linearize(no_normal.frame, no_normal.model, Pose::Identity(), {}).inliers, 0);
+  Pair no_model = one_pair(2.0F, nan, {0, 0, -1});
+  no_model.model.set_normal(0, 0, invalid);
   const NormalEquations equations = linearize(no_model.frame, no_model.model, Pose::Identity(), {});
   EXPECT_EQ(equations.inliers, 0);
   EXPECT_TRUE(equations.A.isZero());
   // Behind the model's camera.
   Pose X_VC = Pose::Identity();
   X_VC.translation().z() = -3.0;
-  const Pair behind = one_pair({0, 0, 2}, {0, 0, 2}, {0, 0, -1});
+  const Pair behind = one_pair(2.0F, 2.0F, {0, 0, -1});
   EXPECT_EQ(linearize(behind.frame, behind.model, X_VC, {}).inliers, 0);
 }
 

@@ -37,12 +37,6 @@ Intrinsics camera_of(int width, int height) {
           .height = height};
 }
 
-cv::Mat_<float> depth_of(const SurfaceMap& surface) {
-  cv::Mat_<float> depth_m;
-  cv::extractChannel(surface.points_C, depth_m, 2);
-  return depth_m;
-}
-
 bool same_bytes(const cv::Mat& a, const cv::Mat& b) {
   return a.size() == b.size() && a.type() == b.type() &&
          std::memcmp(a.data, b.data, a.total() * a.elemSize()) == 0;
@@ -75,15 +69,14 @@ Comparison compare(const SurfaceMap& surface, const synthetic::RenderedFrame& tr
       const bool is_smooth = highest(v, u) - lowest(v, u) < 0.1F;
       if (!is_smooth || -normal_C.dot(ray_C.normalized()) < std::cos(75 * M_PI / 180)) continue;
       ++num_compared;
-      const cv::Vec3f& p_C = surface.points_C(v, u);
-      const cv::Vec3f& n_C = surface.normals_C(v, u);
-      if (std::isnan(p_C[2]) || std::isnan(n_C[2])) {
+      const float depth_m = surface.depth_m(v, u);
+      const Eigen::Vector3d n_C = surface.normal(v, u).cast<double>();
+      if (std::isnan(depth_m) || std::isnan(n_C.z())) {
         ++num_holes;
         continue;
       }
-      result.depth_error_vox.push_back(std::abs(p_C[2] - truth.depth_m(v, u)) / kResolution_m);
-      const double cosine = normal_C.dot(Eigen::Vector3d(n_C[0], n_C[1], n_C[2]));
-      result.normal_error_deg.push_back(std::acos(std::min(cosine, 1.0)) * 180.0 / M_PI);
+      result.depth_error_vox.push_back(std::abs(depth_m - truth.depth_m(v, u)) / kResolution_m);
+      result.normal_error_deg.push_back(std::acos(std::min(normal_C.dot(n_C), 1.0)) * 180.0 / M_PI);
     }
   }
   result.hole_share = static_cast<double>(num_holes) / num_compared;
@@ -140,28 +133,24 @@ TEST_F(RaycastRoom, SeesTheSameWithAGuide) {
   bad_guide_m.rowRange(0, 100).setTo(50.0F);
   bad_guide_m.rowRange(100, 200).setTo(-1.0F);
   bad_guide_m.rowRange(200, 300).setTo(std::numeric_limits<float>::infinity());
-  EXPECT_TRUE(same_bytes(depth_of(Raycaster({}).raycast(*volume_, X_WC(), camera, bad_guide_m)),
-                         depth_of(unguided)));
+  EXPECT_TRUE(same_bytes(Raycaster({}).raycast(*volume_, X_WC(), camera, bad_guide_m).depth_m,
+                         unguided.depth_m));
   bad_guide_m.setTo(4.4F);
   EXPECT_EQ(
-      cv::countNonZero(depth_of(Raycaster({}).raycast(*volume_, X_WC(), camera, bad_guide_m)) > 0),
-      cv::countNonZero(depth_of(unguided) > 0));
+      cv::countNonZero(Raycaster({}).raycast(*volume_, X_WC(), camera, bad_guide_m).depth_m > 0),
+      cv::countNonZero(unguided.depth_m > 0));
 }
 
-TEST_F(RaycastRoom, PutsPointsOnTheirPixelsRays) {
+TEST_F(RaycastRoom, GivesUnitNormalsThatFaceTheCamera) {
   const Intrinsics camera = camera_of(160, 120);
   const SurfaceMap surface = Raycaster({}).raycast(*volume_, X_WC(), camera);
   EXPECT_EQ(surface.intrinsics, camera);
   for (int v = 0; v < camera.height; ++v) {
     for (int u = 0; u < camera.width; ++u) {
-      const cv::Vec3f& p = surface.points_C(v, u);
-      if (std::isnan(p[2])) continue;
-      ASSERT_NEAR(p[0] / p[2] * camera.fx + camera.cx, u, 1e-3);
-      ASSERT_NEAR(p[1] / p[2] * camera.fy + camera.cy, v, 1e-3);
-      const cv::Vec3f& n = surface.normals_C(v, u);
-      if (std::isnan(n[0])) continue;
-      ASSERT_NEAR(cv::norm(n), 1.0, 1e-5);
-      ASSERT_LT(n.dot(p), 0.0F);
+      const Eigen::Vector3f n = surface.normal(v, u);
+      if (std::isnan(n.x())) continue;
+      ASSERT_NEAR(n.norm(), 1.0, 1e-5);
+      ASSERT_LT(n.dot(surface.point(v, u)), 0.0F);
     }
   }
 }
@@ -173,16 +162,18 @@ TEST_F(RaycastRoom, DoesNotDependOnTheNumberOfThreads) {
   const SurfaceMap parallel = Raycaster({}).raycast(*volume_, X_WC(), camera, {}, &parallel_rgb);
   const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
   const SurfaceMap serial = Raycaster({}).raycast(*volume_, X_WC(), camera, {}, &serial_rgb);
-  EXPECT_TRUE(same_bytes(parallel.points_C, serial.points_C));
-  EXPECT_TRUE(same_bytes(parallel.normals_C, serial.normals_C));
+  EXPECT_TRUE(same_bytes(parallel.depth_m, serial.depth_m));
+  EXPECT_TRUE(same_bytes(parallel.normal_x, serial.normal_x));
+  EXPECT_TRUE(same_bytes(parallel.normal_y, serial.normal_y));
+  EXPECT_TRUE(same_bytes(parallel.normal_z, serial.normal_z));
   EXPECT_TRUE(same_bytes(parallel_rgb, serial_rgb));
 }
 
 TEST_F(RaycastRoom, EndsAtItsRange) {
   const Intrinsics camera = camera_of(160, 120);
-  const cv::Mat_<float> all_m = depth_of(Raycaster({}).raycast(*volume_, X_WC(), camera));
+  const cv::Mat_<float> all_m = Raycaster({}).raycast(*volume_, X_WC(), camera).depth_m;
   const cv::Mat_<float> near_m =
-      depth_of(Raycaster({.max_depth_m = 1.5}).raycast(*volume_, X_WC(), camera));
+      Raycaster({.max_depth_m = 1.5}).raycast(*volume_, X_WC(), camera).depth_m;
   EXPECT_GT(cv::countNonZero(all_m > 1.6F), 0);
   EXPECT_EQ(cv::countNonZero(near_m > 1.6F), 0);
 }
@@ -210,7 +201,7 @@ TEST(Raycaster, SeesTheColor) {
   cv::Mat_<cv::Vec3b> color_rgb;
   const SurfaceMap surface =
       Raycaster({}).raycast(volume, view.X_WC, camera_of(160, 120), {}, &color_rgb);
-  ASSERT_EQ(color_rgb.size(), surface.points_C.size());
+  ASSERT_EQ(color_rgb.size(), surface.depth_m.size());
   EXPECT_EQ(color_rgb(60, 80), cv::Vec3b(200, 100, 7));
 }
 
@@ -219,11 +210,11 @@ TEST(Raycaster, SeesNothingInAnEmptyVolume) {
   cv::Mat_<cv::Vec3b> color_rgb;
   const SurfaceMap surface = Raycaster({}).raycast(volume, Pose::Identity(), camera_of(160, 120),
                                                    cv::Mat_<float>(120, 160, 1.0F), &color_rgb);
-  ASSERT_EQ(surface.points_C.size(), cv::Size(160, 120));
-  for (const cv::Vec3f& p : surface.points_C) {
-    ASSERT_TRUE(std::isnan(p[0]) && std::isnan(p[1]) && std::isnan(p[2]));
+  ASSERT_EQ(surface.depth_m.size(), cv::Size(160, 120));
+  for (const cv::Mat_<float>* plane :
+       {&surface.depth_m, &surface.normal_x, &surface.normal_y, &surface.normal_z}) {
+    for (const float value : *plane) ASSERT_TRUE(std::isnan(value));
   }
-  for (const cv::Vec3f& n : surface.normals_C) ASSERT_TRUE(std::isnan(n[0]));
   EXPECT_EQ(cv::countNonZero(color_rgb.reshape(1)), 0);
 }
 
@@ -237,12 +228,12 @@ TEST(Raycaster, SeesTheCubeFromOutsideAndFarFromTheOrigin) {
   TsdfVolume volume(volume_of(0.8), X_WC * Eigen::Vector3d(0.0, 0.0, 2.0));
   Integrator({}).integrate(view.frame, X_WC, volume);
   const SurfaceMap surface = Raycaster({}).raycast(volume, X_WC, camera_of(160, 120));
-  EXPECT_NEAR(surface.points_C(60, 80)[2], 2.0, 0.02 * kResolution_m);
-  EXPECT_TRUE(std::isnan(surface.points_C(2, 2)[2])) << "outside the cube";
+  EXPECT_NEAR(surface.depth_m(60, 80), 2.0, 0.02 * kResolution_m);
+  EXPECT_TRUE(std::isnan(surface.depth_m(2, 2))) << "outside the cube";
   Pose turned = X_WC;
   turned.linear() = Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitY()).toRotationMatrix();
   EXPECT_TRUE(
-      std::isnan(Raycaster({}).raycast(volume, turned, camera_of(160, 120)).points_C(60, 80)[2]));
+      std::isnan(Raycaster({}).raycast(volume, turned, camera_of(160, 120)).depth_m(60, 80)));
 }
 
 TEST(Raycaster, RefusesWhatCannotWork) {

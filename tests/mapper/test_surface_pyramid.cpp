@@ -35,15 +35,15 @@ TEST(HalfSizeDepth, AveragesOneSurfaceAndKeepsTheNearerOfTwo) {
 TEST(SurfaceFromDepth, GivesThePointsAndNormalsOfAnExactRoom) {
   const Intrinsics camera = testing::test_camera();
   const SurfaceMap truth = testing::render_room(testing::looking_at_the_crate(), camera);
-  const SurfaceMap surface = surface_from_depth(testing::depth_of(truth), camera);
+  const SurfaceMap surface = surface_from_depth(truth.depth_m, camera);
   int with_normal = 0;
   int wrong = 0;
   for (int v = 1; v + 1 < camera.height; ++v) {
     for (int u = 1; u + 1 < camera.width; ++u) {
-      EXPECT_LT(cv::norm(surface.points_C(v, u) - truth.points_C(v, u)), 1e-5);
-      if (std::isnan(surface.normals_C(v, u)[0])) continue;
+      EXPECT_LT((surface.point(v, u) - truth.point(v, u)).norm(), 1e-5);
+      if (std::isnan(surface.normal_x(v, u))) continue;
       ++with_normal;
-      if (surface.normals_C(v, u).dot(truth.normals_C(v, u)) < 0.999F) ++wrong;
+      if (surface.normal(v, u).dot(truth.normal(v, u)) < 0.999F) ++wrong;
     }
   }
   // Wrong only beside the creases of the boxes, a few lines of pixels of a 320x240 image.
@@ -57,13 +57,13 @@ TEST(SurfaceFromDepth, HasNoNormalBesideAHoleOrAStep) {
   depth(5, 5) = kNaN;
   depth.colRange(10, 16).setTo(2.5F);
   const SurfaceMap surface = surface_from_depth(depth, camera);
-  EXPECT_TRUE(std::isnan(surface.points_C(5, 5)[0]));
-  EXPECT_TRUE(std::isnan(surface.normals_C(5, 5)[0]));
-  EXPECT_TRUE(std::isnan(surface.normals_C(5, 4)[2]));
-  EXPECT_TRUE(std::isnan(surface.normals_C(6, 5)[2]));
-  EXPECT_TRUE(std::isnan(surface.normals_C(5, 9)[2]));
-  EXPECT_TRUE(std::isnan(surface.normals_C(0, 3)[2]));  // border
-  EXPECT_LT(cv::norm(surface.normals_C(3, 3) - cv::Vec3f(0, 0, -1)), 1e-6);
+  EXPECT_TRUE(std::isnan(surface.depth_m(5, 5)));
+  EXPECT_TRUE(std::isnan(surface.normal_x(5, 5)));
+  EXPECT_TRUE(std::isnan(surface.normal_z(5, 4)));
+  EXPECT_TRUE(std::isnan(surface.normal_z(6, 5)));
+  EXPECT_TRUE(std::isnan(surface.normal_z(5, 9)));
+  EXPECT_TRUE(std::isnan(surface.normal_z(0, 3)));  // border
+  EXPECT_LT((surface.normal(3, 3) - Eigen::Vector3f(0, 0, -1)).norm(), 1e-6);
 }
 
 TEST(SurfaceFromDepth, RefusesAnImageOfAnotherSize) {
@@ -77,10 +77,10 @@ TEST(PyramidFromDepth, StartsAfterTheSkippedSizesAndCutsFarDepth) {
   const SurfacePyramid pyramid =
       pyramid_from_depth(depth, testing::test_camera(96, 64), 1, 3, 4.0F);
   ASSERT_EQ(pyramid.size(), 3U);
-  EXPECT_EQ(pyramid[0].points_C.size(), cv::Size(48, 32));
-  EXPECT_EQ(pyramid[2].points_C.size(), cv::Size(12, 8));
-  EXPECT_TRUE(std::isnan(pyramid[0].points_C(3, 3)[2]));
-  EXPECT_FLOAT_EQ(pyramid[0].points_C(20, 3)[2], 2.0F);
+  EXPECT_EQ(pyramid[0].depth_m.size(), cv::Size(48, 32));
+  EXPECT_EQ(pyramid[2].depth_m.size(), cv::Size(12, 8));
+  EXPECT_TRUE(std::isnan(pyramid[0].depth_m(3, 3)));
+  EXPECT_FLOAT_EQ(pyramid[0].depth_m(20, 3), 2.0F);
   EXPECT_FLOAT_EQ(depth(0, 0), 5.0F);  // the caller's image is not touched
 }
 
@@ -90,11 +90,11 @@ TEST(PyramidFromSurface, KeepsPlanesOnTheirPlane) {
       pyramid_from_surface(surface_from_depth(cv::Mat_<float>(48, 64, 1.5F), camera), 3);
   ASSERT_EQ(pyramid.size(), 3U);
   EXPECT_EQ(pyramid[2].intrinsics.width, 16);
-  const cv::Vec3f point = pyramid[2].points_C(5, 5);
+  const Eigen::Vector3f point = pyramid[2].point(5, 5);
   const Intrinsics& coarse = pyramid[2].intrinsics;
   EXPECT_NEAR(point[0], 1.5 * (5 - coarse.cx) / coarse.fx, 1e-5);
   EXPECT_FLOAT_EQ(point[2], 1.5F);
-  EXPECT_LT(cv::norm(pyramid[2].normals_C(5, 5) - cv::Vec3f(0, 0, -1)), 1e-6);
+  EXPECT_LT((pyramid[2].normal(5, 5) - Eigen::Vector3f(0, 0, -1)).norm(), 1e-6);
 }
 
 }  // namespace
