@@ -14,4 +14,9 @@ SceneWithPath office_scene(std::uint32_t seed);
 SceneWithPath loop_scene(std::uint32_t seed);
 SceneWithPath two_floors_scene(std::uint32_t seed);
 
+SceneWithPath wall_scene(bool is_textured, std::uint32_t seed);
+SceneWithPath floor_scene(bool is_textured, std::uint32_t seed);
+SceneWithPath corridor_scene(bool is_textured, std::uint32_t seed);
+SceneWithPath wall_visit_scene(bool is_textured, std::uint32_t seed);
+
 }  // namespace kintsugi::synthetic

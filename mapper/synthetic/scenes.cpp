@@ -11,12 +11,32 @@ namespace kintsugi::synthetic {
 namespace {
 
 using Maker = std::function<SceneWithPath(std::uint32_t)>;
+using SurfaceMaker = SceneWithPath (*)(bool is_textured, std::uint32_t seed);
+
+Maker with_texture(SurfaceMaker make) {
+  return [make](std::uint32_t seed) { return make(true, seed); };
+}
+
+Maker without_texture(SurfaceMaker make) {
+  return [make](std::uint32_t seed) { return make(false, seed); };
+}
 
 const std::map<std::string, Maker>& makers() {
   static const std::map<std::string, Maker> kMakers = {
-      {"loop", loop_scene},     {"office", office_scene},
-      {"sphere", sphere_scene}, {"two-floors", two_floors_scene},
-      {"plane", plane_scene},   {"box-room", box_room_scene},
+      {"loop", loop_scene},
+      {"office", office_scene},
+      {"two-floors", two_floors_scene},
+      {"sphere", sphere_scene},
+      {"plane", plane_scene},
+      {"box-room", box_room_scene},
+      {"wall", with_texture(wall_scene)},
+      {"wall-plain", without_texture(wall_scene)},
+      {"floor", with_texture(floor_scene)},
+      {"floor-plain", without_texture(floor_scene)},
+      {"corridor", with_texture(corridor_scene)},
+      {"corridor-plain", without_texture(corridor_scene)},
+      {"wall-visit", with_texture(wall_visit_scene)},
+      {"wall-visit-plain", without_texture(wall_visit_scene)},
   };
   return kMakers;
 }

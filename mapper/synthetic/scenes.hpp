@@ -17,7 +17,10 @@ struct SceneWithPath {
 };
 
 /// "office", "loop", "two-floors" stand for the paper's three datasets; "sphere" (radius 0.5 m at
-/// the origin), "plane" (z = 0, 4 m x 4 m) and "box-room" are small, for tests.
+/// the origin), "plane" (z = 0, 4 m x 4 m) and "box-room" are small, for tests. "wall", "floor" and
+/// "corridor" show nothing else, so that depth leaves open where along it the camera is; in
+/// "wall-visit" the view goes from some things to the bare wall and back. Each of the four also as
+/// "...-plain", without texture.
 const std::vector<std::string>& scene_names();
 
 /// Throws std::invalid_argument naming the scenes there are, if `name` is none of them.
