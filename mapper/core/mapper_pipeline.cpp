@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "mapper/core/check.hpp"
-#include "mapper/core/stopwatch.hpp"
 
 namespace kintsugi::mapper {
 namespace {
@@ -40,18 +39,21 @@ MapperPipeline::MapperPipeline(const Config& config)
 
 FrameResult MapperPipeline::process(const RgbdFrame& frame) {
   FrameResult result;
-  Stopwatch stopwatch;
+  StageClock clock;
   utime_ = frame.utime;
-  result.tracking = locate(frame);
-  result.times.track_ms = stopwatch.lap_ms();
+  result.tracking = locate(frame, clock);
+  clock.end_of(&StageTimes::track_ms);
   if (is_located(result.tracking.state)) {
     X_WC_ = result.tracking.X_WC;
     shift(frame, X_WC_);
+    clock.end_of(&StageTimes::shift_ms);
     integrator_.integrate(frame, X_WC_, volume_);
-    result.times.integrate_ms = stopwatch.lap_ms();
+    clock.end_of(&StageTimes::integrate_ms);
     render_model(frame, X_WC_);
-    result.times.raycast_ms = stopwatch.lap_ms();
+    clock.end_of(&StageTimes::raycast_ms);
   }
+  result.times = clock.wall();
+  result.cpu_times = clock.cpu();
   result.slices = slice_worker_.take_finished();
   return result;
 }
@@ -61,12 +63,13 @@ std::vector<CloudSlice> MapperPipeline::finish() {
   return slice_worker_.drain();
 }
 
-TrackingResult MapperPipeline::locate(const RgbdFrame& frame) {
+TrackingResult MapperPipeline::locate(const RgbdFrame& frame, StageClock& clock) {
   if (!config_.given_path.empty()) return locate_on_given_path(frame);
   const SurfacePyramid frame_C =
       pyramid_from_depth(frame.depth_m, frame.intrinsics, halvings(frame.intrinsics),
                          static_cast<int>(config_.tracker.iterations.size()),
                          static_cast<float>(config_.integrator.max_depth_m));
+  clock.end_of(&StageTimes::prepare_ms);
   return model_ ? tracker_.track(frame_C, frame.utime, *model_) : start(frame_C, frame.utime);
 }
 

@@ -12,24 +12,19 @@
 #include "mapper/core/raycaster.hpp"
 #include "mapper/core/rgbd_frame.hpp"
 #include "mapper/core/slice_worker.hpp"
+#include "mapper/core/stage_times.hpp"
 #include "mapper/core/tracker.hpp"
 #include "mapper/core/trajectory.hpp"
 #include "mapper/core/tsdf_volume.hpp"
 
 namespace kintsugi::mapper {
 
-/// Wall time of the stages of one frame, milliseconds.
-struct StageTimes {
-  double track_ms = 0.0;      ///< pyramid and registration
-  double integrate_ms = 0.0;  ///< shift, allocation and fusion
-  double raycast_ms = 0.0;    ///< the model for the next frame
-};
-
 /// What became of one frame.
 struct FrameResult {
   TrackingResult tracking;
   std::vector<CloudSlice> slices;  ///< finished since the frame before; of any earlier frame
-  StageTimes times;
+  StageTimes times;                ///< wall
+  StageTimes cpu_times;            ///< of the whole process meanwhile
 };
 
 /// Tracks the camera, fuses what it sees into a volume that moves with it, and hands out what
@@ -69,7 +64,7 @@ class MapperPipeline {
   double extraction_ms() const { return slice_worker_.busy_ms(); }
 
  private:
-  TrackingResult locate(const RgbdFrame& frame);
+  TrackingResult locate(const RgbdFrame& frame, StageClock& clock);
   TrackingResult locate_on_given_path(const RgbdFrame& frame) const;
   TrackingResult start(const SurfacePyramid& frame_C, std::int64_t utime);
   void shift(const RgbdFrame& frame, const Pose& X_WC);

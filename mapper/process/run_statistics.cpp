@@ -12,12 +12,9 @@ void RunStatistics::add(const FrameResult& result, double publish_ms) {
   ++frames_;
   if (state_ == TrackingState::kTracking || state_ == TrackingState::kGiven) ++frames_tracked_;
   if (state_ == TrackingState::kLost) ++frames_lost_;
-  const StageTimes& times = result.times;
-  total_ms_ += times.track_ms + times.integrate_ms + times.raycast_ms + publish_ms;
+  total_ms_ += result.times.total_ms() + publish_ms;
   ++since_report_.frames;
-  since_report_.times.track_ms += times.track_ms;
-  since_report_.times.integrate_ms += times.integrate_ms;
-  since_report_.times.raycast_ms += times.raycast_ms;
+  since_report_.times += result.times;
   since_report_.publish_ms += publish_ms;
 }
 
@@ -36,8 +33,8 @@ void RunStatistics::report(MapperStatus& status, double read_ms, double extract_
   status.memory_bytes = resident_memory_bytes();
   status.frame_rate_hz = elapsed_s > 0.0 ? static_cast<double>(sums.frames) / elapsed_s : 0.0;
   status.read_ms = (read_ms - sums.read_ms) / frames;
-  status.track_ms = sums.times.track_ms / frames;
-  status.integrate_ms = sums.times.integrate_ms / frames;
+  status.track_ms = (sums.times.prepare_ms + sums.times.track_ms) / frames;
+  status.integrate_ms = (sums.times.shift_ms + sums.times.integrate_ms) / frames;
   status.raycast_ms = sums.times.raycast_ms / frames;
   status.extract_ms = (extract_ms - sums.extract_ms) / frames;
   status.publish_ms = sums.publish_ms / frames;

@@ -8,7 +8,7 @@ namespace {
 FrameResult frame(TrackingState state, double track_ms) {
   FrameResult result;
   result.tracking.state = state;
-  result.times = {track_ms, 2.0, 3.0};
+  result.times = {.track_ms = track_ms, .integrate_ms = 2.0, .raycast_ms = 3.0};
   return result;
 }
 
