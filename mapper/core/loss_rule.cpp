@@ -27,6 +27,8 @@ std::string_view to_string(LossReason reason) {
       return "too little of the view fits the map";
     case LossReason::kLargeResidual:
       return "residuals too large";
+    case LossReason::kUndetermined:
+      return "the view does not tell where along it the camera is";
   }
   return "unknown";
 }
@@ -43,6 +45,7 @@ std::optional<LossReason> LossRule::judge(const RegistrationQuality& quality) co
     return LossReason::kTooFewInliers;
   }
   if (quality.rms_m > config_.max_rms_m) return LossReason::kLargeResidual;
+  if (quality.undetermined > 0) return LossReason::kUndetermined;
   return std::nullopt;
 }
 

@@ -12,9 +12,17 @@ struct RegistrationQuality {
   double inlier_share = 0.0;   ///< pairs that passed the gates / the pixels above
   double rms_m = 0.0;          ///< of the point-to-plane residuals of those pairs
   bool solved = false;         ///< the normal equations had a solution at every step
+  int undetermined = 0;        ///< directions of motion that neither depth nor colour determines
 };
 
-enum class LossReason { kTooFewPixels, kViewCutOff, kNotSolved, kTooFewInliers, kLargeResidual };
+enum class LossReason {
+  kTooFewPixels,
+  kViewCutOff,
+  kNotSolved,
+  kTooFewInliers,
+  kLargeResidual,
+  kUndetermined
+};
 
 std::string_view to_string(LossReason reason);
 

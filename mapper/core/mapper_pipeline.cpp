@@ -65,12 +65,14 @@ std::vector<CloudSlice> MapperPipeline::finish() {
 
 TrackingResult MapperPipeline::locate(const RgbdFrame& frame, StageClock& clock) {
   if (!config_.given_path.empty()) return locate_on_given_path(frame);
-  const SurfacePyramid frame_C =
+  const TrackingInput input{
+      frame.utime,
       pyramid_from_depth(frame.depth_m, frame.intrinsics, halvings(frame.intrinsics),
                          static_cast<int>(config_.tracker.iterations.size()),
-                         static_cast<float>(config_.integrator.max_depth_m));
+                         static_cast<float>(config_.integrator.max_depth_m)),
+      frame.color_rgb};
   clock.end_of(&StageTimes::prepare_ms);
-  return model_ ? tracker_.track(frame_C, frame.utime, *model_) : start(frame_C, frame.utime);
+  return model_ ? tracker_.track(input, *model_) : start(input);
 }
 
 TrackingResult MapperPipeline::locate_on_given_path(const RgbdFrame& frame) const {
@@ -81,12 +83,12 @@ TrackingResult MapperPipeline::locate_on_given_path(const RgbdFrame& frame) cons
   return result;
 }
 
-TrackingResult MapperPipeline::start(const SurfacePyramid& frame_C, std::int64_t utime) {
+TrackingResult MapperPipeline::start(const TrackingInput& input) {
   TrackingResult result;  // kStarting at the identity
-  const double covered = covered_share(frame_C.front(), result.X_WC, region_of(volume_));
+  const double covered = covered_share(input.surface_C.front(), result.X_WC, region_of(volume_));
   result.quality.covered_share = covered;
   if (covered >= config_.tracker.loss.min_covered_share) {
-    tracker_.start_at(result.X_WC, utime, covered);
+    tracker_.start_at(result.X_WC, input, covered);
     result.state = TrackingState::kTracking;
   }
   return result;

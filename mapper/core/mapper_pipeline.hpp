@@ -66,7 +66,7 @@ class MapperPipeline {
  private:
   TrackingResult locate(const RgbdFrame& frame, StageClock& clock);
   TrackingResult locate_on_given_path(const RgbdFrame& frame) const;
-  TrackingResult start(const SurfacePyramid& frame_C, std::int64_t utime);
+  TrackingResult start(const TrackingInput& input);
   void shift(const RgbdFrame& frame, const Pose& X_WC);
   void render_model(const RgbdFrame& frame, const Pose& X_WC);
   int halvings(const Intrinsics& intrinsics) const;

@@ -1,7 +1,6 @@
 #include "mapper/core/tracker.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -70,9 +69,9 @@ Tracker::Tracker(const Config& config) : config_(config), loss_rule_(config.loss
   config_.validate();
 }
 
-void Tracker::start_at(const Pose& X_WC, std::int64_t utime, double covered_share) {
+void Tracker::start_at(const Pose& X_WC, const TrackingInput& frame, double covered_share) {
   X_WC_ = X_WC;
-  utime_ = utime;
+  utime_ = frame.utime;
   velocity_C_.setZero();
   lost_ = false;
   loss_rule_.remember(covered_share, true);
@@ -84,21 +83,21 @@ Pose Tracker::predict(std::int64_t utime) const {
   return X_WC_ * se3_retract(velocity_C_ * (1e-6 * static_cast<double>(gap_us)));
 }
 
-TrackingResult Tracker::track(const SurfacePyramid& frame_C, std::int64_t utime,
-                              const Model& model) {
-  Registration registration = register_frame(frame_C, model, predict(utime), false);
+TrackingResult Tracker::track(const TrackingInput& frame, const Model& model) {
+  Registration registration = register_frame(frame, model, predict(frame.utime), false);
   auto loss = loss_rule_.judge(registration.quality);
   if (loss) {
-    registration = register_frame(frame_C, model, X_WC_, true);
+    registration = register_frame(frame, model, X_WC_, true);
     loss = loss_rule_.judge(registration.quality);
   }
   loss_rule_.remember(registration.quality.covered_share, !loss);
-  return loss ? lose(registration, *loss) : accept(registration, utime);
+  return loss ? lose(registration, *loss) : accept(registration, frame);
 }
 
-Tracker::Registration Tracker::register_frame(const SurfacePyramid& frame_C, const Model& model,
+Tracker::Registration Tracker::register_frame(const TrackingInput& frame, const Model& model,
                                               const Pose& X_WC_start, bool wide) const {
   Registration registration;
+  const SurfacePyramid& frame_C = frame.surface_C;
   Pose X_VC = model.X_WV.inverse() * X_WC_start;
   bool solved = true;
   const int coarsest = static_cast<int>(config_.iterations.size()) - 1;
@@ -127,12 +126,12 @@ Tracker::Registration Tracker::register_frame(const SurfacePyramid& frame_C, con
   return registration;
 }
 
-TrackingResult Tracker::accept(const Registration& registration, std::int64_t utime) {
-  const double seconds = 1e-6 * static_cast<double>(utime - utime_);
+TrackingResult Tracker::accept(const Registration& registration, const TrackingInput& frame) {
+  const double seconds = 1e-6 * static_cast<double>(frame.utime - utime_);
   const bool continuous = !lost_ && seconds > 0.0;
   velocity_C_ = continuous ? velocity_between(X_WC_, registration.X_WC, seconds) : Vector6d::Zero();
   X_WC_ = registration.X_WC;
-  utime_ = utime;
+  utime_ = frame.utime;
   lost_ = false;
 
   TrackingResult result;
@@ -140,11 +139,6 @@ TrackingResult Tracker::accept(const Registration& registration, std::int64_t ut
   result.X_WC = X_WC_;
   result.quality = registration.quality;
   result.iterations = registration.iterations;
-  const double unit = depth_sigma_m(1.0) * depth_sigma_m(1.0);
-  const Matrix6d per_inlier =
-      registration.equations.A * (unit / static_cast<double>(registration.equations.inliers));
-  result.eigenvalues =
-      Eigen::SelfAdjointEigenSolver<Matrix6d>(per_inlier, Eigen::EigenvaluesOnly).eigenvalues();
   return result;
 }
 

@@ -13,6 +13,7 @@
 #include "lcmtypes/messages.hpp"
 #include "mapper/core/icp.hpp"
 #include "mapper/core/loss_rule.hpp"
+#include "mapper/core/observability.hpp"
 #include "mapper/core/surface_pyramid.hpp"
 
 namespace kintsugi::mapper {
@@ -26,23 +27,29 @@ struct Model {
                                Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity())};
 };
 
+/// One frame as the tracker takes it.
+struct TrackingInput {
+  std::int64_t utime = 0;         ///< device time, microseconds
+  SurfacePyramid surface_C;       ///< of its depth
+  cv::Mat_<cv::Vec3b> color_rgb;  ///< of the same view; 1, 2, 4.. times the finest surface's width
+                                  ///< and height; or empty. Shared, not copied: nobody may write it
+};
+
 struct TrackingResult {
   TrackingState state = TrackingState::kStarting;
   Pose X_WC = Pose::Identity();  ///< the last good pose when state is kLost
   RegistrationQuality quality;
   int iterations = 0;
-  /// Of the Hessian, ascending, as information per inlier at unit weight (translation in metres,
-  /// rotation in radians): a value near zero is a direction the view does not determine.
-  Vector6d eigenvalues = Vector6d::Zero();
   std::optional<LossReason> loss_reason;  ///< set when state is kLost
+  TwistBasis open_to_depth_C;             ///< directions of motion that geometry leaves open
+  TwistBasis undetermined_C;              ///< what colour leaves open of those: if any, it is lost
 };
 
 /// Follows the camera by registering each frame with the model: point-to-plane ICP, coarse to fine,
-/// from a constant-velocity prediction. A frame that the loss rule does not believe is tried again
-/// from the last good pose with wider gates; then the state is kLost and the last pose stands.
-///
-/// Depth only. The photometric term for degenerate views and the relocaliser attach here: the first
-/// to the normal equations of each step, the second to what is tried when a frame is lost.
+/// from a constant-velocity prediction. Directions that the geometry in view leaves open are
+/// decided by colour, against a frame seen before; where there is no colour, or no texture, they
+/// stay undetermined. A frame that the loss rule does not believe is tried again from the last good
+/// pose with wider gates; then the state is kLost and the last pose stands.
 class Tracker {
  public:
   struct Config {
@@ -61,13 +68,13 @@ class Tracker {
   /// @throws std::invalid_argument if the configuration is not valid
   explicit Tracker(const Config& config);
 
-  /// The camera is known to be at `X_WC` at `utime`: the first frame, or a relocalised one. Motion
+  /// The camera is known to be at `X_WC` in this frame: the first one, or a relocalised one. Motion
   /// starts anew. `covered_share` is that of the frame.
-  void start_at(const Pose& X_WC, std::int64_t utime, double covered_share);
+  void start_at(const Pose& X_WC, const TrackingInput& frame, double covered_share);
 
   /// Registers a frame with the model. Both pyramids have as many levels as the configuration.
   /// After a loss the tracker keeps the last good pose and may be called with the next frame.
-  TrackingResult track(const SurfacePyramid& frame_C, std::int64_t utime, const Model& model);
+  TrackingResult track(const TrackingInput& frame, const Model& model);
 
   /// Where constant velocity (device time in microseconds) puts the camera.
   Pose predict(std::int64_t utime) const;
@@ -80,9 +87,9 @@ class Tracker {
     int iterations = 0;
   };
 
-  Registration register_frame(const SurfacePyramid& frame_C, const Model& model,
+  Registration register_frame(const TrackingInput& frame, const Model& model,
                               const Pose& X_WC_start, bool wide) const;
-  TrackingResult accept(const Registration& registration, std::int64_t utime);
+  TrackingResult accept(const Registration& registration, const TrackingInput& frame);
   TrackingResult lose(const Registration& registration, LossReason reason);
 
   Config config_;
