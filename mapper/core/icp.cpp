@@ -15,6 +15,7 @@ struct BandSum {
   double system[28] = {};
   double squared_residuals_m2 = 0.0;
   std::int64_t inliers = 0;
+  SurfaceAgreement agreement;
 
   /// Adds a row of the Jacobian with its residual in the last place.
   void add(const double (&row)[7], double weight) {
@@ -53,9 +54,8 @@ class Linearizer {
 
  private:
   void add_pixel(int v, int u, BandSum& sum) const {
-    const Eigen::Vector3f normal_C = frame_.normal(v, u);
-    if (std::isnan(frame_.depth_m(v, u)) || std::isnan(normal_C.z())) return;
-
+    const float depth_m = frame_.depth_m(v, u);
+    if (std::isnan(depth_m)) return;
     const Eigen::Vector3f p = R_VC_ * frame_.point(v, u) + p_VC_;
     if (!(p.z() > 0.0F)) return;
     const float model_u = fx_ * p.x() / p.z() + cx_ + 0.5F;
@@ -66,11 +66,14 @@ class Linearizer {
     }
     const int row = static_cast<int>(model_v);
     const int col = static_cast<int>(model_u);
+    const double sigma_m = depth_sigma_m(depth_m);
+    compare_depths(p.z(), model_.depth_m(row, col), sigma_m, sum.agreement);
+
     const Eigen::Vector3f n = model_.normal(row, col);
     const Eigen::Vector3f difference = model_.point(row, col) - p;
-    // Written so that a NaN on the model's side fails them.
+    // Written so that a NaN on either side fails them.
     if (!(difference.squaredNorm() < max_squared_distance_)) return;
-    if (!((R_VC_ * normal_C).dot(n) > min_cosine_)) return;
+    if (!((R_VC_ * frame_.normal(v, u)).dot(n) > min_cosine_)) return;
 
     // d(se3_retract(xi) p)/dxi = [I, -[p]x], so the prediction n . p changes by n for the
     // translation and by p x n for the rotation.
@@ -78,9 +81,18 @@ class Linearizer {
     const Eigen::Vector3d n_d = n.cast<double>();
     const Eigen::Vector3d moment = p_d.cross(n_d);
     const double residual_m = n_d.dot(difference.cast<double>());
-    const double sigma = depth_sigma_m(frame_.depth_m(v, u));
     sum.add({n_d.x(), n_d.y(), n_d.z(), moment.x(), moment.y(), moment.z(), residual_m},
-            1.0 / (sigma * sigma));
+            1.0 / (sigma_m * sigma_m));
+  }
+
+  static void compare_depths(double z_m, double model_z_m, double sigma_m,
+                             SurfaceAgreement& agreement) {
+    if (std::isnan(model_z_m)) return;
+    const double tolerance_m =
+        std::max(SurfaceAgreement::kSigmas * sigma_m, SurfaceAgreement::kDistance_m);
+    ++agreement.overlap;
+    if (z_m > model_z_m + tolerance_m) ++agreement.behind;
+    if (z_m < model_z_m - tolerance_m) ++agreement.in_front;
   }
 
   const SurfaceMap& frame_;
@@ -108,6 +120,7 @@ NormalEquations unpack(const BandSum& sum) {
   }
   equations.squared_residuals_m2 = sum.squared_residuals_m2;
   equations.inliers = sum.inliers;
+  equations.agreement = sum.agreement;
   return equations;
 }
 
@@ -137,6 +150,9 @@ NormalEquations linearize(const SurfaceMap& frame_C, const SurfaceMap& model_V, 
     for (int k = 0; k < 28; ++k) total.system[k] += band.system[k];
     total.squared_residuals_m2 += band.squared_residuals_m2;
     total.inliers += band.inliers;
+    total.agreement.overlap += band.agreement.overlap;
+    total.agreement.behind += band.agreement.behind;
+    total.agreement.in_front += band.agreement.in_front;
   }
   return unpack(total);
 }

@@ -20,6 +20,18 @@ struct IcpGates {
   double min_normal_cosine = 0.8;  ///< between the two normals
 };
 
+/// How the depths of a frame agree with those of the model along the model's rays, whatever the
+/// gates say. A pixel counts where its point falls on a model pixel that has a depth.
+struct SurfaceAgreement {
+  std::int64_t overlap = 0;   ///< pixels that count
+  std::int64_t behind = 0;    ///< of these: farther than the model's surface, through it
+  std::int64_t in_front = 0;  ///< of these: nearer than the model's surface
+
+  /// Farther or nearer by more than this many sigma of the depth, and at least this far.
+  static constexpr double kSigmas = 3.0;
+  static constexpr double kDistance_m = 0.02;
+};
+
 /// Gauss-Newton system of the weighted point-to-plane error
 ///   E(X_VC) = sum_i w_i (n_i . (m_i - X_VC p_i))^2,   w_i = 1 / sigma(z_i)^2
 /// for the left increment X_VC <- se3_exp(xi) X_VC with xi = (translation m, rotation rad):
@@ -30,6 +42,7 @@ struct NormalEquations {
   double weighted_squares = 0.0;    ///< E, dimensionless
   double squared_residuals_m2 = 0;  ///< sum of r_i^2 without weights
   std::int64_t inliers = 0;         ///< pairs that passed the gates
+  SurfaceAgreement agreement;
 };
 
 /// Standard deviation of a structured-light camera's depth at depth z (metres), after Nguyen et al.

@@ -110,6 +110,30 @@ TEST(Linearize, InvalidPixelsTakeNoPart) {
   EXPECT_EQ(linearize(behind.frame, behind.model, X_VC, {}).inliers, 0);
 }
 
+TEST(Linearize, CountsPointsBehindAndInFrontOfTheModel) {
+  const auto agreement = [](float frame_z, float model_z) {
+    Pair pair = one_pair(frame_z, model_z, {0, 0, -1});
+    pair.frame.normal_z(0, 0) = std::numeric_limits<float>::quiet_NaN();  // is not asked for
+    return linearize(pair.frame, pair.model, Pose::Identity(), {}).agreement;
+  };
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_EQ(agreement(nan, 1.0F).overlap, 0);
+  EXPECT_EQ(agreement(1.0F, nan).overlap, 0);
+  // At 1 m three sigma are 6 mm, so 2 cm decide; at 3 m they are 42 mm.
+  const auto expect = [&](float frame_z, float model_z, int behind, int in_front) {
+    const SurfaceAgreement counts = agreement(frame_z, model_z);
+    EXPECT_EQ(counts.overlap, 1);
+    EXPECT_EQ(counts.behind, behind) << frame_z << " against " << model_z;
+    EXPECT_EQ(counts.in_front, in_front) << frame_z << " against " << model_z;
+  };
+  expect(1.019F, 1.0F, 0, 0);
+  expect(1.021F, 1.0F, 1, 0);
+  expect(0.979F, 1.0F, 0, 1);
+  expect(3.0F, 2.96F, 0, 0);
+  expect(3.0F, 2.957F, 1, 0);
+  expect(3.0F, 3.043F, 0, 1);
+}
+
 TEST(Linearize, IteratingFindsAKnownMotionInAnExactRoom) {
   const Pose X_WV = testing::looking_at_the_crate();
   const SurfaceMap model = testing::render_room(X_WV, testing::test_camera());
