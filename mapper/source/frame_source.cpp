@@ -3,6 +3,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "mapper/source/device_mode.hpp"
 #include "mapper/source/lcm_source.hpp"
 #include "mapper/source/openni2_source.hpp"
 
@@ -17,6 +18,23 @@ void SourceConfig::validate() const {
     throw std::invalid_argument("lcm_silence_s is " + std::to_string(lcm_silence_s) +
                                 ", expected a finite number, 0 or greater");
   }
+  if (!depth_mode.empty()) DeviceMode::parse("depth_mode", depth_mode);
+  if (!color_mode.empty()) DeviceMode::parse("color_mode", color_mode);
+  if (lock_exposure_after_s &&
+      !(std::isfinite(*lock_exposure_after_s) && *lock_exposure_after_s >= 0.0)) {
+    throw std::invalid_argument("lock_exposure_after_s is " +
+                                std::to_string(*lock_exposure_after_s) +
+                                ", expected a finite number, 0 or greater");
+  }
+  if (!(std::isfinite(device_silence_s) && device_silence_s > 0.0)) {
+    throw std::invalid_argument("device_silence_s is " + std::to_string(device_silence_s) +
+                                ", expected a finite number greater than 0");
+  }
+  if (!(std::isfinite(reconnect_s) && reconnect_s >= 0.0)) {
+    throw std::invalid_argument("reconnect_s is " + std::to_string(reconnect_s) +
+                                ", expected a finite number, 0 or greater");
+  }
+  if (!notify) throw std::invalid_argument("notify is empty, expected a function");
   if (!stop_requested) throw std::invalid_argument("stop_requested is empty, expected a function");
 }
 

@@ -14,9 +14,22 @@ namespace kintsugi::mapper {
 struct SourceCounts {
   std::int64_t frames_delivered = 0;  ///< handed out by next()
   std::int64_t frames_dropped = 0;    ///< superseded by a newer one before they were asked for
-  std::int64_t depth_unpaired = 0;    ///< delivered without colour: none within 20 ms
+  std::int64_t depth_unpaired = 0;    ///< delivered without colour: none within half a frame
   std::int64_t color_unpaired = 0;    ///< colour images without a depth image
   std::int64_t frames_bad = 0;        ///< refused: undecodable or of another size
+  std::int64_t interruptions = 0;     ///< the camera went away (whether or not it came back)
+};
+
+/// Something that a person at the camera should know, said while the source runs.
+struct SourceNotice {
+  enum class Kind {
+    kInformation,
+    kWarning,      ///< works, but not as well as it could
+    kInterrupted,  ///< the camera is gone; next() waits for it
+    kResumed,      ///< and is back
+  };
+  Kind kind = Kind::kInformation;
+  std::string text;  ///< a sentence
 };
 
 /// Where RGB-D frames come from: undistorted, un-mirrored, in metres, colour paired by time.
@@ -25,7 +38,8 @@ class FrameSource {
   virtual ~FrameSource() = default;
 
   /// The next frame, waiting for it; nullopt at the end (end_reason() says which end), and on every
-  /// call after that. Called from one thread.
+  /// call after that. Called from one thread. Times ascend strictly, whatever the device's clock
+  /// does; over an interruption they go on by the time that passed.
   virtual std::optional<RgbdFrame> next() = 0;
 
   /// Of the whole recording, by depth images; -1 when not known (a live camera).
@@ -60,6 +74,24 @@ struct SourceConfig {
   /// `lcm://CHANNEL` ends when nothing has come for so long after its first frame, seconds, >= 0;
   /// 0: never.
   double lcm_silence_s = 10.0;
+
+  // Cameras.
+  /// `WIDTHxHEIGHT`, `WIDTHxHEIGHT@HZ`, or empty: 640x480@30 where offered, else the nearest.
+  std::string depth_mode;
+  /// As above; empty: as depth where offered, else the nearest that covers the depth image.
+  std::string color_mode;
+  /// Colour is aligned with depth although the device neither aligns them nor says that they are
+  /// (a .oni file does not tell). Otherwise such colour is not used.
+  bool assume_registered = false;
+  /// Exposure and white balance stay as they are so long after the first image, seconds, >= 0;
+  /// absent: they go on adapting.
+  std::optional<double> lock_exposure_after_s;
+  double device_silence_s = 5.0;  ///< a camera without depth images for so long is gone, > 0
+  /// How long to wait for a camera that is gone, seconds, >= 0; 0: as long as it takes.
+  double reconnect_s = 0.0;
+  /// Called from the threads that open the source and call next().
+  std::function<void(const SourceNotice&)> notify = [](const SourceNotice&) {};
+
   /// Asked at least ten times a second while next() waits; true ends the source.
   std::function<bool()> stop_requested = [] { return false; };
 
