@@ -1,0 +1,167 @@
+// Loss and recovery: one recording, played as it is and under each disturbance. Prints a Markdown
+// table, and what became of each frame as CSV.
+//
+//   bench_recovery --device folder://7scenes_1000 --frames 300
+//   bench_recovery --device 'synthetic://office?frames=300' --disturbances jump,covered
+//   --depth-only
+
+#include <exception>
+#include <fstream>
+#include <iomanip>
+#include <iostream>
+#include <optional>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <oneapi/tbb/global_control.h>
+
+#include "tests/bench/recovery_measures.hpp"
+
+namespace kintsugi::mapper::bench {
+namespace {
+
+struct Options {
+  std::string device;
+  int frames = 0;
+  std::vector<std::string> disturbances = disturbance_names();
+  std::string reference;  ///< empty: by the kind of device
+  bool depth_only = false;
+  std::uint32_t seed = 1;
+  std::size_t threads = 0;
+  std::string csv;
+  MapperPipeline::Config pipeline;
+};
+
+Options parse_command_line(int argc, char** argv) {
+  Options options;
+  CLI::App app("Loss and recovery of the mapper under disturbances");
+  app.add_option("--device", options.device, "folder://PATH or synthetic://NAME?...")->required();
+  app.add_option("--frames", options.frames, "the first so many; 0: all");
+  app.add_option("--disturbances", options.disturbances, "which, and in which order")
+      ->delimiter(',')
+      ->check(CLI::IsMember(disturbance_names()));
+  app.add_option("--reference", options.reference,
+                 "poses are wrong that are 3 cm off `truth` (default if it is exact) or off the "
+                 "`undisturbed` run")
+      ->check(CLI::IsMember({"truth", "undisturbed"}));
+  app.add_flag("--depth-only", options.depth_only, "without the colour stream");
+  app.add_option("--seed", options.seed, "of the random disturbances")->capture_default_str();
+  app.add_option("--threads", options.threads, "of the parallel stages; 0: one per core");
+  app.add_option("--resolution", options.pipeline.volume.resolution_m, "side of a voxel, m")
+      ->capture_default_str();
+  app.add_option("--volume-size", options.pipeline.volume.volume_size_m, "side of the cube, m")
+      ->capture_default_str();
+  app.add_option("--csv", options.csv, "one line for each frame of each run");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    std::exit(app.exit(error));
+  }
+  return options;
+}
+
+/// Where each frame was located in an undisturbed run.
+std::vector<std::optional<Pose>> path_of(const std::vector<FrameOutcome>& outcomes,
+                                         int num_frames) {
+  std::vector<std::optional<Pose>> X_WC(num_frames);
+  for (const FrameOutcome& outcome : outcomes) {
+    if (outcome.located) X_WC[outcome.planned.frame] = outcome.tracking.X_WC;
+  }
+  return X_WC;
+}
+
+std::vector<std::optional<Pose>> reference_path(const Options& options,
+                                                const Recording& recording) {
+  const bool use_truth =
+      options.reference.empty() ? recording.truth_is_exact() : options.reference == "truth";
+  if (use_truth) {
+    if (!recording.true_path().front()) {
+      throw std::invalid_argument(options.device + " has no truth to compare with");
+    }
+    return recording.true_path();
+  }
+  const Plan plan = plan_disturbance("none", recording.num_frames(), recording.period_us());
+  const std::vector<std::optional<Pose>> nothing(recording.num_frames());
+  return path_of(run_plan(recording, plan, !options.depth_only, options.pipeline, nothing),
+                 recording.num_frames());
+}
+
+std::string in_mm(std::optional<double> metres) {
+  if (!metres) return "-";
+  std::ostringstream text;
+  text << std::fixed << std::setprecision(1) << 1e3 * *metres;
+  return text.str();
+}
+
+void print_header() {
+  std::cout << "| disturbance | frames | located | wrong (> 3 cm) | worst, mm | good | refused | "
+               "recovered / never | until found, median / max, s | ATE, mm | frame, median / max, "
+               "ms |\n|---|---|---|---|---|---|---|---|---|---|---|\n";
+}
+
+void print_row(const std::string& name, const RecoveryMeasures& m) {
+  std::cout << "| " << name << " | " << m.frames << " | " << m.located << " | " << m.wrong << " | "
+            << in_mm(m.worst_error_m) << " | " << m.good << " | " << m.refused << std::fixed
+            << std::setprecision(1) << " (" << (m.good > 0 ? 100.0 * m.refused / m.good : 0.0)
+            << " %) | " << m.recoveries << " / " << m.never_recovered << std::setprecision(2)
+            << " | " << m.median_recovery_s << " / " << m.max_recovery_s << " | " << in_mm(m.ate_m)
+            << std::setprecision(0) << " | " << m.median_frame_ms << " / " << m.max_frame_ms << " |"
+            << std::endl;
+}
+
+void write_csv_header(std::ostream& csv) {
+  csv << "disturbance,frame,utime,damage,state,reason,view_known,error_m,covered_share,"
+         "inlier_share,rms_m,frame_ms\n";
+}
+
+void write_csv(std::ostream& csv, const std::string& name,
+               const std::vector<FrameOutcome>& outcomes,
+               const std::vector<std::optional<Pose>>& X_WC_reference) {
+  for (const FrameOutcome& outcome : outcomes) {
+    const TrackingResult& tracking = outcome.tracking;
+    const auto& reference = X_WC_reference.at(outcome.planned.frame);
+    csv << name << ',' << outcome.planned.frame << ',' << outcome.planned.utime << ','
+        << static_cast<int>(outcome.planned.damage) << ',' << static_cast<int>(tracking.state)
+        << ',' << (tracking.loss_reason ? to_string(*tracking.loss_reason) : "") << ','
+        << outcome.view_known << ',' << (reference ? pose_error_m(tracking.X_WC, *reference) : -1.0)
+        << ',' << tracking.quality.covered_share << ',' << tracking.quality.inlier_share << ','
+        << tracking.quality.rms_m << ',' << outcome.frame_ms << '\n';
+  }
+}
+
+void run(const Options& options) {
+  const Recording recording(options.device, options.frames);
+  const auto X_WC_reference = reference_path(options, recording);
+  std::ofstream csv(options.csv);
+  write_csv_header(csv);
+  print_header();
+  for (const std::string& name : options.disturbances) {
+    const Plan plan =
+        plan_disturbance(name, recording.num_frames(), recording.period_us(), options.seed);
+    const auto outcomes =
+        run_plan(recording, plan, !options.depth_only, options.pipeline, X_WC_reference);
+    print_row(name, measure(outcomes, X_WC_reference, recording.true_path()));
+    write_csv(csv, name, outcomes, X_WC_reference);
+  }
+}
+
+}  // namespace
+}  // namespace kintsugi::mapper::bench
+
+int main(int argc, char** argv) {
+  using namespace kintsugi::mapper::bench;
+  const Options options = parse_command_line(argc, argv);
+  try {
+    using Limit = oneapi::tbb::global_control;
+    std::optional<Limit> limit;
+    if (options.threads > 0) limit.emplace(Limit::max_allowed_parallelism, options.threads);
+    run(options);
+    return 0;
+  } catch (const std::exception& error) {
+    std::cerr << "bench_recovery: " << error.what() << '\n';
+    return 1;
+  }
+}
