@@ -12,7 +12,7 @@
 #include "mapper/core/block_visibility.hpp"
 #include "mapper/core/camera_view.hpp"
 #include "mapper/core/check.hpp"
-#include "mapper/core/integration_kernel.hpp"
+#include "mapper/core/kernels/kernels.hpp"
 
 namespace kintsugi::mapper {
 namespace {
@@ -25,22 +25,14 @@ void check_image_size(const char* name, cv::Size actual, const Intrinsics& intri
                               std::to_string(intrinsics.height));
 }
 
-IntegrationKernel kernel_for(InstructionSet instruction_set) {
-#ifdef KINTSUGI_X86_KERNELS
-  if (instruction_set == InstructionSet::kAvx2) return integrate_block_avx2;
-#endif
-  static_cast<void>(instruction_set);
-  return integrate_block_portable;
-}
-
 /// Without padding between rows, as the kernels read them.
 template <typename Image>
 Image continuous(const Image& image) {
   return image.isContinuous() ? image : image.clone();
 }
 
-KernelFrame make_kernel_frame(const CameraView& view, const TsdfVolume& volume) {
-  KernelFrame frame;
+IntegrationFrame make_integration_frame(const CameraView& view, const TsdfVolume& volume) {
+  IntegrationFrame frame;
   frame.width = view.width;
   frame.height = view.height;
   frame.fx = view.fx;
@@ -60,8 +52,8 @@ KernelFrame make_kernel_frame(const CameraView& view, const TsdfVolume& volume) 
   return frame;
 }
 
-KernelBlock make_kernel_block(const VisibleBlock& block, const CameraView& view,
-                              TsdfVolume& volume) {
+IntegrationBlock make_integration_block(const VisibleBlock& block, const CameraView& view,
+                                        TsdfVolume& volume) {
   constexpr float kHalfBlock_vox = 0.5F * (kBlockSide - 1);
   const Eigen::Vector3f to_center_W =
       Eigen::Vector3f::Constant(kHalfBlock_vox * volume.resolution_m());
@@ -102,16 +94,16 @@ void Integrator::integrate(const RgbdFrame& frame, const Pose& X_WC, TsdfVolume&
   const cv::Mat_<float> depth_m = continuous(frame.depth_m);
   cv::Mat_<cv::Vec4b> color_rgbx;
   if (has_color) cv::cvtColor(frame.color_rgb, color_rgbx, cv::COLOR_RGB2RGBA);
-  KernelFrame kernel_frame = make_kernel_frame(view, volume);
-  kernel_frame.min_depth_m = min_depth_m;
-  kernel_frame.max_depth_m = max_depth_m;
-  kernel_frame.depth_m = depth_m[0];
-  if (has_color) kernel_frame.color_rgbx = color_rgbx.ptr<std::uint32_t>();
+  IntegrationFrame integration_frame = make_integration_frame(view, volume);
+  integration_frame.min_depth_m = min_depth_m;
+  integration_frame.max_depth_m = max_depth_m;
+  integration_frame.depth_m = depth_m[0];
+  if (has_color) integration_frame.color_rgbx = color_rgbx.ptr<std::uint32_t>();
 
-  const IntegrationKernel integrate_block = kernel_for(instruction_set_);
+  const IntegrateBlock integrate_block = kernels_for(instruction_set_).integrate_block;
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, visible.size(), 32), [&](const auto& range) {
     for (std::size_t i = range.begin(); i < range.end(); ++i) {
-      integrate_block(kernel_frame, make_kernel_block(visible[i], view, volume));
+      integrate_block(integration_frame, make_integration_block(visible[i], view, volume));
     }
   });
 }

@@ -2,12 +2,13 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "mapper/core/instruction_set.hpp"
-#include "mapper/core/integration_kernel.hpp"
+#include "mapper/core/kernels/kernels.hpp"
 #include "mapper/core/tsdf_block.hpp"
 
 namespace kintsugi::mapper {
@@ -37,9 +38,9 @@ Images random_images(std::mt19937& random) {
   return images;
 }
 
-KernelFrame make_frame(const Images& images, float angle_rad) {
+IntegrationFrame make_frame(const Images& images, float angle_rad) {
   constexpr float kVoxel_m = 0.01F;
-  KernelFrame frame;
+  IntegrationFrame frame;
   frame.depth_m = images.depth_m.data();
   frame.color_rgbx = images.color_rgbx.data();
   frame.width = kWidth;
@@ -65,7 +66,7 @@ struct Block {
   VoxelBlock voxels{};
   ColorBlock colors{};
 
-  KernelBlock at(float x, float y, float z) {
+  IntegrationBlock at(float x, float y, float z) {
     return {.voxels = voxels.voxels.data(), .colors = colors.colors.data(), .origin_C = {x, y, z}};
   }
 };
@@ -73,10 +74,10 @@ struct Block {
 /// A voxel that stays in the middle of one pixel with this depth.
 Voxel fuse_one(const std::vector<float>& depths_m, float z, Block& block) {
   Images images{std::vector<float>(kNumPixels), std::vector<std::uint32_t>(kNumPixels, 0x010A64C8)};
-  KernelFrame frame = make_frame(images, 0.0F);
+  IntegrationFrame frame = make_frame(images, 0.0F);
   for (const float depth_m : depths_m) {
     std::fill(images.depth_m.begin(), images.depth_m.end(), depth_m);
-    integrate_block_portable(frame, block.at(0.0F, 0.0F, z));
+    kPortableKernels.integrate_block(frame, block.at(0.0F, 0.0F, z));
   }
   return block.voxels.voxels[0];
 }
@@ -115,18 +116,21 @@ TEST(IntegrationKernel, ColorsOnlyWithinTheTruncationDistance) {
 TEST(IntegrationKernel, KeepsColorsWhereAFrameHasNone) {
   std::mt19937 random(1);
   const Images images = random_images(random);
-  KernelFrame frame = make_frame(images, 0.0F);
+  IntegrationFrame frame = make_frame(images, 0.0F);
   frame.color_rgbx = nullptr;
   Block block;
   block.colors.colors.fill(0x01020304);
-  integrate_block_portable(frame, block.at(-0.04F, -0.04F, 0.96F));
+  kPortableKernels.integrate_block(frame, block.at(-0.04F, -0.04F, 0.96F));
   EXPECT_TRUE(std::all_of(block.colors.colors.begin(), block.colors.colors.end(),
                           [](VoxelColor color) { return color == 0x01020304; }));
 }
 
-TEST(IntegrationKernel, WritesTheSameBytesInEveryInstructionSet) {
-#ifdef KINTSUGI_X86_KERNELS
-  if (!is_supported(InstructionSet::kAvx2)) GTEST_SKIP() << "no AVX2 here";
+/// The same random frames and blocks for every instruction set.
+class IntegrationKernels : public ::testing::TestWithParam<InstructionSet> {};
+
+TEST_P(IntegrationKernels, WriteTheBytesOfThePortableOne) {
+  if (!is_supported(GetParam())) GTEST_SKIP() << "not on this processor";
+  const IntegrateBlock integrate_block = kernels_for(GetParam()).integrate_block;
   std::mt19937 random(42);
   // Inside the view, across its border, beside it, behind the camera and around the camera.
   std::uniform_real_distribution<float> lateral(-0.5F, 0.5F);
@@ -135,30 +139,31 @@ TEST(IntegrationKernel, WritesTheSameBytesInEveryInstructionSet) {
   int num_updated = 0;
   for (int round = 0; round < 400; ++round) {
     const Images images = random_images(random);
-    KernelFrame frame = make_frame(images, 0.01F * static_cast<float>(round));
+    IntegrationFrame frame = make_frame(images, 0.01F * static_cast<float>(round));
     if (round % 5 == 0) frame.color_rgbx = nullptr;
     const float origin[3] = {lateral(random), lateral(random),
                              round % 2 == 0 ? any_depth(random) : surface_depth(random)};
-    Block portable;
-    for (Voxel& voxel : portable.voxels.voxels) {
-      voxel = ((random() % 21) << 16) | (random() & 0x7FFFU);
+    Block expected;
+    for (Voxel& voxel : expected.voxels.voxels) {
+      voxel = ((random() % 21) << 16) | (random() & 0xFFFFU);
     }
-    for (VoxelColor& color : portable.colors.colors) color = random() & 0x0FFFFFFFU;
-    const Block before = portable;
-    Block avx2 = portable;
+    for (VoxelColor& color : expected.colors.colors) color = random() & 0x0FFFFFFFU;
+    const Block before = expected;
+    Block actual = expected;
     for (int repeat = 0; repeat < 3; ++repeat) {
-      integrate_block_portable(frame, portable.at(origin[0], origin[1], origin[2]));
-      integrate_block_avx2(frame, avx2.at(origin[0], origin[1], origin[2]));
+      kPortableKernels.integrate_block(frame, expected.at(origin[0], origin[1], origin[2]));
+      integrate_block(frame, actual.at(origin[0], origin[1], origin[2]));
     }
-    ASSERT_EQ(portable.voxels.voxels, avx2.voxels.voxels) << "round " << round;
-    ASSERT_EQ(portable.colors.colors, avx2.colors.colors) << "round " << round;
-    num_updated += portable.voxels.voxels != before.voxels.voxels ? 1 : 0;
+    ASSERT_EQ(actual.voxels.voxels, expected.voxels.voxels) << "round " << round;
+    ASSERT_EQ(actual.colors.colors, expected.colors.colors) << "round " << round;
+    num_updated += expected.voxels.voxels != before.voxels.voxels ? 1 : 0;
   }
   EXPECT_GT(num_updated, 50) << "the comparison compared nothing";
-#else
-  GTEST_SKIP() << "only the portable kernel in this build";
-#endif
 }
+
+INSTANTIATE_TEST_SUITE_P(InstructionSets, IntegrationKernels,
+                         ::testing::Values(InstructionSet::kAvx2, InstructionSet::kAvx512),
+                         [](const auto& info) { return std::string(name_of(info.param)); });
 
 }  // namespace
 }  // namespace kintsugi::mapper

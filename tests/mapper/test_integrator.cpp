@@ -106,14 +106,16 @@ TEST(Integrator, GivesTheSameBytesWithAnyNumberOfThreads) {
 }
 
 TEST(Integrator, GivesTheSameBytesInEveryInstructionSet) {
-  if (!is_supported(InstructionSet::kAvx2)) GTEST_SKIP() << "no AVX2 here";
   const auto scene = synthetic::make_scene("sphere");
   const std::vector<View> views = testing::views_around(scene, 1.3, {0.3}, 4);
   TsdfVolume portable(volume_of(1.6));
   fuse(views, portable, {.instruction_set = InstructionSet::kPortable});
-  TsdfVolume avx2(volume_of(1.6));
-  fuse(views, avx2, {.instruction_set = InstructionSet::kAvx2});
-  EXPECT_TRUE(same_bytes(portable.snapshot(), avx2.snapshot()));
+  for (const InstructionSet instruction_set : kInstructionSets) {
+    if (!is_supported(instruction_set)) continue;
+    TsdfVolume volume(volume_of(1.6));
+    fuse(views, volume, {.instruction_set = instruction_set});
+    EXPECT_TRUE(same_bytes(portable.snapshot(), volume.snapshot())) << name_of(instruction_set);
+  }
 }
 
 TEST(Integrator, AllocatesTheTruncationBandAndNoMore) {

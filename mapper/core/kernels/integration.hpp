@@ -1,18 +1,12 @@
 #pragma once
 // The innermost loop of fusion: one frame into one block of voxels.
-//
-// There is one version for each instruction set, each in a source file compiled for it. Those files
-// include nothing but this header and the compiler's intrinsics: an inline function from elsewhere,
-// compiled there with wider instructions, could be the copy the linker keeps for everyone. All
-// versions do the same single-precision operations in the same order, without fused
-// multiply-adds, and so write the same bytes.
 
 #include <cstdint>
 
 namespace kintsugi::mapper {
 
 /// A frame as the kernel wants it; rows without padding.
-struct KernelFrame {
+struct IntegrationFrame {
   const float* depth_m = nullptr;             ///< height x width; NaN is invalid
   const std::uint32_t* color_rgbx = nullptr;  ///< red in the lowest byte; null: no colour
   int width = 0;
@@ -31,15 +25,12 @@ struct KernelFrame {
 };
 
 /// One block; see tsdf_block.hpp for the layout of the words.
-struct KernelBlock {
-  std::uint32_t* voxels = nullptr;  ///< 512, aligned to 64 bytes
-  std::uint32_t* colors = nullptr;  ///< 512, aligned to 64 bytes
+struct IntegrationBlock {
+  std::uint32_t* voxels = nullptr;  ///< 512
+  std::uint32_t* colors = nullptr;  ///< 512
   float origin_C[3] = {};           ///< centre of voxel (0, 0, 0), metres in C
 };
 
-using IntegrationKernel = void (*)(const KernelFrame& frame, const KernelBlock& block);
-
-void integrate_block_portable(const KernelFrame& frame, const KernelBlock& block);
-void integrate_block_avx2(const KernelFrame& frame, const KernelBlock& block);
+using IntegrateBlock = void (*)(const IntegrationFrame& frame, const IntegrationBlock& block);
 
 }  // namespace kintsugi::mapper

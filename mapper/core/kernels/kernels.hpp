@@ -1,0 +1,23 @@
+#pragma once
+// The inner loops that run in vector registers, one set of them for each instruction set. All give
+// the same bytes; see pack_portable.hpp for how they are written.
+
+#include "mapper/core/kernels/integration.hpp"
+
+namespace kintsugi::mapper {
+
+enum class InstructionSet;
+
+struct Kernels {
+  IntegrateBlock integrate_block = nullptr;
+};
+
+/// @throws std::invalid_argument where is_supported(instruction_set) is false
+const Kernels& kernels_for(InstructionSet instruction_set);
+
+// Each in the source compiled for it; those for x86 only where this build has them.
+extern const Kernels kPortableKernels;
+extern const Kernels kAvx2Kernels;
+extern const Kernels kAvx512Kernels;
+
+}  // namespace kintsugi::mapper

@@ -1,0 +1,22 @@
+# Sources compiled for an instruction set wider than the build's.
+
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+  set(KINTSUGI_X86_KERNELS TRUE)
+else()
+  set(KINTSUGI_X86_KERNELS FALSE)
+endif()
+
+# <prefix>_avx2.cpp and <prefix>_avx512.cpp are compiled for what their names say, or not at all
+# where the processor is of another family. To be called from where their target is made.
+function(kintsugi_instruction_set_sources prefix)
+  if(KINTSUGI_X86_KERNELS)
+    set_source_files_properties(${prefix}_avx2.cpp PROPERTIES COMPILE_OPTIONS "-mavx2")
+    # GCC's own header for AVX-512 reads an undefined register on purpose (its bug 105593).
+    set(quiet "$<$<CXX_COMPILER_ID:GNU>:-Wno-uninitialized;-Wno-maybe-uninitialized>")
+    set_source_files_properties(${prefix}_avx512.cpp PROPERTIES COMPILE_OPTIONS
+                                "-mavx512f;-mavx512bw;-mavx512dq;-mavx512vl;${quiet}")
+  else()
+    set_source_files_properties(${prefix}_avx2.cpp ${prefix}_avx512.cpp
+                                PROPERTIES HEADER_FILE_ONLY ON)
+  endif()
+endfunction()
