@@ -4,10 +4,14 @@
 
 namespace kintsugi::mapper {
 
+TsdfBlockPool::TsdfBlockPool()
+    : voxels_(kMaxBlocks * sizeof(VoxelBlock)), colors_(kMaxBlocks * sizeof(ColorBlock)) {}
+
 BlockSlot TsdfBlockPool::take(const BlockCoord& coord) {
   if (free_.empty()) {
     const BlockSlot slot = end();
-    if (index_in_chunk(slot) == 0) chunks_.push_back(std::make_unique_for_overwrite<Chunk>());
+    voxels_.commit((static_cast<std::size_t>(slot) + 1) * sizeof(VoxelBlock));
+    colors_.commit((static_cast<std::size_t>(slot) + 1) * sizeof(ColorBlock));
     coords_.push_back(coord);
     in_use_.push_back(0);
     free_.push_back(slot);
@@ -28,15 +32,17 @@ void TsdfBlockPool::give_back(BlockSlot slot) {
 }
 
 void TsdfBlockPool::clear() {
-  chunks_.clear();
+  voxels_.release();
+  colors_.release();
   coords_.clear();
   in_use_.clear();
   free_.clear();
 }
 
 std::size_t TsdfBlockPool::memory_bytes() const {
-  return chunks_.size() * sizeof(Chunk) + coords_.capacity() * sizeof(BlockCoord) +
-         in_use_.capacity() + free_.capacity() * sizeof(BlockSlot);
+  return voxels_.committed_bytes() + colors_.committed_bytes() +
+         coords_.capacity() * sizeof(BlockCoord) + in_use_.capacity() +
+         free_.capacity() * sizeof(BlockSlot);
 }
 
 }  // namespace kintsugi::mapper

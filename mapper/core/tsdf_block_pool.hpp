@@ -1,9 +1,9 @@
 #pragma once
 
 #include <cstddef>
-#include <memory>
 #include <vector>
 
+#include "mapper/core/reserved_memory.hpp"
 #include "mapper/core/tsdf_block.hpp"
 
 namespace kintsugi::mapper {
@@ -12,23 +12,26 @@ namespace kintsugi::mapper {
 using BlockSlot = std::int32_t;
 inline constexpr BlockSlot kNoBlock = -1;
 
-/// Storage of blocks that are taken and given back: grows in chunks, never moves a block, and
-/// recycles freed slots before it grows.
+/// Storage of blocks that are taken and given back: never moves a block, and recycles freed slots
+/// before it grows. All blocks follow each other in the order of their slots, so that a vector of
+/// 32-bit indices reaches every voxel.
 class TsdfBlockPool {
  public:
+  /// The voxels of so many blocks have indices of 31 bits; 8 GB of them, and as much of colours.
+  static constexpr std::size_t kMaxBlocks = (std::size_t{1} << 31) / kBlockVoxels;
+
+  TsdfBlockPool();
+
   /// A slot whose voxels and colours are all zero. Invalidates no reference.
+  /// @throws std::bad_alloc where there is no more memory or kMaxBlocks are in use
   BlockSlot take(const BlockCoord& coord);
   void give_back(BlockSlot slot);
   void clear();
 
-  VoxelBlock& voxels(BlockSlot slot) { return chunk_of(slot).voxels[index_in_chunk(slot)]; }
-  const VoxelBlock& voxels(BlockSlot slot) const {
-    return chunk_of(slot).voxels[index_in_chunk(slot)];
-  }
-  ColorBlock& colors(BlockSlot slot) { return chunk_of(slot).colors[index_in_chunk(slot)]; }
-  const ColorBlock& colors(BlockSlot slot) const {
-    return chunk_of(slot).colors[index_in_chunk(slot)];
-  }
+  VoxelBlock& voxels(BlockSlot slot) { return first<VoxelBlock>(voxels_)[slot]; }
+  const VoxelBlock& voxels(BlockSlot slot) const { return first<VoxelBlock>(voxels_)[slot]; }
+  ColorBlock& colors(BlockSlot slot) { return first<ColorBlock>(colors_)[slot]; }
+  const ColorBlock& colors(BlockSlot slot) const { return first<ColorBlock>(colors_)[slot]; }
   const BlockCoord& coord(BlockSlot slot) const { return coords_[slot]; }
 
   /// Every slot in use is below this.
@@ -38,18 +41,17 @@ class TsdfBlockPool {
   std::size_t memory_bytes() const;
 
  private:
-  static constexpr int kChunkBits = 10;
-  static constexpr int kChunkBlocks = 1 << kChunkBits;
-  struct Chunk {
-    std::array<VoxelBlock, kChunkBlocks> voxels;
-    std::array<ColorBlock, kChunkBlocks> colors;
-  };
+  template <typename Block>
+  static Block* first(ReservedMemory& memory) {
+    return reinterpret_cast<Block*>(memory.data());
+  }
+  template <typename Block>
+  static const Block* first(const ReservedMemory& memory) {
+    return reinterpret_cast<const Block*>(memory.data());
+  }
 
-  static int index_in_chunk(BlockSlot slot) { return slot & (kChunkBlocks - 1); }
-  Chunk& chunk_of(BlockSlot slot) { return *chunks_[slot >> kChunkBits]; }
-  const Chunk& chunk_of(BlockSlot slot) const { return *chunks_[slot >> kChunkBits]; }
-
-  std::vector<std::unique_ptr<Chunk>> chunks_;
+  ReservedMemory voxels_;
+  ReservedMemory colors_;
   std::vector<BlockCoord> coords_;
   std::vector<unsigned char> in_use_;
   std::vector<BlockSlot> free_;
