@@ -14,7 +14,7 @@
 #include "mapper/core/slice_worker.hpp"
 #include "mapper/core/stage_times.hpp"
 #include "mapper/core/tracker.hpp"
-#include "mapper/core/trajectory.hpp"
+#include "lcmtypes/trajectory.hpp"
 #include "mapper/core/tsdf_volume.hpp"
 
 namespace kintsugi::mapper {

@@ -2,7 +2,7 @@
 
 #include "mapper/core/mapper_pipeline.hpp"
 #include "mapper/core/stopwatch.hpp"
-#include "mapper/core/trajectory.hpp"
+#include "lcmtypes/trajectory.hpp"
 #include "mapper/process/frame_reader.hpp"
 #include "mapper/process/map_publisher.hpp"
 #include "mapper/process/options.hpp"

@@ -1,8 +1,5 @@
 #include "mapper/process/options.hpp"
 
-#include <cerrno>
-#include <cstring>
-#include <fstream>
 #include <iostream>
 #include <stdexcept>
 
@@ -66,12 +63,6 @@ void pass_ground_truth_to_device(Options& options) {
   device += "ground_truth=" + options.ground_truth_dir;
 }
 
-Trajectory read_path(const std::string& file) {
-  std::ifstream in(file);
-  if (!in) throw std::runtime_error(file + ": " + std::strerror(errno));
-  return read_tum(in, file);
-}
-
 }  // namespace
 
 void Options::validate() const {
@@ -115,7 +106,7 @@ std::variant<Options, int> parse_command_line(int argc, const char* const* argv)
   options.validate();
   pass_ground_truth_to_device(options);
   if (!options.given_path_file.empty()) {
-    options.pipeline.given_path = read_path(options.given_path_file);
+    options.pipeline.given_path = read_tum_file(options.given_path_file);
   }
   return options;
 }

@@ -1,4 +1,5 @@
-// kintsugi-evaluate: replays a recorded map and writes the tables and figures of the paper.
+// kintsugi-evaluate: replays a recorded map and writes the tables and figures of the paper; or
+// holds a camera path against the true one.
 
 #include <chrono>
 #include <exception>
@@ -15,6 +16,7 @@
 #include "segmenter/evaluation/report.hpp"
 #include "segmenter/evaluation/result_tables.hpp"
 #include "segmenter/options.hpp"
+#include "segmenter/tools/trajectory_evaluation.hpp"
 
 namespace kintsugi::segmenter {
 namespace {
@@ -25,15 +27,24 @@ struct Options {
   CloudInputConfig cloud;
   SegmentMapConfig map;  // its engine
   EvaluationConfig evaluation;
+  TrajectoryOptions trajectory;
 };
+
+/// A map or a camera path, but not both.
+void require_task(const Options& options) {
+  const bool has_path = !options.trajectory.estimate_file.empty();
+  if (has_path && !options.input.empty()) throw CLI::ExcludesError("--trajectory", "IN");
+  if (has_path) return;
+  if (options.input.empty()) throw CLI::RequiredError("IN or --trajectory");
+  if (options.folder.empty()) throw CLI::RequiredError("--out");
+}
 
 void add_options(CLI::App& app, Options& options) {
   EvaluationConfig& evaluation = options.evaluation;
   app.add_option("IN", options.input,
-                 "an LCM log with CLOUD_SLICE, or a PLY file (*.ply), by its slice_id")
-      ->required();
-  app.add_option("--out", options.folder, "the folder to write into; is made when absent")
-      ->required();
+                 "an LCM log with CLOUD_SLICE, or a PLY file (*.ply), by its slice_id");
+  app.add_option("--out", options.folder,
+                 "the folder to write into, made when absent; required with IN");
   app.add_option("--modes", evaluation.modes, "what to compare, in this order")
       ->delimiter(',')
       ->allow_extra_args(false)
@@ -53,6 +64,8 @@ void add_options(CLI::App& app, Options& options) {
   app.remove_option(app.get_option("--mode"));
   auto* const group = app.add_option_group("PLY files");
   add_cloud_options(*group, options.cloud);
+  add_trajectory_options(*app.add_option_group("Camera paths"), options.trajectory);
+  app.callback([&options] { require_task(options); });
 }
 
 /// A line now and then: at most one a second, and the last of each mode.
@@ -126,13 +139,19 @@ int main(int argc, char** argv) {
   using namespace kintsugi::segmenter;
   spdlog::set_default_logger(spdlog::stderr_color_mt("kintsugi-evaluate"));
   spdlog::set_pattern("%^%l%$: %v");
-  CLI::App app{"Replays a recorded map slice by slice and writes the paper's tables and figures."};
+  CLI::App app{
+      "Replays a recorded map slice by slice and writes the paper's tables and figures; or, with "
+      "--trajectory, tells the errors of a camera path."};
   Options options;
   add_options(app, options);
   CLI11_PARSE(app, argc, argv);
   std::string command_line;
   for (int i = 0; i < argc; ++i) command_line.append(i == 0 ? "" : " ").append(argv[i]);
   try {
+    if (!options.trajectory.estimate_file.empty()) {
+      evaluate_trajectory(options.trajectory);
+      return 0;
+    }
     return run(options, command_line);
   } catch (const std::exception& error) {
     spdlog::error("{}", error.what());

@@ -8,7 +8,7 @@
 
 #include "mapper/core/rgbd_frame.hpp"
 #include "mapper/core/surface_pyramid.hpp"
-#include "mapper/core/trajectory.hpp"
+#include "lcmtypes/trajectory.hpp"
 #include "mapper/synthetic/renderer.hpp"
 #include "mapper/synthetic/scenes.hpp"
 #include "mapper/synthetic/sensor_model.hpp"

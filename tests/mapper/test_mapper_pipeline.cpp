@@ -3,7 +3,7 @@
 #include <tbb/global_control.h>
 
 #include "mapper/core/mapper_pipeline.hpp"
-#include "mapper/core/trajectory_error.hpp"
+#include "lcmtypes/trajectory_error.hpp"
 #include "tests/mapper/synthetic_frames.hpp"
 
 namespace kintsugi::mapper {
@@ -71,7 +71,7 @@ TEST(MapperPipeline, FollowsTheCameraWithoutNoise) {
   EXPECT_THAT(output.states, ::testing::Each(TrackingState::kTracking));
   // A tenth of a voxel would be perfect; edges smeared over voxels and depth in millimetres leave
   // more. Bound: a third of the 15 mm voxel.
-  EXPECT_LT(absolute_trajectory_error(output.path, office.true_path).rmse_m, 0.005);
+  EXPECT_LT(absolute_trajectory_error(output.path, office.true_path).translation_m.rmse, 0.005);
 }
 
 TEST(MapperPipeline, FollowsTheCameraWithNoise) {
@@ -79,7 +79,7 @@ TEST(MapperPipeline, FollowsTheCameraWithNoise) {
   EXPECT_THAT(output.states, ::testing::Each(TrackingState::kTracking));
   // Noise of 2 to 8 mm a pixel at 1 to 2.4 m is averaged over 1e4 pixels and many frames; what
   // remains is drift of the model. The target for whole rooms is 10 mm.
-  EXPECT_LT(absolute_trajectory_error(output.path, noisy_office().true_path).rmse_m, 0.010);
+  EXPECT_LT(absolute_trajectory_error(output.path, noisy_office().true_path).translation_m.rmse, 0.010);
 }
 
 TEST(MapperPipeline, NumbersSlicesFromZeroAndEndsWithTheFinalOne) {
@@ -134,7 +134,7 @@ TEST(MapperPipeline, FusesNothingWhileLostAndGoesOnWhenTheViewReturns) {
     EXPECT_EQ(result.tracking.state, TrackingState::kTracking) << i;
     rest.path.push_back({frames[i].utime, result.tracking.X_WC});
   }
-  EXPECT_LT(absolute_trajectory_error(rest.path, noisy_office().true_path).rmse_m, 0.010);
+  EXPECT_LT(absolute_trajectory_error(rest.path, noisy_office().true_path).translation_m.rmse, 0.010);
 }
 
 TEST(MapperPipeline, StartsWithTheFirstFrameThatShowsSomething) {

@@ -17,7 +17,7 @@
 #include "lcmtypes/channels.hpp"
 #include "lcmtypes/message_subscriber.hpp"
 #include "lcmtypes/stream_subscriber.hpp"
-#include "mapper/core/trajectory.hpp"
+#include "lcmtypes/trajectory.hpp"
 #include "tests/support/private_bus.hpp"
 #include "tests/support/temporary_folder.hpp"
 

@@ -10,7 +10,7 @@
 
 #include "lcmtypes/geometry.hpp"
 
-namespace kintsugi::mapper {
+namespace kintsugi {
 
 struct StampedPose {
   std::int64_t utime = 0;  ///< microseconds
@@ -32,15 +32,21 @@ std::optional<Pose> pose_at(const Trajectory& trajectory, std::int64_t utime);
 /// length by 1 % (few decimals) and is normalised.
 /// @param name of the file, for messages
 /// @throws std::runtime_error "NAME:LINE: what is wrong" on a wrong number of fields, a field that
-///   is no finite number, a quaternion not of unit length, a time not after the one before it; and
-///   "NAME: ..." when there is no pose at all
+///   is no finite number, a position beyond 1e9 m, a quaternion not of unit length, a time not
+///   after the one before it; and "NAME: ..." when there is no pose at all
 Trajectory read_tum(std::istream& in, const std::string& name);
 
 /// Writes the format that read_tum reads: microseconds exactly, metres and quaternion to 1e-9.
 void write_tum(std::ostream& out, const Trajectory& trajectory);
 
 /// "12.034567" as 12034567; digits beyond the sixth decimal round to nearest. Nothing if it is not
-/// a plain decimal number within +-9e12 s.
+/// a plain decimal number within +-4e12 s.
 std::optional<std::int64_t> parse_seconds_us(std::string_view text);
 
-}  // namespace kintsugi::mapper
+/// Reads the file of that name. @throws as read_tum(), and with the reason if it cannot be opened
+Trajectory read_tum_file(const std::string& file);
+
+/// By how much the pose turns, in [0, pi].
+double rotation_angle_rad(const Pose& X_AB);
+
+}  // namespace kintsugi

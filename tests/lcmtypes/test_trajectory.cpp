@@ -4,9 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "mapper/core/trajectory.hpp"
+#include "lcmtypes/trajectory.hpp"
 
-namespace kintsugi::mapper {
+namespace kintsugi {
 namespace {
 
 using ::testing::HasSubstr;
@@ -113,4 +113,4 @@ TEST(PoseAt, TakesTheNearOneOrNone) {
 }
 
 }  // namespace
-}  // namespace kintsugi::mapper
+}  // namespace kintsugi

@@ -1,20 +1,25 @@
-#include "mapper/core/trajectory.hpp"
+#include "lcmtypes/trajectory.hpp"
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
+#include <fstream>
 #include <istream>
 #include <ostream>
 #include <sstream>
 #include <stdexcept>
 
-namespace kintsugi::mapper {
+namespace kintsugi {
 namespace {
 
 constexpr std::int64_t kMicroseconds = 1'000'000;
-constexpr std::int64_t kMaxSeconds = 9'000'000'000'000;  // in microseconds it still fits 64 bits
+constexpr std::int64_t kMaxSeconds =
+    4'000'000'000'000;  // two may differ by 64 bits of microseconds
+constexpr double kMaxPosition_m = 1e9;
 constexpr double kUnitLengthTolerance = 0.01;
 
 std::vector<std::string> fields_of(const std::string& line) {
@@ -45,6 +50,10 @@ StampedPose parse_pose(const std::vector<std::string>& fields, const std::string
     if (!value) {
       throw std::runtime_error(place + ": field " + std::to_string(i + 2) + " '" + fields[i + 1] +
                                "' is no finite number");
+    }
+    if (i < 3 && std::abs(*value) > kMaxPosition_m) {
+      throw std::runtime_error(place + ": field " + std::to_string(i + 2) + " '" + fields[i + 1] +
+                               "' is farther than 1e9 m");
     }
     values[i] = *value;
   }
@@ -147,4 +156,12 @@ std::optional<std::int64_t> parse_seconds_us(std::string_view text) {
   return negative ? -total : total;
 }
 
-}  // namespace kintsugi::mapper
+Trajectory read_tum_file(const std::string& file) {
+  std::ifstream in(file);
+  if (!in) throw std::runtime_error(file + ": " + std::strerror(errno));
+  return read_tum(in, file);
+}
+
+double rotation_angle_rad(const Pose& X_AB) { return Eigen::AngleAxisd(X_AB.linear()).angle(); }
+
+}  // namespace kintsugi

@@ -1,0 +1,28 @@
+#pragma once
+// kintsugi-evaluate --trajectory: how far an estimated camera path is from the true one.
+
+#include <filesystem>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "lcmtypes/relative_trajectory_error.hpp"
+
+namespace kintsugi::segmenter {
+
+struct TrajectoryOptions {
+  std::string estimate_file;  ///< TUM format; empty: nothing is to be done
+  std::string truth_file;     ///< TUM format
+  RelativeTrajectoryErrorConfig relative;
+  std::filesystem::path csv_file;   ///< empty: none
+  std::filesystem::path json_file;  ///< empty: none
+};
+
+void add_trajectory_options(CLI::App& app, TrajectoryOptions& options);
+
+/// Prints the errors on stdout and writes the files asked for.
+/// @throws std::runtime_error for a file that cannot be read or written, std::invalid_argument when
+///   there are too few pairs or the configuration is not valid
+void evaluate_trajectory(const TrajectoryOptions& options);
+
+}  // namespace kintsugi::segmenter
