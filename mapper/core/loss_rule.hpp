@@ -7,12 +7,19 @@
 namespace kintsugi::mapper {
 
 /// What a registration reports about itself.
+///
+/// Overlap is the evidence: the pixels whose point falls on a surface that the model shows. What is
+/// seen for the first time says nothing for a pose and nothing against it.
 struct RegistrationQuality {
-  double covered_share = 0.0;  ///< frame pixels whose point lies where the map can be / all pixels
-  double inlier_share = 0.0;   ///< pairs that passed the gates / the pixels above
-  double rms_m = 0.0;          ///< of the point-to-plane residuals of those pairs
-  bool solved = false;         ///< the normal equations had a solution at every step
-  int undetermined = 0;        ///< directions of motion that neither depth nor colour determines
+  double covered_share = 0.0;   ///< frame pixels whose point lies where the map can be / all pixels
+  double overlap_share = 0.0;   ///< pixels that fall on a surface of the model / all pixels
+  double inlier_share = 0.0;    ///< pairs that passed the gates / overlap
+  double behind_share = 0.0;    ///< points clearly behind the model's surface / overlap: it was
+                                ///< looked through a known surface, so the pose is wrong
+  double in_front_share = 0.0;  ///< points clearly in front of it / overlap: perhaps something new
+  double rms_m = 0.0;           ///< of the point-to-plane residuals of the inliers
+  bool solved = false;          ///< the normal equations had a solution at every step
+  int undetermined = 0;         ///< directions of motion that neither depth nor colour determines
 };
 
 enum class LossReason {

@@ -40,9 +40,12 @@ RegistrationQuality quality_of(const NormalEquations& equations, const SurfaceMa
   RegistrationQuality quality;
   quality.solved = solved;
   quality.covered_share = covered;
-  const double candidates = covered * static_cast<double>(frame.depth_m.total());
-  if (candidates > 0.0) {
-    quality.inlier_share = std::min(1.0, static_cast<double>(equations.inliers) / candidates);
+  const auto overlap = static_cast<double>(equations.agreement.overlap);
+  quality.overlap_share = overlap / static_cast<double>(frame.depth_m.total());
+  if (overlap > 0.0) {
+    quality.inlier_share = static_cast<double>(equations.inliers) / overlap;
+    quality.behind_share = static_cast<double>(equations.agreement.behind) / overlap;
+    quality.in_front_share = static_cast<double>(equations.agreement.in_front) / overlap;
   }
   if (equations.inliers > 0) {
     quality.rms_m =

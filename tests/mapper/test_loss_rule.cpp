@@ -5,7 +5,15 @@
 namespace kintsugi::mapper {
 namespace {
 
-RegistrationQuality good() { return {0.9, 0.8, 0.004, true}; }
+RegistrationQuality good() {
+  RegistrationQuality quality;
+  quality.covered_share = 0.9;
+  quality.overlap_share = 0.85;
+  quality.inlier_share = 0.8;
+  quality.rms_m = 0.004;
+  quality.solved = true;
+  return quality;
+}
 
 /// Past its grace period, used to a view that is nearly all valid.
 LossRule settled() {
