@@ -47,9 +47,16 @@ class Recording {
   [[nodiscard]] virtual int num_depth_frames() const = 0;  ///< > 0
   [[nodiscard]] virtual int num_color_frames() const = 0;  ///< 0: no colour
 
-  /// Device time, microseconds, >= 0. The index must be in range.
+  /// When it was taken, microseconds, >= 0. The index must be in range.
   [[nodiscard]] virtual std::int64_t depth_utime(int index) const = 0;
   [[nodiscard]] virtual std::int64_t color_utime(int index) const = 0;
+
+  /// What the device writes on an image: its time, unless an imitated clock is wrong.
+  [[nodiscard]] virtual std::int64_t depth_stamp(int index) const { return depth_utime(index); }
+  [[nodiscard]] virtual std::int64_t color_stamp(int index) const { return color_utime(index); }
+
+  /// Colour images come so much later than depth images of their time.
+  [[nodiscard]] virtual std::int64_t color_delay_us() const { return 0; }
 
   /// height x width along C's z, in `unit`; 0 is invalid.
   /// @throws std::runtime_error naming the file when it cannot be read.

@@ -35,24 +35,25 @@ std::map<std::string, std::string> parse_options(std::string_view uri, std::stri
 
 std::optional<RecordingUri> parse_recording_uri(std::string_view uri) {
   RecordingUri result;
-  if (uri.starts_with(kFolderScheme)) {
-    result.scheme = RecordingUri::Scheme::kFolder;
-    result.path = uri.substr(kFolderScheme.size());
-  } else if (uri.starts_with(kSyntheticScheme)) {
-    const std::string_view rest = uri.substr(kSyntheticScheme.size());
-    const std::size_t question = rest.find('?');
-    result.scheme = RecordingUri::Scheme::kSynthetic;
-    result.path = rest.substr(0, question);
-    if (question != std::string_view::npos) {
-      result.options = parse_options(uri, rest.substr(question + 1));
-    }
-  } else {
-    return std::nullopt;
+  const bool is_folder = uri.starts_with(kFolderScheme);
+  if (!is_folder && !uri.starts_with(kSyntheticScheme)) return std::nullopt;
+  const std::string_view rest =
+      uri.substr(is_folder ? kFolderScheme.size() : kSyntheticScheme.size());
+  const std::size_t question = rest.find('?');
+  result.scheme = is_folder ? RecordingUri::Scheme::kFolder : RecordingUri::Scheme::kSynthetic;
+  result.path = rest.substr(0, question);
+  if (question != std::string_view::npos) {
+    result.options = parse_options(uri, rest.substr(question + 1));
   }
   if (result.path.empty()) {
     throw std::invalid_argument(std::string(uri) +
                                 ": nothing after the scheme, expected folder://PATH or "
                                 "synthetic://NAME");
+  }
+  result.imitation = CameraImitation::take_from(result.options);
+  if (is_folder && !result.options.empty()) {
+    throw std::invalid_argument(std::string(uri) + ": no option '" + result.options.begin()->first +
+                                "'; there are: " + CameraImitation::known_options());
   }
   return result;
 }
@@ -61,8 +62,14 @@ std::unique_ptr<Recording> open_recording(const RecordingUri& uri) {
   if (uri.scheme == RecordingUri::Scheme::kFolder) {
     return std::make_unique<FolderRecording>(uri.path);
   }
-  return std::make_unique<SyntheticRecording>(
-      synthetic::Sequence::Config::parse(uri.path, uri.options));
+  try {
+    return std::make_unique<SyntheticRecording>(
+        synthetic::Sequence::Config::parse(uri.path, uri.options));
+  } catch (const std::invalid_argument& error) {
+    if (uri.options.empty()) throw;
+    throw std::invalid_argument(std::string(error.what()) +
+                                " (and of every device: " + CameraImitation::known_options() + ")");
+  }
 }
 
 }  // namespace kintsugi::mapper

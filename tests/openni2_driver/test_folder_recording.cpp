@@ -165,7 +165,9 @@ TEST(FolderRecording, RefusesTruncatedImages) {
 
 TEST(RecordingUri, ParsesBothSchemes) {
   EXPECT_FALSE(parse_recording_uri("/dev/video0"));
-  EXPECT_EQ(parse_recording_uri("folder:///data/a?b=c")->path, "/data/a?b=c");
+  const auto folder = parse_recording_uri("folder:///data/a?camera=on");
+  EXPECT_EQ(folder->path, "/data/a");
+  EXPECT_TRUE(folder->imitation.camera);
   const auto uri = parse_recording_uri("synthetic://office?noise=0&seed=7");
   ASSERT_TRUE(uri);
   EXPECT_EQ(uri->scheme, RecordingUri::Scheme::kSynthetic);

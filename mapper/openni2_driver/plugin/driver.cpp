@@ -1,4 +1,4 @@
-// The OpenNI2 driver plugin: `folder://PATH` and `synthetic://NAME?key=value`.
+// The OpenNI2 driver plugin: `folder://PATH?key=value` and `synthetic://NAME?key=value`.
 // OpenNI2 loads it as lib*.so.0 from OpenNI2/Drivers beside its own library.
 
 #include <cstdio>
@@ -8,6 +8,8 @@
 #include <string>
 #include <utility>
 
+#include "mapper/openni2_driver/imitated_recording.hpp"
+#include "mapper/openni2_driver/plugin/camera_ports.hpp"
 #include "mapper/openni2_driver/plugin/oni_driver_api.hpp"
 #include "mapper/openni2_driver/plugin/recording_device.hpp"
 #include "mapper/openni2_driver/recording_uri.hpp"
@@ -35,6 +37,7 @@ class Driver : public oni::driver::DriverBase {
       if (std::string(uri).size() >= ONI_MAX_STR) {
         throw std::invalid_argument(std::string(uri) + ": longer than the 255 bytes of OpenNI2");
       }
+      require_plugged_in(uri);
       const OniDeviceInfo info = device_info(uri, open_recording(*parsed)->name());
       deviceConnected(&info);
       return ONI_STATUS_OK;
@@ -46,13 +49,22 @@ class Driver : public oni::driver::DriverBase {
 
   oni::driver::DeviceBase* deviceOpen(const char* uri, const char* /*mode*/) override {
     try {
-      auto recording = open_recording(parse_recording_uri(uri).value());
+      require_plugged_in(uri);
+      const RecordingUri parsed = parse_recording_uri(uri).value();
+      auto recording = open_recording(parsed);
       const OniDeviceInfo info = device_info(uri, recording->name());
+      // What a camera does once in its life it does before it was away.
+      const auto resume_utime = camera_ports::take_resume_utime(uri);
+      CameraImitation imitation = parsed.imitation;
+      if (resume_utime) imitation.unplug_at = 0;
       return new RecordingDevice(
-          std::move(recording),
+          std::make_unique<ImitatedRecording>(std::move(recording), imitation, resume_utime),
+          imitation,
           {.state_changed = [this,
                              info](OniDeviceState state) { deviceStateChanged(&info, state); },
-           .report_error = [this](const std::string& text) { report_error(text); }});
+           .report_error = [this](const std::string& text) { report_error(text); },
+           .unplugged = [this, info,
+                         imitation](std::int64_t utime) { unplug(info, imitation, utime); }});
     } catch (const std::exception& error) {
       report_error(error.what());
       return nullptr;
@@ -70,6 +82,17 @@ class Driver : public oni::driver::DriverBase {
   }
 
  private:
+  static void require_plugged_in(const std::string& uri) {
+    if (!camera_ports::is_plugged_in(uri)) throw std::runtime_error(uri + ": is not plugged in");
+  }
+
+  void unplug(const OniDeviceInfo& info, const CameraImitation& imitation, std::int64_t utime) {
+    std::optional<std::chrono::microseconds> away;
+    if (imitation.replug_after_us) away = std::chrono::microseconds(*imitation.replug_after_us);
+    camera_ports::unplug(info.uri, utime, away);
+    if (!imitation.unplug_silently) deviceDisconnected(&info);
+  }
+
   void report_error(const std::string& text) {
     getServices().errorLoggerAppend("%s\n", text.c_str());
   }

@@ -21,10 +21,11 @@ Playback::Playback(Recording& recording, Callbacks callbacks)
           items.push_back({recording.depth_utime(i), StreamKind::kDepth, i});
         }
         for (int i = 0; i < recording.num_color_frames(); ++i) {
-          items.push_back({recording.color_utime(i), StreamKind::kColor, i});
+          items.push_back(
+              {recording.color_utime(i) + recording.color_delay_us(), StreamKind::kColor, i});
         }
         std::ranges::sort(items, [](const Item& a, const Item& b) {
-          return std::tuple(a.utime, b.kind) < std::tuple(b.utime, a.kind);
+          return std::tuple(a.due_utime, b.kind) < std::tuple(b.due_utime, a.kind);
         });
         return items;
       }()) {
@@ -63,6 +64,14 @@ void Playback::trigger() {
   {
     const Lock lock(mutex_);
     triggered_ = true;
+  }
+  changed_.notify_all();
+}
+
+void Playback::halt() {
+  {
+    const Lock lock(mutex_);
+    ended_ = true;
   }
   changed_.notify_all();
 }
@@ -148,13 +157,17 @@ void Playback::play_next(Lock& lock) {
       static_cast<std::int64_t>(item.kind == StreamKind::kDepth ? recording_.num_depth_frames()
                                                                 : recording_.num_color_frames());
   const std::int64_t period_us = 1'000'000 / recording_.frame_rate_hz();
-  const std::int64_t length_us = items_.back().utime - items_.front().utime + period_us;
+  const std::int64_t length_us = items_.back().due_utime - items_.front().due_utime + period_us;
   const std::int64_t repeats = repeats_;
   lock.unlock();
 
+  const bool is_depth = item.kind == StreamKind::kDepth;
+  const std::int64_t stamp =
+      is_depth ? recording_.depth_stamp(item.index) : recording_.color_stamp(item.index);
   PlayedFrame frame{.kind = item.kind,
                     .number = static_cast<int>(repeats * count + item.index + 1),
-                    .utime = item.utime + repeats * length_us,
+                    .utime = stamp + repeats * length_us,
+                    .due_utime = item.due_utime + repeats * length_us,
                     .image = decode(item, unit)};
   {
     // OpenNI2's core may poke more than once while it waits for this one frame. A trigger kept from
@@ -162,10 +175,11 @@ void Playback::play_next(Lock& lock) {
     const Lock clear(mutex_);
     triggered_ = false;
   }
-  callbacks_.frame(frame);
+  const bool delivered = callbacks_.frame(frame);
 
   lock.lock();
   in_flight_ = false;
+  if (!delivered) triggered_ = true;
   changed_.notify_all();
 }
 
@@ -189,13 +203,13 @@ Playback::Clock::time_point Playback::due_time(const Item& item) {
   if (speed_ == 0.0F) return now;
   if (!time_zero_) {
     time_zero_ = now;
-    utime_zero_ = item.utime;
+    utime_zero_ = item.due_utime;
   }
-  const auto elapsed_us = static_cast<double>(item.utime - utime_zero_) / speed_;
+  const auto elapsed_us = static_cast<double>(item.due_utime - utime_zero_) / speed_;
   const auto due = *time_zero_ + std::chrono::microseconds(static_cast<std::int64_t>(elapsed_us));
   if (now > due + kTolerance) {
     time_zero_ = now;
-    utime_zero_ = item.utime;
+    utime_zero_ = item.due_utime;
     return now;
   }
   return due;

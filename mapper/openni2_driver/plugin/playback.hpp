@@ -20,9 +20,10 @@ inline constexpr std::size_t kNumStreamKinds = 2;
 
 struct PlayedFrame {
   StreamKind kind = StreamKind::kDepth;
-  int number = 0;  ///< in its stream, from 1, also counting past repeats
-  std::int64_t utime = 0;
-  cv::Mat image;  ///< CV_16UC1 or CV_8UC3 (red first)
+  int number = 0;              ///< in its stream, from 1, also counting past repeats
+  std::int64_t utime = 0;      ///< as the device's clock has it
+  std::int64_t due_utime = 0;  ///< when it was played, in the recording's own time
+  cv::Mat image;               ///< CV_16UC1 or CV_8UC3 (red first)
 };
 
 /// Plays the frames of a recording, one after the other in the order of their times, from a thread
@@ -34,7 +35,8 @@ struct PlayedFrame {
 class Playback {
  public:
   struct Callbacks {
-    std::function<void(const PlayedFrame&)> frame;
+    /// False: nothing came of it, play the next one at once.
+    std::function<bool(const PlayedFrame&)> frame;
     /// The last frame has been played, or reading failed: then the reason, else empty.
     std::function<void(const std::string&)> end;
   };
@@ -54,6 +56,9 @@ class Playback {
 
   void trigger();
 
+  /// Plays nothing more, and does not call that an end. From a callback, or from anywhere.
+  void halt();
+
   void set_speed(float speed);
   [[nodiscard]] float speed() const;
   void set_repeat(bool repeat);
@@ -65,7 +70,7 @@ class Playback {
 
   /// One frame of the recording.
   struct Item {
-    std::int64_t utime = 0;
+    std::int64_t due_utime = 0;  ///< when it is to be played, in the recording's time
     StreamKind kind = StreamKind::kDepth;
     int index = 0;
 
@@ -91,7 +96,7 @@ class Playback {
 
   Recording& recording_;
   const Callbacks callbacks_;
-  const std::vector<Item> items_;  ///< by time; colour first where equal
+  const std::vector<Item> items_;  ///< by due time; colour first where equal
   std::optional<Decoded> ahead_;   ///< touched by the playing thread only
 
   mutable std::mutex mutex_;
@@ -106,7 +111,7 @@ class Playback {
   bool quit_ = false;
   std::size_t position_ = 0;  ///< of the next item to consider
   std::int64_t repeats_ = 0;
-  std::optional<Clock::time_point> time_zero_;  ///< when the item with utime_zero_ was due
+  std::optional<Clock::time_point> time_zero_;  ///< when an item of utime_zero_ was due
   std::int64_t utime_zero_ = 0;
   std::thread thread_;
 };

@@ -6,6 +6,8 @@
 #include <utility>
 
 #include "mapper/openni2_driver/device_properties.hpp"
+#include "mapper/openni2_driver/plugin/imitated_image.hpp"
+#include "mapper/openni2_driver/plugin/offered_modes.hpp"
 #include "mapper/openni2_driver/plugin/property.hpp"
 
 namespace kintsugi::mapper {
@@ -13,45 +15,40 @@ namespace {
 
 constexpr OniVersion kDriverVersion = {.major = 0, .minor = 1, .maintenance = 0, .build = 0};
 
-OniVideoMode video_mode(const Recording& recording, OniPixelFormat format) {
-  return {.pixelFormat = format,
-          .resolutionX = recording.intrinsics().width,
-          .resolutionY = recording.intrinsics().height,
-          .fps = recording.frame_rate_hz()};
-}
-
-DeviceCalibration device_calibration(const Intrinsics& intrinsics) {
-  DeviceCalibration calibration{.fx = intrinsics.fx,
-                                .fy = intrinsics.fy,
-                                .cx = intrinsics.cx,
-                                .cy = intrinsics.cy,
+/// @param size of the images that leave the device, which may be scaled.
+DeviceCalibration device_calibration(const Intrinsics& intrinsics, cv::Size size) {
+  const double x_scale = static_cast<double>(size.width) / intrinsics.width;
+  const double y_scale = static_cast<double>(size.height) / intrinsics.height;
+  DeviceCalibration calibration{.fx = x_scale * intrinsics.fx,
+                                .fy = y_scale * intrinsics.fy,
+                                .cx = x_scale * (intrinsics.cx + 0.5) - 0.5,
+                                .cy = y_scale * (intrinsics.cy + 0.5) - 0.5,
                                 .distortion = {},
-                                .width = intrinsics.width,
-                                .height = intrinsics.height};
+                                .width = size.width,
+                                .height = size.height};
   std::ranges::copy(intrinsics.distortion, calibration.distortion);
   return calibration;
 }
 
 }  // namespace
 
-RecordingDevice::RecordingDevice(std::unique_ptr<Recording> recording, Callbacks callbacks)
+RecordingDevice::RecordingDevice(std::unique_ptr<Recording> recording,
+                                 const CameraImitation& imitation, Callbacks callbacks)
     : recording_(std::move(recording)),
+      imitation_(imitation),
       callbacks_(std::move(callbacks)),
-      playback_(*recording_, {.frame = [this](const PlayedFrame& frame) { on_frame(frame); },
+      modes_{offered_depth_modes(*recording_, imitation),
+             offered_color_modes(*recording_, imitation)},
+      registered_(imitation.registration == CameraImitation::Registration::kAligned),
+      playback_(*recording_, {.frame = [this](const PlayedFrame& frame) { return on_frame(frame); },
                               .end = [this](const std::string& error) { on_end(error); }}) {
-  auto& [depth_modes, color_modes] = modes_;
-  depth_modes.push_back(video_mode(*recording_, ONI_PIXEL_FORMAT_DEPTH_1_MM));
-  if (recording_->finest_depth_unit() == DepthUnit::k100um) {
-    depth_modes.push_back(video_mode(*recording_, ONI_PIXEL_FORMAT_DEPTH_100_UM));
+  constexpr std::array kTypes = {ONI_SENSOR_DEPTH, ONI_SENSOR_COLOR};  // by StreamKind
+  for (std::size_t i = 0; i < kNumStreamKinds; ++i) {
+    if (modes_.at(i).empty()) continue;
+    sensors_.push_back({.sensorType = kTypes.at(i),
+                        .numSupportedVideoModes = static_cast<int>(modes_.at(i).size()),
+                        .pSupportedVideoModes = modes_.at(i).data()});
   }
-  sensors_.push_back({.sensorType = ONI_SENSOR_DEPTH,
-                      .numSupportedVideoModes = static_cast<int>(depth_modes.size()),
-                      .pSupportedVideoModes = depth_modes.data()});
-  if (recording_->num_color_frames() == 0) return;
-  color_modes.push_back(video_mode(*recording_, ONI_PIXEL_FORMAT_RGB888));
-  sensors_.push_back({.sensorType = ONI_SENSOR_COLOR,
-                      .numSupportedVideoModes = 1,
-                      .pSupportedVideoModes = color_modes.data()});
 }
 
 OniStatus RecordingDevice::getSensorInfoList(OniSensorInfo** infos, int* num_infos) {
@@ -69,7 +66,8 @@ oni::driver::StreamBase* RecordingDevice::createStream(OniSensorType type) {
   }
   const StreamKind kind = type == ONI_SENSOR_DEPTH ? StreamKind::kDepth : StreamKind::kColor;
   const auto slot = static_cast<std::size_t>(kind);
-  auto stream = std::make_unique<RecordingStream>(kind, *recording_, playback_, modes_.at(slot));
+  auto stream =
+      std::make_unique<RecordingStream>(kind, *recording_, imitation_, playback_, modes_.at(slot));
   const std::lock_guard lock(mutex_);
   streams_.at(slot) = stream.get();
   return stream.release();  // OpenNI2 returns it through destroyStream()
@@ -89,11 +87,13 @@ OniStatus RecordingDevice::getProperty(int id, void* data, int* size) {
     case ONI_DEVICE_PROPERTY_PLAYBACK_REPEAT_ENABLED:
       return give_property<OniBool>(playback_.repeat() ? TRUE : FALSE, data, size);
     case ONI_DEVICE_PROPERTY_IMAGE_REGISTRATION:
-      return give_property(ONI_IMAGE_REGISTRATION_DEPTH_TO_COLOR, data, size);
+      return give_property(
+          registered_ ? ONI_IMAGE_REGISTRATION_DEPTH_TO_COLOR : ONI_IMAGE_REGISTRATION_OFF, data,
+          size);
     case ONI_DEVICE_PROPERTY_DRIVER_VERSION:
       return give_property(kDriverVersion, data, size);
     case kDevicePropertyCalibration:
-      return give_property(device_calibration(recording_->intrinsics()), data, size);
+      return give_calibration(data, size);
     case kDevicePropertyPlaybackError:
       return give_playback_error(data, size);
     default:
@@ -119,21 +119,25 @@ OniStatus RecordingDevice::setProperty(int id, const void* data, int size) {
   if (id == ONI_DEVICE_PROPERTY_IMAGE_REGISTRATION) {
     OniImageRegistrationMode mode = ONI_IMAGE_REGISTRATION_OFF;
     const OniStatus status = take_property(data, size, mode);
-    if (status != ONI_STATUS_OK) return status;
-    return isImageRegistrationModeSupported(mode) != FALSE ? ONI_STATUS_OK
-                                                           : ONI_STATUS_NOT_SUPPORTED;
+    return status == ONI_STATUS_OK ? set_registration(mode) : status;
   }
   return ONI_STATUS_NOT_SUPPORTED;
 }
 
 OniBool RecordingDevice::isPropertySupported(int id) {
-  constexpr std::array kSupported = {ONI_DEVICE_PROPERTY_PLAYBACK_SPEED + 0,
-                                     ONI_DEVICE_PROPERTY_PLAYBACK_REPEAT_ENABLED + 0,
-                                     ONI_DEVICE_PROPERTY_IMAGE_REGISTRATION + 0,
-                                     ONI_DEVICE_PROPERTY_DRIVER_VERSION + 0,
-                                     kDevicePropertyCalibration,
-                                     kDevicePropertyPlaybackError};
-  return std::ranges::find(kSupported, id) != kSupported.end() ? TRUE : FALSE;
+  switch (id) {
+    case ONI_DEVICE_PROPERTY_PLAYBACK_SPEED:
+    case ONI_DEVICE_PROPERTY_PLAYBACK_REPEAT_ENABLED:
+      return imitation_.camera ? FALSE : TRUE;
+    case kDevicePropertyCalibration:
+      return imitation_.calibration ? TRUE : FALSE;
+    case ONI_DEVICE_PROPERTY_IMAGE_REGISTRATION:
+    case ONI_DEVICE_PROPERTY_DRIVER_VERSION:
+    case kDevicePropertyPlaybackError:
+      return TRUE;
+    default:
+      return FALSE;
+  }
 }
 
 OniStatus RecordingDevice::invoke(int /*command*/, void* /*data*/, int /*size*/) {
@@ -144,7 +148,7 @@ OniStatus RecordingDevice::invoke(int /*command*/, void* /*data*/, int /*size*/)
 
 OniBool RecordingDevice::isCommandSupported(int command) {
   // Device::isFile() asks for it: without it there would be no playback speed either.
-  return command == ONI_DEVICE_COMMAND_SEEK ? TRUE : FALSE;
+  return command == ONI_DEVICE_COMMAND_SEEK && !imitation_.camera ? TRUE : FALSE;
 }
 
 OniStatus RecordingDevice::tryManualTrigger() {
@@ -153,16 +157,44 @@ OniStatus RecordingDevice::tryManualTrigger() {
 }
 
 OniBool RecordingDevice::isImageRegistrationModeSupported(OniImageRegistrationMode mode) {
-  return mode == ONI_IMAGE_REGISTRATION_DEPTH_TO_COLOR ? TRUE : FALSE;
+  using enum CameraImitation::Registration;
+  if (mode == ONI_IMAGE_REGISTRATION_DEPTH_TO_COLOR) {
+    return imitation_.registration == kOff ? FALSE : TRUE;
+  }
+  return imitation_.registration == kAligned ? FALSE : TRUE;
 }
 
-void RecordingDevice::on_frame(const PlayedFrame& frame) {
+OniStatus RecordingDevice::set_registration(OniImageRegistrationMode mode) {
+  if (isImageRegistrationModeSupported(mode) == FALSE) return ONI_STATUS_NOT_SUPPORTED;
+  registered_ = mode == ONI_IMAGE_REGISTRATION_DEPTH_TO_COLOR;
+  return ONI_STATUS_OK;
+}
+
+/// Whether anything came of it.
+bool RecordingDevice::on_frame(const PlayedFrame& frame) {
+  if (unplugged_) return true;
+  const bool is_depth = frame.kind == StreamKind::kDepth;
+  if (is_depth && imitation_.unplug_at > 0 && frame.number > imitation_.unplug_at) {
+    unplug(frame.due_utime);
+    return true;
+  }
   RecordingStream* stream = nullptr;
   {
     const std::lock_guard lock(mutex_);
     stream = streams_.at(static_cast<std::size_t>(frame.kind));
   }
-  if (stream != nullptr) stream->deliver(frame);  // alive: its stop() waits for this
+  if (stream == nullptr) return false;
+  // The stream is alive: its stop() waits for this.
+  if (!is_depth || registered_) return stream->deliver(frame);
+  PlayedFrame beside = frame;
+  beside.image = unregistered(frame.image);
+  return stream->deliver(beside);
+}
+
+void RecordingDevice::unplug(std::int64_t utime) {
+  unplugged_ = true;
+  playback_.halt();
+  callbacks_.unplugged(utime);
 }
 
 void RecordingDevice::on_end(const std::string& error) {
@@ -171,6 +203,14 @@ void RecordingDevice::on_end(const std::string& error) {
     playback_error_ = error;
   }
   callbacks_.state_changed(error.empty() ? ONI_DEVICE_STATE_EOF : ONI_DEVICE_STATE_ERROR);
+}
+
+OniStatus RecordingDevice::give_calibration(void* data, int* size) {
+  const Intrinsics& intrinsics = recording_->intrinsics();
+  cv::Size images(intrinsics.width, intrinsics.height);
+  const std::lock_guard lock(mutex_);
+  if (RecordingStream* depth = streams_.front()) images = depth->image_size();
+  return give_property(device_calibration(intrinsics, images), data, size);
 }
 
 OniStatus RecordingDevice::give_playback_error(void* data, int* size) {

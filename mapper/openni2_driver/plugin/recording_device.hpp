@@ -1,12 +1,15 @@
 #pragma once
 
 #include <array>
+#include <atomic>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <mutex>
 #include <string>
 #include <vector>
 
+#include "mapper/openni2_driver/camera_imitation.hpp"
 #include "mapper/openni2_driver/plugin/oni_driver_api.hpp"
 #include "mapper/openni2_driver/plugin/playback.hpp"
 #include "mapper/openni2_driver/plugin/recording_stream.hpp"
@@ -16,14 +19,20 @@ namespace kintsugi::mapper {
 /// A recording as an OpenNI2 device. To a client it is a file (isFile() is true): it has a playback
 /// speed, repeats (as OpenNI2's own files do at first), and says how many frames it has. At the end
 /// the device's state becomes EOF, after a failed read ERROR.
+///
+/// With an imitation it is that camera, as far as the recording goes; `camera` itself makes it a
+/// live device, which begins again at its end.
 class RecordingDevice : public oni::driver::DeviceBase {
  public:
   struct Callbacks {
     std::function<void(OniDeviceState)> state_changed;
     std::function<void(const std::string&)> report_error;  ///< for getExtendedError()
+    /// The imitated camera goes away, after the image of this time of the recording.
+    std::function<void(std::int64_t utime)> unplugged;
   };
 
-  RecordingDevice(std::unique_ptr<Recording> recording, Callbacks callbacks);
+  RecordingDevice(std::unique_ptr<Recording> recording, const CameraImitation& imitation,
+                  Callbacks callbacks);
   ~RecordingDevice() override = default;
   RecordingDevice(const RecordingDevice&) = delete;
   RecordingDevice& operator=(const RecordingDevice&) = delete;
@@ -40,14 +49,20 @@ class RecordingDevice : public oni::driver::DeviceBase {
   OniBool isImageRegistrationModeSupported(OniImageRegistrationMode mode) override;
 
  private:
-  void on_frame(const PlayedFrame& frame);
+  bool on_frame(const PlayedFrame& frame);
   void on_end(const std::string& error);
+  void unplug(std::int64_t utime);
+  OniStatus give_calibration(void* data, int* size);
   OniStatus give_playback_error(void* data, int* size);
+  OniStatus set_registration(OniImageRegistrationMode mode);
 
   const std::unique_ptr<Recording> recording_;
+  const CameraImitation imitation_;
   const Callbacks callbacks_;
   std::array<std::vector<OniVideoMode>, kNumStreamKinds> modes_;
   std::vector<OniSensorInfo> sensors_;
+  std::atomic<bool> registered_;
+  std::atomic<bool> unplugged_ = false;
   std::mutex mutex_;  ///< guards what follows
   std::array<RecordingStream*, kNumStreamKinds> streams_{};
   std::string playback_error_;

@@ -8,6 +8,7 @@
 
 #include <opencv2/core.hpp>
 
+#include "mapper/openni2_driver/plugin/imitated_image.hpp"
 #include "mapper/openni2_driver/plugin/property.hpp"
 
 namespace kintsugi::mapper {
@@ -28,14 +29,17 @@ OniCropping whole_image(const OniVideoMode& mode) {
 
 }  // namespace
 
-RecordingStream::RecordingStream(StreamKind kind, const Recording& recording, Playback& playback,
+RecordingStream::RecordingStream(StreamKind kind, const Recording& recording,
+                                 const CameraImitation& imitation, Playback& playback,
                                  std::vector<OniVideoMode> modes)
     : kind_(kind),
       recording_(recording),
+      imitation_(imitation),
       playback_(playback),
       modes_(std::move(modes)),
       mode_(modes_.front()),
-      cropping_(whole_image(mode_)) {
+      cropping_(whole_image(mode_)),
+      mirrored_(imitation.mirror != CameraImitation::Mirroring::kOff) {
   if (kind_ == StreamKind::kDepth) playback_.set_depth_unit(depth_unit());
 }
 
@@ -45,6 +49,8 @@ OniStatus RecordingStream::start() {
   {
     const std::lock_guard lock(mutex_);
     started_ = true;
+    last_due_utime_ = -1;
+    num_left_out_ = 0;
   }
   playback_.start(kind_);
   return ONI_STATUS_OK;
@@ -58,6 +64,8 @@ void RecordingStream::stop() {
 
 OniStatus RecordingStream::getProperty(int id, void* data, int* size) {
   const std::lock_guard lock(mutex_);
+  if (isPropertySupported(id) == FALSE) return ONI_STATUS_NOT_SUPPORTED;
+  if (CameraControls::has(id)) return controls_.get(id, data, size);
   const Intrinsics& camera = recording_.intrinsics();
   switch (id) {
     case ONI_STREAM_PROPERTY_VIDEO_MODE:
@@ -77,17 +85,12 @@ OniStatus RecordingStream::getProperty(int id, void* data, int* size) {
     case ONI_STREAM_PROPERTY_STRIDE:  // of a whole line, also while cropping is on
       return give_property(mode_.resolutionX * bytes_per_pixel(), data, size);
     case ONI_STREAM_PROPERTY_MIN_VALUE:
-      if (kind_ == StreamKind::kDepth) return give_property<int>(0, data, size);
-      break;
+      return give_property<int>(0, data, size);
     case ONI_STREAM_PROPERTY_MAX_VALUE:
-      if (kind_ == StreamKind::kDepth) {
-        return give_property<int>(max_depth_value(depth_unit()), data, size);
-      }
-      break;
+      return give_property<int>(max_depth_value(depth_unit()), data, size);
     default:
-      break;
+      return ONI_STATUS_NOT_SUPPORTED;
   }
-  return ONI_STATUS_NOT_SUPPORTED;
 }
 
 OniStatus RecordingStream::setProperty(int id, const void* data, int size) {
@@ -96,6 +99,8 @@ OniStatus RecordingStream::setProperty(int id, const void* data, int size) {
   OniCropping cropping;
   OniBool mirrored = FALSE;
   OniStatus status = ONI_STATUS_NOT_SUPPORTED;
+  if (isPropertySupported(id) == FALSE) return status;
+  if (CameraControls::has(id)) return controls_.set(id, data, size);
   switch (id) {
     case ONI_STREAM_PROPERTY_VIDEO_MODE:
       status = take_property(data, size, mode);
@@ -105,14 +110,16 @@ OniStatus RecordingStream::setProperty(int id, const void* data, int size) {
       return status == ONI_STATUS_OK ? set_cropping(cropping) : status;
     case ONI_STREAM_PROPERTY_MIRRORING:
       status = take_property(data, size, mirrored);
-      if (status == ONI_STATUS_OK) mirrored_ = mirrored != FALSE;
-      return status;
+      return status == ONI_STATUS_OK ? set_mirroring(mirrored != FALSE) : status;
     default:
       return status;
   }
 }
 
 OniBool RecordingStream::isPropertySupported(int id) {
+  if (CameraControls::has(id)) {
+    return imitation_.exposure && kind_ == StreamKind::kColor ? TRUE : FALSE;
+  }
   switch (id) {
     case ONI_STREAM_PROPERTY_VIDEO_MODE:
     case ONI_STREAM_PROPERTY_HORIZONTAL_FOV:
@@ -151,20 +158,19 @@ OniStatus RecordingStream::convertDepthToColorCoordinates(StreamBase* /*color*/,
   return ONI_STATUS_OK;
 }
 
-void RecordingStream::deliver(const PlayedFrame& played) {
-  OniFrame* frame = getServices().acquireFrame();
-  if (frame == nullptr) return;
+bool RecordingStream::deliver(const PlayedFrame& played) {
   {
     const std::lock_guard lock(mutex_);
-    cv::Mat image = played.image;
-    if (mirrored_) cv::flip(played.image, image, 1);
-    if (cropping_.enabled != FALSE) {
-      image =
-          image(cv::Rect(cropping_.originX, cropping_.originY, cropping_.width, cropping_.height));
-    }
+    if (is_left_out(played)) return false;
+  }
+  OniFrame* frame = getServices().acquireFrame();
+  if (frame == nullptr) return true;
+  {
+    const std::lock_guard lock(mutex_);
+    const cv::Mat image = finish(played);
     frame->sensorType = kind_ == StreamKind::kDepth ? ONI_SENSOR_DEPTH : ONI_SENSOR_COLOR;
     frame->timestamp = static_cast<std::uint64_t>(played.utime);
-    frame->frameIndex = played.number;
+    frame->frameIndex = played.number - num_left_out_;
     frame->videoMode = mode_;
     frame->width = image.cols;
     frame->height = image.rows;
@@ -176,18 +182,72 @@ void RecordingStream::deliver(const PlayedFrame& played) {
     cv::Mat target(image.rows, image.cols, image.type(), frame->data,
                    static_cast<std::size_t>(frame->stride));
     image.copyTo(target);
+    spoil(played, *frame);
   }
   raiseNewFrame(frame);
   getServices().releaseFrame(frame);
+  return true;
+}
+
+cv::Size RecordingStream::image_size() {
+  const std::lock_guard lock(mutex_);
+  return {mode_.resolutionX, mode_.resolutionY};
+}
+
+/// A mode slower than the recording takes the images nearest to its own times.
+bool RecordingStream::is_left_out(const PlayedFrame& frame) {
+  const std::int64_t interval_us = 1'000'000 / mode_.fps;
+  const std::int64_t half_recorded_us = 500'000 / recording_.frame_rate_hz();
+  const bool too_soon = last_due_utime_ >= 0 && mode_.fps < recording_.frame_rate_hz() &&
+                        frame.due_utime < last_due_utime_ + interval_us - half_recorded_us;
+  if (too_soon) {
+    ++num_left_out_;
+  } else {
+    last_due_utime_ = frame.due_utime;
+  }
+  return too_soon;
+}
+
+/// The image as the settings of the stream make it.
+cv::Mat RecordingStream::finish(const PlayedFrame& frame) {
+  cv::Mat image = image_in_mode(frame.image, {mode_.resolutionX, mode_.resolutionY});
+  if (isPropertySupported(ONI_STREAM_PROPERTY_EXPOSURE) != FALSE) {
+    image = controls_.expose(image, frame.due_utime);
+  }
+  if (mirrored_) {
+    cv::Mat mirrored;
+    cv::flip(image, mirrored, 1);
+    image = mirrored;
+  }
+  if (cropping_.enabled == FALSE) return image;
+  return image(cv::Rect(cropping_.originX, cropping_.originY, cropping_.width, cropping_.height));
+}
+
+/// Makes of a depth image what a camera should not send, when that is wanted.
+void RecordingStream::spoil(const PlayedFrame& played, OniFrame& frame) const {
+  const auto is_turn = [&](int every) {
+    return kind_ == StreamKind::kDepth && every > 0 && played.number % every == 0;
+  };
+  if (is_turn(imitation_.misfit_every)) frame.height /= 2;
+  if (is_turn(imitation_.empty_every)) frame.width = frame.height = frame.dataSize = 0;
+}
+
+OniStatus RecordingStream::set_mirroring(bool mirrored) {
+  if (imitation_.mirror == CameraImitation::Mirroring::kStuck && !mirrored) {
+    return ONI_STATUS_NOT_SUPPORTED;
+  }
+  mirrored_ = mirrored;
+  return ONI_STATUS_OK;
 }
 
 OniStatus RecordingStream::set_mode(const OniVideoMode& mode) {
   const bool offered = std::ranges::any_of(
       modes_, [&](const OniVideoMode& offer) { return same_mode(offer, mode); });
-  if (!offered) return ONI_STATUS_NOT_SUPPORTED;
+  if (!offered || imitation_.refuse_modes) return ONI_STATUS_NOT_SUPPORTED;
   if (same_mode(mode, mode_)) return ONI_STATUS_OK;
   if (started_) return ONI_STATUS_OUT_OF_FLOW;
   mode_ = mode;
+  cropping_ = whole_image(mode_);
   if (kind_ == StreamKind::kDepth) playback_.set_depth_unit(depth_unit());
   return ONI_STATUS_OK;
 }

@@ -3,6 +3,8 @@
 #include <mutex>
 #include <vector>
 
+#include "mapper/openni2_driver/camera_imitation.hpp"
+#include "mapper/openni2_driver/plugin/camera_controls.hpp"
 #include "mapper/openni2_driver/plugin/oni_driver_api.hpp"
 #include "mapper/openni2_driver/plugin/playback.hpp"
 
@@ -12,8 +14,8 @@ namespace kintsugi::mapper {
 class RecordingStream : public oni::driver::StreamBase {
  public:
   /// @param modes what the stream offers, not empty; the first is in effect at first.
-  RecordingStream(StreamKind kind, const Recording& recording, Playback& playback,
-                  std::vector<OniVideoMode> modes);
+  RecordingStream(StreamKind kind, const Recording& recording, const CameraImitation& imitation,
+                  Playback& playback, std::vector<OniVideoMode> modes);
   ~RecordingStream() override;
   RecordingStream(const RecordingStream&) = delete;
   RecordingStream& operator=(const RecordingStream&) = delete;
@@ -29,10 +31,18 @@ class RecordingStream : public oni::driver::StreamBase {
                                            OniDepthPixel depth, int* color_x,
                                            int* color_y) override;
 
-  /// Hands a frame to OpenNI2, mirrored and cropped as set. From the playback's thread.
-  void deliver(const PlayedFrame& frame);
+  /// Hands a frame to OpenNI2 in the mode, mirrored and cropped as set. From the playback's thread.
+  /// False when the mode's rate leaves it out.
+  bool deliver(const PlayedFrame& frame);
+
+  /// Of the mode in effect.
+  [[nodiscard]] cv::Size image_size();
 
  private:
+  [[nodiscard]] bool is_left_out(const PlayedFrame& frame);
+  [[nodiscard]] cv::Mat finish(const PlayedFrame& frame);
+  void spoil(const PlayedFrame& played, OniFrame& frame) const;
+  OniStatus set_mirroring(bool mirrored);
   OniStatus set_mode(const OniVideoMode& mode);
   OniStatus set_cropping(const OniCropping& cropping);
   [[nodiscard]] DepthUnit depth_unit() const;
@@ -41,6 +51,7 @@ class RecordingStream : public oni::driver::StreamBase {
 
   const StreamKind kind_;
   const Recording& recording_;
+  const CameraImitation& imitation_;
   Playback& playback_;
   const std::vector<OniVideoMode> modes_;
 
@@ -48,7 +59,10 @@ class RecordingStream : public oni::driver::StreamBase {
   bool started_ = false;
   OniVideoMode mode_;
   OniCropping cropping_;
-  bool mirrored_ = false;
+  bool mirrored_;
+  CameraControls controls_;
+  std::int64_t last_due_utime_ = -1;  ///< of the last image that was not left out; -1: none
+  int num_left_out_ = 0;
 };
 
 }  // namespace kintsugi::mapper

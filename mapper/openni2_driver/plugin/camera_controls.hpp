@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdint>
+
+#include <opencv2/core.hpp>
+
+#include "mapper/openni2_driver/plugin/oni_driver_api.hpp"
+
+namespace kintsugi::mapper {
+
+/// The camera settings of an imitated colour stream. While exposure or white balance are automatic,
+/// they wander; switched off, they stay where they are.
+class CameraControls {
+ public:
+  static bool has(int property);
+
+  OniStatus get(int property, void* data, int* size) const;
+  OniStatus set(int property, const void* data, int size);
+
+  /// The image as it comes with the settings of this moment of the recording.
+  cv::Mat expose(const cv::Mat& image, std::int64_t utime);
+
+ private:
+  OniBool auto_exposure_ = TRUE;
+  OniBool auto_white_balance_ = TRUE;
+  int exposure_ = 100;  ///< 100: as recorded
+  int gain_ = 100;
+  double red_ = 1.0;
+};
+
+}  // namespace kintsugi::mapper

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <vector>
+
+#include "mapper/openni2_driver/camera_imitation.hpp"
+#include "mapper/openni2_driver/plugin/oni_driver_api.hpp"
+#include "mapper/openni2_driver/recording.hpp"
+
+namespace kintsugi::mapper {
+
+/// What the depth and the colour stream of a device offer; empty where it has no such stream.
+std::vector<OniVideoMode> offered_depth_modes(const Recording& recording,
+                                              const CameraImitation& imitation);
+std::vector<OniVideoMode> offered_color_modes(const Recording& recording,
+                                              const CameraImitation& imitation);
+
+}  // namespace kintsugi::mapper
