@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "lcmtypes/geometry.hpp"
+#include "mapper/core/kernels/kernels.hpp"
 #include "mapper/core/surface_map.hpp"
 
 namespace kintsugi::mapper {
@@ -47,16 +48,23 @@ struct NormalEquations {
 
 /// Standard deviation of a structured-light camera's depth at depth z (metres), after Nguyen et al.
 /// 2012: 0.0012 + 0.0019 (z - 0.4)^2 metres.
-inline double depth_sigma_m(double z_m) { return 0.0012 + 0.0019 * (z_m - 0.4) * (z_m - 0.4); }
+inline constexpr double kDepthSigmaBase_m = 0.0012;
+inline constexpr double kDepthSigmaGrowth_per_m = 0.0019;
+inline constexpr double kDepthSigmaNearest_m = 0.4;
+inline double depth_sigma_m(double z_m) {
+  const double from_nearest_m = z_m - kDepthSigmaNearest_m;
+  return kDepthSigmaBase_m + kDepthSigmaGrowth_per_m * from_nearest_m * from_nearest_m;
+}
 
 /// exp of the twist (translation, rotation vector) up to the translation, which is taken as it is:
 /// a retraction with the exponential map's first derivative at zero.
 Pose se3_retract(const Vector6d& xi);
 
 /// Associates each point of `frame_C` with the model pixel it projects to under `X_VC` and sums up
-/// the system. The sum is taken over fixed bands of rows in fixed order, in double: it does not
-/// depend on the number of threads. Pixels that are NaN on either side take no part.
+/// the system. It is summed in single precision over bands of rows, these in double and in fixed
+/// order: the result does not depend on the number of threads or on the instruction set. Pixels
+/// that are NaN on either side take no part.
 NormalEquations linearize(const SurfaceMap& frame_C, const SurfaceMap& model_V, const Pose& X_VC,
-                          const IcpGates& gates);
+                          const IcpGates& gates, const Kernels& kernels = best_kernels());
 
 }  // namespace kintsugi::mapper

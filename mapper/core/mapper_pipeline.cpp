@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "mapper/core/check.hpp"
+#include "mapper/core/covered_share.hpp"
 
 namespace kintsugi::mapper {
 namespace {

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "mapper/core/check.hpp"
+#include "mapper/core/covered_share.hpp"
 
 namespace kintsugi::mapper {
 namespace {
@@ -155,18 +156,6 @@ TrackingResult Tracker::lose(const Registration& registration, LossReason reason
   result.iterations = registration.iterations;
   result.loss_reason = reason;
   return result;
-}
-
-double covered_share(const SurfaceMap& frame_C, const Pose& X_WC,
-                     const Eigen::AlignedBox3d& region_W) {
-  std::size_t covered = 0;
-  for (int v = 0; v < frame_C.depth_m.rows; ++v) {
-    for (int u = 0; u < frame_C.depth_m.cols; ++u) {
-      if (std::isnan(frame_C.depth_m(v, u))) continue;
-      covered += region_W.contains(X_WC * frame_C.point(v, u).cast<double>()) ? 1 : 0;
-    }
-  }
-  return static_cast<double>(covered) / static_cast<double>(frame_C.depth_m.total());
 }
 
 }  // namespace kintsugi::mapper

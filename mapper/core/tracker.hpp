@@ -100,8 +100,4 @@ class Tracker {
   bool lost_ = false;
 };
 
-/// Pixels whose point lies in the region / all pixels.
-double covered_share(const SurfaceMap& frame_C, const Pose& X_WC,
-                     const Eigen::AlignedBox3d& region_W);
-
 }  // namespace kintsugi::mapper

@@ -25,7 +25,7 @@ struct PackInput {
 /// One array of lanes, or the bits of one mask, for each operation.
 struct PackOutput {
   FloatLanes add, subtract, multiply, divide, min, max, sqrt, abs, floor, to_float, select, gather;
-  FloatLanes load_partial, store_masked, iota;
+  FloatLanes load_partial, store_masked, iota, even_lanes, odd_lanes;
   IntLanes int_add, int_subtract, int_multiply, int_and, int_or, int_min, int_max, to_int;
   IntLanes left_5, right_5, right_signed_5, left_0, left_31, int_select, int_gather, int_iota;
   IntLanes int_load_partial, int_store_masked;
@@ -77,6 +77,8 @@ void run_pack_operations(const PackInput& in, PackOutput& out) {
   b.store(out.store_masked);
   a.store(out.store_masked, mask);
   Float::iota().store(out.iota);
+  even_lanes(a, b).store(out.even_lanes);
+  odd_lanes(a, b).store(out.odd_lanes);
 
   (i + j).store(out.int_add);
   (i - j).store(out.int_subtract);

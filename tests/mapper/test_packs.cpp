@@ -242,6 +242,14 @@ TEST_P(Packs, CompareAndSelect) {
   });
 }
 
+TEST_P(Packs, SplitPairs) {
+  for_random_cases([](const PackInput& in, const PackOutput& out) {
+    const auto both = [&](int i) { return i < kLanes ? in.a[i] : in.b[i - kLanes]; };
+    expect_lanes(out.even_lanes, "even_lanes", [&](int i) { return both(2 * i); });
+    expect_lanes(out.odd_lanes, "odd_lanes", [&](int i) { return both(2 * i + 1); });
+  });
+}
+
 TEST_P(Packs, ReadAndWriteMemory) {
   for_random_cases([](const PackInput& in, const PackOutput& out) {
     const auto mask = [&](int i) { return ((in.mask >> i) & 1U) != 0; };

@@ -1,7 +1,10 @@
 #include <cmath>
+#include <cstring>
 
 #include <gtest/gtest.h>
 
+#include "mapper/core/covered_share.hpp"
+#include "mapper/core/instruction_set.hpp"
 #include "mapper/core/surface_pyramid.hpp"
 #include "tests/mapper/box_room.hpp"
 
@@ -82,6 +85,79 @@ TEST(PyramidFromDepth, StartsAfterTheSkippedSizesAndCutsFarDepth) {
   EXPECT_TRUE(std::isnan(pyramid[0].depth_m(3, 3)));
   EXPECT_FLOAT_EQ(pyramid[0].depth_m(20, 3), 2.0F);
   EXPECT_FLOAT_EQ(depth(0, 0), 5.0F);  // the caller's image is not touched
+}
+
+TEST(PyramidFromSurface, AveragesWhatLiesWithTheNearest) {
+  SurfaceMap fine(testing::test_camera(4, 2));
+  fine.depth_m << 2.0F, 2.02F, kNaN, kNaN,  //
+      3.0F, 2.04F, kNaN, kNaN;
+  for (int i = 0; i < 8; ++i) fine.set_normal(i / 4, i % 4, {0, 0, -1});
+  fine.set_normal(0, 1, Eigen::Vector3f(0, 0.6F, -0.8F));
+  fine.set_normal(1, 1, Eigen::Vector3f::Constant(kNaN));  // takes no part
+  fine.set_normal(1, 0, {1, 0, 0});                        // another surface
+  const SurfaceMap half = pyramid_from_surface(fine, 2)[1];
+  EXPECT_FLOAT_EQ(half.depth_m(0, 0), 2.01F);
+  EXPECT_LT((half.normal(0, 0) - Eigen::Vector3f(0, 0.6F, -1.8F).normalized()).norm(), 1e-6F);
+  EXPECT_TRUE(std::isnan(half.depth_m(0, 1)));
+  EXPECT_TRUE(std::isnan(half.normal_x(0, 1)));
+}
+
+bool same_bytes(const cv::Mat& a, const cv::Mat& b) {
+  return a.size() == b.size() && std::memcmp(a.data, b.data, a.total() * a.elemSize()) == 0;
+}
+
+TEST(Pyramids, GiveTheSameBytesWithEveryInstructionSet) {
+  const Intrinsics camera = testing::test_camera(203, 149);  // a width that fills no register
+  cv::Mat_<float> depth = testing::render_depth(testing::looking_at_the_crate(), camera);
+  depth(cv::Rect(20, 30, 37, 11)).setTo(kNaN);
+  const auto pyramids = [&](InstructionSet set) {
+    SurfacePyramid all = pyramid_from_depth(depth, camera, 1, 3, 3.0F, kernels_for(set));
+    for (const SurfaceMap& level : pyramid_from_surface(all.front(), 3, kernels_for(set))) {
+      all.push_back(level);
+    }
+    return all;
+  };
+  const SurfacePyramid portable = pyramids(InstructionSet::kPortable);
+  for (const InstructionSet set : kInstructionSets) {
+    if (!is_supported(set)) continue;
+    SCOPED_TRACE(name_of(set));
+    const SurfacePyramid same = pyramids(set);
+    for (std::size_t i = 0; i < portable.size(); ++i) {
+      EXPECT_TRUE(same_bytes(same[i].depth_m, portable[i].depth_m)) << "level " << i;
+      EXPECT_TRUE(same_bytes(same[i].normal_x, portable[i].normal_x)) << "level " << i;
+      EXPECT_TRUE(same_bytes(same[i].normal_y, portable[i].normal_y)) << "level " << i;
+      EXPECT_TRUE(same_bytes(same[i].normal_z, portable[i].normal_z)) << "level " << i;
+    }
+  }
+}
+
+TEST(CoveredShare, CountsThePointsInTheBox) {
+  const Intrinsics camera = testing::test_camera(203, 149);
+  const Pose X_WC = testing::looking_at_the_crate();
+  SurfaceMap surface = testing::render_room(X_WC, camera);
+  surface.depth_m(cv::Rect(20, 30, 37, 11)).setTo(kNaN);
+  const Eigen::AlignedBox3d region_W(Eigen::Vector3d(-1.0, -0.7, -2.0),
+                                     Eigen::Vector3d(1.03, 1.1, 1.9));
+  int inside = 0;
+  for (int v = 0; v < camera.height; ++v) {
+    for (int u = 0; u < camera.width; ++u) {
+      inside += region_W.contains(X_WC * surface.point(v, u).cast<double>()) ? 1 : 0;
+    }
+  }
+  const double share = static_cast<double>(inside) / (203 * 149);
+  ASSERT_GT(share, 0.1);
+  ASSERT_LT(share, 0.9);
+  // A few points lie on the faces of the box, to rounding.
+  EXPECT_NEAR(covered_share(surface, X_WC, region_W), share, 5.0 / (203 * 149));
+  for (const InstructionSet set : kInstructionSets) {
+    if (!is_supported(set)) continue;
+    EXPECT_EQ(covered_share(surface, X_WC, region_W, kernels_for(set)),
+              covered_share(surface, X_WC, region_W));
+  }
+  const double infinity = std::numeric_limits<double>::infinity();
+  const Eigen::AlignedBox3d everywhere(Eigen::Vector3d::Constant(-infinity),
+                                       Eigen::Vector3d::Constant(infinity));
+  EXPECT_DOUBLE_EQ(covered_share(surface, X_WC, everywhere), 1.0 - 37.0 * 11.0 / (203 * 149));
 }
 
 TEST(PyramidFromSurface, KeepsPlanesOnTheirPlane) {

@@ -19,4 +19,9 @@ const Kernels& kernels_for(InstructionSet instruction_set) {
   return kPortableKernels;
 }
 
+const Kernels& best_kernels() {
+  static const Kernels& best = kernels_for(best_instruction_set());
+  return best;
+}
+
 }  // namespace kintsugi::mapper

@@ -3,6 +3,8 @@
 // the same bytes; see pack_portable.hpp for how they are written.
 
 #include "mapper/core/kernels/integration.hpp"
+#include "mapper/core/kernels/linearization.hpp"
+#include "mapper/core/kernels/surface.hpp"
 
 namespace kintsugi::mapper {
 
@@ -10,10 +12,18 @@ enum class InstructionSet;
 
 struct Kernels {
   IntegrateBlock integrate_block = nullptr;
+  LinearizeRows linearize_rows = nullptr;
+  HalveDepthRow halve_depth_row = nullptr;
+  NormalsRow normals_row = nullptr;
+  HalveSurfaceRow halve_surface_row = nullptr;
+  CountInBox count_in_box = nullptr;
 };
 
 /// @throws std::invalid_argument where is_supported(instruction_set) is false
 const Kernels& kernels_for(InstructionSet instruction_set);
+
+/// Those for best_instruction_set(), which is asked once.
+const Kernels& best_kernels();
 
 // Each in the source compiled for it; those for x86 only where this build has them.
 extern const Kernels kPortableKernels;

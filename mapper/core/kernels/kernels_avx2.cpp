@@ -2,12 +2,19 @@
 
 #include "mapper/core/kernels/integration_kernel.hpp"
 #include "mapper/core/kernels/kernels.hpp"
+#include "mapper/core/kernels/linearization_kernel.hpp"
 #include "mapper/core/kernels/pack_avx2.hpp"
+#include "mapper/core/kernels/surface_kernel.hpp"
 
 namespace kintsugi::mapper {
 
 const Kernels kAvx2Kernels = {
     .integrate_block = integrate_block<Avx2Pack>,
+    .linearize_rows = linearize_rows<Avx2Pack>,
+    .halve_depth_row = SurfaceRows<Avx2Pack>::halve_depth,
+    .normals_row = SurfaceRows<Avx2Pack>::normals,
+    .halve_surface_row = SurfaceRows<Avx2Pack>::halve_surface,
+    .count_in_box = SurfaceRows<Avx2Pack>::count_in_box,
 };
 
 }  // namespace kintsugi::mapper

@@ -2,12 +2,19 @@
 
 #include "mapper/core/kernels/integration_kernel.hpp"
 #include "mapper/core/kernels/kernels.hpp"
+#include "mapper/core/kernels/linearization_kernel.hpp"
 #include "mapper/core/kernels/pack_avx512.hpp"
+#include "mapper/core/kernels/surface_kernel.hpp"
 
 namespace kintsugi::mapper {
 
 const Kernels kAvx512Kernels = {
     .integrate_block = integrate_block<Avx512Pack>,
+    .linearize_rows = linearize_rows<Avx512Pack>,
+    .halve_depth_row = SurfaceRows<Avx512Pack>::halve_depth,
+    .normals_row = SurfaceRows<Avx512Pack>::normals,
+    .halve_surface_row = SurfaceRows<Avx512Pack>::halve_surface,
+    .count_in_box = SurfaceRows<Avx512Pack>::count_in_box,
 };
 
 }  // namespace kintsugi::mapper

@@ -2,12 +2,19 @@
 
 #include "mapper/core/kernels/integration_kernel.hpp"
 #include "mapper/core/kernels/kernels.hpp"
+#include "mapper/core/kernels/linearization_kernel.hpp"
 #include "mapper/core/kernels/pack_portable.hpp"
+#include "mapper/core/kernels/surface_kernel.hpp"
 
 namespace kintsugi::mapper {
 
 const Kernels kPortableKernels = {
     .integrate_block = integrate_block<PortablePack>,
+    .linearize_rows = linearize_rows<PortablePack>,
+    .halve_depth_row = SurfaceRows<PortablePack>::halve_depth,
+    .normals_row = SurfaceRows<PortablePack>::normals,
+    .halve_surface_row = SurfaceRows<PortablePack>::halve_surface,
+    .count_in_box = SurfaceRows<PortablePack>::count_in_box,
 };
 
 }  // namespace kintsugi::mapper

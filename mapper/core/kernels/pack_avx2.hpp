@@ -153,6 +153,19 @@ inline Float abs(const Float& a) {
   return {_mm256_andnot_ps(sign, a.low), _mm256_andnot_ps(sign, a.high)};
 }
 inline Float floor(const Float& a) { return {_mm256_floor_ps(a.low), _mm256_floor_ps(a.high)}; }
+/// Every second lane of sixteen, from kFirst (0 or 1) on.
+template <int kFirst>
+__m256 every_second(__m256 low, __m256 high) {
+  constexpr int kPick = kFirst == 0 ? 0x88 : 0xDD;
+  const __m256 picked = _mm256_shuffle_ps(low, high, kPick);  // halves of both, interleaved
+  return _mm256_castpd_ps(_mm256_permute4x64_pd(_mm256_castps_pd(picked), 0xD8));
+}
+inline Float even_lanes(const Float& a, const Float& b) {
+  return {every_second<0>(a.low, a.high), every_second<0>(b.low, b.high)};
+}
+inline Float odd_lanes(const Float& a, const Float& b) {
+  return {every_second<1>(a.low, a.high), every_second<1>(b.low, b.high)};
+}
 inline float reduce_add(const Float& a) {
   const __m256 eight = _mm256_add_ps(a.low, a.high);
   const __m128 four = _mm_add_ps(_mm256_castps256_ps128(eight), _mm256_extractf128_ps(eight, 1));

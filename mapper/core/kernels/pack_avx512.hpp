@@ -101,6 +101,14 @@ inline Float abs(const Float& a) { return _mm512_abs_ps(a.lanes); }
 inline Float floor(const Float& a) {
   return _mm512_roundscale_ps(a.lanes, _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC);
 }
+inline Float even_lanes(const Float& a, const Float& b) {
+  const __m512i from = _mm512_setr_epi32(0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30);
+  return _mm512_permutex2var_ps(a.lanes, from, b.lanes);
+}
+inline Float odd_lanes(const Float& a, const Float& b) {
+  const __m512i from = _mm512_setr_epi32(1, 3, 5, 7, 9, 11, 13, 15, 17, 19, 21, 23, 25, 27, 29, 31);
+  return _mm512_permutex2var_ps(a.lanes, from, b.lanes);
+}
 inline float reduce_add(const Float& a) {
   const __m256 eight =
       _mm256_add_ps(_mm512_castps512_ps256(a.lanes), _mm512_extractf32x8_ps(a.lanes, 1));

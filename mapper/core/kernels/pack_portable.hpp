@@ -190,6 +190,15 @@ inline Float abs(const Float& a) {
 inline Float floor(const Float& a) {
   return for_each_lane<Float>([&](int i) { return __builtin_floorf(a.lanes[i]); });
 }
+/// Lanes 0, 2, ... 14 of the first, then those of the second.
+inline Float even_lanes(const Float& a, const Float& b) {
+  return for_each_lane<Float>([&](int i) { return i < 8 ? a.lanes[2 * i] : b.lanes[2 * i - 16]; });
+}
+/// Lanes 1, 3, ... 15 of the first, then those of the second.
+inline Float odd_lanes(const Float& a, const Float& b) {
+  return for_each_lane<Float>(
+      [&](int i) { return i < 8 ? a.lanes[2 * i + 1] : b.lanes[2 * i - 15]; });
+}
 /// The sum in this order: lanes 8 apart, of these sums those 4 apart, then 2, then 1.
 inline float reduce_add(const Float& a) {
   Float sums = a;

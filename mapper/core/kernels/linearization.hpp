@@ -1,0 +1,41 @@
+#pragma once
+// The inner loop of registration: the normal equations of point-to-plane ICP (see icp.hpp).
+
+#include <cstdint>
+
+#include "mapper/core/kernels/surface_planes.hpp"
+
+namespace kintsugi::mapper {
+
+struct LinearizationInput {
+  SurfacePlanes frame_C;
+  SurfacePlanes model_V;
+  RigidMotion X_VC;
+  float max_squared_distance_m2 = 0.0F;
+  float min_normal_cosine = 0.0F;
+  // Standard deviation of a depth z: base + growth (z - nearest)^2, metres.
+  float sigma_base_m = 0.0F;
+  float sigma_growth_per_m = 0.0F;
+  float sigma_nearest_m = 0.0F;
+  // Behind and in front of the model: by more than max(sigmas * sigma, distance).
+  float agreement_sigmas = 0.0F;
+  float agreement_distance_m = 0.0F;
+};
+
+/// Of a band of rows.
+struct LinearizationSums {
+  static constexpr int kNumProducts = 28;
+  float products[kNumProducts] = {};  ///< upper triangle of [A b; . E], row by row
+  float squared_residuals_m2 = 0.0F;  ///< without weights
+  std::int32_t inliers = 0;
+  std::int32_t overlap = 0;
+  std::int32_t behind = 0;
+  std::int32_t in_front = 0;
+};
+
+/// Rows [first_row, last_row) of the frame. Each of 16 lanes is summed in order of the pixels, then
+/// the lanes: a band should be short.
+using LinearizeRows = LinearizationSums (*)(const LinearizationInput& input, int first_row,
+                                            int last_row);
+
+}  // namespace kintsugi::mapper
