@@ -6,10 +6,10 @@ namespace kintsugi::mapper {
 namespace {
 
 const VoxelBlock* find_in(const std::vector<BlockCoord>& coords,
-                          const std::vector<VoxelBlock>& voxels, const BlockCoord& coord) {
+                          const std::vector<const VoxelBlock*>& voxels, const BlockCoord& coord) {
   const auto found = std::lower_bound(coords.begin(), coords.end(), coord);
   if (found == coords.end() || *found != coord) return nullptr;
-  return &voxels[found - coords.begin()];
+  return voxels[found - coords.begin()];
 }
 
 }  // namespace

@@ -26,7 +26,7 @@ CloudPoint make_point(const BlockSurface::Point& point, const Eigen::Vector3f& n
   const Eigen::Vector3f position_W =
       ((corner_vox + point.position_vox.cast<double>()) * blocks.resolution_m).cast<float>();
   const int voxel = voxel_index(point.voxel[0], point.voxel[1], point.voxel[2]);
-  const VoxelColor color = blocks.colors[block].colors[voxel];
+  const VoxelColor color = blocks.colors[block]->colors[voxel];
   CloudPoint result;
   result.x = position_W.x();
   result.y = position_W.y();
@@ -37,7 +37,7 @@ CloudPoint make_point(const BlockSurface::Point& point, const Eigen::Vector3f& n
   result.red = static_cast<std::uint8_t>(color & 0xFFU);
   result.green = static_cast<std::uint8_t>((color >> 8) & 0xFFU);
   result.blue = static_cast<std::uint8_t>((color >> 16) & 0xFFU);
-  result.weight = static_cast<float>(voxel_weight(blocks.voxels[block].voxels[voxel]));
+  result.weight = static_cast<float>(voxel_weight(blocks.voxels[block]->voxels[voxel]));
   return result;
 }
 
@@ -56,7 +56,8 @@ std::vector<CloudPoint> SurfaceExtractor::extract(const DetachedBlocks& blocks) 
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, blocks.coords.size(), 16),
                     [&](const auto& range) {
                       for (std::size_t block = range.begin(); block < range.end(); ++block) {
-                        if (!has_observed(blocks.voxels[block], config_.weight_threshold)) continue;
+                        if (!has_observed(*blocks.voxels[block], config_.weight_threshold))
+                          continue;
                         const BlockSurface surface(PaddedBlock(blocks, blocks.coords[block]),
                                                    config_.weight_threshold);
                         for (const BlockSurface::Point& point : surface.points()) {

@@ -20,6 +20,12 @@ int side_blocks_of(const TsdfVolume::Config& config) {
   return static_cast<int>(std::ceil(blocks - 1e-6));
 }
 
+/// A block's data where nobody changes them while its slice is extracted.
+struct KeptBlock {
+  const VoxelBlock* voxels = nullptr;
+  const ColorBlock* colors = nullptr;
+};
+
 int& axis_of(BlockCoord& coord, int axis) {
   return axis == 0 ? coord.x : (axis == 1 ? coord.y : coord.z);
 }
@@ -36,15 +42,17 @@ void check_position(const Eigen::Vector3d& position_W) {
   }
 }
 
-template <typename Function>
-void for_each_neighbor(const BlockCoord& coord, Function function) {
+/// Whether `predicate` holds for the block or one of the 26 around it.
+template <typename Predicate>
+bool any_around(const BlockCoord& coord, Predicate predicate) {
   for (int dz = -1; dz <= 1; ++dz) {
     for (int dy = -1; dy <= 1; ++dy) {
       for (int dx = -1; dx <= 1; ++dx) {
-        function(make_block_coord(coord.x + dx, coord.y + dy, coord.z + dz));
+        if (predicate(make_block_coord(coord.x + dx, coord.y + dy, coord.z + dz))) return true;
       }
     }
   }
+  return false;
 }
 
 }  // namespace
@@ -63,26 +71,30 @@ void TsdfVolume::Config::validate() const {
 TsdfVolume::TsdfVolume(const Config& config, const Eigen::Vector3d& center_W) : config_(config) {
   config_.validate();
   check_position(center_W);
-  side_blocks_ = side_blocks_of(config_);
-  table_side_ = std::bit_ceil(static_cast<unsigned>(side_blocks_));
+  cube_.side = side_blocks_of(config_);
+  table_side_ = std::bit_ceil(static_cast<unsigned>(cube_.side));
   table_.assign(static_cast<std::size_t>(table_side_) * table_side_ * table_side_, kNoBlock);
   const double block_m = config_.resolution_m * kBlockSide;
   for (int axis = 0; axis < 3; ++axis) {
-    axis_of(min_block_, axis) =
-        static_cast<int>(std::lround(center_W[axis] / block_m - 0.5 * side_blocks_));
+    axis_of(cube_.min, axis) =
+        static_cast<int>(std::lround(center_W[axis] / block_m - 0.5 * cube_.side));
   }
 }
 
 Eigen::Vector3d TsdfVolume::center_W() const {
   const Eigen::Vector3d center_blocks =
-      Eigen::Vector3d(min_block_.x, min_block_.y, min_block_.z).array() + 0.5 * side_blocks_;
+      Eigen::Vector3d(cube_.min.x, cube_.min.y, cube_.min.z).array() + 0.5 * cube_.side;
   return center_blocks * (config_.resolution_m * kBlockSide);
 }
 
 BlockSlot TsdfVolume::allocate(const BlockCoord& coord) {
   assert(contains(coord));
   BlockSlot& slot = table_[table_index(coord)];
-  if (slot == kNoBlock) slot = pool_.take(coord);
+  if (slot != kNoBlock) return slot;
+  slot = pool_.take(coord);
+  in_use_.resize(pool_.end(), 0);
+  in_use_[slot] = 1;
+  ++num_blocks_;
   return slot;
 }
 
@@ -92,106 +104,136 @@ std::vector<DetachedBlocks> TsdfVolume::shift_to(const Eigen::Vector3d& camera_W
   const Eigen::Vector3d offset_vox = (camera_W - center_W()) / config_.resolution_m;
   for (int axis = 0; axis < 3; ++axis) {
     if (std::abs(offset_vox[axis]) <= config_.shift_vox) continue;
-    BlockCoord min_block = min_block_;
-    axis_of(min_block, axis) += static_cast<int>(std::lround(offset_vox[axis] / kBlockSide));
-    DetachedBlocks slice =
-        copy_blocks(slots_outside(min_block), shift_kind(axis, offset_vox[axis] > 0));
-    release(slice);
-    min_block_ = min_block;
-    remember_departed(slice);
+    BlockCube remaining = cube_;
+    axis_of(remaining.min, axis) += static_cast<int>(std::lround(offset_vox[axis] / kBlockSide));
+    DetachedBlocks slice = detach(shift_kind(axis, offset_vox[axis] > 0), remaining);
+    cube_ = remaining;
     if (!slice.coords.empty()) slices.push_back(std::move(slice));
   }
   return slices;
 }
 
 DetachedBlocks TsdfVolume::snapshot() const {
-  std::vector<BlockSlot> slots;
-  for (BlockSlot slot = 0; slot < slots_end(); ++slot) {
-    if (in_use(slot)) slots.push_back(slot);
-  }
-  return copy_blocks(std::move(slots), SliceKind::kFinal);
+  auto copies = std::make_shared<TsdfBlockPool>();
+  DetachedBlocks blocks =
+      describe(slots_outside({}), SliceKind::kFinal, {}, [&](BlockSlot slot) -> KeptBlock {
+        const BlockSlot copy = copies->take(coord(slot));
+        copies->voxels(copy) = voxels(slot);
+        copies->colors(copy) = colors(slot);
+        return {&copies->voxels(copy), &copies->colors(copy)};
+      });
+  blocks.storage = std::move(copies);
+  return blocks;
 }
 
-DetachedBlocks TsdfVolume::detach_all() {
-  DetachedBlocks all = snapshot();
-  std::fill(table_.begin(), table_.end(), kNoBlock);
-  pool_.clear();
-  departed_.clear();
-  return all;
-}
+DetachedBlocks TsdfVolume::detach_all() { return detach(SliceKind::kFinal, {}); }
 
 std::size_t TsdfVolume::memory_bytes() const {
-  return pool_.memory_bytes() + table_.size() * sizeof(BlockSlot) +
-         departed_.size() * (sizeof(VoxelBlock) + sizeof(BlockCoord));
+  return pool_.memory_bytes() + table_.capacity() * sizeof(BlockSlot) + in_use_.capacity() +
+         departed_.capacity() * sizeof(BlockSlot);
 }
 
-std::vector<BlockSlot> TsdfVolume::slots_outside(const BlockCoord& min_block) const {
+void TsdfVolume::sort_by_coord(std::vector<BlockSlot>& slots) const {
+  std::sort(slots.begin(), slots.end(),
+            [this](BlockSlot a, BlockSlot b) { return coord(a) < coord(b); });
+}
+
+std::vector<BlockSlot> TsdfVolume::slots_outside(const BlockCube& remaining) const {
   std::vector<BlockSlot> slots;
   for (BlockSlot slot = 0; slot < slots_end(); ++slot) {
-    if (in_use(slot) && !is_inside(coord(slot), min_block)) slots.push_back(slot);
+    if (in_use(slot) && !remaining.contains(coord(slot))) slots.push_back(slot);
   }
+  sort_by_coord(slots);
   return slots;
 }
 
-DetachedBlocks TsdfVolume::copy_blocks(std::vector<BlockSlot> slots, SliceKind kind) const {
-  std::sort(slots.begin(), slots.end(),
-            [this](BlockSlot a, BlockSlot b) { return coord(a) < coord(b); });
+std::vector<BlockSlot> TsdfVolume::slots_around_outside(const BlockCube& remaining) const {
+  const BlockCube inner{
+      make_block_coord(remaining.min.x + 1, remaining.min.y + 1, remaining.min.z + 1),
+      std::max(remaining.side - 2, 0)};
+  const auto touches_leaving = [&](const BlockCoord& near) {
+    return any_around(near, [&](const BlockCoord& other) {
+      return !remaining.contains(other) && find(other) != kNoBlock;
+    });
+  };
+  std::vector<BlockSlot> slots;
+  for (BlockSlot slot = 0; slot < slots_end(); ++slot) {
+    if (!in_use(slot) || !remaining.contains(coord(slot)) || inner.contains(coord(slot))) continue;
+    if (touches_leaving(coord(slot))) slots.push_back(slot);
+  }
+  for (const BlockSlot slot : departed_) {
+    if (touches_leaving(coord(slot))) slots.push_back(slot);
+  }
+  sort_by_coord(slots);
+  return slots;
+}
+
+template <typename Keep>
+DetachedBlocks TsdfVolume::describe(const std::vector<BlockSlot>& slots, SliceKind kind,
+                                    const BlockCube& remaining, Keep keep) const {
   DetachedBlocks blocks;
   blocks.kind = kind;
   blocks.resolution_m = resolution_m();
   blocks.truncation_m = truncation_m();
-  blocks.coords.reserve(slots.size());
-  blocks.voxels.reserve(slots.size());
-  blocks.colors.reserve(slots.size());
+  blocks.remaining = remaining;
   for (const BlockSlot slot : slots) {
     blocks.coords.push_back(coord(slot));
-    blocks.voxels.push_back(voxels(slot));
-    blocks.colors.push_back(colors(slot));
+    const KeptBlock kept = keep(slot);
+    blocks.voxels.push_back(kept.voxels);
+    blocks.colors.push_back(kept.colors);
   }
-  copy_apron(blocks);
+  for (const BlockSlot slot : slots_around_outside(remaining)) {
+    const bool stays = in_use(slot);
+    blocks.apron_coords.push_back(coord(slot));
+    const KeptBlock kept = keep(slot);
+    blocks.apron_voxels.push_back(kept.voxels);
+    blocks.apron_colors.push_back(stays ? nullptr : kept.colors);
+  }
   return blocks;
 }
 
-void TsdfVolume::copy_apron(DetachedBlocks& blocks) const {
-  std::vector<BlockCoord> neighbors;
-  for (const BlockCoord& coord : blocks.coords) {
-    for_each_neighbor(coord, [&](const BlockCoord& neighbor) { neighbors.push_back(neighbor); });
-  }
-  std::sort(neighbors.begin(), neighbors.end());
-  neighbors.erase(std::unique(neighbors.begin(), neighbors.end()), neighbors.end());
-  for (const BlockCoord& neighbor : neighbors) {
-    if (std::binary_search(blocks.coords.begin(), blocks.coords.end(), neighbor)) continue;
-    const VoxelBlock* found = nullptr;
-    if (const BlockSlot slot = find(neighbor); slot != kNoBlock) {
-      found = &voxels(slot);
-    } else if (const auto departed = departed_.find(neighbor); departed != departed_.end()) {
-      found = &departed->second;
+DetachedBlocks TsdfVolume::detach(SliceKind kind, const BlockCube& remaining) {
+  const std::vector<BlockSlot> leaving = slots_outside(remaining);
+  std::vector<BlockSlot> lent;
+  DetachedBlocks blocks = describe(leaving, kind, remaining, [&](BlockSlot slot) -> KeptBlock {
+    if (in_use(slot) && remaining.contains(coord(slot))) {  // goes on changing
+      lent.push_back(pool_.take_copy_of_voxels(slot));
     } else {
-      continue;
+      pool_.hold(slot);
+      lent.push_back(slot);
     }
-    blocks.apron_coords.push_back(neighbor);
-    blocks.apron_voxels.push_back(*found);
-  }
-}
-
-void TsdfVolume::release(const DetachedBlocks& blocks) {
-  for (const BlockCoord& coord : blocks.coords) {
-    BlockSlot& slot = table_[table_index(coord)];
-    pool_.give_back(slot);
-    slot = kNoBlock;
-  }
-}
-
-void TsdfVolume::remember_departed(const DetachedBlocks& blocks) {
-  for (std::size_t i = 0; i < blocks.coords.size(); ++i) {
-    departed_[blocks.coords[i]] = blocks.voxels[i];
-  }
-  std::erase_if(departed_, [this](const auto& entry) {
-    bool touches_cube = false;
-    for_each_neighbor(entry.first,
-                      [&](const BlockCoord& coord) { touches_cube |= contains(coord); });
-    return contains(entry.first) || !touches_cube;
+    return {&pool_.voxels(lent.back()), &pool_.colors(lent.back())};
   });
+  blocks.storage = pool_.lend(std::move(lent));
+  update_departed(leaving, remaining);
+  remove(leaving);
+  return blocks;
+}
+
+void TsdfVolume::remove(const std::vector<BlockSlot>& slots) {
+  for (const BlockSlot slot : slots) {
+    table_[table_index(coord(slot))] = kNoBlock;
+    in_use_[slot] = 0;
+    pool_.give_back(slot);
+  }
+  num_blocks_ -= slots.size();
+}
+
+void TsdfVolume::update_departed(const std::vector<BlockSlot>& leaving,
+                                 const BlockCube& remaining) {
+  const auto borders = [&](BlockSlot slot) {
+    return remaining.touches(coord(slot)) && !remaining.contains(coord(slot));
+  };
+  std::erase_if(departed_, [&](BlockSlot slot) {
+    if (borders(slot)) return false;
+    pool_.give_back(slot);
+    return true;
+  });
+  for (const BlockSlot slot : leaving) {
+    if (!borders(slot)) continue;
+    pool_.hold(slot);
+    departed_.push_back(slot);
+  }
 }
 
 }  // namespace kintsugi::mapper

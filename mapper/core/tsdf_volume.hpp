@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
-#include <map>
+#include <cstdint>
 #include <vector>
 
 #include "mapper/core/detached_blocks.hpp"
@@ -39,12 +39,12 @@ class TsdfVolume {
   float truncation_m() const {
     return static_cast<float>(config_.resolution_m * config_.truncation_vox);
   }
-  int side_blocks() const { return side_blocks_; }
+  int side_blocks() const { return cube_.side; }
   /// The cube is blocks min_block() .. min_block() + side_blocks() - 1 along each axis.
-  const BlockCoord& min_block() const { return min_block_; }
+  const BlockCoord& min_block() const { return cube_.min; }
   Eigen::Vector3d center_W() const;  ///< metres
 
-  bool contains(const BlockCoord& coord) const { return is_inside(coord, min_block_); }
+  bool contains(const BlockCoord& coord) const { return cube_.contains(coord); }
   /// The block's slot; kNoBlock where it was not allocated or is outside the cube.
   BlockSlot find(const BlockCoord& coord) const {
     return contains(coord) ? table_[table_index(coord)] : kNoBlock;
@@ -58,53 +58,55 @@ class TsdfVolume {
   const ColorBlock& colors(BlockSlot slot) const { return pool_.colors(slot); }
   const BlockCoord& coord(BlockSlot slot) const { return pool_.coord(slot); }
 
-  /// Slots in use are below slots_end(); not all below it are in use.
-  BlockSlot slots_end() const { return pool_.end(); }
-  bool in_use(BlockSlot slot) const { return pool_.in_use(slot); }
+  /// The cube's blocks have slots below slots_end(); not all slots below it are the cube's.
+  BlockSlot slots_end() const { return static_cast<BlockSlot>(in_use_.size()); }
+  bool in_use(BlockSlot slot) const { return in_use_[slot] != 0; }
 
   /// Moves the cube so that the camera is within half a block of its centre along each axis along
   /// which it was further than shift_vox, and hands out what fell out: one object for each axis (x,
-  /// y, z in this order) along which something did. Blocks that enter are empty.
+  /// y, z in this order) along which something did. Blocks that enter are empty. Nothing that
+  /// leaves is copied: its slots are used again when the object has ended, on whichever thread.
   /// @throws std::invalid_argument where the position is not finite or further than 100 km away;
   /// the volume is unchanged then.
   std::vector<DetachedBlocks> shift_to(const Eigen::Vector3d& camera_W);
 
-  /// What is in the cube, as a final slice; the volume is unchanged.
+  /// A copy of what is in the cube, as a final slice; the volume is unchanged.
   DetachedBlocks snapshot() const;
   /// What is in the cube, as a final slice; the volume is empty afterwards.
   DetachedBlocks detach_all();
 
-  std::size_t num_blocks() const { return pool_.size(); }
-  std::size_t memory_bytes() const;
+  std::size_t num_blocks() const { return num_blocks_; }  ///< in the cube
+  std::size_t memory_bytes() const;                       ///< with what is handed out
 
  private:
-  bool is_inside(const BlockCoord& coord, const BlockCoord& min_block) const {
-    const auto side = static_cast<unsigned>(side_blocks_);
-    return static_cast<unsigned>(coord.x - min_block.x) < side &&
-           static_cast<unsigned>(coord.y - min_block.y) < side &&
-           static_cast<unsigned>(coord.z - min_block.z) < side;
-  }
   std::size_t table_index(const BlockCoord& coord) const {
     const auto wrap = [mask = table_side_ - 1](int c) {
       return static_cast<std::size_t>(static_cast<unsigned>(c) & mask);
     };
     return (wrap(coord.z) * table_side_ + wrap(coord.y)) * table_side_ + wrap(coord.x);
   }
-  std::vector<BlockSlot> slots_outside(const BlockCoord& min_block) const;
-  DetachedBlocks copy_blocks(std::vector<BlockSlot> slots, SliceKind kind) const;
-  void copy_apron(DetachedBlocks& blocks) const;
-  void release(const DetachedBlocks& blocks);
-  void remember_departed(const DetachedBlocks& blocks);
+  /// The cube's blocks that are not in `remaining`, ascending.
+  std::vector<BlockSlot> slots_outside(const BlockCube& remaining) const;
+  /// The blocks that touch these: of those in `remaining` and those that left before, ascending.
+  std::vector<BlockSlot> slots_around_outside(const BlockCube& remaining) const;
+  template <typename Keep>
+  DetachedBlocks describe(const std::vector<BlockSlot>& slots, SliceKind kind,
+                          const BlockCube& remaining, Keep keep) const;
+  DetachedBlocks detach(SliceKind kind, const BlockCube& remaining);
+  void remove(const std::vector<BlockSlot>& slots);
+  void update_departed(const std::vector<BlockSlot>& leaving, const BlockCube& remaining);
+  void sort_by_coord(std::vector<BlockSlot>& slots) const;
 
   Config config_;
-  int side_blocks_ = 0;
-  unsigned table_side_ = 0;  ///< a power of two, at least side_blocks_
-  BlockCoord min_block_;
+  BlockCube cube_;
+  unsigned table_side_ = 0;  ///< a power of two, at least the cube's
   std::vector<BlockSlot> table_;
   TsdfBlockPool pool_;
-  /// The layer of blocks just outside the cube, as they were when they left: the surface between
-  /// them and what stays can only be extracted with both sides at hand.
-  std::map<BlockCoord, VoxelBlock> departed_;
+  std::vector<std::uint8_t> in_use_;  ///< by slot: whether it is a block of the cube
+  std::size_t num_blocks_ = 0;
+  /// The blocks just outside the cube that left it, as they were then: the surface between them and
+  /// what stays can only be extracted with both sides at hand.
+  std::vector<BlockSlot> departed_;
 };
 
 }  // namespace kintsugi::mapper

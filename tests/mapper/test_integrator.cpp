@@ -30,8 +30,8 @@ TsdfVolume::Config volume_of(double size_m) {
 bool same_bytes(const DetachedBlocks& a, const DetachedBlocks& b) {
   if (a.coords != b.coords) return false;
   for (std::size_t i = 0; i < a.coords.size(); ++i) {
-    if (a.voxels[i].voxels != b.voxels[i].voxels) return false;
-    if (a.colors[i].colors != b.colors[i].colors) return false;
+    if (a.voxels[i]->voxels != b.voxels[i]->voxels) return false;
+    if (a.colors[i]->colors != b.colors[i]->colors) return false;
   }
   return true;
 }
@@ -54,7 +54,7 @@ void for_each_voxel(const DetachedBlocks& blocks, Function function) {
     for (int i = 0; i < kBlockVoxels; ++i) {
       const Eigen::Vector3d center_vox = Eigen::Vector3d(i & 7, (i >> 3) & 7, i >> 6).array() + 0.5;
       function(Eigen::Vector3d((corner_vox + center_vox) * kResolution_m),
-               blocks.voxels[block].voxels[i]);
+               blocks.voxels[block]->voxels[i]);
     }
   }
 }
@@ -198,8 +198,8 @@ TEST(Integrator, WorksWithoutColorAndWithPartsOfImages) {
   const DetachedBlocks b = from_part.snapshot();
   ASSERT_EQ(a.coords, b.coords);
   for (std::size_t i = 0; i < a.coords.size(); ++i) {
-    ASSERT_EQ(a.voxels[i].voxels, b.voxels[i].voxels);
-    ASSERT_EQ(b.colors[i].colors[0], 0U);
+    ASSERT_EQ(a.voxels[i]->voxels, b.voxels[i]->voxels);
+    ASSERT_EQ(b.colors[i]->colors[0], 0U);
   }
 }
 

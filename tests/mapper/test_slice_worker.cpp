@@ -11,18 +11,23 @@ DetachedBlocks plane_blocks(SliceKind kind) {
   blocks.kind = kind;
   blocks.resolution_m = 0.01F;
   blocks.truncation_m = 0.04F;
-  VoxelBlock voxels{};
+  struct Storage {
+    VoxelBlock voxels{};
+    ColorBlock colors{};
+  };
+  auto storage = std::make_shared<Storage>();
   for (int z = 0; z < kBlockSide; ++z) {
     const float distance = (static_cast<float>(z) + 0.5F - 4.0F) / 4.0F;
     const auto raw = static_cast<std::int16_t>(distance * kDistanceScale);
     for (int i = 0; i < kBlockSide * kBlockSide; ++i) {
-      voxels.voxels[z * kBlockSide * kBlockSide + i] =
+      storage->voxels.voxels[z * kBlockSide * kBlockSide + i] =
           (20U << 16U) | static_cast<std::uint16_t>(raw);
     }
   }
   blocks.coords.push_back(make_block_coord(0, 0, 0));
-  blocks.voxels.push_back(voxels);
-  blocks.colors.push_back({});
+  blocks.voxels.push_back(&storage->voxels);
+  blocks.colors.push_back(&storage->colors);
+  blocks.storage = std::move(storage);
   return blocks;
 }
 

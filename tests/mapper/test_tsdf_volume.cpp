@@ -68,7 +68,7 @@ TEST(TsdfVolume, HoldsWhatAMapWouldHoldUnderRandomShifts) {
       for (std::size_t i = 0; i < slice.coords.size(); ++i) {
         const auto expected = reference.find(slice.coords[i]);
         ASSERT_NE(expected, reference.end());
-        EXPECT_EQ(slice.voxels[i].voxels[0], expected->second);
+        EXPECT_EQ(slice.voxels[i]->voxels[0], expected->second);
         reference.erase(expected);
       }
     }
