@@ -163,24 +163,41 @@ struct MapperStatus {
   std::string map_name;
   std::string device;
   TrackingState state = TrackingState::kStarting;
-  bool finished = false;  ///< every slice of the session has been published
+  std::string loss_reason;  ///< why the last frame was not believed; empty when it was
+  bool finished = false;    ///< every slice of the session has been published
   std::int64_t frames_read = 0;
   std::int64_t frames_total = -1;  ///< -1: not known (a live camera)
   std::int64_t frames_tracked = 0;
   std::int64_t frames_lost = 0;
+  std::int64_t frames_relocalised = 0;  ///< of those tracked, found again by a keyframe
   std::int64_t frames_dropped = 0;
+  std::int64_t keyframes = 0;
+  std::int32_t undetermined = 0;  ///< directions of motion that the last frame left open, 0 to 6
   std::int64_t slices_published = 0;
   std::int64_t points_published = 0;
   std::int64_t chunks_published = 0;
-  std::int64_t blocks = 0;  ///< voxel blocks in use
-  std::int64_t memory_bytes = 0;
+  std::int64_t blocks = 0;          ///< voxel blocks in use
+  std::int64_t memory_bytes = 0;    ///< resident, of the whole process
+  std::int64_t volume_bytes = 0;    ///< of it, the volume
+  std::int64_t queue_bytes = 0;     ///< of it, what waits to be sent
+  std::int64_t keyframe_bytes = 0;  ///< of it, the keyframes
   double frame_rate_hz = 0.0;
-  double read_ms = 0.0;  ///< per-frame stage times, means since the last status
+  /// Wall time from a frame taken to its messages sent, of the frames since the last status.
+  double frame_p50_ms = 0.0;
+  double frame_p99_ms = 0.0;
+  /// Means per frame since the last status: CPU of all threads, then the stages.
+  double cpu_ms = 0.0;
+  double read_ms = 0.0;  ///< waiting for the device included
+  double convert_ms = 0.0;
+  double prepare_ms = 0.0;
   double track_ms = 0.0;
+  double shift_ms = 0.0;
   double integrate_ms = 0.0;
   double raycast_ms = 0.0;
   double extract_ms = 0.0;
   double publish_ms = 0.0;
+
+  bool operator==(const MapperStatus&) const = default;
 };
 
 struct SegmenterStatus {

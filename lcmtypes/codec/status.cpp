@@ -11,7 +11,7 @@ namespace codec {
 
 template <>
 struct Small<MapperStatus> : Copied<MapperStatus, mapper_status_t> {
-  static constexpr int kNumStrings = 2;
+  static constexpr int kNumStrings = 3;
 
   template <class From, class To>
   static void copy(const From& from, To& to) {
@@ -23,45 +23,71 @@ struct Small<MapperStatus> : Copied<MapperStatus, mapper_status_t> {
     to.frames_total = from.frames_total;
     to.frames_tracked = from.frames_tracked;
     to.frames_lost = from.frames_lost;
+    to.frames_relocalised = from.frames_relocalised;
     to.frames_dropped = from.frames_dropped;
+    to.keyframes = from.keyframes;
+    to.undetermined = from.undetermined;
     to.slices_published = from.slices_published;
     to.points_published = from.points_published;
     to.chunks_published = from.chunks_published;
     to.blocks = from.blocks;
     to.memory_bytes = from.memory_bytes;
+    to.volume_bytes = from.volume_bytes;
+    to.queue_bytes = from.queue_bytes;
+    to.keyframe_bytes = from.keyframe_bytes;
     to.frame_rate_hz = from.frame_rate_hz;
+    to.frame_p50_ms = from.frame_p50_ms;
+    to.frame_p99_ms = from.frame_p99_ms;
+    to.cpu_ms = from.cpu_ms;
     to.read_ms = from.read_ms;
+    to.convert_ms = from.convert_ms;
+    to.prepare_ms = from.prepare_ms;
     to.track_ms = from.track_ms;
+    to.shift_ms = from.shift_ms;
     to.integrate_ms = from.integrate_ms;
     to.raycast_ms = from.raycast_ms;
     to.extract_ms = from.extract_ms;
     to.publish_ms = from.publish_ms;
     to.map_name = from.map_name;
     to.device = from.device;
+    to.loss_reason = from.loss_reason;
   }
   static void check(const Check& check, const MapperStatus& m) {
     check.not_negative("utime", m.utime);
     check.positive("session", m.session);
     check_state(check, m.state);
     if (m.frames_total < -1) check.fail("frames_total", m.frames_total, ">= -1");
+    check.range("undetermined", m.undetermined, 0, 6);
     check.not_negative("frames_read", m.frames_read);
     check.not_negative("frames_tracked", m.frames_tracked);
     check.not_negative("frames_lost", m.frames_lost);
+    check.not_negative("frames_relocalised", m.frames_relocalised);
     check.not_negative("frames_dropped", m.frames_dropped);
+    check.not_negative("keyframes", m.keyframes);
     check.not_negative("slices_published", m.slices_published);
     check.not_negative("points_published", m.points_published);
     check.not_negative("chunks_published", m.chunks_published);
     check.not_negative("blocks", m.blocks);
     check.not_negative("memory_bytes", m.memory_bytes);
+    check.not_negative("volume_bytes", m.volume_bytes);
+    check.not_negative("queue_bytes", m.queue_bytes);
+    check.not_negative("keyframe_bytes", m.keyframe_bytes);
     check.finite("frame_rate_hz", m.frame_rate_hz);
+    check.finite("frame_p50_ms", m.frame_p50_ms);
+    check.finite("frame_p99_ms", m.frame_p99_ms);
+    check.finite("cpu_ms", m.cpu_ms);
     check.finite("read_ms", m.read_ms);
+    check.finite("convert_ms", m.convert_ms);
+    check.finite("prepare_ms", m.prepare_ms);
     check.finite("track_ms", m.track_ms);
+    check.finite("shift_ms", m.shift_ms);
     check.finite("integrate_ms", m.integrate_ms);
     check.finite("raycast_ms", m.raycast_ms);
     check.finite("extract_ms", m.extract_ms);
     check.finite("publish_ms", m.publish_ms);
     check.text("map_name", m.map_name);
     check.text("device", m.device);
+    check.text("loss_reason", m.loss_reason);
   }
 };
 

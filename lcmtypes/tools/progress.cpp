@@ -144,6 +144,7 @@ std::string Progress::mapper_text() const {
   }
   text +=
       m.finished ? std::string(" mapped") : format(" %s %.1f Hz", name(m.state), m.frame_rate_hz);
+  if (!m.finished && !m.loss_reason.empty()) text += " (" + m.loss_reason + ")";
   if (m.frames_lost > 0) text += ", " + count(m.frames_lost) + " lost";
   if (m.frames_dropped > 0) text += ", " + count(m.frames_dropped) + " dropped";
   return text + " | " + count(m.slices_published) + " slices " + count(m.points_published) +

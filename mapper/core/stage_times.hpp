@@ -1,6 +1,6 @@
 #pragma once
 
-#include <ctime>
+#include <array>
 
 #include "mapper/core/stopwatch.hpp"
 
@@ -14,16 +14,32 @@ struct StageTimes {
   double integrate_ms = 0.0;  ///< allocation and fusion
   double raycast_ms = 0.0;    ///< the model for the next frame
 
-  StageTimes& operator+=(const StageTimes& other) {
-    prepare_ms += other.prepare_ms;
-    track_ms += other.track_ms;
-    shift_ms += other.shift_ms;
-    integrate_ms += other.integrate_ms;
-    raycast_ms += other.raycast_ms;
-    return *this;
-  }
-  double total_ms() const { return prepare_ms + track_ms + shift_ms + integrate_ms + raycast_ms; }
+  StageTimes& operator+=(const StageTimes& other);
+  double total_ms() const;
 };
+
+/// A stage, as tables name it.
+struct Stage {
+  const char* name;
+  double StageTimes::*ms;
+};
+
+/// In the order in which a frame goes through them.
+inline constexpr std::array kStages = {
+    Stage{"prepare_ms", &StageTimes::prepare_ms}, Stage{"track_ms", &StageTimes::track_ms},
+    Stage{"shift_ms", &StageTimes::shift_ms}, Stage{"integrate_ms", &StageTimes::integrate_ms},
+    Stage{"raycast_ms", &StageTimes::raycast_ms}};
+
+inline StageTimes& StageTimes::operator+=(const StageTimes& other) {
+  for (const Stage& stage : kStages) this->*stage.ms += other.*stage.ms;
+  return *this;
+}
+
+inline double StageTimes::total_ms() const {
+  double total = 0.0;
+  for (const Stage& stage : kStages) total += this->*stage.ms;
+  return total;
+}
 
 /// Times the stages of a frame as they end, one after another.
 class StageClock {
@@ -40,12 +56,6 @@ class StageClock {
   const StageTimes& cpu() const { return cpu_; }
 
  private:
-  static double process_cpu_ms() {
-    timespec now{};
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
-  }
-
   Stopwatch stopwatch_;
   double cpu_at_lap_ms_ = process_cpu_ms();
   StageTimes wall_;

@@ -28,7 +28,7 @@ FrameReader::~FrameReader() {
   thread_.join();
 }
 
-std::optional<RgbdFrame> FrameReader::next(std::chrono::milliseconds timeout) {
+std::optional<TimedFrame> FrameReader::next(std::chrono::milliseconds timeout) {
   std::unique_lock lock(mutex_);
   changed_.wait_for(lock, timeout, [this] { return frame_ || ended_; });
   auto frame = std::exchange(frame_, std::nullopt);
@@ -61,24 +61,24 @@ bool FrameReader::ended_well() const {
   return ended_well_;
 }
 
-double FrameReader::busy_ms() const {
-  const std::scoped_lock lock(mutex_);
-  return busy_ms_;
+std::optional<TimedFrame> FrameReader::read() {
+  const Stopwatch stopwatch;
+  const double cpu_before_ms = thread_cpu_ms();
+  auto frame = source_->next();
+  if (!frame) return std::nullopt;
+  return TimedFrame{std::move(*frame), stopwatch.elapsed_ms(), thread_cpu_ms() - cpu_before_ms};
 }
 
 void FrameReader::run() {
   while (true) {
-    const Stopwatch stopwatch;
-    std::optional<RgbdFrame> frame;
+    std::optional<TimedFrame> frame;
     std::exception_ptr failure;
     try {
-      frame = source_->next();
+      frame = read();
     } catch (...) {
       failure = std::current_exception();
     }
-    const double elapsed_ms = stopwatch.elapsed_ms();
     std::unique_lock lock(mutex_);
-    busy_ms_ += elapsed_ms;
     counts_ = source_->counts();
     if (!frame) {
       ended_ = true;

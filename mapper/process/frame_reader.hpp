@@ -15,6 +15,13 @@
 
 namespace kintsugi::mapper {
 
+/// A frame and what reading it took, milliseconds.
+struct TimedFrame {
+  RgbdFrame frame;
+  double read_ms = 0.0;     ///< wall, waiting for the device included
+  double convert_ms = 0.0;  ///< CPU of the reading thread: conversion, undistortion
+};
+
 /// Reads one frame ahead on a thread of its own: the next frame is decoded while this one is
 /// mapped.
 class FrameReader {
@@ -28,7 +35,7 @@ class FrameReader {
   FrameReader& operator=(const FrameReader&) = delete;
 
   /// The next frame if it comes within `timeout`.
-  std::optional<RgbdFrame> next(std::chrono::milliseconds timeout);
+  std::optional<TimedFrame> next(std::chrono::milliseconds timeout);
 
   /// No frame will come any more.
   bool finished() const;
@@ -42,11 +49,10 @@ class FrameReader {
   /// Of the source, once finished().
   std::string end_reason() const;
   bool ended_well() const;
-  /// Time spent reading and decoding so far, waiting included, milliseconds.
-  double busy_ms() const;
 
  private:
   void run();
+  std::optional<TimedFrame> read();
 
   std::atomic<bool> stop_ = false;
   std::unique_ptr<FrameSource> source_;
@@ -55,13 +61,12 @@ class FrameReader {
 
   mutable std::mutex mutex_;
   std::condition_variable changed_;
-  std::optional<RgbdFrame> frame_;
+  std::optional<TimedFrame> frame_;
   bool ended_ = false;
   bool ended_well_ = true;
   std::string end_reason_;
   std::exception_ptr failure_;
   SourceCounts counts_;
-  double busy_ms_ = 0.0;
   std::thread thread_;
 };
 

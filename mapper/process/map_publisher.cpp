@@ -51,6 +51,10 @@ void MapPublisher::flush() {
   if (frame_stream_) frame_stream_->flush();
 }
 
+std::size_t MapPublisher::queued_bytes() const {
+  return slice_stream_.queued_bytes() + (frame_stream_ ? frame_stream_->queued_bytes() : 0);
+}
+
 bool MapPublisher::has_room() const {
   return slice_stream_.queued_bytes() <= config_.max_queued_bytes &&
          (!frame_stream_ || frame_stream_->queued_bytes() <= config_.max_queued_bytes);

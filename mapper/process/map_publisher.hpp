@@ -39,6 +39,9 @@ class MapPublisher {
   /// publish_...() throws it.
   bool has_room() const;
 
+  /// What waits to be sent.
+  std::size_t queued_bytes() const;
+
   /// Waits until everything is sent.
   void flush();
 

@@ -9,6 +9,7 @@
 
 #include "lcmtypes/atomic_file.hpp"
 #include "lcmtypes/stop_signal.hpp"
+#include "mapper/process/state_text.hpp"
 
 namespace kintsugi::mapper {
 namespace {
@@ -43,7 +44,9 @@ MapperProcess::MapperProcess(const Options& options)
     : options_(options),
       reader_(with_stop_signal(options.source)),
       pipeline_(options.pipeline),
-      publisher_(publisher_config(options)) {}
+      publisher_(publisher_config(options)) {
+  if (!options.timings_file.empty()) frame_log_.emplace(options.timings_file);
+}
 
 void MapperProcess::run() {
   log_start();
@@ -60,6 +63,7 @@ void MapperProcess::run() {
 
 void MapperProcess::map_frames() {
   publish_status(false);
+  cpu_ms_ = process_cpu_ms();
   while (!reader_.finished() && !stop_requested()) {
     if (options_.max_frames > 0 && statistics_.frames() >= options_.max_frames) return;
     publish_status_when_due();
@@ -71,17 +75,41 @@ void MapperProcess::map_frames() {
   }
 }
 
-void MapperProcess::map_frame(const RgbdFrame& frame) {
+void MapperProcess::map_frame(const TimedFrame& read) {
+  const RgbdFrame& frame = read.frame;
+  Stopwatch stopwatch;
   FrameResult result = pipeline_.process(frame);
   const TrackingResult& tracking = result.tracking;
   log_change_of_state(result, frame);
   if (is_located(tracking.state)) path_.push_back({frame.utime, tracking.X_WC});
 
-  const Stopwatch stopwatch;
+  const std::size_t num_slices = result.slices.size();
+  const double mapped_ms = stopwatch.elapsed_ms();
+  publish_frame(frame, result);
+  FrameTimings timings;
+  timings.stages = result.times;
+  timings.frame_ms = stopwatch.elapsed_ms();
+  timings.publish_ms = timings.frame_ms - mapped_ms;
+  measure(read, timings);
+  statistics_.add(tracking, timings);
+  if (frame_log_) frame_log_->append(frame, tracking, num_slices, timings);
+}
+
+void MapperProcess::publish_frame(const RgbdFrame& frame, FrameResult& result) {
+  const TrackingResult& tracking = result.tracking;
   publisher_.publish_pose({frame.utime, 0, frame.frame_index, tracking.state, tracking.X_WC});
   publisher_.publish_frame(frame);
   publisher_.publish_slices(std::move(result.slices));
-  statistics_.add(result, stopwatch.elapsed_ms());
+}
+
+/// What other threads did meanwhile.
+void MapperProcess::measure(const TimedFrame& read, FrameTimings& timings) {
+  timings.read_ms = read.read_ms;
+  timings.convert_ms = read.convert_ms;
+  const double cpu_ms = process_cpu_ms();
+  timings.cpu_ms = cpu_ms - std::exchange(cpu_ms_, cpu_ms);
+  const double extraction_ms = pipeline_.extraction_ms();
+  timings.extract_ms = extraction_ms - std::exchange(extraction_ms_, extraction_ms);
 }
 
 void MapperProcess::publish_rest() {
@@ -99,12 +127,14 @@ void MapperProcess::write_path() {
 
 void MapperProcess::publish_status(bool finished) {
   MapperStatus status;
-  statistics_.report(status, reader_.busy_ms(), pipeline_.extraction_ms());
+  statistics_.report(status);
   status.device = options_.source.device;
   status.finished = finished;
   status.frames_total = reader_.frames_total();
   status.frames_dropped = reader_.counts().frames_dropped;
   status.blocks = pipeline_.num_blocks();
+  status.volume_bytes = pipeline_.volume_bytes();
+  status.queue_bytes = static_cast<std::int64_t>(publisher_.queued_bytes());
   publisher_.publish_status(std::move(status));
   status_clock_ = Stopwatch();
 }
@@ -126,15 +156,12 @@ void MapperProcess::log_change_of_state(const FrameResult& result, const RgbdFra
   const TrackingResult& tracking = result.tracking;
   if (tracking.state == last_state_) return;
   last_state_ = tracking.state;
-  if (tracking.loss_reason) {
+  if (tracking.state == TrackingState::kLost) {
     spdlog::warn("frame {}: lost, {} (covered {:.2f}, inliers {:.2f}, rms {:.1f} mm)",
-                 frame.frame_index, to_string(*tracking.loss_reason),
-                 tracking.quality.covered_share, tracking.quality.inlier_share,
-                 1e3 * tracking.quality.rms_m);
-  } else if (tracking.state == TrackingState::kLost) {
-    spdlog::warn("frame {}: no given pose within 20 ms", frame.frame_index);
+                 frame.frame_index, reason_text(tracking), tracking.quality.covered_share,
+                 tracking.quality.inlier_share, 1e3 * tracking.quality.rms_m);
   } else {
-    spdlog::info("frame {}: tracking", frame.frame_index);
+    spdlog::info("frame {}: {}", frame.frame_index, state_text(tracking.state));
   }
 }
 
@@ -143,10 +170,11 @@ void MapperProcess::log_summary() const {
   const SourceCounts counts = reader_.counts();
   if (reader_.finished()) spdlog::info("end: {}", reader_.end_reason());
   spdlog::info(
-      "{} frames in {:.1f} s ({:.1f} ms each without reading): {} located, {} lost, {} "
-      "dropped, {} bad",
-      statistics_.frames(), elapsed_s, statistics_.mean_frame_ms(), statistics_.frames_tracked(),
-      statistics_.frames_lost(), counts.frames_dropped, counts.frames_bad);
+      "{} frames in {:.1f} s ({:.1f} ms each, {:.1f} ms of CPU): {} located, {} lost, {} dropped, "
+      "{} bad",
+      statistics_.frames(), elapsed_s, statistics_.mean_frame_ms(), statistics_.mean_cpu_ms(),
+      statistics_.frames_tracked(), statistics_.frames_lost(), counts.frames_dropped,
+      counts.frames_bad);
   spdlog::info("{} slices, {} points, {} messages published", publisher_.slices_published(),
                publisher_.points_published(), publisher_.chunks_published());
   if (!options_.output_path_file.empty()) {

@@ -1,8 +1,11 @@
 #pragma once
 
+#include <optional>
+
+#include "lcmtypes/trajectory.hpp"
 #include "mapper/core/mapper_pipeline.hpp"
 #include "mapper/core/stopwatch.hpp"
-#include "lcmtypes/trajectory.hpp"
+#include "mapper/process/frame_log.hpp"
 #include "mapper/process/frame_reader.hpp"
 #include "mapper/process/map_publisher.hpp"
 #include "mapper/process/options.hpp"
@@ -24,7 +27,9 @@ class MapperProcess {
 
  private:
   void map_frames();
-  void map_frame(const RgbdFrame& frame);
+  void map_frame(const TimedFrame& read);
+  void publish_frame(const RgbdFrame& frame, FrameResult& result);
+  void measure(const TimedFrame& read, FrameTimings& timings);
   void publish_rest();
   void write_path();
   void publish_status(bool finished);
@@ -38,8 +43,11 @@ class MapperProcess {
   MapperPipeline pipeline_;
   MapPublisher publisher_;
   RunStatistics statistics_;
+  std::optional<FrameLog> frame_log_;
   Trajectory path_;  ///< of the frames that were located
   TrackingState last_state_ = TrackingState::kStarting;
+  double cpu_ms_ = 0.0;         ///< of the process, at the last frame
+  double extraction_ms_ = 0.0;  ///< of the pipeline, at the last frame
   Stopwatch run_clock_;
   Stopwatch status_clock_;
 };

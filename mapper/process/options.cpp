@@ -41,6 +41,8 @@ void add_mapping_flags(CLI::App& app, Options& options) {
                  "camera path in TUM format that replaces tracking");
   app.add_option("--output-trajectory", options.output_path_file,
                  "where to write the camera's path, TUM format");
+  app.add_option("--timings", options.timings_file,
+                 "where to write what each frame cost and what became of it, CSV");
   app.add_option("--threads", options.threads, "of the parallel stages; 0: one per core");
 }
 

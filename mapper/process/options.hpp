@@ -16,6 +16,7 @@ struct Options {
   double resolution_m = 0.0;     ///< side of a voxel; 0: 1/512 of the volume's side
   std::string given_path_file;   ///< TUM; empty: track
   std::string output_path_file;  ///< TUM; empty: none is written
+  std::string timings_file;      ///< CSV, a line a frame; empty: none is written
   std::string ground_truth_dir;  ///< where a synthetic:// device writes its truth; empty: nowhere
   std::int64_t max_frames = 0;   ///< 0: no limit
   bool publish_frames = false;   ///< RGBD_FRAME too

@@ -1,46 +1,69 @@
 #include "mapper/process/run_statistics.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 
 #include <unistd.h>
 
-namespace kintsugi::mapper {
+#include "mapper/process/state_text.hpp"
 
-void RunStatistics::add(const FrameResult& result, double publish_ms) {
-  state_ = result.tracking.state;
+namespace kintsugi::mapper {
+namespace {
+
+/// The smallest value that at least this share of all do not exceed; 0 of none.
+double quantile(const std::vector<double>& ascending, double share) {
+  if (ascending.empty()) return 0.0;
+  const double rank = std::ceil(share * static_cast<double>(ascending.size()));
+  return ascending[static_cast<std::size_t>(std::max(1.0, rank)) - 1];
+}
+
+}  // namespace
+
+void RunStatistics::add(const TrackingResult& tracking, const FrameTimings& timings) {
+  state_ = tracking.state;
+  loss_reason_ = reason_text(tracking);
+  undetermined_ = tracking.quality.undetermined;
   ++frames_;
   if (state_ == TrackingState::kTracking || state_ == TrackingState::kGiven) ++frames_tracked_;
   if (state_ == TrackingState::kLost) ++frames_lost_;
-  total_ms_ += result.times.total_ms() + publish_ms;
-  ++since_report_.frames;
-  since_report_.times += result.times;
-  since_report_.publish_ms += publish_ms;
+  frame_ms_ += timings.frame_ms;
+  cpu_ms_ += timings.cpu_ms;
+  sums_ += timings;
+  frame_times_ms_.push_back(timings.frame_ms);
 }
 
-double RunStatistics::mean_frame_ms() const {
-  return frames_ > 0 ? total_ms_ / static_cast<double>(frames_) : 0.0;
+double RunStatistics::mean_over_run(double total) const {
+  return frames_ > 0 ? total / static_cast<double>(frames_) : 0.0;
 }
 
-void RunStatistics::report(MapperStatus& status, double read_ms, double extract_ms) {
+void RunStatistics::report(MapperStatus& status) {
   const double elapsed_s = 1e-3 * report_clock_.lap_ms();
-  const Sums& sums = since_report_;
-  const auto frames = static_cast<double>(std::max<std::int64_t>(1, sums.frames));
+  const auto frames = static_cast<double>(frame_times_ms_.size());
+  const auto mean = [frames](double sum) { return frames > 0.0 ? sum / frames : 0.0; };
   status.state = state_;
+  status.loss_reason = loss_reason_;
+  status.undetermined = undetermined_;
   status.frames_read = frames_;
   status.frames_tracked = frames_tracked_;
   status.frames_lost = frames_lost_;
   status.memory_bytes = resident_memory_bytes();
-  status.frame_rate_hz = elapsed_s > 0.0 ? static_cast<double>(sums.frames) / elapsed_s : 0.0;
-  status.read_ms = (read_ms - sums.read_ms) / frames;
-  status.track_ms = (sums.times.prepare_ms + sums.times.track_ms) / frames;
-  status.integrate_ms = (sums.times.shift_ms + sums.times.integrate_ms) / frames;
-  status.raycast_ms = sums.times.raycast_ms / frames;
-  status.extract_ms = (extract_ms - sums.extract_ms) / frames;
-  status.publish_ms = sums.publish_ms / frames;
-  since_report_ = {};
-  since_report_.read_ms = read_ms;
-  since_report_.extract_ms = extract_ms;
+  status.frame_rate_hz = elapsed_s > 0.0 ? frames / elapsed_s : 0.0;
+  std::sort(frame_times_ms_.begin(), frame_times_ms_.end());
+  status.frame_p50_ms = quantile(frame_times_ms_, 0.50);
+  status.frame_p99_ms = quantile(frame_times_ms_, 0.99);
+  status.cpu_ms = mean(sums_.cpu_ms);
+  status.read_ms = mean(sums_.read_ms);
+  status.convert_ms = mean(sums_.convert_ms);
+  status.prepare_ms = mean(sums_.stages.prepare_ms);
+  status.track_ms = mean(sums_.stages.track_ms);
+  status.shift_ms = mean(sums_.stages.shift_ms);
+  status.integrate_ms = mean(sums_.stages.integrate_ms);
+  status.raycast_ms = mean(sums_.stages.raycast_ms);
+  status.extract_ms = mean(sums_.extract_ms);
+  status.publish_ms = mean(sums_.publish_ms);
+  sums_ = {};
+  frame_times_ms_.clear();
 }
 
 std::int64_t resident_memory_bytes() {

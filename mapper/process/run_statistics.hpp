@@ -2,44 +2,45 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "lcmtypes/messages.hpp"
-#include "mapper/core/mapper_pipeline.hpp"
 #include "mapper/core/stopwatch.hpp"
+#include "mapper/core/tracker.hpp"
+#include "mapper/process/frame_timings.hpp"
 
 namespace kintsugi::mapper {
 
-/// Counts and mean times of a run, as MAPPER_STATUS shows them.
+/// Counts and times of a run, as MAPPER_STATUS shows them.
 class RunStatistics {
  public:
-  /// One mapped frame; `publish_ms` is the time its messages took.
-  void add(const FrameResult& result, double publish_ms);
+  /// One mapped frame.
+  void add(const TrackingResult& tracking, const FrameTimings& timings);
 
   std::int64_t frames() const { return frames_; }
   std::int64_t frames_tracked() const { return frames_tracked_; }
   std::int64_t frames_lost() const { return frames_lost_; }
-  /// Mean over the run of all stages but reading, milliseconds.
-  double mean_frame_ms() const;
+  /// Means over the run, milliseconds a frame.
+  double mean_frame_ms() const { return mean_over_run(frame_ms_); }
+  double mean_cpu_ms() const { return mean_over_run(cpu_ms_); }
 
-  /// Fills state, frame counts, rates and stage times, these as means since the last call.
-  /// `read_ms` and `extract_ms` are totals since the start of the run.
-  void report(MapperStatus& status, double read_ms, double extract_ms);
+  /// Fills state, frame counts, rate and times, these over the frames since the last call.
+  void report(MapperStatus& status);
 
  private:
-  struct Sums {
-    std::int64_t frames = 0;
-    StageTimes times;
-    double publish_ms = 0.0;
-    double read_ms = 0.0;     ///< at the last report
-    double extract_ms = 0.0;  ///< at the last report
-  };
+  double mean_over_run(double total) const;
 
   std::int64_t frames_ = 0;
   std::int64_t frames_tracked_ = 0;
   std::int64_t frames_lost_ = 0;
-  double total_ms_ = 0.0;
+  double frame_ms_ = 0.0;  ///< of the whole run
+  double cpu_ms_ = 0.0;    ///< of the whole run
   TrackingState state_ = TrackingState::kStarting;
-  Sums since_report_;
+  std::string loss_reason_;
+  int undetermined_ = 0;
+
+  FrameTimings sums_;                   ///< since the last report
+  std::vector<double> frame_times_ms_;  ///< since the last report
   Stopwatch report_clock_;
 };
 

@@ -203,6 +203,8 @@ TEST(CodecBounds, NameTypeFieldValueAndBound) {
               HasSubstr("mapper_status_t.track_ms is nan, expected a finite number"));
   EXPECT_THAT(refusal(example_mapper_status(), [](MapperStatus& s) { s.frames_total = -2; }),
               HasSubstr("frames_total is -2, expected >= -1"));
+  EXPECT_THAT(refusal(example_mapper_status(), [](MapperStatus& s) { s.undetermined = 7; }),
+              HasSubstr("undetermined is 7, expected 0 .. 6"));
   EXPECT_THAT(refusal(example_heartbeat(), [](Heartbeat& h) { h.first_sequence = 18; }),
               HasSubstr("first_sequence is 18, expected 0 .. 17"));
   EXPECT_THAT(refusal(example_resend_request(),

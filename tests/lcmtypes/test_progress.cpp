@@ -57,15 +57,16 @@ TEST(Progress, NamesLosses) {
   MapperStatus lost = mapper(250, false);
   lost.state = TrackingState::kLost;
   lost.frames_lost = 7;
+  lost.loss_reason = "too few inliers";
   progress.update(lost, 0);
   SegmenterStatus missing = segmenter(0, false);
   missing.slices_missing = 3;
   missing.chunks_missing = 5;
   missing.messages_bad = 2;
   progress.update(missing, 0);
-  EXPECT_THAT(progress.line(0),
-              AllOf(HasSubstr("LOST"), HasSubstr("7 lost"), HasSubstr("3 slices MISSING"),
-                    HasSubstr("5 chunks MISSING"), HasSubstr("2 bad messages")));
+  EXPECT_THAT(progress.line(0), AllOf(HasSubstr("LOST"), HasSubstr("(too few inliers)"),
+                                      HasSubstr("7 lost"), HasSubstr("3 slices MISSING"),
+                                      HasSubstr("5 chunks MISSING"), HasSubstr("2 bad messages")));
 }
 
 TEST(Progress, TimeLeftComesFromTheSlowerOfTheTwo) {

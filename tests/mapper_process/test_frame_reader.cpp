@@ -43,7 +43,9 @@ TEST(FrameReader, HandsOnEveryFrameInOrderAndThenTheEnd) {
     EXPECT_FALSE(reader.finished());
     const auto frame = reader.next(kLong);
     ASSERT_TRUE(frame);
-    EXPECT_EQ(frame->frame_index, i);
+    EXPECT_EQ(frame->frame.frame_index, i);
+    EXPECT_GE(frame->read_ms, 0.0);
+    EXPECT_GE(frame->convert_ms, 0.0);
   }
   EXPECT_FALSE(reader.next(kLong));
   EXPECT_TRUE(reader.finished());

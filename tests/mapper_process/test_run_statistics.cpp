@@ -5,21 +5,29 @@
 namespace kintsugi::mapper {
 namespace {
 
-FrameResult frame(TrackingState state, double track_ms) {
-  FrameResult result;
-  result.tracking.state = state;
-  result.times = {.track_ms = track_ms, .integrate_ms = 2.0, .raycast_ms = 3.0};
-  return result;
+TrackingResult tracked(TrackingState state) {
+  TrackingResult tracking;
+  tracking.state = state;
+  return tracking;
+}
+
+FrameTimings timings(double track_ms, double frame_ms) {
+  FrameTimings timings;
+  timings.stages = {.track_ms = track_ms, .integrate_ms = 2.0, .raycast_ms = 3.0};
+  timings.frame_ms = frame_ms;
+  timings.cpu_ms = 2.0 * frame_ms;
+  timings.publish_ms = 1.0;
+  return timings;
 }
 
 TEST(RunStatistics, CountsFramesByTheirState) {
   RunStatistics statistics;
-  statistics.add(frame(TrackingState::kStarting, 1), 0);
-  statistics.add(frame(TrackingState::kTracking, 1), 0);
-  statistics.add(frame(TrackingState::kGiven, 1), 0);
-  statistics.add(frame(TrackingState::kLost, 1), 0);
+  for (const auto state : {TrackingState::kStarting, TrackingState::kTracking,
+                           TrackingState::kGiven, TrackingState::kLost}) {
+    statistics.add(tracked(state), {});
+  }
   MapperStatus status;
-  statistics.report(status, 0, 0);
+  statistics.report(status);
   EXPECT_EQ(status.frames_read, 4);
   EXPECT_EQ(status.frames_tracked, 2);
   EXPECT_EQ(status.frames_lost, 1);
@@ -27,21 +35,55 @@ TEST(RunStatistics, CountsFramesByTheirState) {
   EXPECT_GT(status.memory_bytes, 1 << 20);
 }
 
+TEST(RunStatistics, TellsWhyTheLastFrameIsLost) {
+  RunStatistics statistics;
+  TrackingResult lost = tracked(TrackingState::kLost);
+  lost.loss_reason = LossReason::kLargeResidual;
+  lost.quality.undetermined = 3;
+  statistics.add(lost, {});
+  MapperStatus status;
+  statistics.report(status);
+  EXPECT_EQ(status.loss_reason, to_string(LossReason::kLargeResidual));
+  EXPECT_EQ(status.undetermined, 3);
+  statistics.add(tracked(TrackingState::kTracking), {});
+  statistics.report(status);
+  EXPECT_EQ(status.loss_reason, "");
+  EXPECT_EQ(status.undetermined, 0);
+}
+
 TEST(RunStatistics, MeansAreOverTheFramesSinceTheLastReport) {
   RunStatistics statistics;
-  statistics.add(frame(TrackingState::kTracking, 100), 7);
+  statistics.add(tracked(TrackingState::kTracking), timings(100, 106));
   MapperStatus status;
-  statistics.report(status, 50, 20);
-  statistics.add(frame(TrackingState::kTracking, 10), 1);
-  statistics.add(frame(TrackingState::kTracking, 20), 2);
-  statistics.report(status, 60, 26);
+  statistics.report(status);
+  statistics.add(tracked(TrackingState::kTracking), timings(10, 16));
+  statistics.add(tracked(TrackingState::kTracking), timings(20, 26));
+  statistics.report(status);
   EXPECT_DOUBLE_EQ(status.track_ms, 15.0);
   EXPECT_DOUBLE_EQ(status.integrate_ms, 2.0);
   EXPECT_DOUBLE_EQ(status.raycast_ms, 3.0);
-  EXPECT_DOUBLE_EQ(status.publish_ms, 1.5);
-  EXPECT_DOUBLE_EQ(status.read_ms, 5.0);
-  EXPECT_DOUBLE_EQ(status.extract_ms, 3.0);
-  EXPECT_DOUBLE_EQ(statistics.mean_frame_ms(), (112.0 + 16.0 + 27.0) / 3.0);
+  EXPECT_DOUBLE_EQ(status.publish_ms, 1.0);
+  EXPECT_DOUBLE_EQ(status.cpu_ms, 42.0);
+  EXPECT_DOUBLE_EQ(statistics.mean_frame_ms(), 148.0 / 3.0);
+  EXPECT_DOUBLE_EQ(statistics.mean_cpu_ms(), 296.0 / 3.0);
+}
+
+TEST(RunStatistics, QuantilesAreThoseOfTheFramesSinceTheLastReport) {
+  RunStatistics statistics;
+  MapperStatus status;
+  for (int ms = 200; ms > 0; --ms) {
+    statistics.add(tracked(TrackingState::kTracking), timings(0, ms));
+  }
+  statistics.report(status);
+  EXPECT_DOUBLE_EQ(status.frame_p50_ms, 100.0);
+  EXPECT_DOUBLE_EQ(status.frame_p99_ms, 198.0);
+  statistics.add(tracked(TrackingState::kTracking), timings(0, 7));
+  statistics.report(status);
+  EXPECT_DOUBLE_EQ(status.frame_p50_ms, 7.0);
+  EXPECT_DOUBLE_EQ(status.frame_p99_ms, 7.0);
+  statistics.report(status);  // of no frame
+  EXPECT_DOUBLE_EQ(status.frame_p99_ms, 0.0);
+  EXPECT_DOUBLE_EQ(status.track_ms, 0.0);
 }
 
 }  // namespace

@@ -40,19 +40,6 @@ inline bool operator==(const CameraPose& a, const CameraPose& b) {
          a.state == b.state && equal(a.X_WC, b.X_WC);
 }
 
-inline bool operator==(const MapperStatus& a, const MapperStatus& b) {
-  return a.utime == b.utime && a.session == b.session && a.map_name == b.map_name &&
-         a.device == b.device && a.state == b.state && a.finished == b.finished &&
-         a.frames_read == b.frames_read && a.frames_total == b.frames_total &&
-         a.frames_tracked == b.frames_tracked && a.frames_lost == b.frames_lost &&
-         a.frames_dropped == b.frames_dropped && a.slices_published == b.slices_published &&
-         a.points_published == b.points_published && a.chunks_published == b.chunks_published &&
-         a.blocks == b.blocks && a.memory_bytes == b.memory_bytes &&
-         a.frame_rate_hz == b.frame_rate_hz && a.read_ms == b.read_ms && a.track_ms == b.track_ms &&
-         a.integrate_ms == b.integrate_ms && a.raycast_ms == b.raycast_ms &&
-         a.extract_ms == b.extract_ms && a.publish_ms == b.publish_ms;
-}
-
 inline bool operator==(const SegmenterStatus& a, const SegmenterStatus& b) {
   return a.utime == b.utime && a.session == b.session && a.map_session == b.map_session &&
          a.map_name == b.map_name && a.mode == b.mode && a.finished == b.finished &&

@@ -1,0 +1,56 @@
+#include "mapper/process/frame_log.hpp"
+
+#include <cerrno>
+#include <cstring>
+#include <stdexcept>
+
+#include <spdlog/fmt/fmt.h>
+#include <spdlog/spdlog.h>
+
+#include "mapper/process/state_text.hpp"
+
+namespace kintsugi::mapper {
+namespace {
+
+std::string header() {
+  std::string line = "frame_index,utime_us,state,reason,frame_ms,cpu_ms,read_ms,convert_ms";
+  for (const Stage& stage : kStages) line += std::string(",") + stage.name;
+  return line +
+         ",extract_ms,publish_ms,covered_share,inlier_share,rms_m,iterations,undetermined,slices\n";
+}
+
+std::string line_of(const RgbdFrame& frame, const TrackingResult& tracking, std::size_t num_slices,
+                    const FrameTimings& timings) {
+  std::string line = fmt::format("{},{},{},{}", frame.frame_index, frame.utime,
+                                 state_text(tracking.state), reason_text(tracking));
+  const auto add_ms = [&line](double ms) { line += fmt::format(",{:.3f}", ms); };
+  add_ms(timings.frame_ms);
+  add_ms(timings.cpu_ms);
+  add_ms(timings.read_ms);
+  add_ms(timings.convert_ms);
+  for (const Stage& stage : kStages) add_ms(timings.stages.*stage.ms);
+  add_ms(timings.extract_ms);
+  add_ms(timings.publish_ms);
+  const RegistrationQuality& quality = tracking.quality;
+  return line + fmt::format(",{:.4f},{:.4f},{:.6f},{},{},{}\n", quality.covered_share,
+                            quality.inlier_share, quality.rms_m, tracking.iterations,
+                            quality.undetermined, num_slices);
+}
+
+}  // namespace
+
+FrameLog::FrameLog(const std::filesystem::path& path) : path_(path), out_(path) {
+  if (!(out_ << header() << std::flush)) {
+    throw std::runtime_error(path_.string() + ": cannot be written: " + std::strerror(errno));
+  }
+}
+
+void FrameLog::append(const RgbdFrame& frame, const TrackingResult& tracking,
+                      std::size_t num_slices, const FrameTimings& timings) {
+  if (!out_) return;
+  if (out_ << line_of(frame, tracking, num_slices, timings) << std::flush) return;
+  spdlog::error("{}: {}; it ends before frame {}, mapping goes on", path_.string(),
+                std::strerror(errno), frame.frame_index);
+}
+
+}  // namespace kintsugi::mapper

@@ -1,0 +1,25 @@
+#include "mapper/process/state_text.hpp"
+
+namespace kintsugi::mapper {
+
+std::string_view state_text(TrackingState state) {
+  switch (state) {
+    case TrackingState::kStarting:
+      return "starting";
+    case TrackingState::kTracking:
+      return "tracking";
+    case TrackingState::kLost:
+      return "lost";
+    case TrackingState::kGiven:
+      return "given";
+  }
+  return "";
+}
+
+std::string_view reason_text(const TrackingResult& tracking) {
+  if (tracking.state != TrackingState::kLost) return "";
+  // Without a reason it was not registered: poses are given, and there is none for this frame.
+  return tracking.loss_reason ? to_string(*tracking.loss_reason) : "no given pose within 20 ms";
+}
+
+}  // namespace kintsugi::mapper

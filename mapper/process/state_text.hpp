@@ -1,0 +1,16 @@
+#pragma once
+// How a frame went, in words: for logs, tables and status.
+
+#include <string_view>
+
+#include "mapper/core/tracker.hpp"
+
+namespace kintsugi::mapper {
+
+/// "starting", "tracking", "lost", "given".
+std::string_view state_text(TrackingState state);
+
+/// Why a lost frame was not believed; empty for any other.
+std::string_view reason_text(const TrackingResult& tracking);
+
+}  // namespace kintsugi::mapper
