@@ -20,8 +20,16 @@ constexpr double kStatusPeriod_ms = 300.0;
 constexpr milliseconds kFrameWait{100};  ///< how long a status may be late
 constexpr milliseconds kRoomWait{5};
 
-SourceConfig with_stop_signal(SourceConfig config) {
+void log_notice(const SourceNotice& notice) {
+  const bool is_good = notice.kind == SourceNotice::Kind::kInformation ||
+                       notice.kind == SourceNotice::Kind::kResumed;
+  spdlog::log(is_good ? spdlog::level::info : spdlog::level::warn, "{}", notice.text);
+}
+
+SourceConfig source_config(const Options& options) {
+  SourceConfig config = options.source;
   config.stop_requested = [] { return stop_requested(); };
+  config.notify = log_notice;
   return config;
 }
 
@@ -42,7 +50,7 @@ bool is_located(TrackingState state) {
 
 MapperProcess::MapperProcess(const Options& options)
     : options_(options),
-      reader_(with_stop_signal(options.source)),
+      reader_(source_config(options)),
       pipeline_(options.pipeline),
       publisher_(publisher_config(options)) {
   if (!options.timings_file.empty()) frame_log_.emplace(options.timings_file);

@@ -1,5 +1,6 @@
 #include "mapper/process/options.hpp"
 
+#include <cmath>
 #include <iostream>
 #include <stdexcept>
 
@@ -16,6 +17,7 @@ constexpr int kDefaultVoxelsPerSide = 512;
 constexpr std::string_view kSyntheticScheme = "synthetic://";
 
 void add_source_flags(CLI::App& app, Options& options) {
+  app.option_defaults()->group("Where frames come from");
   app.add_option("--device", options.source.device,
                  "a .oni file, folder://PATH, synthetic://NAME, lcm://CHANNEL or a camera's URI; "
                  "empty: the first camera");
@@ -23,12 +25,30 @@ void add_source_flags(CLI::App& app, Options& options) {
                  "camera.txt: fx fy cx cy width height depth_scale [k1 k2 p1 p2 k3]");
   app.add_flag("--replay", options.source.replay,
                "every frame of a recording, as fast as they can be mapped");
+  app.add_option("--max-range", options.source.max_range_m, "depth beyond it is not used, m");
   app.add_option("--ground-truth", options.ground_truth_dir,
                  "folder into which a synthetic:// device writes what is true");
   app.add_option("--max-frames", options.max_frames, "stop after so many frames; 0: at the end");
 }
 
+void add_camera_flags(CLI::App& app, Options& options) {
+  app.option_defaults()->group("Cameras");
+  app.add_option("--depth-mode", options.source.depth_mode,
+                 "WIDTHxHEIGHT[@HZ]; empty: 640x480@30 where offered, else the nearest");
+  app.add_option("--color-mode", options.source.color_mode,
+                 "WIDTHxHEIGHT[@HZ]; empty: as depth where offered, else what covers it");
+  app.add_flag("--assume-registered", options.source.assume_registered,
+               "colour fits depth, although the device does not say so (.oni files do not)");
+  app.add_option("--lock-exposure", options.lock_exposure_s,
+                 "exposure and white balance stay so many s after the first image; -1: never");
+  app.add_option("--device-silence", options.source.device_silence_s,
+                 "a camera without depth images for so long is gone, s");
+  app.add_option("--reconnect", options.source.reconnect_s,
+                 "how long to wait for a camera that is gone, s; 0: as long as it takes");
+}
+
 void add_mapping_flags(CLI::App& app, Options& options) {
+  app.option_defaults()->group("Mapping");
   app.add_option("--volume-size", options.pipeline.volume.volume_size_m,
                  "side of the moving cube, m");
   app.add_option("--resolution", options.resolution_m,
@@ -39,14 +59,18 @@ void add_mapping_flags(CLI::App& app, Options& options) {
                  "surface needs more observations than this");
   app.add_option("--trajectory", options.given_path_file,
                  "camera path in TUM format that replaces tracking");
-  app.add_option("--output-trajectory", options.output_path_file,
-                 "where to write the camera's path, TUM format");
-  app.add_option("--timings", options.timings_file,
-                 "where to write what each frame cost and what became of it, CSV");
   app.add_option("--threads", options.threads, "of the parallel stages; 0: one per core");
 }
 
+void add_output_flags(CLI::App& app, Options& options) {
+  app.option_defaults()->group("Files to write");
+  app.add_option("--output-trajectory", options.output_path_file, "the camera's path, TUM format");
+  app.add_option("--timings", options.timings_file,
+                 "what each frame cost and what became of it, CSV");
+}
+
 void add_bus_flags(CLI::App& app, Options& options) {
+  app.option_defaults()->group("The bus");
   app.add_flag("--publish-frames", options.publish_frames, "publish RGBD_FRAME too");
   app.add_option("--lcm-url", options.lcm_url, "as LCM has it; empty: LCM's default");
   app.add_option("--map-name", options.map_name, "tells mappers on one bus apart");
@@ -65,6 +89,23 @@ void pass_ground_truth_to_device(Options& options) {
   device += "ground_truth=" + options.ground_truth_dir;
 }
 
+/// What follows from the flags, checked.
+void complete(Options& options) {
+  auto& volume = options.pipeline.volume;
+  volume.resolution_m = options.resolution_m == 0.0 ? volume.volume_size_m / kDefaultVoxelsPerSide
+                                                    : options.resolution_m;
+  if (options.session == 0) options.session = new_session();
+  options.source.lcm_url = options.lcm_url;
+  if (options.lock_exposure_s >= 0.0) {
+    options.source.lock_exposure_after_s = options.lock_exposure_s;
+  }
+  options.validate();
+  pass_ground_truth_to_device(options);
+  if (!options.given_path_file.empty()) {
+    options.pipeline.given_path = read_tum_file(options.given_path_file);
+  }
+}
+
 }  // namespace
 
 void Options::validate() const {
@@ -73,6 +114,7 @@ void Options::validate() const {
   check_range<std::int64_t>("--max-frames", max_frames, 0, 1'000'000'000);
   check_range<std::int64_t>("--session", session, 1, INT64_MAX);
   check_range("--threads", threads, 0, 1024);
+  if (std::isnan(lock_exposure_s)) throw std::invalid_argument("--lock-exposure is nan");
   if (map_name.empty() || map_name.size() > kMaxStringBytes) {
     throw std::invalid_argument("--map-name has " + std::to_string(map_name.size()) +
                                 " bytes, must have 1 to " + std::to_string(kMaxStringBytes));
@@ -84,8 +126,11 @@ std::variant<Options, int> parse_command_line(int argc, const char* const* argv)
   CLI::App app{"Maps the RGB-D frames of an OpenNI2 device and publishes the map in slices."};
   app.option_defaults()->always_capture_default();
   add_source_flags(app, options);
+  add_camera_flags(app, options);
   add_mapping_flags(app, options);
+  add_output_flags(app, options);
   add_bus_flags(app, options);
+  app.option_defaults()->group("Help and configuration");
   app.set_config("--config", "", "read flags from this file (TOML)");
   bool print_config = false;
   app.add_flag("--print-config", print_config, "print every flag with its value, and exit")
@@ -100,16 +145,7 @@ std::variant<Options, int> parse_command_line(int argc, const char* const* argv)
     std::cout << app.config_to_str(true, true);
     return 0;
   }
-  auto& volume = options.pipeline.volume;
-  volume.resolution_m = options.resolution_m == 0.0 ? volume.volume_size_m / kDefaultVoxelsPerSide
-                                                    : options.resolution_m;
-  if (options.session == 0) options.session = new_session();
-  options.source.lcm_url = options.lcm_url;
-  options.validate();
-  pass_ground_truth_to_device(options);
-  if (!options.given_path_file.empty()) {
-    options.pipeline.given_path = read_tum_file(options.given_path_file);
-  }
+  complete(options);
   return options;
 }
 

@@ -12,6 +12,7 @@ namespace kintsugi::mapper {
 /// All that a run of kintsugi-mapper can be told; each has a flag.
 struct Options {
   SourceConfig source;
+  double lock_exposure_s = -1.0;  ///< after the first image; < 0: never
   MapperPipeline::Config pipeline;
   double resolution_m = 0.0;     ///< side of a voxel; 0: 1/512 of the volume's side
   std::string given_path_file;   ///< TUM; empty: track

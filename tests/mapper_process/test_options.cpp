@@ -70,6 +70,8 @@ TEST(Options, TakesEveryFlag) {
                                       "4",
                                       "--output-trajectory",
                                       "out.txt",
+                                      "--timings",
+                                      "frames.csv",
                                       "--max-frames",
                                       "9",
                                       "--publish-frames",
@@ -91,12 +93,31 @@ TEST(Options, TakesEveryFlag) {
   EXPECT_EQ(options.pipeline.volume.shift_vox, 20);
   EXPECT_EQ(options.pipeline.slices.extractor.weight_threshold, 4);
   EXPECT_EQ(options.output_path_file, "out.txt");
+  EXPECT_EQ(options.timings_file, "frames.csv");
   EXPECT_EQ(options.max_frames, 9);
   EXPECT_TRUE(options.publish_frames);
   EXPECT_EQ(options.map_name, "attic");
   EXPECT_EQ(options.session, 77);
   EXPECT_EQ(options.threads, 2);
   EXPECT_DOUBLE_EQ(options_of({"--resolution", "0.01"}).pipeline.volume.resolution_m, 0.01);
+}
+
+TEST(Options, TakesTheFlagsOfCameras) {
+  const SourceConfig camera =
+      options_of({"--depth-mode", "320x240@60", "--color-mode", "1280x1024", "--assume-registered",
+                  "--lock-exposure", "2", "--device-silence", "3", "--reconnect", "60",
+                  "--max-range", "4"})
+          .source;
+  EXPECT_EQ(camera.depth_mode, "320x240@60");
+  EXPECT_EQ(camera.color_mode, "1280x1024");
+  EXPECT_TRUE(camera.assume_registered);
+  EXPECT_EQ(camera.lock_exposure_after_s, 2.0);
+  EXPECT_DOUBLE_EQ(camera.device_silence_s, 3.0);
+  EXPECT_DOUBLE_EQ(camera.reconnect_s, 60.0);
+  EXPECT_DOUBLE_EQ(camera.max_range_m, 4.0);
+  EXPECT_FALSE(options_of({}).source.lock_exposure_after_s);
+  EXPECT_THAT(error_of({"--depth-mode", "big"}), HasSubstr("depth_mode"));
+  EXPECT_THAT(error_of({"--lock-exposure", "nan"}), HasSubstr("--lock-exposure is nan"));
 }
 
 TEST(Options, ReadsAConfigurationFileUnderTheFlags) {
