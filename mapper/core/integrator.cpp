@@ -68,10 +68,7 @@ IntegrationBlock make_integration_block(const VisibleBlock& block, const CameraV
 void Integrator::Config::validate() const {
   check_range("min_depth_m", min_depth_m, 0.01, 100.0);
   check_range("max_depth_m", max_depth_m, min_depth_m, 100.0);
-  if (instruction_set && !is_supported(*instruction_set)) {
-    throw std::invalid_argument("instruction_set is " + std::string(name_of(*instruction_set)) +
-                                ", which this processor or this build does not have");
-  }
+  if (instruction_set) kernels_for(*instruction_set);
 }
 
 Integrator::Integrator(const Config& config) : config_(config) {

@@ -58,6 +58,14 @@ class TsdfVolume {
   const ColorBlock& colors(BlockSlot slot) const { return pool_.colors(slot); }
   const BlockCoord& coord(BlockSlot slot) const { return pool_.coord(slot); }
 
+  /// What find() looks into, for vector registers: table_side() cubed slots, kNoBlock where there
+  /// is no block. Block (x, y, z) of the cube is at x + table_side() (y + table_side() z), each
+  /// coordinate modulo table_side(), which is a power of two.
+  const BlockSlot* table() const { return table_.data(); }
+  int table_side() const { return static_cast<int>(table_side_); }
+  /// Voxel i of a slot is 512 slot + i words from here.
+  const Voxel* first_voxel() const { return pool_.voxels(0).voxels.data(); }
+
   /// The cube's blocks have slots below slots_end(); not all slots below it are the cube's.
   BlockSlot slots_end() const { return static_cast<BlockSlot>(in_use_.size()); }
   bool in_use(BlockSlot slot) const { return in_use_[slot] != 0; }

@@ -4,6 +4,7 @@
 
 #include "mapper/core/kernels/integration.hpp"
 #include "mapper/core/kernels/linearization.hpp"
+#include "mapper/core/kernels/raycast.hpp"
 #include "mapper/core/kernels/surface.hpp"
 
 namespace kintsugi::mapper {
@@ -17,6 +18,7 @@ struct Kernels {
   NormalsRow normals_row = nullptr;
   HalveSurfaceRow halve_surface_row = nullptr;
   CountInBox count_in_box = nullptr;
+  RaycastTileFunction raycast_tile = nullptr;
 };
 
 /// @throws std::invalid_argument where is_supported(instruction_set) is false

@@ -4,6 +4,7 @@
 #include "mapper/core/kernels/kernels.hpp"
 #include "mapper/core/kernels/linearization_kernel.hpp"
 #include "mapper/core/kernels/pack_avx2.hpp"
+#include "mapper/core/kernels/raycast_kernel.hpp"
 #include "mapper/core/kernels/surface_kernel.hpp"
 
 namespace kintsugi::mapper {
@@ -15,6 +16,7 @@ const Kernels kAvx2Kernels = {
     .normals_row = SurfaceRows<Avx2Pack>::normals,
     .halve_surface_row = SurfaceRows<Avx2Pack>::halve_surface,
     .count_in_box = SurfaceRows<Avx2Pack>::count_in_box,
+    .raycast_tile = raycast_tile<Avx2Pack>,
 };
 
 }  // namespace kintsugi::mapper

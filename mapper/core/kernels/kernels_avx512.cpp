@@ -4,6 +4,7 @@
 #include "mapper/core/kernels/kernels.hpp"
 #include "mapper/core/kernels/linearization_kernel.hpp"
 #include "mapper/core/kernels/pack_avx512.hpp"
+#include "mapper/core/kernels/raycast_kernel.hpp"
 #include "mapper/core/kernels/surface_kernel.hpp"
 
 namespace kintsugi::mapper {
@@ -15,6 +16,7 @@ const Kernels kAvx512Kernels = {
     .normals_row = SurfaceRows<Avx512Pack>::normals,
     .halve_surface_row = SurfaceRows<Avx512Pack>::halve_surface,
     .count_in_box = SurfaceRows<Avx512Pack>::count_in_box,
+    .raycast_tile = raycast_tile<Avx512Pack>,
 };
 
 }  // namespace kintsugi::mapper

@@ -4,6 +4,7 @@
 #include "mapper/core/kernels/kernels.hpp"
 #include "mapper/core/kernels/linearization_kernel.hpp"
 #include "mapper/core/kernels/pack_portable.hpp"
+#include "mapper/core/kernels/raycast_kernel.hpp"
 #include "mapper/core/kernels/surface_kernel.hpp"
 
 namespace kintsugi::mapper {
@@ -15,6 +16,7 @@ const Kernels kPortableKernels = {
     .normals_row = SurfaceRows<PortablePack>::normals,
     .halve_surface_row = SurfaceRows<PortablePack>::halve_surface,
     .count_in_box = SurfaceRows<PortablePack>::count_in_box,
+    .raycast_tile = raycast_tile<PortablePack>,
 };
 
 }  // namespace kintsugi::mapper

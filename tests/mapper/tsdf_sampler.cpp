@@ -1,6 +1,6 @@
-#include "mapper/core/tsdf_sampler.hpp"
+#include "tests/mapper/tsdf_sampler.hpp"
 
-namespace kintsugi::mapper {
+namespace kintsugi::mapper::testing {
 namespace {
 
 constexpr int kLocalMask = kBlockSide - 1;
@@ -27,11 +27,6 @@ struct Cell {
   bool is_in_one_block() const {
     return (corner[0] & kLocalMask) != kLocalMask && (corner[1] & kLocalMask) != kLocalMask &&
            (corner[2] & kLocalMask) != kLocalMask;
-  }
-  /// The share of voxel (dx, dy, dz), each 0 or 1, in the interpolation.
-  float share(int dx, int dy, int dz) const {
-    const auto along = [this](int axis, int d) { return d ? fraction[axis] : 1 - fraction[axis]; };
-    return along(0, dx) * along(1, dy) * along(2, dz);
   }
 
   int corner[3];
@@ -97,38 +92,4 @@ std::optional<float> TsdfSampler::distance(const Eigen::Vector3f& point_vox) {
   return interpolate(voxels, cell.fraction);
 }
 
-std::optional<Eigen::Vector3f> TsdfSampler::gradient(const Eigen::Vector3f& point_vox) {
-  Eigen::Vector3f gradient;
-  for (int axis = 0; axis < 3; ++axis) {
-    const Eigen::Vector3f step = Eigen::Vector3f::Unit(axis);
-    const std::optional<float> before = distance(point_vox - step);
-    const std::optional<float> after = distance(point_vox + step);
-    if (!before || !after) return std::nullopt;
-    gradient[axis] = 0.5F * (*after - *before);
-  }
-  return gradient;
-}
-
-Eigen::Vector3f TsdfSampler::color(const Eigen::Vector3f& point_vox) {
-  const Cell cell(point_vox);
-  Eigen::Vector3f sum = Eigen::Vector3f::Zero();
-  float sum_of_shares = 0.0F;
-  for (int i = 0; i < 8; ++i) {
-    const int dx = i & 1;
-    const int dy = (i >> 1) & 1;
-    const int dz = i >> 2;
-    const int x = cell.corner[0] + dx;
-    const int y = cell.corner[1] + dy;
-    const int z = cell.corner[2] + dz;
-    const BlockSlot slot = slot_of(x, y, z);
-    if (slot == kNoBlock) continue;
-    const VoxelColor color = volume_.colors(slot).colors[local_index(x, y, z)];
-    if (color >> 24 == 0) continue;
-    const float share = cell.share(dx, dy, dz);
-    sum += share * Eigen::Vector3f(color & 0xFFU, (color >> 8) & 0xFFU, (color >> 16) & 0xFFU);
-    sum_of_shares += share;
-  }
-  return sum_of_shares > 0.0F ? Eigen::Vector3f(sum / sum_of_shares) : sum;
-}
-
-}  // namespace kintsugi::mapper
+}  // namespace kintsugi::mapper::testing

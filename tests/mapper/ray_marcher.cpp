@@ -1,10 +1,10 @@
-#include "mapper/core/ray_marcher.hpp"
+#include "tests/mapper/ray_marcher.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-namespace kintsugi::mapper {
+namespace kintsugi::mapper::testing {
 namespace {
 
 /// Of the distance a ray may advance at once: distances were measured along other rays.
@@ -93,4 +93,4 @@ std::optional<float> RayMarcher::refine(const Bracket& bracket) {
   return second_m + step_m(second, usable ? secant : slope);
 }
 
-}  // namespace kintsugi::mapper
+}  // namespace kintsugi::mapper::testing

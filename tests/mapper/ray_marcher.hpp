@@ -3,9 +3,9 @@
 #include <Eigen/Core>
 #include <optional>
 
-#include "mapper/core/tsdf_sampler.hpp"
+#include "tests/mapper/tsdf_sampler.hpp"
 
-namespace kintsugi::mapper {
+namespace kintsugi::mapper::testing {
 
 /// A ray in cube coordinates (see TsdfSampler), by depth along the camera's z.
 struct Ray {
@@ -43,4 +43,4 @@ class RayMarcher {
   float truncation_vox_ = 0.0F;
 };
 
-}  // namespace kintsugi::mapper
+}  // namespace kintsugi::mapper::testing

@@ -6,12 +6,12 @@
 
 #include "mapper/core/tsdf_volume.hpp"
 
-namespace kintsugi::mapper {
+namespace kintsugi::mapper::testing {
 
-/// Reads a volume at any point. Points are in voxels from the cube's lower corner ("cube
-/// coordinates": single precision is then enough wherever the cube is); voxel (i, j, k) has its
-/// centre at (i, j, k) + 0.5. Remembers the last block: one sampler for each thread, and none
-/// across a change of the volume.
+/// Reads a volume at any point, one at a time: what the vector kernels are tested against. Points
+/// are in voxels from the cube's lower corner ("cube coordinates": single precision is then enough
+/// wherever the cube is); voxel (i, j, k) has its centre at (i, j, k) + 0.5. Remembers the last
+/// block: one sampler for each thread, and none across a change of the volume.
 class TsdfSampler {
  public:
   explicit TsdfSampler(const TsdfVolume& volume) : volume_(volume) {}
@@ -23,14 +23,6 @@ class TsdfSampler {
   /// around the point was never observed.
   std::optional<float> distance(const Eigen::Vector3f& point_vox);
 
-  /// Per voxel, by central differences over one voxel to either side; points into free space. None
-  /// where one of these distances is none.
-  std::optional<Eigen::Vector3f> gradient(const Eigen::Vector3f& point_vox);
-
-  /// Red, green, blue in 0 .. 255, trilinear over those of the eight voxels around the point that
-  /// have a colour; zero where none has.
-  Eigen::Vector3f color(const Eigen::Vector3f& point_vox);
-
  private:
   /// The block of a voxel in cube coordinates.
   BlockSlot slot_of(int x, int y, int z);
@@ -40,4 +32,4 @@ class TsdfSampler {
   BlockSlot last_slot_ = kNoBlock;
 };
 
-}  // namespace kintsugi::mapper
+}  // namespace kintsugi::mapper::testing
