@@ -3,36 +3,23 @@
 #include <algorithm>
 
 namespace kintsugi::mapper {
-namespace {
 
-/// The part of a neighbour, at `offset` blocks along an axis, that lies in the padding.
-struct Overlap {
-  explicit Overlap(int offset)
-      : first(std::max(-PaddedBlock::kPad, offset * kBlockSide)),
-        end(std::min(kBlockSide + PaddedBlock::kPad, (offset + 1) * kBlockSide)) {}
-  int first;
-  int end;
-};
-
-}  // namespace
-
-PaddedBlock::PaddedBlock(const DetachedBlocks& blocks, const BlockCoord& coord) {
-  for (int neighbor = 0; neighbor < 27; ++neighbor) {
-    const int dx = neighbor % 3 - 1;
-    const int dy = neighbor / 3 % 3 - 1;
-    const int dz = neighbor / 9 - 1;
-    const VoxelBlock* block =
-        blocks.find(make_block_coord(coord.x + dx, coord.y + dy, coord.z + dz));
-    if (block == nullptr) continue;
-    const Overlap xs(dx);
-    const Overlap ys(dy);
-    const Overlap zs(dz);
-    for (int z = zs.first; z < zs.end; ++z) {
-      for (int y = ys.first; y < ys.end; ++y) {
-        const Voxel* row = &block->voxels[voxel_index(xs.first - dx * kBlockSide,
-                                                      y - dy * kBlockSide, z - dz * kBlockSide)];
-        std::copy_n(row, xs.end - xs.first, &voxels_[index(xs.first, y, z)]);
-      }
+PaddedBlock::PaddedBlock(const SliceBlocks& blocks, const BlockNeighbors& neighbors) {
+  static constexpr VoxelBlock kUnobserved{};
+  const auto voxels_of = [&](int dx, int dy, int dz) {
+    const int neighbor = neighbors[neighbor_index(dx, dy, dz)];
+    return (neighbor == kNoNeighbor ? kUnobserved : *blocks[neighbor].voxels).voxels.data();
+  };
+  const auto offset_of = [](int voxel) { return voxel < 0 ? -1 : (voxel < kBlockSide ? 0 : 1); };
+  for (int z = -kPad; z < kBlockSide + kPad; ++z) {
+    const int dz = offset_of(z);
+    for (int y = -kPad; y < kBlockSide + kPad; ++y) {
+      const int dy = offset_of(y);
+      const int row = voxel_index(0, y - dy * kBlockSide, z - dz * kBlockSide);
+      Voxel* to = &voxels_[index(-kPad, y, z)];
+      to = std::copy_n(voxels_of(-1, dy, dz) + row + kBlockSide - kPad, kPad, to);
+      to = std::copy_n(voxels_of(0, dy, dz) + row, kBlockSide, to);
+      std::copy_n(voxels_of(1, dy, dz) + row, kPad, to);
     }
   }
 }

@@ -28,8 +28,9 @@ class SurfaceExtractor {
 
   /// Points in W of the detached blocks (not of the apron), in the order of blocks and voxels.
   /// Normals point into free space: the gradient of the distance by central differences, averaged
-  /// once. Colour and weight are those of the point's voxel. Safe to call from any thread.
-  std::vector<CloudPoint> extract(const DetachedBlocks& blocks) const;
+  /// once. Colour and weight are those of the point's voxel. On the caller's thread alone, which
+  /// may be any.
+  std::vector<CloudPoint> extract(const DetachedBlocks& detached) const;
 
  private:
   Config config_;
