@@ -2,19 +2,34 @@
 
 #include <utility>
 
+#include <sys/resource.h>
+
 #include "mapper/core/check.hpp"
 #include "mapper/core/stopwatch.hpp"
+#include "mapper/core/tsdf_block_pool.hpp"
 
 namespace kintsugi::mapper {
+namespace {
+
+/// The calling thread's alone. Where it cannot be set, extraction competes with tracking.
+void lower_priority_of_thread() {
+#ifdef __linux__
+  constexpr int kNice = 10;
+  setpriority(PRIO_PROCESS, 0, kNice);  // on Linux 0 is the thread
+#endif
+}
+
+}  // namespace
 
 void SliceWorker::Config::validate() const {
   extractor.validate();
-  check_range<std::size_t>("max_queued", max_queued, 1, 1'000'000);
+  check_range<std::size_t>("max_queued_blocks", max_queued_blocks, 1, TsdfBlockPool::kMaxBlocks);
 }
 
 SliceWorker::SliceWorker(const Config& config)
     : config_((config.validate(), config)),
       extractor_(config.extractor),
+      mesh_extractor_({.weight_threshold = config.extractor.weight_threshold}),
       thread_([this] { run(); }) {}
 
 SliceWorker::~SliceWorker() {
@@ -28,8 +43,12 @@ SliceWorker::~SliceWorker() {
 
 void SliceWorker::submit(DetachedBlocks blocks, std::int64_t utime, const Pose& X_WC) {
   std::unique_lock lock(mutex_);
-  done_.wait(lock, [this] { return failure_ || queue_.size() < config_.max_queued; });
+  const std::size_t num_blocks = blocks.coords.size();
+  done_.wait(lock, [&] {
+    return failure_ || queue_.empty() || queued_blocks_ + num_blocks <= config_.max_queued_blocks;
+  });
   if (failure_) std::rethrow_exception(failure_);
+  queued_blocks_ += num_blocks;
   CloudSlice slice;
   slice.utime = utime;
   slice.id = next_id_++;
@@ -62,6 +81,7 @@ std::vector<CloudSlice> SliceWorker::take(std::unique_lock<std::mutex>& /*held*/
 }
 
 void SliceWorker::run() {
+  lower_priority_of_thread();
   std::unique_lock lock(mutex_);
   while (true) {
     work_.wait(lock, [this] { return stop_ || !queue_.empty(); });
@@ -71,7 +91,7 @@ void SliceWorker::run() {
     const Stopwatch stopwatch;
     std::exception_ptr failure;
     try {
-      job.slice.points_W = extractor_.extract(job.blocks);
+      work_on(job);
     } catch (...) {
       failure = std::current_exception();
     }
@@ -80,10 +100,16 @@ void SliceWorker::run() {
     busy_ms_ += elapsed_ms;
     failure_ = failure;
     if (!failure_) finished_.push_back(std::move(job.slice));
+    queued_blocks_ -= job.blocks.coords.size();
     queue_.pop_front();
     done_.notify_all();
     if (failure_) return;
   }
+}
+
+void SliceWorker::work_on(Job& job) {
+  job.slice.points_W = extractor_.extract(job.blocks);
+  if (config_.on_mesh) config_.on_mesh(mesh_extractor_.extract(job.blocks));
 }
 
 }  // namespace kintsugi::mapper

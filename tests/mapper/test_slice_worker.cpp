@@ -50,7 +50,7 @@ TEST(SliceWorker, ExtractsWhatItIsGivenWithItsTimeAndPose) {
 
 TEST(SliceWorker, KeepsTheOrderWhenItIsOutrun) {
   SliceWorker::Config config;
-  config.max_queued = 2;
+  config.max_queued_blocks = 2;
   SliceWorker worker(config);
   std::vector<CloudSlice> slices;
   const auto collect = [&](std::vector<CloudSlice> more) {
@@ -78,7 +78,7 @@ TEST(SliceWorker, CanBeLeftWithWorkQueued) {
 
 TEST(SliceWorker, RefusesAQueueOfNoLength) {
   SliceWorker::Config config;
-  config.max_queued = 0;
+  config.max_queued_blocks = 0;
   EXPECT_THROW(SliceWorker{config}, std::invalid_argument);
 }
 

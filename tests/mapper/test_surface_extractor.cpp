@@ -12,6 +12,7 @@
 
 #include "mapper/core/detached_blocks.hpp"
 #include "mapper/core/surface_extractor.hpp"
+#include "tests/mapper/exact_volume.hpp"
 #include "tests/mapper/scene_fusion.hpp"
 
 namespace kintsugi::mapper {
@@ -59,32 +60,9 @@ std::vector<std::string> sorted_bytes(const Cloud& points) {
   return bytes;
 }
 
-/// Writes an exact distance (metres) into every block within 5 voxels of the surface.
 template <typename Function>
 TsdfVolume exact_volume(double size_m, int weight, Function signed_distance_m) {
-  TsdfVolume volume(volume_of(size_m));
-  const auto center_m = [](int block, int voxel) {
-    return (block * kBlockSide + voxel + 0.5) * kResolution_m;
-  };
-  const BlockCoord& min = volume.min_block();
-  const int side = volume.side_blocks();
-  for (int block = 0; block < side * side * side; ++block) {
-    const BlockCoord coord = make_block_coord(min.x + block % side, min.y + block / side % side,
-                                              min.z + block / side / side);
-    const Eigen::Vector3d middle_W(center_m(coord.x, 4), center_m(coord.y, 4),
-                                   center_m(coord.z, 4));
-    if (std::abs(signed_distance_m(middle_W)) > 12 * kResolution_m) continue;
-    const BlockSlot slot = volume.allocate(coord);
-    for (int i = 0; i < kBlockVoxels; ++i) {
-      const Eigen::Vector3d p_W(center_m(coord.x, i % 8), center_m(coord.y, i / 8 % 8),
-                                center_m(coord.z, i / 64));
-      const double fraction = std::clamp(signed_distance_m(p_W) / volume.truncation_m(), -1.0, 1.0);
-      const auto raw = static_cast<std::int16_t>(std::lround(fraction * kDistanceScale));
-      volume.voxels(slot).voxels[i] =
-          static_cast<Voxel>(weight) << 16 | static_cast<std::uint16_t>(raw);
-    }
-  }
-  return volume;
+  return testing::exact_volume(size_m, kResolution_m, weight, signed_distance_m);
 }
 
 TEST(SurfaceExtractor, FindsAnExactSphere) {
