@@ -15,12 +15,29 @@ void FramePairer::add_depth(std::int64_t utime, std::int64_t frame_index,
 }
 
 void FramePairer::add_color(std::int64_t utime, cv::Mat_<cv::Vec3b> color_rgb) {
+  constexpr std::size_t kMaxKept = 8;
+  // The clocks of a device can turn out to differ: then what waits has other times than what comes.
+  if (!colors_.empty() && utime <= colors_.back().utime) drop_colors();
   colors_.push_back({.utime = utime, .rgb = std::move(color_rgb)});
+  if (colors_.size() <= kMaxKept) return;
+  colors_.pop_front();
+  ++color_unpaired_;
+}
+
+void FramePairer::resume(bool expect_color) {
+  drop_colors();
+  expect_color_ = expect_color;
+  finished_ = false;
+}
+
+void FramePairer::drop_colors() {
+  color_unpaired_ += static_cast<std::int64_t>(colors_.size());
+  colors_.clear();
 }
 
 std::optional<RawFrame> FramePairer::take() {
   if (depths_.empty()) {
-    if (finished_) color_unpaired_ += static_cast<std::int64_t>(std::exchange(colors_, {}).size());
+    if (finished_) drop_colors();
     return std::nullopt;
   }
   if (!is_decided(depths_.front())) return std::nullopt;
@@ -41,10 +58,10 @@ bool FramePairer::is_decided(const RawFrame& depth) const {
 cv::Mat_<cv::Vec3b> FramePairer::take_color_for(std::int64_t utime) {
   const auto distance = [&](const Color& color) { return std::abs(color.utime - utime); };
   const auto nearest = std::ranges::min_element(colors_, {}, distance);
-  const bool found = nearest != colors_.end() && distance(*nearest) <= kMaxDifference_us;
+  const bool found = nearest != colors_.end() && distance(*nearest) <= max_difference_us_;
   const auto first_wanted =
       found ? nearest : std::ranges::find_if(colors_, [&](const Color& color) {
-        return color.utime + kMaxDifference_us >= utime;
+        return color.utime + max_difference_us_ >= utime;
       });
   color_unpaired_ += first_wanted - colors_.begin();
   cv::Mat_<cv::Vec3b> rgb;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <mutex>
 #include <stdexcept>
@@ -13,113 +12,38 @@
 
 #include "mapper/openni2_driver/device_properties.hpp"
 #include "mapper/source/openni2_image.hpp"
+#include "mapper/source/openni2_modes.hpp"
+#include "mapper/source/openni2_runtime.hpp"
 
 namespace kintsugi::mapper {
 namespace {
 
-constexpr double kReachOf100um_m = 6.5534;
-
-std::string trimmed_error() {
-  std::string text = openni::OpenNI::getExtendedError();
-  std::ranges::replace(text, '\n', ' ');
-  text.erase(text.find_last_not_of(" \t\r") + 1);
-  return text.empty() ? "OpenNI2 gives no reason" : text;
-}
-
-/// OpenNI2's library is one per process and counts its users; what the drivers load (threads, USB)
-/// lives from the first user to the last.
-class Runtime {
- public:
-  Runtime() {
-    if (openni::OpenNI::initialize() != openni::STATUS_OK) {
-      throw std::runtime_error("OpenNI2 cannot be initialised: " + trimmed_error());
-    }
-  }
-  ~Runtime() { openni::OpenNI::shutdown(); }
-  Runtime(const Runtime&) = delete;
-  Runtime& operator=(const Runtime&) = delete;
-};
-
-/// Listens, as long as it lives, for what happens to one device. Called from drivers' threads.
-class StateListener : public openni::OpenNI::DeviceStateChangedListener,
-                      public openni::OpenNI::DeviceDisconnectedListener {
- public:
-  explicit StateListener(std::string uri) : uri_(std::move(uri)) {
-    openni::OpenNI::addDeviceStateChangedListener(this);
-    openni::OpenNI::addDeviceDisconnectedListener(this);
-  }
-  ~StateListener() override {
-    openni::OpenNI::removeDeviceDisconnectedListener(this);
-    openni::OpenNI::removeDeviceStateChangedListener(this);
-  }
-  StateListener(const StateListener&) = delete;
-  StateListener& operator=(const StateListener&) = delete;
-
-  [[nodiscard]] OpenNi2Device::State state() const { return state_; }
-
-  void onDeviceStateChanged(const openni::DeviceInfo* info, openni::DeviceState state) override {
-    if (info == nullptr || uri_ != info->getUri()) return;
-    if (state == openni::DEVICE_STATE_EOF) state_ = OpenNi2Device::State::kEnded;
-    if (state == openni::DEVICE_STATE_ERROR) state_ = OpenNi2Device::State::kFailed;
-  }
-  void onDeviceDisconnected(const openni::DeviceInfo* info) override {
-    if (info != nullptr && uri_ == info->getUri()) state_ = OpenNi2Device::State::kFailed;
-  }
-
- private:
-  const std::string uri_;
-  std::atomic<OpenNi2Device::State> state_ = OpenNi2Device::State::kPlaying;
-};
-
 std::string first_camera() {
-  openni::Array<openni::DeviceInfo> devices;
-  openni::OpenNI::enumerateDevices(&devices);
-  if (devices.getSize() == 0) {
+  const auto cameras = plugged_in_cameras();
+  if (cameras.empty()) {
     throw std::runtime_error(
         "no camera found: OpenNI2 lists no device (is it plugged in, and may this user open it?)");
   }
-  return devices[0].getUri();
+  return cameras.front().getUri();
 }
 
-/// The offered mode that suits best: of the given size where one is, in one of the formats (best
-/// first), nearest to 30 Hz.
-void choose_mode(openni::VideoStream& stream, cv::Size size,
-                 const std::vector<openni::PixelFormat>& formats) {
-  constexpr int kRate_hz = 30;
-  const auto& modes = stream.getSensorInfo().getSupportedVideoModes();
-  const openni::VideoMode* best = nullptr;
-  std::array<long, 3> best_cost{};
-  for (int i = 0; i < modes.getSize(); ++i) {
-    const openni::VideoMode& mode = modes[i];
-    const auto format = std::ranges::find(formats, mode.getPixelFormat());
-    if (format == formats.end()) continue;
-    const std::array<long, 3> cost = {std::abs(mode.getResolutionX() - size.width) +
-                                          std::abs(mode.getResolutionY() - size.height),
-                                      format - formats.begin(), std::abs(mode.getFps() - kRate_hz)};
-    if (best == nullptr || cost < best_cost) {
-      best = &mode;
-      best_cost = cost;
-    }
-  }
-  // A .oni file lists the camera's modes and can play only its own: then this changes nothing.
-  if (best != nullptr) stream.setVideoMode(*best);
+double focal_length_px(int pixels, double field_of_view_rad) {
+  return 0.5 * pixels / std::tan(0.5 * field_of_view_rad);
 }
 
 }  // namespace
 
 struct OpenNi2Device::Implementation {
-  Implementation(const std::string& wanted_uri, const SourceConfig& config)
-      : uri(wanted_uri.empty() ? first_camera() : wanted_uri), listener(uri) {
+  Implementation(const std::string& wanted_uri, const SourceConfig& source_config)
+      : config(source_config),
+        uri(wanted_uri.empty() ? first_camera() : wanted_uri),
+        listener(uri) {
     if (device.open(uri.c_str()) != openni::STATUS_OK) {
-      throw std::runtime_error("cannot open device '" + uri + "': " + trimmed_error());
+      throw std::runtime_error("cannot open device '" + uri + "': " + openni2_error());
     }
     create(depth, openni::SENSOR_DEPTH, "depth");
-    if (device.hasSensor(openni::SENSOR_COLOR)) create(color, openni::SENSOR_COLOR, "colour");
-    choose_modes(config.max_range_m);
-    if (color.isValid() &&
-        device.isImageRegistrationModeSupported(openni::IMAGE_REGISTRATION_DEPTH_TO_COLOR)) {
-      device.setImageRegistrationMode(openni::IMAGE_REGISTRATION_DEPTH_TO_COLOR);
-    }
+    set_depth_mode(device, depth, config.depth_mode, config.max_range_m);
+    if (device.hasSensor(openni::SENSOR_COLOR)) create_color();
     if (openni::PlaybackControl* playback = device.getPlaybackControl()) {
       playback->setRepeatEnabled(false);
       playback->setSpeed(config.replay ? -1.0F : 1.0F);
@@ -145,8 +69,37 @@ struct OpenNi2Device::Implementation {
     if (stream.create(device, sensor) != openni::STATUS_OK) fail(what, "created");
   }
 
+  /// The colour stream, unless its images do not lie on the depth images' pixels.
+  void create_color() {
+    create(color, openni::SENSOR_COLOR, "colour");
+    if (!set_color_mode(device, color, config.color_mode, mode_of(depth))) {
+      give_up_color("is " + to_string(mode_of(color)) + ", which does not cover depth of " +
+                    to_string(mode_of(depth)));
+    } else if (!is_registered() && !config.assume_registered) {
+      give_up_color(
+          "is not aligned with depth: the device cannot do it, and does not say that it is "
+          "(--assume-registered takes it as it is)");
+    }
+  }
+
+  /// Switches registration on where the device can.
+  bool is_registered() {
+    constexpr auto kRegistered = openni::IMAGE_REGISTRATION_DEPTH_TO_COLOR;
+    if (device.isImageRegistrationModeSupported(kRegistered)) {
+      device.setImageRegistrationMode(kRegistered);
+    }
+    return device.getImageRegistrationMode() == kRegistered;
+  }
+
+  void give_up_color(const std::string& why) {
+    color.destroy();
+    config.notify({SourceNotice::Kind::kWarning,
+                   "device '" + uri + "': depth alone, colour is not used: it " + why});
+  }
+
   void start(openni::VideoStream& stream, const char* what) {
     stream.setMirroringEnabled(false);  // what cannot is un-mirrored when it is read
+    if (stream.isCroppingSupported()) stream.resetCropping();
     if (stream.start() != openni::STATUS_OK) fail(what, "started");
   }
 
@@ -157,42 +110,19 @@ struct OpenNi2Device::Implementation {
 
   /// A .oni file, played by OpenNI2's own driver.
   [[nodiscard]] bool is_oni_file() const {
-    return device.isFile() && !device.isPropertySupported(kDevicePropertyCalibration);
-  }
-
-  void choose_modes(double max_range_m) {
-    const openni::VideoMode mode = depth.getVideoMode();
-    const cv::Size vga(640, 480);
-    const cv::Size own(mode.getResolutionX(), mode.getResolutionY());
-    std::vector<openni::PixelFormat> formats = {openni::PIXEL_FORMAT_DEPTH_1_MM,
-                                                openni::PIXEL_FORMAT_DEPTH_100_UM};
-    if (max_range_m <= kReachOf100um_m) std::ranges::reverse(formats);
-    choose_mode(depth, device.isFile() ? own : vga, formats);
-    if (color.isValid()) choose_mode(color, size(), {openni::PIXEL_FORMAT_RGB888});
-  }
-
-  [[nodiscard]] cv::Size size() const {
-    const openni::VideoMode mode = depth.getVideoMode();
-    return {mode.getResolutionX(), mode.getResolutionY()};
+    return device.isFile() && !device.isPropertySupported(kDevicePropertyPlaybackError);
   }
 
   [[noreturn]] void fail(const char* what, const char* done) const {
     throw std::runtime_error("the " + std::string(what) + " stream of device '" + uri +
-                             "' cannot be " + done + ": " + trimmed_error());
+                             "' cannot be " + done + ": " + openni2_error());
   }
 
-  static std::shared_ptr<Runtime> shared_runtime() {
-    static std::mutex mutex;
-    static std::weak_ptr<Runtime> current;
-    const std::lock_guard lock(mutex);
-    auto runtime = current.lock();
-    if (!runtime) current = runtime = std::make_shared<Runtime>();
-    return runtime;
-  }
-
-  const std::shared_ptr<Runtime> runtime = shared_runtime();  // first: outlives all of the below
+  const SourceConfig config;
+  // Before everything of OpenNI2's: outlives all of the below.
+  const std::shared_ptr<OpenNi2Runtime> runtime = OpenNi2Runtime::shared();
   const std::string uri;
-  StateListener listener;
+  DeviceListener listener;
   openni::Device device;
   openni::VideoStream depth;
   openni::VideoStream color;
@@ -227,7 +157,7 @@ std::optional<DeviceImage> OpenNi2Device::wait(std::chrono::milliseconds timeout
   openni::VideoFrameRef frame;
   if (status != openni::STATUS_OK ||
       streams.at(static_cast<std::size_t>(ready))->readFrame(&frame) != openni::STATUS_OK) {
-    throw std::runtime_error("device '" + impl.uri + "': " + trimmed_error());
+    throw std::runtime_error("device '" + impl.uri + "': " + openni2_error());
   }
   if (!frame.isValid()) return std::nullopt;
 
@@ -240,26 +170,59 @@ std::optional<DeviceImage> OpenNi2Device::wait(std::chrono::milliseconds timeout
   if (image.is_depth) {
     image.depth_raw = copy_depth(frame, mirrored);
   } else {
-    image.color_rgb = copy_color(frame, mirrored, impl.size());
+    image.color_rgb = copy_color(frame, mirrored, image_size());
   }
   return image;
 }
 
-OpenNi2Device::State OpenNi2Device::state() const { return implementation_->listener.state(); }
+bool OpenNi2Device::lock_exposure() {
+  openni::CameraSettings* settings =
+      has_color() ? implementation_->color.getCameraSettings() : nullptr;
+  if (settings == nullptr) return false;
+  const bool exposure = settings->setAutoExposureEnabled(false) == openni::STATUS_OK;
+  const bool white_balance = settings->setAutoWhiteBalanceEnabled(false) == openni::STATUS_OK;
+  return exposure && white_balance;
+}
+
+OpenNi2Device::State OpenNi2Device::state() const {
+  switch (implementation_->listener.state()) {
+    case DeviceListener::State::kPlaying:
+      return State::kPlaying;
+    case DeviceListener::State::kEnded:
+      return State::kEnded;
+    case DeviceListener::State::kFailed:
+      return State::kFailed;
+    case DeviceListener::State::kGone:
+      break;
+  }
+  return State::kGone;
+}
 
 std::string OpenNi2Device::failure() const {
   const openni::Device& device = implementation_->device;
-  if (!device.isPropertySupported(kDevicePropertyPlaybackError))
-    return "the device reports a fault";
   std::array<char, 1024> text{};
   int size = static_cast<int>(text.size());
-  device.getProperty(kDevicePropertyPlaybackError, text.data(), &size);
-  return text.data();
+  if (device.isPropertySupported(kDevicePropertyPlaybackError)) {
+    device.getProperty(kDevicePropertyPlaybackError, text.data(), &size);
+  }
+  return text.front() == '\0' ? "the device reports a fault" : text.data();
 }
 
 std::string OpenNi2Device::name() const {
   const openni::DeviceInfo& info = implementation_->device.getDeviceInfo();
   return std::string(info.getVendor()) + " " + info.getName();
+}
+
+std::string OpenNi2Device::uri() const { return implementation_->uri; }
+
+std::string OpenNi2Device::serial_number() const {
+  const openni::Device& device = implementation_->device;
+  std::array<char, 256> text{};
+  int size = static_cast<int>(text.size()) - 1;  // and a zero in any case
+  const bool told = device.isPropertySupported(openni::DEVICE_PROPERTY_SERIAL_NUMBER) &&
+                    device.getProperty(openni::DEVICE_PROPERTY_SERIAL_NUMBER, text.data(), &size) ==
+                        openni::STATUS_OK;
+  return told ? text.data() : "";
 }
 
 bool OpenNi2Device::is_recording() const { return implementation_->device.isFile(); }
@@ -277,6 +240,12 @@ double OpenNi2Device::depth_units_per_m() const {
   return format == openni::PIXEL_FORMAT_DEPTH_100_UM ? 10000.0 : 1000.0;
 }
 
+int OpenNi2Device::depth_rate_hz() const {
+  return std::max(1, implementation_->depth.getVideoMode().getFps());
+}
+
+cv::Size OpenNi2Device::image_size() const { return mode_of(implementation_->depth).size(); }
+
 Intrinsics OpenNi2Device::intrinsics() const {
   const openni::Device& device = implementation_->device;
   DeviceCalibration own{};
@@ -293,13 +262,19 @@ Intrinsics OpenNi2Device::intrinsics() const {
     std::ranges::copy(own.distortion, intrinsics.distortion.begin());
     return intrinsics;
   }
-  const openni::VideoStream& depth = implementation_->depth;
-  const cv::Size image = implementation_->size();
-  const auto focal_length = [](int pixels, double field_of_view_rad) {
-    return 0.5 * pixels / std::tan(0.5 * field_of_view_rad);
-  };
-  return {.fx = focal_length(image.width, depth.getHorizontalFieldOfView()),
-          .fy = focal_length(image.height, depth.getVerticalFieldOfView()),
+  const cv::Size image = image_size();
+  // Registered depth is what the colour camera would measure. Both cameras tell the view of an
+  // image of depth's shape, also when colour is taller (PrimeSense's 1280x1024).
+  const bool from_color = has_color() && implementation_->color.getHorizontalFieldOfView() > 0.0F;
+  const openni::VideoStream& camera = from_color ? implementation_->color : implementation_->depth;
+  const double width_rad = camera.getHorizontalFieldOfView();
+  const double height_rad = camera.getVerticalFieldOfView();
+  if (!(width_rad > 0.0 && height_rad > 0.0)) {
+    throw std::runtime_error("device '" + implementation_->uri +
+                             "' does not tell its field of view: give its calibration file");
+  }
+  return {.fx = focal_length_px(image.width, width_rad),
+          .fy = focal_length_px(image.height, height_rad),
           .cx = 0.5 * image.width,  // as OpenNI2's own CoordinateConverter has it
           .cy = 0.5 * image.height,
           .width = image.width,

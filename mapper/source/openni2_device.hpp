@@ -18,17 +18,23 @@ struct DeviceImage {
   std::int64_t utime = 0;  ///< device time, microseconds
   std::int64_t index = 0;  ///< as the device counts, in its own stream
   cv::Mat_<std::uint16_t> depth_raw;
-  cv::Mat_<cv::Vec3b> color_rgb;  ///< of the depth image's size
+  cv::Mat_<cv::Vec3b> color_rgb;  ///< on the depth image's pixels
 };
 
-/// An OpenNI2 device with its depth and, where it has one, colour stream, started.
+/// An OpenNI2 device with its depth and, where it has one that is aligned with depth, colour
+/// stream, started.
 ///
 /// Registers depth to colour where the device can, takes the depth unit that suits the range, and
 /// undoes mirroring and cropping. One thread at a time. OpenNI2 itself is initialised with the
 /// first device of the process and shut down with the last.
 class OpenNi2Device {
  public:
-  enum class State { kPlaying, kEnded, kFailed };
+  enum class State {
+    kPlaying,
+    kEnded,   ///< a recording is over
+    kFailed,  ///< the device reports a fault
+    kGone,    ///< the device has been disconnected
+  };
 
   /// @param uri as OpenNI2 has it; empty: the first camera.
   /// @throws std::runtime_error with the device and what OpenNI2 says.
@@ -41,6 +47,10 @@ class OpenNi2Device {
   /// @throws std::runtime_error for an image that cannot be used.
   std::optional<DeviceImage> wait(std::chrono::milliseconds timeout);
 
+  /// Exposure and white balance of the colour camera stay as they are now.
+  /// @return false when the device has no such settings.
+  bool lock_exposure();
+
   /// Nothing more is read. The streams stop at once, not only with this object's end: OpenNI2's
   /// file driver keeps a core busy from the end of a file until then.
   void stop();
@@ -52,13 +62,18 @@ class OpenNi2Device {
   [[nodiscard]] std::string failure() const;
 
   [[nodiscard]] std::string name() const;
+  [[nodiscard]] std::string uri() const;
+  [[nodiscard]] std::string serial_number() const;  ///< empty where the device has none
   [[nodiscard]] bool is_recording() const;
   [[nodiscard]] bool has_color() const;
   [[nodiscard]] std::optional<int> num_depth_frames() const;  ///< of a recording
   [[nodiscard]] double depth_units_per_m() const;
+  [[nodiscard]] int depth_rate_hz() const;  ///< nominal, at least 1
+  [[nodiscard]] cv::Size image_size() const;
 
-  /// With the lens's distortion when the device is ours; otherwise from the field of view alone:
-  /// the principal point in the middle.
+  /// With the lens's distortion when the device is ours; otherwise from the field of view alone
+  /// (of the colour camera where depth is registered to it), the principal point in the middle.
+  /// @throws std::runtime_error when the device tells none.
   [[nodiscard]] Intrinsics intrinsics() const;
 
  private:

@@ -5,6 +5,8 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "mapper/source/device_mode.hpp"
+
 namespace kintsugi::mapper {
 namespace {
 
@@ -24,19 +26,27 @@ cv::Mat view(const openni::VideoFrameRef& frame, int type) {
           static_cast<std::size_t>(stride)};
 }
 
+/// Where the frame's pixels are in its stream's image.
+cv::Rect part_of_image(const openni::VideoFrameRef& frame) {
+  const openni::VideoMode& mode = frame.getVideoMode();
+  const cv::Rect image(0, 0, mode.getResolutionX(), mode.getResolutionY());
+  const bool cropped = frame.getCroppingEnabled();
+  const cv::Rect part(cropped ? frame.getCropOriginX() : 0, cropped ? frame.getCropOriginY() : 0,
+                      frame.getWidth(), frame.getHeight());
+  if (cropped ? (part & image) == part : part == image) return part;
+  throw std::runtime_error("a frame of " + std::to_string(part.width) + "x" +
+                           std::to_string(part.height) + " pixels" +
+                           (cropped ? " cropped beyond its mode of " : ", expected ") +
+                           std::to_string(image.width) + "x" + std::to_string(image.height));
+}
+
 /// Undoes cropping, then mirroring; always a copy.
-cv::Mat whole_image(const openni::VideoFrameRef& frame, const cv::Mat& image, bool mirrored) {
-  cv::Mat whole;
-  if (frame.getCroppingEnabled()) {
-    const openni::VideoMode& mode = frame.getVideoMode();
-    const cv::Rect part(frame.getCropOriginX(), frame.getCropOriginY(), image.cols, image.rows);
-    const cv::Rect bounds(0, 0, mode.getResolutionX(), mode.getResolutionY());
-    if ((part & bounds) != part) throw std::runtime_error("a cropped frame beyond its image");
-    whole = cv::Mat::zeros(bounds.size(), image.type());
-    image.copyTo(whole(part));
-  } else {
-    whole = image.clone();
-  }
+cv::Mat whole_image(const openni::VideoFrameRef& frame, const cv::Mat& pixels, bool mirrored) {
+  const openni::VideoMode& mode = frame.getVideoMode();
+  const cv::Rect part = part_of_image(frame);
+  cv::Mat whole(mode.getResolutionY(), mode.getResolutionX(), pixels.type());
+  if (part.size() != whole.size()) whole.setTo(cv::Scalar::all(0));
+  pixels.copyTo(whole(part));
   if (mirrored) cv::flip(whole, whole, 1);
   return whole;
 }
@@ -73,13 +83,16 @@ cv::Mat_<std::uint16_t> copy_depth(const openni::VideoFrameRef& frame, bool mirr
   return whole_image(frame, view(frame, CV_16UC1), mirrored);
 }
 
-cv::Mat_<cv::Vec3b> copy_color(const openni::VideoFrameRef& frame, bool mirrored, cv::Size size) {
-  cv::Mat rgb = whole_image(frame, to_rgb(frame), mirrored);
-  if (rgb.size() != size) {
-    const bool smaller = size.width < rgb.cols;
-    cv::resize(rgb, rgb, size, 0.0, 0.0, smaller ? cv::INTER_AREA : cv::INTER_LINEAR);
-  }
-  return rgb;
+cv::Mat_<cv::Vec3b> copy_color(const openni::VideoFrameRef& frame, bool mirrored,
+                               cv::Size depth_size) {
+  const cv::Mat rgb = whole_image(frame, to_rgb(frame), mirrored);
+  if (rgb.size() == depth_size) return rgb;
+  const auto part = registered_part(rgb.size(), depth_size);
+  if (!part) throw std::runtime_error("colour that does not cover the depth image");
+  const bool smaller = depth_size.width < rgb.cols;
+  cv::Mat scaled;
+  cv::resize(rgb(*part), scaled, depth_size, 0.0, 0.0, smaller ? cv::INTER_AREA : cv::INTER_LINEAR);
+  return scaled;
 }
 
 }  // namespace kintsugi::mapper

@@ -58,14 +58,15 @@ inline void write_color(const fs::path& file, const cv::Mat_<cv::Vec3b>& rgb) {
 /// Removed with everything in it when it goes out of scope.
 class RecordingFolder {
  public:
-  explicit RecordingFolder(const std::string& camera = "50 51 31.5 23.5 64 48 1000\n") {
+  explicit RecordingFolder(const std::string& camera = "50 51 31.5 23.5 64 48 1000\n",
+                           int num_frames = kNumFrames) {
     std::string pattern = (fs::path(testing::TempDir()) / "recordingXXXXXX").string();
     path_ = mkdtemp(pattern.data());
     fs::create_directories(path_ / "depth");
     fs::create_directories(path_ / "rgb");
     std::string depth_list = "# timestamp filename\n";
     std::string color_list = "# timestamp filename\n";
-    for (int i = 0; i < kNumFrames; ++i) {
+    for (int i = 0; i < num_frames; ++i) {
       const std::string file = std::to_string(i) + ".png";
       cv::imwrite((path_ / "depth" / file).string(), raw_depth_image(i));
       write_color(path_ / "rgb" / file, color_image(i));

@@ -6,6 +6,8 @@
 namespace kintsugi::mapper {
 namespace {
 
+constexpr std::int64_t kPeriod_us = 33'333;
+
 class Pairing : public testing::Test {
  protected:
   void depth(std::int64_t utime) {
@@ -23,7 +25,7 @@ class Pairing : public testing::Test {
     return frames;
   }
 
-  FramePairer pairer_{true};
+  FramePairer pairer_{true, kPeriod_us};
 };
 
 using testing::ElementsAre;
@@ -40,11 +42,11 @@ TEST_F(Pairing, JoinsTheNearestOfBothSides) {
   EXPECT_EQ(pairer_.depth_unpaired(), 0);
 }
 
-TEST_F(Pairing, AcceptsTwentyMillisecondsAndNoMore) {
+TEST_F(Pairing, AcceptsHalfAPeriodAndAFifthAndNoMore) {
   depth(100'000);
-  color(120'000, 1);
+  color(119'999, 1);
   depth(200'000);
-  color(220'001, 2);
+  color(220'000, 2);
   EXPECT_THAT(taken(), ElementsAre(Pair(100'000, 1), Pair(200'000, 0)));
   EXPECT_EQ(pairer_.depth_unpaired(), 1);
   pairer_.finish();
@@ -77,8 +79,58 @@ TEST_F(Pairing, CountsColoursWithoutDepth) {
   EXPECT_EQ(pairer_.color_unpaired(), 4);
 }
 
+TEST_F(Pairing, GivesASlowColourToTheNearestDepthOnly) {
+  for (int i = 0; i < 6; ++i) {
+    depth(std::int64_t{33'333} * i);
+    if (i % 2 == 1) color(std::int64_t{33'333} * i + 5'000, i);
+  }
+  pairer_.finish();
+  EXPECT_THAT(taken(), ElementsAre(Pair(0, 0), Pair(33'333, 1), Pair(66'666, 0), Pair(99'999, 3),
+                                   Pair(133'332, 0), Pair(166'665, 5)));
+}
+
+TEST_F(Pairing, GoesOnWhenColourComesBack) {
+  for (int i = 0; i < 12; ++i) {
+    depth(std::int64_t{33'333} * i);
+    if (i < 3 || i > 8) color(std::int64_t{33'333} * i, i + 1);
+  }
+  pairer_.finish();
+  const auto frames = taken();
+  ASSERT_EQ(frames.size(), 12U);
+  for (int i = 0; i < 12; ++i) {
+    EXPECT_EQ(frames[static_cast<std::size_t>(i)].second, i < 3 || i > 8 ? i + 1 : 0);
+  }
+  EXPECT_EQ(pairer_.depth_unpaired(), 6);
+}
+
+TEST_F(Pairing, KeepsFewColoursWhenDepthFallsSilent) {
+  for (int i = 0; i < 100; ++i) color(std::int64_t{33'333} * i, 1);
+  EXPECT_EQ(pairer_.color_unpaired(), 92);
+}
+
+TEST_F(Pairing, StartsAgainAfterAnInterruption) {
+  depth(100'000);
+  color(90'000, 1);
+  depth(133'000);
+  pairer_.finish();
+  EXPECT_THAT(taken(), ElementsAre(Pair(100'000, 1), Pair(133'000, 0)));
+  pairer_.resume(true);
+  depth(500'000);
+  EXPECT_THAT(taken(), IsEmpty()) << "a colour may follow";
+  color(500'000, 2);
+  EXPECT_THAT(taken(), ElementsAre(Pair(500'000, 2)));
+}
+
+TEST_F(Pairing, ForgetsColoursOfAClockThatWasWrong) {
+  color(9'000'000, 1);
+  color(100'000, 2);
+  depth(100'000);
+  EXPECT_THAT(taken(), ElementsAre(Pair(100'000, 2)));
+  EXPECT_EQ(pairer_.color_unpaired(), 1);
+}
+
 TEST(DepthAlone, IsDecidedAtOnce) {
-  FramePairer pairer(false);
+  FramePairer pairer(false, kPeriod_us);
   pairer.add_depth(1, 1, cv::Mat_<std::uint16_t>(1, 1));
   EXPECT_TRUE(pairer.take());
   EXPECT_FALSE(pairer.take());

@@ -40,6 +40,7 @@ class RecordedOni : public testing::Test {
     SourceConfig config;
     config.device = file.string();
     config.replay = true;
+    config.assume_registered = true;
     return open_frame_source(config);
   }
 
@@ -71,6 +72,18 @@ TEST_F(RecordedOni, PlaysBackFrameForFrame) {
   EXPECT_TRUE(source->ended_well());
   EXPECT_EQ(source->end_reason(), "end of the recording");
   EXPECT_EQ(source->counts().frames_dropped, 0);
+}
+
+TEST_F(RecordedOni, GivesDepthAloneUnlessItIsTakenForRegistered) {
+  std::vector<std::string> warnings;
+  SourceConfig config;
+  config.device = file_.string();
+  config.replay = true;
+  config.notify = [&](const SourceNotice& notice) { warnings.push_back(notice.text); };
+  const auto frame = open_frame_source(config)->next();
+  ASSERT_TRUE(frame);
+  EXPECT_TRUE(frame->color_rgb.empty());
+  EXPECT_THAT(warnings, testing::ElementsAre(HasSubstr("--assume-registered")));
 }
 
 TEST_F(RecordedOni, IsScannedByItsRecords) {
