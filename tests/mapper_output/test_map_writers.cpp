@@ -1,0 +1,167 @@
+#include <bit>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "mapper/output/cloud_reader.hpp"
+#include "mapper/output/map_writers.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace kintsugi::mapper {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
+
+std::string read_file(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+int num_files(const std::filesystem::path& folder) {
+  return static_cast<int>(std::distance(std::filesystem::directory_iterator(folder), {}));
+}
+
+/// Reads values one after the other, as the PLY format has them; knows nothing of the writers.
+class Bytes {
+ public:
+  explicit Bytes(std::string bytes) : bytes_(std::move(bytes)) {}
+  std::string line() {
+    const std::size_t end = bytes_.find('\n', position_);
+    const std::string result = bytes_.substr(position_, end - position_);
+    position_ = end + 1;
+    return result;
+  }
+  template <typename Value>
+  Value value() {
+    Value result;
+    std::memcpy(&result, bytes_.data() + position_, sizeof result);
+    position_ += sizeof result;
+    return result;
+  }
+  bool at_end() const { return position_ == bytes_.size(); }
+
+ private:
+  std::string bytes_;
+  std::size_t position_ = 0;
+};
+
+CloudPoint example_point(int i) {
+  const auto f = static_cast<float>(i);
+  return {.x = f,
+          .y = 2 * f,
+          .z = -f,
+          .nx = 0,
+          .ny = 0.6F,
+          .nz = 0.8F,
+          .red = static_cast<std::uint8_t>(i),
+          .green = 2,
+          .blue = 3,
+          .weight = 10 + f};
+}
+
+TEST(CloudWriter, WritesWhatAReaderOfPlyExpects) {
+  const kintsugi::testing::TemporaryFolder folder;
+  CloudWriter writer(folder.path() / "map.ply");
+  writer.append({example_point(0), example_point(1)});
+  writer.append({});
+  writer.append({example_point(2)});
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "map.ply"));
+  writer.commit();
+  EXPECT_EQ(writer.num_points(), 3);
+  Bytes bytes(read_file(folder.path() / "map.ply"));
+  for (const char* expected :
+       {"ply", "format binary_little_endian 1.0", "element vertex 3", "property float x",
+        "property float y", "property float z", "property float nx", "property float ny",
+        "property float nz", "property uchar red", "property uchar green", "property uchar blue",
+        "property float weight", "end_header"}) {
+    EXPECT_EQ(bytes.line(), expected);
+  }
+  for (int i = 0; i < 3; ++i) {
+    const CloudPoint p = example_point(i);
+    for (const float expected : {p.x, p.y, p.z, p.nx, p.ny, p.nz}) {
+      EXPECT_EQ(bytes.value<float>(), expected);
+    }
+    for (const int expected : {i, 2, 3}) EXPECT_EQ(bytes.value<std::uint8_t>(), expected);
+    EXPECT_EQ(bytes.value<float>(), p.weight);
+  }
+  EXPECT_TRUE(bytes.at_end());
+}
+
+TEST(CloudWriter, LeavesNothingWithoutCommit) {
+  const kintsugi::testing::TemporaryFolder folder;
+  {
+    CloudWriter writer(folder.path() / "map.ply");
+    writer.append({example_point(1)});
+  }
+  EXPECT_EQ(num_files(folder.path()), 0);
+}
+
+TEST(CloudWriter, SaysAtOnceThatAFolderIsNotThere) {
+  EXPECT_THROW(CloudWriter("/nonexistent/folder/map.ply"), std::system_error);
+}
+
+TEST(MeshWriter, WritesWhatAReaderOfPlyExpects) {
+  const kintsugi::testing::TemporaryFolder folder;
+  MeshWriter writer(folder.path() / "mesh.ply");
+  writer.append({.vertices = {{1, 2, 3, {4, 5, 6}}, {7, 8, 9, {1, 1, 1}}, {0, 0, 0, {2, 2, 2}}},
+                 .triangles = {{0, 1, 2}}});
+  writer.append({.vertices = {{5, 5, 5, {3, 3, 3}}}, .triangles = {{2, 1, 3}, {3, 0, 2}}});
+  writer.commit();
+  EXPECT_EQ(writer.num_triangles(), 3);
+  EXPECT_EQ(num_files(folder.path()), 1);
+  Bytes bytes(read_file(folder.path() / "mesh.ply"));
+  for (const char* expected :
+       {"ply", "format binary_little_endian 1.0", "element vertex 4", "property float x",
+        "property float y", "property float z", "property uchar red", "property uchar green",
+        "property uchar blue", "element face 3", "property list uchar int vertex_indices",
+        "end_header"}) {
+    EXPECT_EQ(bytes.line(), expected);
+  }
+  EXPECT_EQ(bytes.value<float>(), 1.0F);
+  for (int i = 0; i < 2; ++i) bytes.value<float>();
+  EXPECT_EQ(bytes.value<std::uint8_t>(), 4);
+  for (int i = 0; i < 2 + 2 * 15; ++i) bytes.value<std::uint8_t>();
+  EXPECT_EQ(bytes.value<float>(), 5.0F);
+  for (int i = 0; i < 2; ++i) bytes.value<float>();
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(bytes.value<std::uint8_t>(), 3);
+  for (const auto& triangle : {std::array{0, 1, 2}, std::array{2, 1, 3}, std::array{3, 0, 2}}) {
+    EXPECT_EQ(bytes.value<std::uint8_t>(), 3);
+    for (const int vertex : triangle) EXPECT_EQ(bytes.value<std::int32_t>(), vertex);
+  }
+  EXPECT_TRUE(bytes.at_end());
+}
+
+TEST(CloudReader, ReadsWhatTheWriterWrote) {
+  const kintsugi::testing::TemporaryFolder folder;
+  CloudWriter writer(folder.path() / "map.ply");
+  std::vector<CloudPoint> points;
+  for (int i = 0; i < 100; ++i) points.push_back(example_point(i));
+  writer.append(points);
+  writer.commit();
+  EXPECT_EQ(read_cloud(folder.path() / "map.ply"), points);
+}
+
+TEST(CloudReader, SaysWhatIsWrongWithAFile) {
+  const kintsugi::testing::TemporaryFolder folder;
+  const auto path = folder.path() / "map.ply";
+  EXPECT_THAT([&] { read_cloud(path); }, ThrowsMessage<std::runtime_error>(HasSubstr("map.ply: ")));
+  CloudWriter writer(path);
+  writer.append({example_point(1), example_point(2)});
+  writer.commit();
+  const std::string whole = read_file(path);
+  for (std::size_t size = 0; size < whole.size(); ++size) {
+    std::ofstream(path, std::ios::binary) << whole.substr(0, size);
+    EXPECT_THROW(read_cloud(path), std::runtime_error) << size;
+  }
+}
+
+}  // namespace
+}  // namespace kintsugi::mapper
