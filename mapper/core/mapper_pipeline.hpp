@@ -8,13 +8,13 @@
 #include <vector>
 
 #include "lcmtypes/messages.hpp"
+#include "lcmtypes/trajectory.hpp"
 #include "mapper/core/integrator.hpp"
 #include "mapper/core/raycaster.hpp"
 #include "mapper/core/rgbd_frame.hpp"
 #include "mapper/core/slice_worker.hpp"
 #include "mapper/core/stage_times.hpp"
 #include "mapper/core/tracker.hpp"
-#include "lcmtypes/trajectory.hpp"
 #include "mapper/core/tsdf_volume.hpp"
 
 namespace kintsugi::mapper {

@@ -5,12 +5,16 @@
 #include <cmath>
 #include <string>
 
+#include "lcmtypes/trajectory.hpp"
 #include "mapper/core/check.hpp"
 #include "mapper/core/covered_share.hpp"
+#include "mapper/core/pose_uncertainty.hpp"
 
 namespace kintsugi::mapper {
 namespace {
 
+/// Poses of single frames scatter by less than this, metres (and radians seen 1 m ahead).
+constexpr double kUnsteadiness_m = 0.02;
 constexpr std::int64_t kMinInliers = 100;  ///< fewer pairs than this determine no pose worth having
 
 /// Twist per second that carries `X_WA` to `X_WB` in `seconds`.
@@ -36,8 +40,8 @@ std::optional<Vector6d> solve(const NormalEquations& equations) {
   return xi;
 }
 
-RegistrationQuality quality_of(const NormalEquations& equations, const SurfaceMap& frame,
-                               double covered, bool solved) {
+RegistrationQuality quality_of(const NormalEquations& equations, const Pose& X_VC,
+                               const SurfaceMap& frame, double covered, bool solved) {
   RegistrationQuality quality;
   quality.solved = solved;
   quality.covered_share = covered;
@@ -52,6 +56,7 @@ RegistrationQuality quality_of(const NormalEquations& equations, const SurfaceMa
     quality.rms_m =
         std::sqrt(equations.squared_residuals_m2 / static_cast<double>(equations.inliers));
   }
+  quality.sigma_m = pose_sigma_m(equations.A, X_VC, static_cast<int>(frame.depth_m.total()));
   return quality;
 }
 
@@ -66,6 +71,7 @@ void Tracker::Config::validate() const {
   check_range("retry_gate_factor", retry_gate_factor, 1.0, 100.0);
   check_range("retry_iteration_factor", retry_iteration_factor, 1, 100);
   check_range<std::int64_t>("max_prediction_us", max_prediction_us, 0, 60'000'000);
+  check_range("max_acceleration", max_acceleration, 0.0, 1e6);
   loss.validate();
 }
 
@@ -77,6 +83,7 @@ void Tracker::start_at(const Pose& X_WC, const TrackingInput& frame, double cove
   X_WC_ = X_WC;
   utime_ = frame.utime;
   velocity_C_.setZero();
+  motion_known_ = false;
   lost_ = false;
   loss_rule_.remember(covered_share, true);
 }
@@ -89,13 +96,44 @@ Pose Tracker::predict(std::int64_t utime) const {
 
 TrackingResult Tracker::track(const TrackingInput& frame, const Model& model) {
   Registration registration = register_frame(frame, model, predict(frame.utime), false);
-  auto loss = loss_rule_.judge(registration.quality);
+  auto loss = follows_motion(registration.X_WC, frame.utime)
+                  ? loss_rule_.judge(registration.quality)
+                  : loss_rule_.judge_found_anew(registration.quality);
   if (loss) {
-    registration = register_frame(frame, model, X_WC_, true);
-    loss = loss_rule_.judge(registration.quality);
+    registration = register_widely(frame, model, X_WC_);
+    loss = loss_rule_.judge_found_anew(registration.quality);
   }
   loss_rule_.remember(registration.quality.covered_share, !loss);
   return loss ? lose(registration, *loss) : accept(registration, frame);
+}
+
+TrackingResult Tracker::register_anew(const TrackingInput& frame, const Model& model,
+                                      const Pose& X_WC_start) const {
+  const Registration registration = register_widely(frame, model, X_WC_start);
+  TrackingResult result;
+  result.X_WC = registration.X_WC;
+  result.quality = registration.quality;
+  result.iterations = registration.iterations;
+  result.loss_reason = loss_rule_.judge_found_anew(registration.quality);
+  result.state = result.loss_reason ? TrackingState::kLost : TrackingState::kTracking;
+  return result;
+}
+
+bool Tracker::follows_motion(const Pose& X_WC, std::int64_t utime) const {
+  const std::int64_t gap_us = utime - utime_;
+  if (lost_ || gap_us > config_.max_prediction_us) return false;
+  if (!motion_known_) return true;
+  const double seconds = 1e-6 * static_cast<double>(gap_us);
+  const Pose X_PC = predict(utime).inverse() * X_WC;  // P: where the camera was expected
+  const double surprise_m = std::max(X_PC.translation().norm(), rotation_angle_rad(X_PC));
+  return surprise_m < kUnsteadiness_m + 0.5 * config_.max_acceleration * seconds * seconds;
+}
+
+Tracker::Registration Tracker::register_widely(const TrackingInput& frame, const Model& model,
+                                               const Pose& X_WC_start) const {
+  // From far off the steps of one pass do not always suffice.
+  const Registration near = register_frame(frame, model, X_WC_start, true);
+  return near.quality.solved ? register_frame(frame, model, near.X_WC, false) : near;
 }
 
 Tracker::Registration Tracker::register_frame(const TrackingInput& frame, const Model& model,
@@ -125,7 +163,7 @@ Tracker::Registration Tracker::register_frame(const TrackingInput& frame, const 
   }
   registration.X_WC = orthonormal(model.X_WV * X_VC);
   registration.quality =
-      quality_of(registration.equations, frame_C[level],
+      quality_of(registration.equations, X_VC, frame_C[level],
                  covered_share(frame_C.front(), registration.X_WC, model.region_W), solved);
   return registration;
 }
@@ -134,6 +172,7 @@ TrackingResult Tracker::accept(const Registration& registration, const TrackingI
   const double seconds = 1e-6 * static_cast<double>(frame.utime - utime_);
   const bool continuous = !lost_ && seconds > 0.0;
   velocity_C_ = continuous ? velocity_between(X_WC_, registration.X_WC, seconds) : Vector6d::Zero();
+  motion_known_ = continuous;
   X_WC_ = registration.X_WC;
   utime_ = frame.utime;
   lost_ = false;
@@ -149,6 +188,7 @@ TrackingResult Tracker::accept(const Registration& registration, const TrackingI
 TrackingResult Tracker::lose(const Registration& registration, LossReason reason) {
   lost_ = true;
   velocity_C_.setZero();
+  motion_known_ = false;
   TrackingResult result;
   result.state = TrackingState::kLost;
   result.X_WC = X_WC_;

@@ -59,6 +59,9 @@ class Tracker {
     double retry_gate_factor = 3.0;  ///< on max_distance_m, at the coarsest level of a retry
     int retry_iteration_factor = 3;  ///< on the coarsest level's iterations in a retry
     std::int64_t max_prediction_us = 500'000;  ///< no constant velocity across a longer gap
+    /// A hand's, m/s^2 (and rad/s^2): poses further from the prediction than it explains must fit
+    /// as well as poses found anew.
+    double max_acceleration = 30.0;
     LossRule::Config loss;
 
     /// @throws std::invalid_argument naming field, value and bound
@@ -76,6 +79,11 @@ class Tracker {
   /// After a loss the tracker keeps the last good pose and may be called with the next frame.
   TrackingResult track(const TrackingInput& frame, const Model& model);
 
+  /// Registers a frame from a place where it may not be at all: wide gates, believed (kTracking)
+  /// only if it fits as a pose found anew must. What the tracker knows of the path stays as it is.
+  TrackingResult register_anew(const TrackingInput& frame, const Model& model,
+                               const Pose& X_WC_start) const;
+
   /// Where constant velocity (device time in microseconds) puts the camera.
   Pose predict(std::int64_t utime) const;
 
@@ -89,6 +97,9 @@ class Tracker {
 
   Registration register_frame(const TrackingInput& frame, const Model& model,
                               const Pose& X_WC_start, bool wide) const;
+  Registration register_widely(const TrackingInput& frame, const Model& model,
+                               const Pose& X_WC_start) const;
+  bool follows_motion(const Pose& X_WC, std::int64_t utime) const;
   TrackingResult accept(const Registration& registration, const TrackingInput& frame);
   TrackingResult lose(const Registration& registration, LossReason reason);
 
@@ -97,6 +108,7 @@ class Tracker {
   Pose X_WC_ = Pose::Identity();            ///< last good
   std::int64_t utime_ = 0;                  ///< of the last good pose
   Vector6d velocity_C_ = Vector6d::Zero();  ///< m/s, rad/s: X_WC(t + dt) = X_WC retract(v dt)
+  bool motion_known_ = false;               ///< velocity_C_ was measured
   bool lost_ = false;
 };
 

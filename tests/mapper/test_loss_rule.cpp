@@ -11,6 +11,7 @@ RegistrationQuality good() {
   quality.overlap_share = 0.85;
   quality.inlier_share = 0.8;
   quality.rms_m = 0.004;
+  quality.sigma_m = 0.003;
   quality.solved = true;
   return quality;
 }
@@ -36,11 +37,51 @@ TEST(LossRule, NamesWhatIsWrong) {
   quality.solved = false;
   EXPECT_EQ(rule.judge(quality), LossReason::kNotSolved);
   quality = good();
-  quality.inlier_share = 0.44;
+  quality.overlap_share = 0.019;
+  EXPECT_EQ(rule.judge(quality), LossReason::kTooLittleOverlap);
+  quality = good();
+  quality.inlier_share = 0.29;
   EXPECT_EQ(rule.judge(quality), LossReason::kTooFewInliers);
+  quality = good();
+  quality.behind_share = 0.21;
+  EXPECT_EQ(rule.judge(quality), LossReason::kThroughSurface);
+  quality = good();
+  quality.in_front_share = 0.41;
+  EXPECT_EQ(rule.judge(quality), LossReason::kBeforeSurface);
   quality = good();
   quality.rms_m = 0.0141;
   EXPECT_EQ(rule.judge(quality), LossReason::kLargeResidual);
+  quality = good();
+  quality.sigma_m = 0.011;
+  EXPECT_EQ(rule.judge(quality), LossReason::kUncertain);
+  quality = good();
+  quality.undetermined = 1;
+  EXPECT_EQ(rule.judge(quality), LossReason::kUndetermined);
+}
+
+TEST(LossRule, DoesNotMindThatMostOfTheViewIsNew) {
+  RegistrationQuality quality = good();
+  quality.overlap_share = 0.28;
+  EXPECT_EQ(settled().judge(quality), std::nullopt);
+}
+
+TEST(LossRule, AsksMoreOfAPoseFoundAnew) {
+  const LossRule rule = settled();
+  EXPECT_EQ(rule.judge_found_anew(good()), std::nullopt);
+  for (double RegistrationQuality::*share :
+       {&RegistrationQuality::behind_share, &RegistrationQuality::in_front_share}) {
+    RegistrationQuality quality = good();
+    quality.*share = 0.18;
+    EXPECT_EQ(rule.judge(quality), std::nullopt);
+    EXPECT_NE(rule.judge_found_anew(quality), std::nullopt);
+  }
+  for (const auto& [share, value] : {std::pair{&RegistrationQuality::overlap_share, 0.15},
+                                     {&RegistrationQuality::inlier_share, 0.35}}) {
+    RegistrationQuality quality = good();
+    quality.*share = value;
+    EXPECT_EQ(rule.judge(quality), std::nullopt);
+    EXPECT_NE(rule.judge_found_anew(quality), std::nullopt);
+  }
 }
 
 TEST(LossRule, ForgivesFewInliersWhileTheModelIsThin) {
@@ -69,12 +110,12 @@ TEST(LossRule, GetsUsedToAViewThatStaysSmall) {
 
 TEST(LossRule, RefusesSettingsOutOfRange) {
   LossRule::Config config;
-  config.min_inlier_share = 1.5;
+  config.following.min_inlier_share = 1.5;
   try {
     LossRule rule(config);
     FAIL();
   } catch (const std::invalid_argument& error) {
-    EXPECT_STREQ(error.what(), "min_inlier_share is 1.5, must be within [0, 1]");
+    EXPECT_STREQ(error.what(), "following.min_inlier_share is 1.5, must be within [0, 1]");
   }
 }
 
