@@ -63,16 +63,6 @@ Options parse_command_line(int argc, char** argv) {
   return options;
 }
 
-/// Where each frame was located in an undisturbed run.
-std::vector<std::optional<Pose>> path_of(const std::vector<FrameOutcome>& outcomes,
-                                         int num_frames) {
-  std::vector<std::optional<Pose>> X_WC(num_frames);
-  for (const FrameOutcome& outcome : outcomes) {
-    if (outcome.located) X_WC[outcome.planned.frame] = outcome.tracking.X_WC;
-  }
-  return X_WC;
-}
-
 std::vector<std::optional<Pose>> reference_path(const Options& options,
                                                 const Recording& recording) {
   const bool use_truth =
@@ -83,10 +73,7 @@ std::vector<std::optional<Pose>> reference_path(const Options& options,
     }
     return recording.true_path();
   }
-  const Plan plan = plan_disturbance("none", recording.num_frames(), recording.period_us());
-  const std::vector<std::optional<Pose>> nothing(recording.num_frames());
-  return path_of(run_plan(recording, plan, !options.depth_only, options.pipeline, nothing),
-                 recording.num_frames());
+  return undisturbed_path(recording, !options.depth_only, options.pipeline);
 }
 
 std::string in_mm(std::optional<double> metres) {
@@ -113,8 +100,8 @@ void print_row(const std::string& name, const RecoveryMeasures& m) {
 }
 
 void write_csv_header(std::ostream& csv) {
-  csv << "disturbance,frame,utime,damage,state,reason,view_known,error_m,covered_share,"
-         "inlier_share,rms_m,frame_ms\n";
+  csv << "disturbance,frame,utime,damage,state,reason,view_known,error_m,covered,overlap,"
+         "inliers,behind,in_front,rms_m,sigma_m,frame_ms\n";
 }
 
 void write_csv(std::ostream& csv, const std::string& name,
@@ -122,13 +109,15 @@ void write_csv(std::ostream& csv, const std::string& name,
                const std::vector<std::optional<Pose>>& X_WC_reference) {
   for (const FrameOutcome& outcome : outcomes) {
     const TrackingResult& tracking = outcome.tracking;
+    const RegistrationQuality& q = tracking.quality;
     const auto& reference = X_WC_reference.at(outcome.planned.frame);
     csv << name << ',' << outcome.planned.frame << ',' << outcome.planned.utime << ','
         << static_cast<int>(outcome.planned.damage) << ',' << static_cast<int>(tracking.state)
         << ',' << (tracking.loss_reason ? to_string(*tracking.loss_reason) : "") << ','
         << outcome.view_known << ',' << (reference ? pose_error_m(tracking.X_WC, *reference) : -1.0)
-        << ',' << tracking.quality.covered_share << ',' << tracking.quality.inlier_share << ','
-        << tracking.quality.rms_m << ',' << outcome.frame_ms << '\n';
+        << ',' << q.covered_share << ',' << q.overlap_share << ',' << q.inlier_share << ','
+        << q.behind_share << ',' << q.in_front_share << ',' << q.rms_m << ',' << q.sigma_m << ','
+        << outcome.frame_ms << '\n';
   }
 }
 

@@ -2,17 +2,10 @@
 
 #include <algorithm>
 
-#include "mapper/core/trajectory_error.hpp"
+#include "lcmtypes/trajectory_error.hpp"
 
 namespace kintsugi::mapper::bench {
 namespace {
-
-double median_of(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 void measure_errors(const std::vector<FrameOutcome>& outcomes,
                     const std::vector<std::optional<Pose>>& X_WC_reference,
@@ -45,8 +38,9 @@ void measure_recoveries(const std::vector<FrameOutcome>& outcomes, RecoveryMeasu
   }
   measures.never_recovered = first_good_us ? 1 : 0;
   measures.recoveries = static_cast<int>(times_s.size());
-  measures.median_recovery_s = median_of(times_s);
-  if (!times_s.empty()) measures.max_recovery_s = *std::max_element(times_s.begin(), times_s.end());
+  const ErrorStatistics statistics = statistics_of(times_s);
+  measures.median_recovery_s = statistics.median;
+  measures.max_recovery_s = statistics.max;
 }
 
 std::optional<double> ate_of(const std::vector<FrameOutcome>& outcomes,
@@ -60,7 +54,7 @@ std::optional<double> ate_of(const std::vector<FrameOutcome>& outcomes,
     truth.push_back({outcome.planned.utime, *X_WC});
   }
   if (estimate.size() < 3) return std::nullopt;
-  return absolute_trajectory_error(estimate, truth).rmse_m;
+  return absolute_trajectory_error(estimate, truth).translation_m.rmse;
 }
 
 }  // namespace
@@ -85,10 +79,9 @@ RecoveryMeasures measure(const std::vector<FrameOutcome>& outcomes,
   measures.ate_m = ate_of(outcomes, X_WC_true);
   std::vector<double> times_ms;
   for (const FrameOutcome& outcome : outcomes) times_ms.push_back(outcome.frame_ms);
-  measures.median_frame_ms = median_of(times_ms);
-  if (!times_ms.empty()) {
-    measures.max_frame_ms = *std::max_element(times_ms.begin(), times_ms.end());
-  }
+  const ErrorStatistics statistics = statistics_of(times_ms);
+  measures.median_frame_ms = statistics.median;
+  measures.max_frame_ms = statistics.max;
   return measures;
 }
 

@@ -1,7 +1,7 @@
 #include "tests/bench/recovery_recording.hpp"
 
+#include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <limits>
 #include <stdexcept>
 
@@ -68,14 +68,16 @@ void Recording::read_truth(const std::string& device) {
     truth_is_exact_ = true;
   } else {
     const std::filesystem::path file = std::filesystem::path(uri->path) / "groundtruth.txt";
-    std::ifstream in(file);
-    if (!in) return;
-    const Trajectory truth = read_tum(in, file.string());
+    if (!std::filesystem::exists(file)) return;
+    const Trajectory truth = read_tum_file(file.string());
     for (int i = 0; i < num_frames(); ++i) X_TC[i] = pose_at(truth, frames_[i].utime);
   }
-  if (!X_TC.front()) return;
+  const auto first = std::find_if(X_TC.begin(), X_TC.end(),
+                                  [](const std::optional<Pose>& X) { return X.has_value(); });
+  if (first == X_TC.end()) return;
+  const Pose X_CT_first = (*first)->inverse();
   for (int i = 0; i < num_frames(); ++i) {
-    if (X_TC[i]) X_WC_true_[i] = X_TC.front()->inverse() * *X_TC[i];
+    if (X_TC[i]) X_WC_true_[i] = X_CT_first * *X_TC[i];
   }
 }
 

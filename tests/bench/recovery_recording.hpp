@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "lcmtypes/trajectory.hpp"
 #include "mapper/core/rgbd_frame.hpp"
-#include "mapper/core/trajectory.hpp"
 
 namespace kintsugi::mapper::bench {
 
@@ -25,8 +25,8 @@ class Recording {
 
   /// Is the true path exact (synthetic), or another system's estimate?
   bool truth_is_exact() const { return truth_is_exact_; }
-  /// True pose of each frame relative to frame 0: what a mapper's X_WC should be; nothing where the
-  /// recording does not say.
+  /// True pose of each frame relative to the first frame that has one: what a mapper's X_WC should
+  /// be if that is frame 0; nothing where the recording does not say.
   const std::vector<std::optional<Pose>>& true_path() const { return X_WC_true_; }
 
  private:

@@ -87,4 +87,14 @@ std::vector<FrameOutcome> run_plan(const Recording& recording, const Plan& plan,
   return outcomes;
 }
 
+std::vector<std::optional<Pose>> undisturbed_path(const Recording& recording, bool with_color,
+                                                  const MapperPipeline::Config& config) {
+  std::vector<std::optional<Pose>> X_WC(recording.num_frames());
+  const Plan plan = plan_disturbance("none", recording.num_frames(), recording.period_us());
+  for (const FrameOutcome& outcome : run_plan(recording, plan, with_color, config, X_WC)) {
+    if (outcome.located) X_WC[outcome.planned.frame] = outcome.tracking.X_WC;
+  }
+  return X_WC;
+}
+
 }  // namespace kintsugi::mapper::bench

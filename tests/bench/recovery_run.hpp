@@ -24,4 +24,8 @@ std::vector<FrameOutcome> run_plan(const Recording& recording, const Plan& plan,
                                    const MapperPipeline::Config& config,
                                    const std::vector<std::optional<Pose>>& X_WC_reference);
 
+/// Where each frame is located when the recording is played as it is.
+std::vector<std::optional<Pose>> undisturbed_path(const Recording& recording, bool with_color,
+                                                  const MapperPipeline::Config& config);
+
 }  // namespace kintsugi::mapper::bench
