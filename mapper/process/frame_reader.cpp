@@ -10,6 +10,11 @@ FrameReader::FrameReader(SourceConfig config) {
   config.stop_requested = [this, outer = std::move(config.stop_requested)] {
     return stop_ || outer();
   };
+  config.notify = [this, outer = std::move(config.notify)](const SourceNotice& notice) {
+    if (notice.kind == SourceNotice::Kind::kInterrupted) interrupted_ = true;
+    if (notice.kind == SourceNotice::Kind::kResumed) interrupted_ = false;
+    outer(notice);
+  };
   source_ = open_frame_source(config);
   name_ = source_->name();
   frames_total_ = source_->frames_total();

@@ -43,6 +43,9 @@ class FrameReader {
   /// Throws what reading threw, if it did.
   void rethrow_failure() const;
 
+  /// The camera is gone and waited for.
+  bool interrupted() const { return interrupted_; }
+
   const std::string& device_name() const { return name_; }
   std::int64_t frames_total() const { return frames_total_; }
   SourceCounts counts() const;
@@ -55,6 +58,7 @@ class FrameReader {
   std::optional<TimedFrame> read();
 
   std::atomic<bool> stop_ = false;
+  std::atomic<bool> interrupted_ = false;
   std::unique_ptr<FrameSource> source_;
   std::string name_;
   std::int64_t frames_total_ = -1;

@@ -136,6 +136,8 @@ void MapperProcess::write_path() {
 void MapperProcess::publish_status(bool finished) {
   MapperStatus status;
   statistics_.report(status);
+  // Nobody knows where a camera is that is not there.
+  if (reader_.interrupted()) status.state = TrackingState::kLost;
   status.device = options_.source.device;
   status.finished = finished;
   status.frames_total = reader_.frames_total();
@@ -179,10 +181,10 @@ void MapperProcess::log_summary() const {
   if (reader_.finished()) spdlog::info("end: {}", reader_.end_reason());
   spdlog::info(
       "{} frames in {:.1f} s ({:.1f} ms each, {:.1f} ms of CPU): {} located, {} lost, {} dropped, "
-      "{} bad",
+      "{} bad, {} interruptions",
       statistics_.frames(), elapsed_s, statistics_.mean_frame_ms(), statistics_.mean_cpu_ms(),
       statistics_.frames_tracked(), statistics_.frames_lost(), counts.frames_dropped,
-      counts.frames_bad);
+      counts.frames_bad, counts.interruptions);
   spdlog::info("{} slices, {} points, {} messages published", publisher_.slices_published(),
                publisher_.points_published(), publisher_.chunks_published());
   if (!options_.output_path_file.empty()) {

@@ -9,6 +9,7 @@
 #include "lcmtypes/bus.hpp"
 #include "lcmtypes/codec.hpp"
 #include "mapper/core/check.hpp"
+#include "mapper/source/device_listing.hpp"
 
 namespace kintsugi::mapper {
 namespace {
@@ -135,6 +136,10 @@ std::variant<Options, int> parse_command_line(int argc, const char* const* argv)
   bool print_config = false;
   app.add_flag("--print-config", print_config, "print every flag with its value, and exit")
       ->configurable(false);
+  bool print_devices = false;
+  app.add_flag("--list-devices", print_devices,
+               "print what the device, or every camera, offers, and exit")
+      ->configurable(false);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -143,6 +148,10 @@ std::variant<Options, int> parse_command_line(int argc, const char* const* argv)
 
   if (print_config) {
     std::cout << app.config_to_str(true, true);
+    return 0;
+  }
+  if (print_devices) {
+    std::cout << list_devices(options.source.device);
     return 0;
   }
   complete(options);

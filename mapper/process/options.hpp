@@ -32,7 +32,7 @@ struct Options {
 
 /// Reads the command line (and the --config file it names) and the files that belong to the
 /// options. Gives the options, or the code to exit with when there is nothing to run: help, the
-/// printed configuration, or a flag that is wrong (said on stderr).
+/// printed configuration or devices, or a flag that is wrong (said on stderr).
 /// @throws std::invalid_argument for a value out of its bounds, std::runtime_error for a file that
 ///   cannot be read
 std::variant<Options, int> parse_command_line(int argc, const char* const* argv);
