@@ -1,5 +1,6 @@
 // The built program on a bus of the test's own: what it publishes and leaves behind.
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
@@ -193,6 +194,50 @@ TEST_F(MapperOnBus, FinishesWhatItHasWhenInterrupted) {
   expect_complete(listener.slices(), 43);
   std::ifstream in(path_file);
   EXPECT_EQ(read_tum(in, path_file).size(), listener.poses().size());
+}
+
+TEST_F(MapperOnBus, SurvivesThatTheCameraIsUnpluggedAndPluggedInAgain) {
+  const Listener listener;
+  // 24 frames missed: 800 ms of the walk, and as long in fact.
+  MapperProgram mapper(
+      {"--device", "synthetic://office?frames=60&unplug_at=16&replug_after_ms=790&restart_clock=on",
+       "--replay", "--session", "44", "--map-name", "attic", "--volume-size", "4", "--resolution",
+       "0.02"});
+  EXPECT_EQ(mapper.wait(), 0);
+  ASSERT_TRUE(Listener::wait_until([&] { return listener.heard_the_end(); }));
+
+  const auto poses = listener.poses();
+  ASSERT_EQ(poses.size(), 36U);
+  for (std::size_t i = 1; i < poses.size(); ++i) {
+    EXPECT_EQ(poses[i].frame_index, poses[i - 1].frame_index + 1);
+    EXPECT_GT(poses[i].utime, poses[i - 1].utime);
+  }
+  EXPECT_GE(poses[16].utime - poses[15].utime, 790'000);
+  EXPECT_EQ(poses.back().state, TrackingState::kTracking) << "and knows where it is again";
+
+  const auto statuses = listener.statuses();
+  const auto lost = [](const MapperStatus& status) { return status.state == TrackingState::kLost; };
+  EXPECT_TRUE(std::ranges::any_of(statuses, lost)) << "while the camera was away";
+  EXPECT_FALSE(lost(statuses.back()));
+  EXPECT_EQ(statuses.back().frames_read, 36);
+  EXPECT_EQ(statuses.back().frames_dropped, 0);
+  expect_complete(listener.slices(), 44);
+}
+
+TEST_F(MapperOnBus, StopsWhileItWaitsForItsCamera) {
+  const Listener listener;
+  MapperProgram mapper({"--device", "synthetic://office?frames=60&unplug_at=6", "--replay",
+                        "--session", "45", "--map-name", "attic", "--volume-size", "4",
+                        "--resolution", "0.02"});
+  ASSERT_TRUE(Listener::wait_until([&] {
+    const auto statuses = listener.statuses();
+    return !statuses.empty() && statuses.back().state == TrackingState::kLost;
+  }));
+  mapper.interrupt();
+  EXPECT_EQ(mapper.wait(), 0);
+  ASSERT_TRUE(Listener::wait_until([&] { return listener.heard_the_end(); }));
+  EXPECT_EQ(listener.statuses().back().frames_read, 6);
+  expect_complete(listener.slices(), 45);
 }
 
 }  // namespace
