@@ -46,7 +46,7 @@ FrameResult MapperPipeline::process(const RgbdFrame& frame) {
   clock.end_of(&StageTimes::track_ms);
   if (is_located(result.tracking.state)) {
     X_WC_ = result.tracking.X_WC;
-    shift(frame, X_WC_);
+    result.slices_left = shift(frame, X_WC_);
     clock.end_of(&StageTimes::shift_ms);
     integrator_.integrate(frame, X_WC_, volume_);
     clock.end_of(&StageTimes::integrate_ms);
@@ -95,10 +95,10 @@ TrackingResult MapperPipeline::start(const TrackingInput& input) {
   return result;
 }
 
-void MapperPipeline::shift(const RgbdFrame& frame, const Pose& X_WC) {
-  for (DetachedBlocks& blocks : volume_.shift_to(X_WC.translation())) {
-    slice_worker_.submit(std::move(blocks), frame.utime, X_WC);
-  }
+int MapperPipeline::shift(const RgbdFrame& frame, const Pose& X_WC) {
+  std::vector<DetachedBlocks> left = volume_.shift_to(X_WC.translation());
+  for (DetachedBlocks& blocks : left) slice_worker_.submit(std::move(blocks), frame.utime, X_WC);
+  return static_cast<int>(left.size());
 }
 
 void MapperPipeline::render_model(const RgbdFrame& frame, const Pose& X_WC) {

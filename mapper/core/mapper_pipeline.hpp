@@ -23,6 +23,7 @@ namespace kintsugi::mapper {
 struct FrameResult {
   TrackingResult tracking;
   std::vector<CloudSlice> slices;  ///< finished since the frame before; of any earlier frame
+  int slices_left = 0;             ///< parts of the volume it has just left behind
   StageTimes times;                ///< wall
   StageTimes cpu_times;            ///< of the whole process meanwhile
 };
@@ -68,7 +69,7 @@ class MapperPipeline {
   TrackingResult locate(const RgbdFrame& frame, StageClock& clock);
   TrackingResult locate_on_given_path(const RgbdFrame& frame) const;
   TrackingResult start(const TrackingInput& input);
-  void shift(const RgbdFrame& frame, const Pose& X_WC);
+  int shift(const RgbdFrame& frame, const Pose& X_WC);
   void render_model(const RgbdFrame& frame, const Pose& X_WC);
   int halvings(const Intrinsics& intrinsics) const;
 

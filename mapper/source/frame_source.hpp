@@ -18,6 +18,7 @@ struct SourceCounts {
   std::int64_t color_unpaired = 0;    ///< colour images without a depth image
   std::int64_t frames_bad = 0;        ///< refused: undecodable or of another size
   std::int64_t interruptions = 0;     ///< the camera went away (whether or not it came back)
+  double convert_ms = 0.0;            ///< time spent on metres and undistortion
 };
 
 /// Something that a person at the camera should know, said while the source runs.

@@ -12,6 +12,7 @@
 #include "lcmtypes/bus.hpp"
 #include "lcmtypes/bus_thread.hpp"
 #include "lcmtypes/stream_subscriber.hpp"
+#include "mapper/core/stopwatch.hpp"
 #include "mapper/openni2_driver/calibration.hpp"
 #include "mapper/openni2_driver/image_decoder.hpp"
 #include "mapper/source/frame_converter.hpp"
@@ -144,7 +145,9 @@ std::optional<RgbdFrame> LcmSource::convert(const RgbdFrameMessage& message) {
       conversion_ = std::make_unique<Conversion>(Conversion{
           intrinsics, units_per_m, FrameConverter(intrinsics, units_per_m, config_.max_range_m)});
     }
+    const Stopwatch stopwatch;
     RgbdFrame frame = conversion_->converter.convert(raw);
+    counts_.convert_ms += stopwatch.elapsed_ms();
     last_utime_ = message.utime;
     ++counts_.frames_delivered;
     if (raw.color_rgb.empty()) ++counts_.depth_unpaired;

@@ -8,6 +8,7 @@
 
 #include <unistd.h>
 
+#include "mapper/core/stopwatch.hpp"
 #include "mapper/openni2_driver/calibration.hpp"
 #include "mapper/source/oni_file.hpp"
 
@@ -125,7 +126,10 @@ std::optional<RgbdFrame> OpenNi2Source::next() {
   for (;;) {
     if (const auto raw = pairer_.take()) {
       ++counts_.frames_delivered;
-      return converter_->convert(*raw);
+      const Stopwatch stopwatch;
+      RgbdFrame frame = converter_->convert(*raw);
+      counts_.convert_ms += stopwatch.elapsed_ms();
+      return frame;
     }
     if (!end_reason_.empty()) return std::nullopt;
     if (config_.stop_requested()) {
