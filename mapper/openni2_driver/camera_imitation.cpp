@@ -143,6 +143,9 @@ const std::vector<Option>& options_table() {
       {"replug_after_ms", "MS", [](auto& i, auto& v) { i.replug_after_us = milliseconds(v, 0.0); }},
       {"unplug_silently", "on|off", [](auto& i, auto& v) { i.unplug_silently = on_or_off(v); }},
       {"restart_clock", "on|off", [](auto& i, auto& v) { i.restart_clock = on_or_off(v); }},
+      {"new_port", "on|off", [](auto& i, auto& v) { i.new_port = on_or_off(v); }},
+      {"port", "N", [](auto& i, auto& v) { i.port = count(v); }},
+      {"serial_number", "TEXT", [](auto& i, auto& v) { i.serial_number = v; }},
   };
   return table;
 }

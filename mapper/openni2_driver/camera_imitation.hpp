@@ -51,6 +51,9 @@ struct CameraImitation {
   std::optional<std::int64_t> replug_after_us;
   bool unplug_silently = false;  ///< nobody is told: images just stop coming
   bool restart_clock = false;    ///< counts its time from 0 when it is back
+  bool new_port = false;         ///< comes back under another address: with port=1
+  int port = 0;                  ///< makes an address another one, nothing else
+  std::string serial_number;     ///< empty: it has none
 
   /// Takes the options that are of this kind out of `options`.
   /// @throws std::invalid_argument naming option, value and what was expected.

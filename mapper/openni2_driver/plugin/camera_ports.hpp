@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace kintsugi::mapper::camera_ports {
 
@@ -13,8 +14,13 @@ namespace kintsugi::mapper::camera_ports {
 /// The camera at an address goes away.
 /// @param utime of the last image, in the recording's time.
 /// @param away absent: for good.
+/// @param new_uri its address when it is back, which may be the same.
 void unplug(const std::string& uri, std::int64_t utime,
-            std::optional<std::chrono::microseconds> away);
+            std::optional<std::chrono::microseconds> away, const std::string& new_uri);
+
+/// The addresses of the cameras that are plugged in, of those that the environment variable
+/// KINTSUGI_CAMERAS lists (separated by blanks).
+std::vector<std::string> listed();
 
 /// False while the camera is away.
 bool is_plugged_in(const std::string& uri);

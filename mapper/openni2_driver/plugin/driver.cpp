@@ -29,6 +29,16 @@ class Driver : public oni::driver::DriverBase {
  public:
   explicit Driver(OniDriverServices* services) : DriverBase(services) {}
 
+  /// Announces the imitated cameras that are plugged in.
+  OniStatus initialize(oni::driver::DeviceConnectedCallback connected,
+                       oni::driver::DeviceDisconnectedCallback disconnected,
+                       oni::driver::DeviceStateChangedCallback state_changed,
+                       void* cookie) override {
+    const OniStatus status = DriverBase::initialize(connected, disconnected, state_changed, cookie);
+    for (const std::string& uri : camera_ports::listed()) tryDevice(uri.c_str());
+    return status;
+  }
+
   /// OpenNI2 asks every driver about an address it has not seen yet.
   OniStatus tryDevice(const char* uri) override {
     try {
@@ -89,7 +99,8 @@ class Driver : public oni::driver::DriverBase {
   void unplug(const OniDeviceInfo& info, const CameraImitation& imitation, std::int64_t utime) {
     std::optional<std::chrono::microseconds> away;
     if (imitation.replug_after_us) away = std::chrono::microseconds(*imitation.replug_after_us);
-    camera_ports::unplug(info.uri, utime, away);
+    const std::string uri = info.uri;
+    camera_ports::unplug(uri, utime, away, imitation.new_port ? uri + "&port=1" : uri);
     if (!imitation.unplug_silently) deviceDisconnected(&info);
   }
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <utility>
 
 #include "mapper/openni2_driver/device_properties.hpp"
@@ -92,6 +91,8 @@ OniStatus RecordingDevice::getProperty(int id, void* data, int* size) {
           size);
     case ONI_DEVICE_PROPERTY_DRIVER_VERSION:
       return give_property(kDriverVersion, data, size);
+    case ONI_DEVICE_PROPERTY_SERIAL_NUMBER:
+      return give_text(imitation_.serial_number, data, size);
     case kDevicePropertyCalibration:
       return give_calibration(data, size);
     case kDevicePropertyPlaybackError:
@@ -129,6 +130,8 @@ OniBool RecordingDevice::isPropertySupported(int id) {
     case ONI_DEVICE_PROPERTY_PLAYBACK_SPEED:
     case ONI_DEVICE_PROPERTY_PLAYBACK_REPEAT_ENABLED:
       return imitation_.camera ? FALSE : TRUE;
+    case ONI_DEVICE_PROPERTY_SERIAL_NUMBER:
+      return imitation_.serial_number.empty() ? FALSE : TRUE;
     case kDevicePropertyCalibration:
       return imitation_.calibration ? TRUE : FALSE;
     case ONI_DEVICE_PROPERTY_IMAGE_REGISTRATION:
@@ -214,13 +217,8 @@ OniStatus RecordingDevice::give_calibration(void* data, int* size) {
 }
 
 OniStatus RecordingDevice::give_playback_error(void* data, int* size) {
-  if (data == nullptr || *size < 1) return ONI_STATUS_BAD_PARAMETER;
   const std::lock_guard lock(mutex_);
-  const std::size_t length = std::min(playback_error_.size(), static_cast<std::size_t>(*size) - 1);
-  std::memcpy(data, playback_error_.data(), length);
-  static_cast<char*>(data)[length] = '\0';
-  *size = static_cast<int>(length) + 1;
-  return ONI_STATUS_OK;
+  return give_text(playback_error_, data, size);
 }
 
 }  // namespace kintsugi::mapper
