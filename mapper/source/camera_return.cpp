@@ -27,11 +27,7 @@ CameraReturn::CameraReturn(const SourceConfig& config, const OpenNi2Device& came
 std::unique_ptr<OpenNi2Device> CameraReturn::wait(std::chrono::milliseconds patience) {
   std::this_thread::sleep_until(std::min(next_attempt_, Clock::now() + patience));
   if (Clock::now() < next_attempt_) return nullptr;
-  try {
-    return open();
-  } catch (const std::runtime_error& error) {
-    last_error_ = error.what();
-  }
+  if (auto camera = open_any()) return camera;
   pause_ = std::min(2 * pause_, kMaxPause);
   next_attempt_ = Clock::now() + pause_;
   return nullptr;
@@ -41,9 +37,25 @@ double CameraReturn::seconds_away() const {
   return std::chrono::duration<double>(Clock::now() - gone_).count();
 }
 
-std::unique_ptr<OpenNi2Device> CameraReturn::open() const {
-  const auto runtime = OpenNi2Runtime::shared();
-  auto camera = std::make_unique<OpenNi2Device>(find_address(), config_);
+std::unique_ptr<OpenNi2Device> CameraReturn::open_any() {
+  try {
+    const auto runtime = OpenNi2Runtime::shared();  // looks for cameras
+    for (const std::string& uri : addresses()) {
+      try {
+        return open(uri);
+      } catch (const std::runtime_error& error) {
+        last_error_ = error.what();
+      }
+    }
+  } catch (const std::runtime_error& error) {
+    last_error_ = error.what();
+  }
+  return nullptr;
+}
+
+/// @throws std::runtime_error also when it is another camera.
+std::unique_ptr<OpenNi2Device> CameraReturn::open(const std::string& uri) const {
+  auto camera = std::make_unique<OpenNi2Device>(uri, config_);
   const std::string serial_number = camera->serial_number();
   if (!serial_number.empty() && !serial_number_.empty() && serial_number != serial_number_) {
     throw std::runtime_error("another camera is there: its serial number is " + serial_number +
@@ -55,14 +67,16 @@ std::unique_ptr<OpenNi2Device> CameraReturn::open() const {
   return camera;
 }
 
-/// That of the camera as it is plugged in now; where none is listed, the one it had.
-std::string CameraReturn::find_address() const {
-  const auto cameras = plugged_in_cameras();
-  const bool is_listed = std::ranges::any_of(
-      cameras, [&](const openni::DeviceInfo& info) { return uri_ == info.getUri(); });
-  if (is_listed) return uri_;
-  const auto same_name = std::ranges::find(cameras, name_, name_of);
-  return same_name == cameras.end() ? uri_ : same_name->getUri();
+/// Where the camera can be: the address it had, unless cameras are listed and it is not among them;
+/// then those of its name.
+std::vector<std::string> CameraReturn::addresses() const {
+  std::vector<std::string> same_name;
+  for (const openni::DeviceInfo& camera : plugged_in_cameras()) {
+    if (uri_ == camera.getUri()) return {uri_};
+    if (name_ == name_of(camera)) same_name.emplace_back(camera.getUri());
+  }
+  if (same_name.empty()) same_name.push_back(uri_);
+  return same_name;
 }
 
 }  // namespace kintsugi::mapper

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "mapper/source/openni2_device.hpp"
 
@@ -31,11 +32,12 @@ class CameraReturn {
  private:
   using Clock = std::chrono::steady_clock;
 
-  [[nodiscard]] std::unique_ptr<OpenNi2Device> open() const;
-  [[nodiscard]] std::string find_address() const;
+  std::unique_ptr<OpenNi2Device> open_any();
+  [[nodiscard]] std::unique_ptr<OpenNi2Device> open(const std::string& uri) const;
+  [[nodiscard]] std::vector<std::string> addresses() const;
 
   SourceConfig config_;
-  std::string uri_;
+  std::string uri_;  ///< that it had
   std::string name_;
   std::string serial_number_;
   cv::Size image_size_;

@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <cmath>
+#include <cstdlib>
 #include <thread>
 
 #include <gmock/gmock.h>
@@ -149,6 +150,49 @@ TEST_F(CameraThatGoesAway, ThatSendsOnlyBrokenImagesIsOpenedAgain) {
   ASSERT_FALSE(notices_.empty());
   EXPECT_EQ(notices_[0].kind, Kind::kInterrupted);
   EXPECT_THAT(notices_[0].text, HasSubstr("the last image was refused: a frame of"));
+}
+
+/// Cameras that OpenNI2 lists, for as long as this lives.
+class ListedCameras {
+ public:
+  explicit ListedCameras(const std::string& uris) { setenv("KINTSUGI_CAMERAS", uris.c_str(), 1); }
+  ~ListedCameras() { unsetenv("KINTSUGI_CAMERAS"); }
+  ListedCameras(const ListedCameras&) = delete;
+  ListedCameras& operator=(const ListedCameras&) = delete;
+};
+
+TEST_F(CameraThatGoesAway, IsTheFirstCameraUnlessNamed) {
+  const RecordingFolder other;
+  const ListedCameras cameras(folder_.uri() + "?camera=on " + other.uri() + "?camera=on");
+  config_.device = "";
+  source_ = open_frame_source(config_);
+  EXPECT_EQ(source_->name(), "Kintsugi " + folder_.path().filename().string());
+  EXPECT_EQ(read(1).size(), 1U);
+}
+
+TEST_F(CameraThatGoesAway, IsFoundUnderItsNewAddress) {
+  const std::string options = "?unplug_at=15&replug_after_ms=480&new_port=on";
+  const ListedCameras cameras(folder_.uri() + options);
+  open(options);
+  expect_a_gap(read());
+  EXPECT_THAT(kinds(), ElementsAre(Kind::kInterrupted, Kind::kResumed));
+}
+
+TEST_F(CameraThatGoesAway, IsNotMistakenForAnotherOfItsKind) {
+  const std::string options = "?unplug_at=15&replug_after_ms=480&new_port=on&serial_number=A";
+  const ListedCameras cameras(folder_.uri() + "?serial_number=B " + folder_.uri() + options);
+  open(options);
+  expect_a_gap(read());
+  EXPECT_THAT(kinds(), ElementsAre(Kind::kInterrupted, Kind::kResumed));
+}
+
+TEST_F(CameraThatGoesAway, IsWaitedForWhileOnlyAnotherOfItsKindIsThere) {
+  const std::string options = "?unplug_at=15&serial_number=A";
+  const ListedCameras cameras(folder_.uri() + "?serial_number=B " + folder_.uri() + options);
+  config_.reconnect_s = 0.4;
+  open(options);
+  EXPECT_EQ(read().size(), 15U);
+  EXPECT_THAT(source_->end_reason(), HasSubstr("another camera is there: its serial number is B"));
 }
 
 }  // namespace
