@@ -7,6 +7,7 @@
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 
+#include "mapper/process/run_statistics.hpp"
 #include "mapper/process/state_text.hpp"
 
 namespace kintsugi::mapper {
@@ -16,7 +17,8 @@ std::string header() {
   std::string line = "frame_index,utime_us,state,reason,frame_ms,cpu_ms,read_ms,convert_ms";
   for (const Stage& stage : kStages) line += std::string(",") + stage.name;
   return line +
-         ",extract_ms,publish_ms,covered_share,inlier_share,rms_m,iterations,undetermined,slices\n";
+         ",extract_ms,publish_ms,covered_share,inlier_share,rms_m,iterations,undetermined,slices,"
+         "memory_mb\n";
 }
 
 std::string line_of(const RgbdFrame& frame, const TrackingResult& tracking, std::size_t num_slices,
@@ -32,9 +34,10 @@ std::string line_of(const RgbdFrame& frame, const TrackingResult& tracking, std:
   add_ms(timings.extract_ms);
   add_ms(timings.publish_ms);
   const RegistrationQuality& quality = tracking.quality;
-  return line + fmt::format(",{:.4f},{:.4f},{:.6f},{},{},{}\n", quality.covered_share,
+  return line + fmt::format(",{:.4f},{:.4f},{:.6f},{},{},{},{:.1f}\n", quality.covered_share,
                             quality.inlier_share, quality.rms_m, tracking.iterations,
-                            quality.undetermined, num_slices);
+                            quality.undetermined, num_slices,
+                            1e-6 * static_cast<double>(resident_memory_bytes()));
 }
 
 }  // namespace

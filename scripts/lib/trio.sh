@@ -6,6 +6,7 @@ KINTSUGI_BIN="${KINTSUGI_BIN:-$kintsugi_root/build/release/bin}"
 declare -A trio_pid=()      # name -> process id
 declare -A trio_command=()  # name -> command line, quoted
 declare -A trio_restarts=() # name -> how often it was restarted
+declare -A trio_cpu_s=()    # name -> CPU time, s, when last looked at (not of those it replaced)
 stop_requested=0            # set by the script's trap
 
 say() { printf '%s: %s\n' "$(basename "$0")" "$*" >&2; }
@@ -30,6 +31,15 @@ trio_start() {
 }
 
 trio_alive() { [[ -n "${trio_pid[$1]:-}" ]] && kill -0 "${trio_pid[$1]}" 2>/dev/null; }
+
+# trio_note_cpu NAME...: looks at the CPU time of those that run.
+trio_note_cpu() {
+  local name line
+  for name in "$@"; do
+    line="$(cat "/proc/${trio_pid[$name]}/stat" 2>/dev/null)" || continue
+    trio_cpu_s[$name]="$(awk -v hz="$(getconf CLK_TCK)" '{ printf "%.2f", ($12 + $13) / hz }' <<<"${line##*) }")"
+  done
+}
 
 # trio_stop SIGNAL SECONDS NAME...: asks the named processes to stop and waits; kills what does not.
 trio_stop() {
@@ -80,6 +90,7 @@ trio_watch() {
   trio_pid[progress]=$!
   while ((${#ended[@]} < $#)); do
     sleep 0.2 || true
+    trio_note_cpu "$@"
     for name in "$@"; do
       [[ -n "${ended[$name]:-}" ]] || trio_alive "$name" && continue
       code=0
@@ -113,9 +124,13 @@ trio_restart() {
   eval "trio_start $name ${trio_command[$name]}"
 }
 
-# trio_summary: what the run wrote.
+# trio_summary: what the run took and wrote.
 trio_summary() {
-  local file
+  local file name cpu=""
+  for name in mapper segmenter viewer; do
+    [[ -n "${trio_cpu_s[$name]:-}" ]] && cpu+="${cpu:+,} $name ${trio_cpu_s[$name]} s"
+  done
+  printf '  CPU:%s\n' "$cpu"
   say "written:"
   while IFS='|' read -r file what; do
     [[ -e "$out/$file" ]] && printf '  %-28s %s\n' "$out/$file" "$what"

@@ -78,6 +78,7 @@ TEST(FrameLog, HasALineForEachFrameAsSoonAsItIsAppended) {
   EXPECT_EQ(cell(lines, 1, "rms_m"), "0.001500");
   EXPECT_EQ(cell(lines, 1, "iterations"), "9");
   EXPECT_EQ(cell(lines, 1, "slices"), "2");
+  EXPECT_GT(std::stod(cell(lines, 1, "memory_mb")), 1.0);
 }
 
 TEST(FrameLog, SaysWhyAFrameIsLost) {

@@ -1,6 +1,7 @@
 #include "viewer/process/options.hpp"
 
 #include <charconv>
+#include <cmath>
 #include <iostream>
 #include <numbers>
 #include <stdexcept>
@@ -9,6 +10,8 @@
 
 namespace kintsugi::viewer {
 namespace {
+
+constexpr double kDegreesPerRadian = 180.0 / std::numbers::pi;
 
 /// "1280x720".
 void parse_size(const std::string& text, int& width_px, int& height_px) {
@@ -34,6 +37,8 @@ std::optional<Options> parse_options(int argc, char** argv, int& exit_code) {
   std::string folder = viewer.folder.string();
   std::string log;
   std::string video;
+  double overview_yaw_deg = std::round(renderer.view.overview_yaw_rad * kDegreesPerRadian);
+  double overview_pitch_deg = std::round(renderer.view.overview_pitch_rad * kDegreesPerRadian);
   bool print_config = false;
 
   app.set_config("--config", "", "Read options from this file; flags override it");
@@ -62,6 +67,12 @@ std::optional<Options> parse_options(int argc, char** argv, int& exit_code) {
   app.add_option("--follow-radius", renderer.view.follow_radius_m,
                  "The follow view shows the map so far from the camera, m")
       ->capture_default_str();
+  app.add_option("--overview-yaw", overview_yaw_deg,
+                 "The overview looks so far to the left of the first camera's direction, degrees")
+      ->capture_default_str();
+  app.add_option("--overview-pitch", overview_pitch_deg,
+                 "The overview looks so far below the horizon, degrees")
+      ->capture_default_str();
   app.add_option("--splat-radius", renderer.splat.radius_vox,
                  "Radius of the disc drawn for a point, voxels")
       ->capture_default_str();
@@ -74,6 +85,8 @@ std::optional<Options> parse_options(int argc, char** argv, int& exit_code) {
     viewer.view = parse_view(view);
     parse_size(size, renderer.width_px, renderer.height_px);
     viewer.folder = folder;
+    renderer.view.overview_yaw_rad = overview_yaw_deg / kDegreesPerRadian;
+    renderer.view.overview_pitch_rad = overview_pitch_deg / kDegreesPerRadian;
     if (!log.empty() && !options.lcm_url.empty()) {
       throw std::invalid_argument("--log and --lcm-url: expected one of the two");
     }
