@@ -42,6 +42,12 @@ MapPublisher::Config publisher_config(const Options& options) {
   return config;
 }
 
+MapperPipeline::Config pipeline_config(const Options& options, MapFiles& map_files) {
+  MapperPipeline::Config config = options.pipeline;
+  config.slices.on_mesh = map_files.mesh_sink();
+  return config;
+}
+
 bool is_located(TrackingState state) {
   return state == TrackingState::kTracking || state == TrackingState::kGiven;
 }
@@ -51,7 +57,8 @@ bool is_located(TrackingState state) {
 MapperProcess::MapperProcess(const Options& options)
     : options_(options),
       reader_(source_config(options)),
-      pipeline_(options.pipeline),
+      map_files_(options.cloud_file, options.mesh_file),
+      pipeline_(pipeline_config(options, map_files_)),
       publisher_(publisher_config(options)) {
   if (!options.timings_file.empty()) frame_log_.emplace(options.timings_file);
 }
@@ -60,13 +67,10 @@ void MapperProcess::run() {
   log_start();
   map_frames();
   publish_rest();
+  map_files_.commit();
   write_path();
   log_summary();
-  reader_.rethrow_failure();
-  if (reader_.finished() && !reader_.ended_well()) {
-    throw std::runtime_error("the device ended early, what came before is mapped: " +
-                             reader_.end_reason());
-  }
+  throw_failures();
 }
 
 void MapperProcess::map_frames() {
@@ -107,7 +111,12 @@ void MapperProcess::publish_frame(const RgbdFrame& frame, FrameResult& result) {
   const TrackingResult& tracking = result.tracking;
   publisher_.publish_pose({frame.utime, 0, frame.frame_index, tracking.state, tracking.X_WC});
   publisher_.publish_frame(frame);
-  publisher_.publish_slices(std::move(result.slices));
+  publish_slices(std::move(result.slices));
+}
+
+void MapperProcess::publish_slices(std::vector<CloudSlice> slices) {
+  map_files_.add(slices);
+  publisher_.publish_slices(std::move(slices));
 }
 
 /// What other threads did meanwhile.
@@ -121,7 +130,7 @@ void MapperProcess::measure(const TimedFrame& read, FrameTimings& timings) {
 }
 
 void MapperProcess::publish_rest() {
-  publisher_.publish_slices(pipeline_.finish());
+  publish_slices(pipeline_.finish());
   publisher_.flush();
   publish_status(true);
 }
@@ -189,6 +198,17 @@ void MapperProcess::log_summary() const {
                publisher_.points_published(), publisher_.chunks_published());
   if (!options_.output_path_file.empty()) {
     spdlog::info("camera path of {} poses in {}", path_.size(), options_.output_path_file);
+  }
+}
+
+void MapperProcess::throw_failures() const {
+  reader_.rethrow_failure();
+  if (reader_.finished() && !reader_.ended_well()) {
+    throw std::runtime_error("the device ended early, what came before is mapped: " +
+                             reader_.end_reason());
+  }
+  if (map_files_.failed()) {
+    throw std::runtime_error("a file of the map is missing, all else is done; see above");
   }
 }
 

@@ -1,12 +1,14 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "lcmtypes/trajectory.hpp"
 #include "mapper/core/mapper_pipeline.hpp"
 #include "mapper/core/stopwatch.hpp"
 #include "mapper/process/frame_log.hpp"
 #include "mapper/process/frame_reader.hpp"
+#include "mapper/process/map_files.hpp"
 #include "mapper/process/map_publisher.hpp"
 #include "mapper/process/options.hpp"
 #include "mapper/process/run_statistics.hpp"
@@ -20,7 +22,7 @@ class MapperProcess {
   explicit MapperProcess(const Options& options);
 
   /// Until the device ends, max_frames, or a stop signal. Then the final slice is published and
-  /// everything sent, and the camera's path written.
+  /// everything sent, and the files asked for written.
   /// @throws std::runtime_error when reading, sending or writing failed or the recording ended
   ///   before its time; what could be mapped and sent before that was
   void run();
@@ -29,6 +31,7 @@ class MapperProcess {
   void map_frames();
   void map_frame(const TimedFrame& read);
   void publish_frame(const RgbdFrame& frame, FrameResult& result);
+  void publish_slices(std::vector<CloudSlice> slices);
   void measure(const TimedFrame& read, FrameTimings& timings);
   void publish_rest();
   void write_path();
@@ -37,9 +40,11 @@ class MapperProcess {
   void log_start() const;
   void log_change_of_state(const FrameResult& result, const RgbdFrame& frame);
   void log_summary() const;
+  void throw_failures() const;
 
   const Options options_;
   FrameReader reader_;
+  MapFiles map_files_;  ///< before the pipeline, whose worker writes to it
   MapperPipeline pipeline_;
   MapPublisher publisher_;
   RunStatistics statistics_;

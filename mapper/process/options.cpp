@@ -66,6 +66,8 @@ void add_mapping_flags(CLI::App& app, Options& options) {
 void add_output_flags(CLI::App& app, Options& options) {
   app.option_defaults()->group("Files to write");
   app.add_option("--output-trajectory", options.output_path_file, "the camera's path, TUM format");
+  app.add_option("--cloud", options.cloud_file, "the points of every slice, PLY");
+  app.add_option("--mesh", options.mesh_file, "the surface as triangles, PLY");
   app.add_option("--timings", options.timings_file,
                  "what each frame cost and what became of it, CSV");
 }
@@ -116,6 +118,9 @@ void Options::validate() const {
   check_range<std::int64_t>("--session", session, 1, INT64_MAX);
   check_range("--threads", threads, 0, 1024);
   if (std::isnan(lock_exposure_s)) throw std::invalid_argument("--lock-exposure is nan");
+  if (!cloud_file.empty() && cloud_file == mesh_file) {
+    throw std::invalid_argument("--cloud and --mesh are both '" + cloud_file + "'");
+  }
   if (map_name.empty() || map_name.size() > kMaxStringBytes) {
     throw std::invalid_argument("--map-name has " + std::to_string(map_name.size()) +
                                 " bytes, must have 1 to " + std::to_string(kMaxStringBytes));

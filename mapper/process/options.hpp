@@ -17,6 +17,8 @@ struct Options {
   double resolution_m = 0.0;     ///< side of a voxel; 0: 1/512 of the volume's side
   std::string given_path_file;   ///< TUM; empty: track
   std::string output_path_file;  ///< TUM; empty: none is written
+  std::string cloud_file;        ///< PLY; empty: none is written
+  std::string mesh_file;         ///< PLY; empty: none is made
   std::string timings_file;      ///< CSV, a line a frame; empty: none is written
   std::string ground_truth_dir;  ///< where a synthetic:// device writes its truth; empty: nowhere
   std::int64_t max_frames = 0;   ///< 0: no limit

@@ -36,10 +36,31 @@ Outcome run_mapper(const std::string& flags) {
 TEST(Mapper, HelpListsTheFlags) {
   const Outcome outcome = run_mapper("--help");
   EXPECT_EQ(outcome.exit_code, 0);
-  for (const char* flag :
-       {"--device", "--calibration", "--volume-size", "--resolution", "--shift", "--min-weight",
-        "--trajectory", "--output-trajectory", "--max-frames", "--publish-frames", "--replay",
-        "--lcm-url", "--map-name", "--session", "--ground-truth", "--config", "--print-config"}) {
+  for (const char* flag : {"--device",
+                           "--calibration",
+                           "--volume-size",
+                           "--resolution",
+                           "--shift",
+                           "--min-weight",
+                           "--trajectory",
+                           "--output-trajectory",
+                           "--cloud",
+                           "--mesh",
+                           "--timings",
+                           "--threads",
+                           "--depth-mode",
+                           "--color-mode",
+                           "--assume-registered",
+                           "--lock-exposure",
+                           "--max-frames",
+                           "--publish-frames",
+                           "--replay",
+                           "--lcm-url",
+                           "--map-name",
+                           "--session",
+                           "--ground-truth",
+                           "--config",
+                           "--print-config"}) {
     EXPECT_THAT(outcome.text, HasSubstr(flag));
   }
 }

@@ -117,6 +117,8 @@ TEST(Options, TakesTheFlagsOfCameras) {
   EXPECT_DOUBLE_EQ(camera.max_range_m, 4.0);
   EXPECT_FALSE(options_of({}).source.lock_exposure_after_s);
   EXPECT_THAT(error_of({"--depth-mode", "big"}), HasSubstr("depth_mode"));
+  EXPECT_THAT(error_of({"--cloud", "a.ply", "--mesh", "a.ply"}),
+              HasSubstr("--cloud and --mesh are both 'a.ply'"));
   EXPECT_THAT(error_of({"--lock-exposure", "nan"}), HasSubstr("--lock-exposure is nan"));
 }
 

@@ -1,0 +1,53 @@
+#include "mapper/process/map_files.hpp"
+
+#include <exception>
+
+#include <spdlog/spdlog.h>
+
+namespace kintsugi::mapper {
+
+template <typename Writer>
+MapFiles::Output<Writer>::Output(const std::string& path) : path(path) {
+  if (!path.empty()) writer.emplace(path);
+}
+
+template <typename Writer>
+void MapFiles::Output<Writer>::attempt(const std::function<void(Writer&)>& action) {
+  if (!writer) return;
+  try {
+    action(*writer);
+  } catch (const std::exception& error) {
+    spdlog::error("{}: given up, mapping goes on: {}", path, error.what());
+    writer.reset();
+    failed = true;
+  }
+}
+
+MapFiles::MapFiles(const std::string& cloud, const std::string& mesh)
+    : cloud_(cloud), mesh_(mesh) {}
+
+void MapFiles::add(const std::vector<CloudSlice>& slices) {
+  cloud_.attempt([&slices](CloudWriter& writer) {
+    for (const CloudSlice& slice : slices) writer.append(slice.points_W);
+  });
+}
+
+std::function<void(const MeshPiece&)> MapFiles::mesh_sink() {
+  if (!mesh_.writer) return {};
+  return [this](const MeshPiece& piece) {
+    mesh_.attempt([&piece](MeshWriter& writer) { writer.append(piece); });
+  };
+}
+
+void MapFiles::commit() {
+  cloud_.attempt([this](CloudWriter& writer) {
+    writer.commit();
+    spdlog::info("cloud of {} points in {}", writer.num_points(), cloud_.path);
+  });
+  mesh_.attempt([this](MeshWriter& writer) {
+    writer.commit();
+    spdlog::info("mesh of {} triangles in {}", writer.num_triangles(), mesh_.path);
+  });
+}
+
+}  // namespace kintsugi::mapper
