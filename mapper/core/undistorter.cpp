@@ -32,16 +32,19 @@ Undistorter::Undistorter(const Intrinsics& intrinsics) : pinhole_(intrinsics) {
                            0.0, intrinsics.fy, intrinsics.cy,  //
                            0.0, 0.0, 1.0);
   const cv::Mat distortion(1, 5, CV_64F, const_cast<double*>(intrinsics.distortion.data()));
+  cv::Mat source_px;
   cv::Mat unused;
   cv::initUndistortRectifyMap(camera, distortion, cv::Matx33d::eye(), camera,
-                              {intrinsics.width, intrinsics.height}, CV_32FC2, map_, unused);
+                              {intrinsics.width, intrinsics.height}, CV_32FC2, source_px, unused);
+  cv::convertMaps(source_px, cv::noArray(), nearest_px_, unused, CV_16SC2, true);
+  cv::convertMaps(source_px, cv::noArray(), whole_px_, fraction_, CV_16SC2, false);
 }
 
 cv::Mat_<float> Undistorter::undistort_depth(const cv::Mat_<float>& depth_m) const {
   check_size(depth_m);
   if (!active()) return depth_m;
   cv::Mat_<float> result;
-  cv::remap(depth_m, result, map_, cv::noArray(), cv::INTER_NEAREST, cv::BORDER_CONSTANT,
+  cv::remap(depth_m, result, nearest_px_, cv::noArray(), cv::INTER_NEAREST, cv::BORDER_CONSTANT,
             cv::Scalar::all(std::numeric_limits<double>::quiet_NaN()));
   return result;
 }
@@ -50,7 +53,7 @@ cv::Mat_<cv::Vec3b> Undistorter::undistort_color(const cv::Mat_<cv::Vec3b>& colo
   check_size(color_rgb);
   if (!active()) return color_rgb;
   cv::Mat_<cv::Vec3b> result;
-  cv::remap(color_rgb, result, map_, cv::noArray(), cv::INTER_LINEAR, cv::BORDER_CONSTANT);
+  cv::remap(color_rgb, result, whole_px_, fraction_, cv::INTER_LINEAR, cv::BORDER_CONSTANT);
   return result;
 }
 

@@ -19,7 +19,7 @@ class Undistorter {
   [[nodiscard]] const Intrinsics& intrinsics() const { return pinhole_; }
 
   /// False: the lens has no distortion and images pass through unchanged (the same pixels).
-  [[nodiscard]] bool active() const { return !map_.empty(); }
+  [[nodiscard]] bool active() const { return !nearest_px_.empty(); }
 
   /// Nearest neighbour, because a mean across a depth edge is a point that does not exist. Pixels
   /// from outside the image become NaN. height x width, else std::invalid_argument.
@@ -33,7 +33,10 @@ class Undistorter {
   void check_size(const cv::Mat& image) const;
 
   Intrinsics pinhole_;
-  cv::Mat map_;  ///< source pixel of each pixel (CV_32FC2), or empty
+  // Source pixel of each pixel, in OpenCV's fixed-point form; or empty.
+  cv::Mat nearest_px_;  ///< rounded
+  cv::Mat whole_px_;    ///< rounded down
+  cv::Mat fraction_;    ///< what that leaves, in 1/32 of a pixel
 };
 
 }  // namespace kintsugi::mapper

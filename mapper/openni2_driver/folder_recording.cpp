@@ -63,7 +63,8 @@ cv::Mat_<std::uint16_t> FolderRecording::depth(int index, DepthUnit unit) {
   cv::Mat_<std::uint16_t> depth =
       decode_depth(read_bytes(file), image_size(intrinsics()), file.string());
   const DepthTable& table = tables_.at(static_cast<std::size_t>(unit));
-  for (std::uint16_t& value : depth) value = table[value];
+  std::transform(depth[0], depth[0] + depth.total(), depth[0],
+                 [&](std::uint16_t raw) { return table[raw]; });
   return depth;
 }
 

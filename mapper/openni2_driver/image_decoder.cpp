@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <fstream>
-#include <iterator>
 #include <stdexcept>
 #include <string_view>
+#include <system_error>
 
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -89,10 +89,13 @@ cv::Mat_<cv::Vec3b> decode_color(Bytes bytes, cv::Size expected, const std::stri
 }
 
 std::vector<std::uint8_t> read_bytes(const std::filesystem::path& file) {
+  std::error_code failure;  // also of a folder
+  const std::uintmax_t size = std::filesystem::file_size(file, failure);
   std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw std::runtime_error(file.string() + ": cannot be read");
-  std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(stream), {}};
-  if (stream.bad()) throw std::runtime_error(file.string() + ": reading it failed");
+  if (failure || !stream) throw std::runtime_error(file.string() + ": cannot be read");
+  std::vector<std::uint8_t> bytes(size);
+  stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
+  if (!stream) throw std::runtime_error(file.string() + ": reading it failed");
   return bytes;
 }
 

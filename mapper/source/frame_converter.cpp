@@ -1,5 +1,6 @@
 #include "mapper/source/frame_converter.hpp"
 
+#include <algorithm>
 #include <limits>
 #include <stdexcept>
 #include <string>
@@ -8,16 +9,19 @@ namespace kintsugi::mapper {
 
 cv::Mat_<float> depth_to_metres(const cv::Mat_<std::uint16_t>& depth_raw, double units_per_m,
                                 double max_range_m) {
-  constexpr std::uint16_t kSaturated = std::numeric_limits<std::uint16_t>::max();
-  const double m_per_unit = 1.0 / units_per_m;
+  constexpr double kLargest = std::numeric_limits<std::uint16_t>::max() - 1;  // then: saturated
+  constexpr double kRounding = 1e-6;  // of units: 6.5 m times 1000 is to be 6500
+  const auto max_raw =
+      static_cast<std::uint16_t>(std::min(kLargest, max_range_m * units_per_m + kRounding));
+  const auto divisor = static_cast<float>(units_per_m);
   cv::Mat_<float> depth_m(depth_raw.size());
   for (int y = 0; y < depth_raw.rows; ++y) {
     const std::uint16_t* raw = depth_raw[y];
     float* out = depth_m[y];
     for (int x = 0; x < depth_raw.cols; ++x) {
-      const double metres = raw[x] * m_per_unit;
-      const bool valid = raw[x] != 0 && raw[x] != kSaturated && metres <= max_range_m;
-      out[x] = valid ? static_cast<float>(metres) : std::numeric_limits<float>::quiet_NaN();
+      const bool valid = raw[x] != 0 && raw[x] <= max_raw;
+      out[x] =
+          valid ? static_cast<float>(raw[x]) / divisor : std::numeric_limits<float>::quiet_NaN();
     }
   }
   return depth_m;
