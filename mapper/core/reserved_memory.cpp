@@ -1,5 +1,7 @@
 #include "mapper/core/reserved_memory.hpp"
 
+#include <algorithm>
+#include <memory>
 #include <new>
 #include <utility>
 
@@ -8,25 +10,37 @@
 namespace kintsugi::mapper {
 namespace {
 
-constexpr std::size_t kStepBytes = std::size_t{1} << 21;  // a huge page
+constexpr std::size_t kHugePageBytes = std::size_t{1} << 21;
+
+std::size_t round_up(std::size_t bytes) {
+  return (bytes + kHugePageBytes - 1) / kHugePageBytes * kHugePageBytes;
+}
 
 }  // namespace
 
-ReservedMemory::ReservedMemory(std::size_t reserved_bytes) : reserved_bytes_(reserved_bytes) {
-  void* const range = ::mmap(nullptr, reserved_bytes, PROT_NONE,
-                             MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-  if (range == MAP_FAILED) throw std::bad_alloc();
-  // Scattered reads in pages of 4 kB cost a page walk each. Only a wish.
-  ::madvise(range, reserved_bytes, MADV_HUGEPAGE);
-  data_ = static_cast<std::byte*>(range);
+ReservedMemory::ReservedMemory(std::size_t reserved_bytes)
+    : range_bytes_(reserved_bytes + kHugePageBytes), reserved_bytes_(reserved_bytes) {
+  range_ =
+      ::mmap(nullptr, range_bytes_, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  if (range_ == MAP_FAILED) throw std::bad_alloc();
+  // Scattered reads in pages of 4 kB cost a page walk each. Huge pages are only a wish, and they
+  // need their alignment.
+  ::madvise(range_, range_bytes_, MADV_HUGEPAGE);
+  std::size_t space = range_bytes_;
+  void* start = range_;
+  data_ = static_cast<std::byte*>(std::align(kHugePageBytes, reserved_bytes, start, space));
 }
 
 ReservedMemory::ReservedMemory(ReservedMemory&& other) noexcept
-    : data_(std::exchange(other.data_, nullptr)),
+    : range_(std::exchange(other.range_, nullptr)),
+      range_bytes_(std::exchange(other.range_bytes_, 0)),
+      data_(std::exchange(other.data_, nullptr)),
       reserved_bytes_(std::exchange(other.reserved_bytes_, 0)),
       committed_bytes_(std::exchange(other.committed_bytes_, 0)) {}
 
 ReservedMemory& ReservedMemory::operator=(ReservedMemory&& other) noexcept {
+  std::swap(range_, other.range_);
+  std::swap(range_bytes_, other.range_bytes_);
   std::swap(data_, other.data_);
   std::swap(reserved_bytes_, other.reserved_bytes_);
   std::swap(committed_bytes_, other.committed_bytes_);
@@ -34,14 +48,13 @@ ReservedMemory& ReservedMemory::operator=(ReservedMemory&& other) noexcept {
 }
 
 ReservedMemory::~ReservedMemory() {
-  if (data_ != nullptr) ::munmap(data_, reserved_bytes_);
+  if (range_ != nullptr) ::munmap(range_, range_bytes_);
 }
 
 void ReservedMemory::commit(std::size_t bytes) {
   if (bytes <= committed_bytes_) return;
   if (bytes > reserved_bytes_) throw std::bad_alloc();
-  const std::size_t end = (bytes + kStepBytes - 1) / kStepBytes * kStepBytes;
-  const std::size_t usable = end < reserved_bytes_ ? end : reserved_bytes_;
+  const std::size_t usable = std::min(round_up(bytes), reserved_bytes_);
   if (::mprotect(data_, usable, PROT_READ | PROT_WRITE) != 0) throw std::bad_alloc();
   committed_bytes_ = usable;
 }

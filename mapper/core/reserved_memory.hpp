@@ -28,7 +28,9 @@ class ReservedMemory {
   void release();
 
  private:
-  std::byte* data_ = nullptr;
+  void* range_ = nullptr;  ///< as the system gave it
+  std::size_t range_bytes_ = 0;
+  std::byte* data_ = nullptr;  ///< in it, at the start of a huge page
   std::size_t reserved_bytes_ = 0;
   std::size_t committed_bytes_ = 0;
 };

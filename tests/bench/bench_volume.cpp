@@ -2,14 +2,18 @@
 //
 //   build/release/bench/bench_volume --benchmark_repetitions=5 --benchmark_report_aggregates_only
 
+#include <string>
 #include <vector>
 
 #include <benchmark/benchmark.h>
+#include <oneapi/tbb/global_control.h>
 
+#include "mapper/core/instruction_set.hpp"
 #include "mapper/core/integrator.hpp"
 #include "mapper/core/raycaster.hpp"
 #include "mapper/core/rgbd_frame.hpp"
 #include "mapper/core/surface_extractor.hpp"
+#include "mapper/core/surface_pyramid.hpp"
 #include "mapper/core/tsdf_volume.hpp"
 #include "mapper/synthetic/renderer.hpp"
 #include "mapper/synthetic/scenes.hpp"
@@ -53,9 +57,36 @@ TsdfVolume office_volume() {
   return volume;
 }
 
+/// The stages in which instruction set and number of threads matter.
+void for_each_path(benchmark::internal::Benchmark* benchmark) {
+  benchmark->ArgNames({"instruction_set", "threads"});
+  for (const InstructionSet instruction_set : kInstructionSets) {
+    if (!is_supported(instruction_set)) continue;
+    for (const int threads : {1, 2}) benchmark->Args({static_cast<int>(instruction_set), threads});
+  }
+  benchmark->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
+}
+
+InstructionSet instruction_set_of(benchmark::State& state) {
+  const auto instruction_set = static_cast<InstructionSet>(state.range(0));
+  state.SetLabel(std::string(name_of(instruction_set)));
+  return instruction_set;
+}
+
+class ThreadLimit {
+ public:
+  explicit ThreadLimit(const benchmark::State& state)
+      : limit_(tbb::global_control::max_allowed_parallelism,
+               static_cast<std::size_t>(state.range(1))) {}
+
+ private:
+  tbb::global_control limit_;
+};
+
 void integrate(benchmark::State& state) {
+  const ThreadLimit limit(state);
   TsdfVolume volume = office_volume();
-  const Integrator integrator({.instruction_set = static_cast<InstructionSet>(state.range(0))});
+  const Integrator integrator({.instruction_set = instruction_set_of(state)});
   std::size_t i = 0;
   for (auto _ : state) {
     const View& view = office_views()[i++ % office_views().size()];
@@ -63,39 +94,21 @@ void integrate(benchmark::State& state) {
   }
   state.counters["blocks"] = static_cast<double>(volume.num_blocks());
 }
-BENCHMARK(integrate)
-    ->ArgName("instruction_set")
-    ->Arg(static_cast<int>(InstructionSet::kPortable))
-    ->Arg(static_cast<int>(InstructionSet::kAvx2))
-    ->Unit(benchmark::kMillisecond)
-    ->MeasureProcessCPUTime()
-    ->UseRealTime();
+BENCHMARK(integrate)->Apply(for_each_path);
 
-void raycast(benchmark::State& state) {
+void raycast(benchmark::State& state, bool guided) {
+  const ThreadLimit limit(state);
   const TsdfVolume volume = office_volume();
-  const bool guided = state.range(0) != 0;
-  const Raycaster raycaster({});
+  const Raycaster raycaster({.instruction_set = instruction_set_of(state)});
   std::size_t i = 0;
   for (auto _ : state) {
     const View& view = office_views()[i++ % office_views().size()];
-    Intrinsics half = view.frame.intrinsics;
-    half.width /= 2;
-    half.height /= 2;
-    half.fx /= 2;
-    half.fy /= 2;
-    half.cx = (half.cx + 0.5) / 2 - 0.5;
-    half.cy = (half.cy + 0.5) / 2 - 0.5;
-    benchmark::DoNotOptimize(raycaster.raycast(volume, view.X_WC, half,
+    benchmark::DoNotOptimize(raycaster.raycast(volume, view.X_WC, half_size(view.frame.intrinsics),
                                                guided ? view.frame.depth_m : cv::Mat_<float>()));
   }
 }
-BENCHMARK(raycast)
-    ->ArgName("guided")
-    ->Arg(0)
-    ->Arg(1)
-    ->Unit(benchmark::kMillisecond)
-    ->MeasureProcessCPUTime()
-    ->UseRealTime();
+BENCHMARK_CAPTURE(raycast, guided, true)->Apply(for_each_path);
+BENCHMARK_CAPTURE(raycast, unguided, false)->Apply(for_each_path);
 
 void extract(benchmark::State& state) {
   const DetachedBlocks blocks = office_volume().snapshot();

@@ -1,3 +1,4 @@
+#include <cstdint>
 #include <cstring>
 #include <new>
 #include <utility>
@@ -13,6 +14,7 @@ namespace {
 TEST(ReservedMemory, GrowsInPlaceAndStartsAtZero) {
   ReservedMemory memory(std::size_t{1} << 33);
   EXPECT_EQ(memory.committed_bytes(), 0U);
+  EXPECT_EQ(reinterpret_cast<std::uintptr_t>(memory.data()) % (1U << 21), 0U);
   memory.commit(1);
   std::byte* const start = memory.data();
   start[0] = std::byte{7};
