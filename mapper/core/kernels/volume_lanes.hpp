@@ -34,6 +34,8 @@ class VolumeLanes {
 
   explicit VolumeLanes(const RaycastVolume& volume) : volume_(volume) {}
 
+  Float truncation_vox() const { return Float(volume_.truncation_vox); }
+
   static Float distance_of(const Int& voxel) {
     return to_float(shift_right_signed<16>(shift_left<16>(voxel))) * Float(kInverseScale);
   }
