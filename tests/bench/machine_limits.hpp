@@ -1,0 +1,70 @@
+#pragma once
+// What a processor can do at most with a pack: the yardsticks for the kernels.
+
+#include <cstddef>
+#include <cstdint>
+
+namespace kintsugi::mapper::bench {
+
+/// Loops that do one kind of work and nothing else. Each returns something that depends on all of
+/// it, so that none is optimised away.
+struct MachineLimits {
+  /// `count` rounds of 8 independent chains of one multiplication and one addition, in 16 lanes.
+  float (*calculate)(std::size_t count);
+  /// The sum of `count` numbers; a multiple of 64.
+  float (*read)(const float* numbers, std::size_t count);
+  /// The sum of `count` gathers of 16 words, from neighbouring addresses (as rays of neighbouring
+  /// pixels read them) that jump about in `size` words; a power of two of at least 1024.
+  std::int32_t (*read_scattered)(const std::int32_t* words, std::size_t size, std::size_t count);
+};
+
+extern const MachineLimits kPortableLimits;
+extern const MachineLimits kAvx2Limits;
+extern const MachineLimits kAvx512Limits;
+
+/// What the three are instantiated from.
+template <typename Pack>
+struct MachineLoops {
+  using Float = typename Pack::Float;
+  using Int = typename Pack::Int;
+  using Mask = typename Pack::Mask;
+
+  static float calculate(std::size_t count) {
+    Float a[8];
+    for (int i = 0; i < 8; ++i) a[i] = Float(static_cast<float>(i));
+    const Float factor(0.999F);
+    const Float term(0.001F);
+    for (std::size_t round = 0; round < count; ++round) {
+      for (Float& chain : a) chain = chain * factor + term;
+    }
+    return reduce_add((a[0] + a[1] + a[2] + a[3]) + (a[4] + a[5] + a[6] + a[7]));
+  }
+
+  static float read(const float* numbers, std::size_t count) {
+    Float sums[4] = {Float(0.0F), Float(0.0F), Float(0.0F), Float(0.0F)};
+    for (std::size_t i = 0; i < count; i += 64) {
+      for (int k = 0; k < 4; ++k) sums[k] = sums[k] + Float::load(numbers + i + 16 * k);
+    }
+    return reduce_add((sums[0] + sums[1]) + (sums[2] + sums[3]));
+  }
+
+  static std::int32_t read_scattered(const std::int32_t* words, std::size_t size,
+                                     std::size_t count) {
+    // 4 x 4 words, in rows of 8 as those of a block of voxels.
+    const Int near = (Int::iota() & Int(3)) + shift_left<1>(Int::iota() & Int(12));
+    const Mask all = Mask::first(Pack::kNumLanes);
+    const auto mask = static_cast<std::uint32_t>(size - 1) & ~63U;
+    std::uint32_t random = 1;
+    Int sum(0);
+    for (std::size_t i = 0; i < count; ++i) {
+      random = random * 1664525U + 1013904223U;
+      const auto place = static_cast<std::int32_t>((random >> 4) & mask);
+      sum = sum + gather(words, Int(place) + near, all);
+    }
+    std::int32_t lanes[Pack::kNumLanes];
+    sum.store(lanes);
+    return lanes[0] + lanes[15];
+  }
+};
+
+}  // namespace kintsugi::mapper::bench
