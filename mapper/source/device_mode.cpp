@@ -67,7 +67,7 @@ std::string list_of(std::span<const DeviceMode> offered) {
   std::ranges::sort(modes, [](const DeviceMode& a, const DeviceMode& b) {
     return std::tuple(a.width, a.height, a.rate_hz) > std::tuple(b.width, b.height, b.rate_hz);
   });
-  modes.erase(std::ranges::unique(modes).begin(), modes.end());
+  modes.erase(std::unique(modes.begin(), modes.end()), modes.end());
   std::string list;
   for (const DeviceMode& mode : modes) {
     if (!list.empty()) list += ' ';
