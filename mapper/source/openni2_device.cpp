@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <mutex>
 #include <stdexcept>
 #include <utility>
@@ -12,6 +11,7 @@
 
 #include "mapper/openni2_driver/device_properties.hpp"
 #include "mapper/source/openni2_image.hpp"
+#include "mapper/source/openni2_intrinsics.hpp"
 #include "mapper/source/openni2_modes.hpp"
 #include "mapper/source/openni2_runtime.hpp"
 
@@ -25,10 +25,6 @@ std::string first_camera() {
         "no camera found: OpenNI2 lists no device (is it plugged in, and may this user open it?)");
   }
   return cameras.front().getUri();
-}
-
-double focal_length_px(int pixels, double field_of_view_rad) {
-  return 0.5 * pixels / std::tan(0.5 * field_of_view_rad);
 }
 
 }  // namespace
@@ -184,19 +180,7 @@ bool OpenNi2Device::lock_exposure() {
   return exposure && white_balance;
 }
 
-OpenNi2Device::State OpenNi2Device::state() const {
-  switch (implementation_->listener.state()) {
-    case DeviceListener::State::kPlaying:
-      return State::kPlaying;
-    case DeviceListener::State::kEnded:
-      return State::kEnded;
-    case DeviceListener::State::kFailed:
-      return State::kFailed;
-    case DeviceListener::State::kGone:
-      break;
-  }
-  return State::kGone;
-}
+DeviceState OpenNi2Device::state() const { return implementation_->listener.state(); }
 
 std::string OpenNi2Device::failure() const {
   const openni::Device& device = implementation_->device;
@@ -247,39 +231,8 @@ int OpenNi2Device::depth_rate_hz() const {
 cv::Size OpenNi2Device::image_size() const { return mode_of(implementation_->depth).size(); }
 
 Intrinsics OpenNi2Device::intrinsics() const {
-  const openni::Device& device = implementation_->device;
-  DeviceCalibration own{};
-  int size = sizeof(own);
-  if (device.isPropertySupported(kDevicePropertyCalibration) &&
-      device.getProperty(kDevicePropertyCalibration, &own, &size) == openni::STATUS_OK) {
-    Intrinsics intrinsics{.fx = own.fx,
-                          .fy = own.fy,
-                          .cx = own.cx,
-                          .cy = own.cy,
-                          .width = own.width,
-                          .height = own.height,
-                          .distortion = {}};
-    std::ranges::copy(own.distortion, intrinsics.distortion.begin());
-    return intrinsics;
-  }
-  const cv::Size image = image_size();
-  // Registered depth is what the colour camera would measure. Both cameras tell the view of an
-  // image of depth's shape, also when colour is taller (PrimeSense's 1280x1024).
-  const bool from_color = has_color() && implementation_->color.getHorizontalFieldOfView() > 0.0F;
-  const openni::VideoStream& camera = from_color ? implementation_->color : implementation_->depth;
-  const double width_rad = camera.getHorizontalFieldOfView();
-  const double height_rad = camera.getVerticalFieldOfView();
-  if (!(width_rad > 0.0 && height_rad > 0.0)) {
-    throw std::runtime_error("device '" + implementation_->uri +
-                             "' does not tell its field of view: give its calibration file");
-  }
-  return {.fx = focal_length_px(image.width, width_rad),
-          .fy = focal_length_px(image.height, height_rad),
-          .cx = 0.5 * image.width,  // as OpenNI2's own CoordinateConverter has it
-          .cy = 0.5 * image.height,
-          .width = image.width,
-          .height = image.height,
-          .distortion = {}};
+  const Implementation& impl = *implementation_;
+  return intrinsics_of(impl.device, impl.depth, impl.color);
 }
 
 }  // namespace kintsugi::mapper

@@ -8,6 +8,7 @@
 
 #include <opencv2/core.hpp>
 
+#include "mapper/source/device_state.hpp"
 #include "mapper/source/frame_source.hpp"
 
 namespace kintsugi::mapper {
@@ -29,13 +30,6 @@ struct DeviceImage {
 /// first device of the process and shut down with the last.
 class OpenNi2Device {
  public:
-  enum class State {
-    kPlaying,
-    kEnded,   ///< a recording is over
-    kFailed,  ///< the device reports a fault
-    kGone,    ///< the device has been disconnected
-  };
-
   /// @param uri as OpenNI2 has it; empty: the first camera.
   /// @throws std::runtime_error with the device and what OpenNI2 says.
   OpenNi2Device(const std::string& uri, const SourceConfig& config);
@@ -56,7 +50,7 @@ class OpenNi2Device {
   void stop();
 
   /// What the device has said; images from before may still be there to be read.
-  [[nodiscard]] State state() const;
+  [[nodiscard]] DeviceState state() const;
 
   /// Why state() is kFailed, where the device told.
   [[nodiscard]] std::string failure() const;

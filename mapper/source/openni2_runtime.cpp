@@ -52,12 +52,12 @@ DeviceListener::~DeviceListener() {
 void DeviceListener::onDeviceStateChanged(const openni::DeviceInfo* info,
                                           openni::DeviceState state) {
   if (info == nullptr || uri_ != info->getUri()) return;
-  if (state == openni::DEVICE_STATE_EOF) state_ = State::kEnded;
-  if (state == openni::DEVICE_STATE_ERROR) state_ = State::kFailed;
+  if (state == openni::DEVICE_STATE_EOF) state_ = DeviceState::kEnded;
+  if (state == openni::DEVICE_STATE_ERROR) state_ = DeviceState::kFailed;
 }
 
 void DeviceListener::onDeviceDisconnected(const openni::DeviceInfo* info) {
-  if (info != nullptr && uri_ == info->getUri()) state_ = State::kGone;
+  if (info != nullptr && uri_ == info->getUri()) state_ = DeviceState::kGone;
 }
 
 }  // namespace kintsugi::mapper

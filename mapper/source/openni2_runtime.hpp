@@ -8,6 +8,8 @@
 
 #include <OpenNI.h>
 
+#include "mapper/source/device_state.hpp"
+
 namespace kintsugi::mapper {
 
 /// OpenNI2's library is one per process and counts its users; what the drivers load (threads, USB)
@@ -34,21 +36,19 @@ std::vector<openni::DeviceInfo> plugged_in_cameras();
 class DeviceListener : public openni::OpenNI::DeviceStateChangedListener,
                        public openni::OpenNI::DeviceDisconnectedListener {
  public:
-  enum class State { kPlaying, kEnded, kFailed, kGone };
-
   explicit DeviceListener(std::string uri);
   ~DeviceListener() override;
   DeviceListener(const DeviceListener&) = delete;
   DeviceListener& operator=(const DeviceListener&) = delete;
 
-  [[nodiscard]] State state() const { return state_; }
+  [[nodiscard]] DeviceState state() const { return state_; }
 
   void onDeviceStateChanged(const openni::DeviceInfo* info, openni::DeviceState state) override;
   void onDeviceDisconnected(const openni::DeviceInfo* info) override;
 
  private:
   const std::string uri_;
-  std::atomic<State> state_ = State::kPlaying;
+  std::atomic<DeviceState> state_ = DeviceState::kPlaying;
 };
 
 }  // namespace kintsugi::mapper

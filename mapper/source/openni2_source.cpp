@@ -67,7 +67,7 @@ SourceCounts OpenNi2Source::counts() const {
 }
 
 void OpenNi2Source::read_image() {
-  const OpenNi2Device::State state_before = device_->state();
+  const DeviceState state_before = device_->state();
   try {
     if (auto image = device_->wait(kPoll)) {
       add(std::move(*image));
@@ -125,17 +125,17 @@ void OpenNi2Source::lock_exposure_when_due(std::int64_t stamp_us) {
 
 /// Nothing came. OpenNI2 itself only lets the wait time out when a recording is over.
 /// @param state_before from before the wait: what the device had played by then has been read.
-void OpenNi2Source::check_for_end(OpenNi2Device::State state_before) {
+void OpenNi2Source::check_for_end(DeviceState state_before) {
   switch (state_before) {
-    case OpenNi2Device::State::kPlaying:
+    case DeviceState::kPlaying:
       return;
-    case OpenNi2Device::State::kEnded:
+    case DeviceState::kEnded:
       if (!damage_.empty()) return end(false, "ended after " + damage_);
       return end(true, "end of the recording");
-    case OpenNi2Device::State::kFailed:
+    case DeviceState::kFailed:
       if (device_->is_recording()) return end(false, device_->failure());
       return interrupt(device_->failure());
-    case OpenNi2Device::State::kGone:
+    case DeviceState::kGone:
       return interrupt("it was disconnected");
   }
 }

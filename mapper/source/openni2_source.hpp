@@ -42,7 +42,7 @@ class OpenNi2Source : public FrameSource {
   void compare_clocks(std::int64_t depth_utime);
   std::int64_t continuous_index(std::int64_t index);
   void lock_exposure_when_due(std::int64_t stamp_us);
-  void check_for_end(OpenNi2Device::State state_before);
+  void check_for_end(DeviceState state_before);
   void check_for_silence();
   void interrupt(const std::string& reason);
   void wait_for_camera();

@@ -20,6 +20,7 @@ using testing::HasSubstr;
 
 std::vector<int> indices_of(const std::vector<test::ClientFrame>& frames) {
   std::vector<int> indices;
+  indices.reserve(frames.size());
   for (const auto& frame : frames) indices.push_back(frame.index);
   return indices;
 }
