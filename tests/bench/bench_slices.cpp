@@ -3,6 +3,7 @@
 //
 //   bench_slices --device folder://7scenes_1000 --frames 300
 //   bench_slices --device 'synthetic://office?frames=300' --true-poses
+//   bench_slices --device synthetic://loop --only-shifts --step 6
 //   bench_slices --device synthetic://two-floors --true-poses --step 3 --mesh mesh.ply
 
 #include <algorithm>
@@ -34,6 +35,7 @@ struct Options {
   int frames = 0;
   int step = 1;
   bool true_poses = false;
+  bool only_shifts = false;
   std::size_t threads = 0;
   int memory_rows = 10;
   std::string cloud;
@@ -48,6 +50,7 @@ Options parse_command_line(int argc, char** argv) {
   app.add_option("--frames", options.frames, "the first so many that are mapped; 0: all");
   app.add_option("--step", options.step, "map every so manieth frame")->capture_default_str();
   app.add_flag("--true-poses", options.true_poses, "of a synthetic scene, instead of tracking");
+  app.add_flag("--only-shifts", options.only_shifts, "of a synthetic scene, with true poses");
   app.add_option("--threads", options.threads, "of the parallel stages; 0: one per core");
   app.add_option("--memory-rows", options.memory_rows, "how often to print the memory");
   app.add_option("--min-weight", options.pipeline.slices.extractor.weight_threshold)
@@ -132,8 +135,6 @@ class Run {
 
   void report() const {
     print_times("frame", frame_ms_);
-    print_times("frame with a slice leaving", leaving_ms_);
-    print_times("shift when a slice leaves", shift_ms_);
     std::printf("%zu slices, %zu points; worker busy %.0f ms, %.2f us a point; lost %d frames\n",
                 num_slices_, points_W_.size(), extraction_ms_,
                 1e3 * extraction_ms_ / static_cast<double>(points_W_.size()), num_lost_);
@@ -151,18 +152,11 @@ class Run {
 
  private:
   void map(MapperPipeline& pipeline, const RgbdFrame& frame) {
-    const std::int64_t blocks_before = pipeline.num_blocks();
     FrameResult result = pipeline.process(frame);
     const bool is_located = result.tracking.state == TrackingState::kTracking ||
                             result.tracking.state == TrackingState::kGiven;
     if (!is_located) ++num_lost_;
     frame_ms_.push_back(result.times.total_ms());
-    // A shift without blocks to hand over takes microseconds.
-    constexpr double kNoShift_ms = 0.02;
-    if (result.times.shift_ms > kNoShift_ms && blocks_before > 0) {
-      shift_ms_.push_back(result.times.shift_ms);
-      leaving_ms_.push_back(result.times.total_ms());
-    }
     take(std::move(result.slices));
   }
 
@@ -186,12 +180,41 @@ class Run {
   std::optional<MeshWriter> mesh_;
   std::vector<CloudPoint> points_W_;
   std::vector<double> frame_ms_;
-  std::vector<double> leaving_ms_;
-  std::vector<double> shift_ms_;
   double extraction_ms_ = 0.0;
   std::size_t num_slices_ = 0;
   int num_lost_ = 0;
 };
+
+/// The shifts alone, on the path of a synthetic scene, with everything fused on the way.
+void measure_shifts(const Options& options) {
+  synthetic::Sequence scene = open_scene(options.device).value();
+  TsdfVolume volume(options.pipeline.volume, scene.X_WC(0).translation());
+  const Integrator integrator(options.pipeline.integrator);
+  std::vector<double> shift_ms;
+  std::vector<double> blocks_leaving;
+  std::vector<double> aprons;
+  const int num_frames = options.frames == 0 ? scene.num_frames() / options.step : options.frames;
+  for (int i = 0; i < num_frames; ++i) {
+    const synthetic::RenderedFrame& truth = scene.truth(i * options.step);
+    const Stopwatch stopwatch;
+    const std::vector<DetachedBlocks> slices = volume.shift_to(truth.X_WC.translation());
+    const double elapsed_ms = stopwatch.elapsed_ms();
+    for (const DetachedBlocks& slice : slices) {
+      blocks_leaving.push_back(static_cast<double>(slice.coords.size()));
+      aprons.push_back(static_cast<double>(slice.apron_coords.size()));
+    }
+    if (!slices.empty()) shift_ms.push_back(elapsed_ms);
+    RgbdFrame frame;
+    frame.intrinsics = truth.intrinsics;
+    frame.depth_m = truth.depth_m;
+    frame.color_rgb = truth.color_rgb;
+    integrator.integrate(frame, truth.X_WC, volume);
+  }
+  print_times("shift when a slice leaves", shift_ms);
+  std::printf("blocks in a slice: median %.0f, max %.0f; around it: median %.0f, max %.0f\n",
+              percentile(blocks_leaving, 0.5), percentile(blocks_leaving, 1.0),
+              percentile(aprons, 0.5), percentile(aprons, 1.0));
+}
 
 }  // namespace
 }  // namespace kintsugi::mapper::bench
@@ -204,9 +227,13 @@ int main(int argc, char** argv) {
     if (options.threads > 0) {
       limit.emplace(tbb::global_control::max_allowed_parallelism, options.threads);
     }
-    Run run(options);
-    run.play();
-    run.report();
+    if (options.only_shifts) {
+      measure_shifts(options);
+    } else {
+      Run run(options);
+      run.play();
+      run.report();
+    }
     return 0;
   } catch (const std::exception& error) {
     std::cerr << "bench_slices: " << error.what() << '\n';
