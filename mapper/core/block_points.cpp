@@ -56,7 +56,7 @@ class BlockBits {
 
 /// The mean of the crossings that lie in an observed voxel, from its centre in voxels; false where
 /// there is none: every one is nearer to its other end.
-bool mean_crossing(const PaddedBlock& block, int index, int weight_threshold,
+bool mean_crossing(const PaddedBlock& block, int index, const CrossingRule& rule,
                    Eigen::Vector3f& offset_vox) {
   const int distance = voxel_distance_raw(block[index]);
   const int own = std::abs(distance);
@@ -67,10 +67,11 @@ bool mean_crossing(const PaddedBlock& block, int index, int weight_threshold,
       const Voxel other = block[index + side * PaddedBlock::kStride[axis]];
       const int other_distance = voxel_distance_raw(other);
       if ((distance < 0) == (other_distance < 0)) continue;
-      if (voxel_weight(other) <= weight_threshold) continue;
+      if (voxel_weight(other) <= rule.weight_threshold) continue;
       // In this voxel where it is nearer to its centre; half way, in the lower of the two.
       const int others = std::abs(other_distance);
       if (side > 0 ? own > others : own >= others) continue;
+      if (own + others > rule.max_step_raw) continue;
       sum[axis] += static_cast<float>(side * own) / static_cast<float>(own + others);
       ++count;
     }
@@ -125,8 +126,14 @@ Eigen::Vector3f gradient_near(const PaddedBlock& block, int index,
 
 }  // namespace
 
-BlockPoints::BlockPoints(const PaddedBlock& block, int weight_threshold) {
-  const BlockBits bits(block, weight_threshold);
+CrossingRule::CrossingRule(int weight_threshold, double max_step_vox, const DetachedBlocks& blocks)
+    : weight_threshold(weight_threshold),
+      max_step_raw(
+          static_cast<int>(std::min(2.0, max_step_vox * blocks.resolution_m / blocks.truncation_m) *
+                           kDistanceScale)) {}
+
+BlockPoints::BlockPoints(const PaddedBlock& block, const CrossingRule& rule) {
+  const BlockBits bits(block, rule.weight_threshold);
   for (int row = 0; row < kBlockSide * kBlockSide; ++row) {
     const int y = row % kBlockSide;
     const int z = row / kBlockSide;
@@ -135,7 +142,7 @@ BlockPoints::BlockPoints(const PaddedBlock& block, int weight_threshold) {
       const int x = std::countr_zero(left);
       const int index = PaddedBlock::index(x, y, z);
       Eigen::Vector3f offset_vox;
-      if (!mean_crossing(block, index, weight_threshold, offset_vox)) continue;
+      if (!mean_crossing(block, index, rule, offset_vox)) continue;
       const Eigen::Vector3f gradient = gradient_near(block, index, offset_vox);
       if (gradient.isZero(0.0F)) continue;  // the same on all sides: it faces nowhere
       points_.push_back({offset_vox, gradient.normalized()});

@@ -10,6 +10,20 @@
 
 namespace kintsugi::mapper {
 
+/// Between which neighbouring voxels there is surface.
+///
+/// Where the camera sees past an object's outline, free space begins beside what is taken to be
+/// behind the outline: a wall that is not there. It shows in the distance, which rises along it
+/// from one voxel to the next by up to the whole truncation band; on a surface it rises by a voxel
+/// over the cosine of the angle at which the surface was seen.
+struct CrossingRule {
+  int weight_threshold = 0;  ///< both voxels were seen more often than this
+  int max_step_raw = 0;      ///< their distances differ by no more than this
+
+  /// `max_step_vox` is in voxels.
+  CrossingRule(int weight_threshold, double max_step_vox, const DetachedBlocks& blocks);
+};
+
 /// The surface points of a block, at most one in a voxel, in the order of voxels.
 class BlockPoints {
  public:
@@ -19,8 +33,7 @@ class BlockPoints {
   };
 
   BlockPoints() = default;
-  /// Crossings between voxels seen more often than the threshold.
-  BlockPoints(const PaddedBlock& block, int weight_threshold);
+  BlockPoints(const PaddedBlock& block, const CrossingRule& rule);
 
   bool empty() const { return points_.empty(); }
   const std::vector<Point>& points() const { return points_; }

@@ -1,8 +1,10 @@
 #include "mapper/core/mesh_extractor.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstddef>
+#include <cstdlib>
 #include <utility>
 
 #include "mapper/core/block_points.hpp"
@@ -104,11 +106,12 @@ class MeshExtractor::Pass {
   Pass(MeshExtractor& mesh, const DetachedBlocks& detached)
       : mesh_(mesh),
         detached_(detached),
+        rule_(mesh.config_.weight_threshold, mesh.config_.max_step_vox, detached),
         blocks_(detached),
         sides_(blocks_.size()),
         edges_(blocks_.size()) {
     for (std::size_t i = 0; i < blocks_.size(); ++i) {
-      sides_[i] = observed_sides(*blocks_[i].voxels, mesh.config_.weight_threshold);
+      sides_[i] = observed_sides(*blocks_[i].voxels, rule_.weight_threshold);
       const auto known = mesh.borders_.extract(blocks_[i].coord);
       // An own block of the same place left again: its vertices are new.
       if (!known.empty() && !blocks_[i].is_own) edges_[i] = std::move(known.mapped());
@@ -181,6 +184,7 @@ class MeshExtractor::Pass {
   }
 
   void mesh_cube(const Octant& octant, const std::array<int, 3>& cube, unsigned corners_behind) {
+    if (jumps(octant, cube, corners_behind)) return;
     for (const auto& edges : cube_triangles(corners_behind)) {
       piece_.triangles.push_back({vertex_on(octant, cube, kCubeEdges[edges[0]]),
                                   vertex_on(octant, cube, kCubeEdges[edges[1]]),
@@ -205,6 +209,19 @@ class MeshExtractor::Pass {
     result.voxel = voxel_index(x, y, z);
     result.block = octant[side];
     return result;
+  }
+
+  /// Whether the distance jumps along one of the cube's edges with a crossing.
+  bool jumps(const Octant& octant, const std::array<int, 3>& cube, unsigned corners_behind) const {
+    std::array<int, 8> distances{};
+    for (int corner = 0; corner < 8; ++corner) {
+      const Corner c = corner_of(octant, cube, corner);
+      distances[corner] = voxel_distance_raw(blocks_[c.block].voxels->voxels[c.voxel]);
+    }
+    return std::any_of(kCubeEdges.begin(), kCubeEdges.end(), [&](const CubeEdge& edge) {
+      const bool crosses = ((corners_behind >> edge.from ^ corners_behind >> edge.to) & 1U) != 0;
+      return crosses && std::abs(distances[edge.from] - distances[edge.to]) > rule_.max_step_raw;
+    });
   }
 
   std::uint32_t vertex_on(const Octant& octant, const std::array<int, 3>& cube,
@@ -250,6 +267,7 @@ class MeshExtractor::Pass {
 
   MeshExtractor& mesh_;
   const DetachedBlocks& detached_;
+  const CrossingRule rule_;
   const SliceBlocks blocks_;
   std::vector<ObservedSides> sides_;
   std::vector<std::unique_ptr<BlockEdges>> edges_;
@@ -258,6 +276,7 @@ class MeshExtractor::Pass {
 
 void MeshExtractor::Config::validate() const {
   check_range("weight_threshold", weight_threshold, 0, 65534);
+  check_range("max_step_vox", max_step_vox, 1.0, 100.0);
 }
 
 MeshExtractor::MeshExtractor(const Config& config) : config_(config) { config_.validate(); }

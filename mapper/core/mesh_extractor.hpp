@@ -27,6 +27,8 @@ struct MeshPiece {
 /// The surface of a run as one triangle mesh with colour, slice by slice: marching cubes between
 /// the centres of voxels, each vertex on the line between two of them and in the mesh only once.
 ///
+/// Where SurfaceExtractor finds no crossing because the distance jumps, the mesh ends.
+///
 /// A cube that reaches into several blocks is meshed when the last of them leaves, with each block
 /// as it left. So the mesh is closed between slices even where a block went on changing after its
 /// neighbour had left. Where the volume comes back and maps a place again, a new sheet begins that
@@ -37,7 +39,8 @@ struct MeshPiece {
 class MeshExtractor {
  public:
   struct Config {
-    int weight_threshold = 8;  ///< voxels with no more observations than this are ignored
+    int weight_threshold = 8;   ///< voxels with no more observations than this are ignored
+    double max_step_vox = 4.0;  ///< between neighbours: no surface where the distance jumps
 
     /// @throws std::invalid_argument naming the field, its value and the bound.
     void validate() const;

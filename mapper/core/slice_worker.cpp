@@ -29,7 +29,8 @@ void SliceWorker::Config::validate() const {
 SliceWorker::SliceWorker(const Config& config)
     : config_((config.validate(), config)),
       extractor_(config.extractor),
-      mesh_extractor_({.weight_threshold = config.extractor.weight_threshold}),
+      mesh_extractor_({.weight_threshold = config.extractor.weight_threshold,
+                       .max_step_vox = config.extractor.max_step_vox}),
       thread_([this] { run(); }) {}
 
 SliceWorker::~SliceWorker() {

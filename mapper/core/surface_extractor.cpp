@@ -16,14 +16,10 @@ namespace {
 /// extraction is, so that a slice of any size takes little memory.
 class PointsAhead {
  public:
-  PointsAhead(const SliceBlocks& blocks, int weight_threshold)
-      : blocks_(blocks),
-        weight_threshold_(weight_threshold),
-        walk_(blocks),
-        sides_(blocks.size()),
-        points_(blocks.size()) {
+  PointsAhead(const SliceBlocks& blocks, const CrossingRule& rule)
+      : blocks_(blocks), rule_(rule), walk_(blocks), sides_(blocks.size()), points_(blocks.size()) {
     for (std::size_t i = 0; i < blocks.size(); ++i) {
-      sides_[i] = observed_sides(*blocks[i].voxels, weight_threshold);
+      sides_[i] = observed_sides(*blocks[i].voxels, rule.weight_threshold);
     }
   }
 
@@ -32,7 +28,7 @@ class PointsAhead {
     for (; num_ready_ < blocks_.size() && blocks_[num_ready_].coord.z <= z + 1; ++num_ready_) {
       const BlockNeighbors neighbors = walk_.around(num_ready_);
       if (!may_have_points(neighbors)) continue;
-      points_[num_ready_] = BlockPoints(PaddedBlock(blocks_, neighbors), weight_threshold_);
+      points_[num_ready_] = BlockPoints(PaddedBlock(blocks_, neighbors), rule_);
     }
     for (; blocks_[num_dropped_].coord.z < z - 1; ++num_dropped_) points_[num_dropped_] = {};
   }
@@ -58,7 +54,7 @@ class PointsAhead {
   }
 
   const SliceBlocks& blocks_;
-  int weight_threshold_;
+  CrossingRule rule_;
   NeighborWalk walk_;
   std::vector<ObservedSides> sides_;
   std::vector<BlockPoints> points_;
@@ -92,6 +88,7 @@ CloudPoint make_point(const PaddedPoints::Point& point, int voxel, const Eigen::
 
 void SurfaceExtractor::Config::validate() const {
   check_range("weight_threshold", weight_threshold, 0, 65534);
+  check_range("max_step_vox", max_step_vox, 1.0, 100.0);
   check_range("normal_radius_vox", normal_radius_vox, 0.0, 2.0);
 }
 
@@ -100,7 +97,7 @@ SurfaceExtractor::SurfaceExtractor(const Config& config) : config_(config) { con
 std::vector<CloudPoint> SurfaceExtractor::extract(const DetachedBlocks& detached) const {
   const auto radius_vox = static_cast<float>(config_.normal_radius_vox);
   const SliceBlocks blocks(detached);
-  PointsAhead ahead(blocks, config_.weight_threshold);
+  PointsAhead ahead(blocks, CrossingRule(config_.weight_threshold, config_.max_step_vox, detached));
   NeighborWalk walk(blocks);
   PaddedPoints padded;
   std::vector<CloudPoint> cloud;
