@@ -1,4 +1,5 @@
 #include <cmath>
+#include <deque>
 #include <limits>
 #include <map>
 #include <random>
@@ -181,6 +182,86 @@ TEST(TsdfVolume, RecyclesMemory) {
   for (int round = 2; round < 1000; ++round) fill_and_leave(round);
   EXPECT_EQ(volume.memory_bytes(), once);
   EXPECT_EQ(volume.num_blocks(), 0U);
+}
+
+/// Allocates the walls of a straight corridor along x, as far as the cube reaches.
+void allocate_corridor(TsdfVolume& volume) {
+  const BlockCoord& min = volume.min_block();
+  for (int x = 0; x < volume.side_blocks(); ++x) {
+    for (int z = 0; z < volume.side_blocks(); ++z) {
+      volume.allocate(make_block_coord(min.x + x, -3, min.z + z));
+      volume.allocate(make_block_coord(min.x + x, 2, min.z + z));
+    }
+  }
+}
+
+TEST(TsdfVolume, KeepsItsMemoryOnAWalkOfAnyLength) {
+  TsdfVolume volume(ten_blocks());
+  std::deque<DetachedBlocks> waiting;  // for extraction
+  constexpr std::size_t kMaxWaiting = 3;
+  std::size_t bytes_after_20 = 0;
+  for (int step = 1; step <= 5000; ++step) {  // 800 m, a thousand times the cube
+    allocate_corridor(volume);
+    for (DetachedBlocks& slice : volume.shift_to({0.16 * step, 0.0, 0.0})) {
+      ASSERT_EQ(slice.coords.size(), 40U);
+      waiting.push_back(std::move(slice));
+    }
+    while (waiting.size() > kMaxWaiting) waiting.pop_front();
+    if (step == 20) bytes_after_20 = volume.memory_bytes();
+  }
+  EXPECT_EQ(volume.memory_bytes(), bytes_after_20);
+  // The cube, three slices of two layers with a layer to either side: 4 KB a block, and the table.
+  constexpr std::size_t kBlocks = 200 + 3 * 80;
+  constexpr std::size_t kTable = 16 * 16 * 16 * sizeof(BlockSlot);
+  constexpr std::size_t kHugePages = 2 * (std::size_t{2} << 20U);  // memory comes in these
+  EXPECT_LE(volume.memory_bytes(), 2 * kBlocks * 4096 + kTable + kHugePages);
+}
+
+TEST(TsdfVolume, LeavesASliceAsItLeftWhateverBecomesOfTheVolume) {
+  std::vector<DetachedBlocks> slices;
+  {
+    TsdfVolume volume(ten_blocks());
+    allocate_corridor(volume);
+    for (BlockSlot slot = 0; slot < volume.slots_end(); ++slot) {
+      volume.voxels(slot).voxels.fill(static_cast<Voxel>(1000 + volume.coord(slot).x));
+    }
+    for (int step = 1; step <= 8; ++step) {
+      for (DetachedBlocks& slice : volume.shift_to({0.16 * step, 0.0, 0.0})) {
+        slices.push_back(std::move(slice));
+      }
+      allocate_corridor(volume);  // recycles what it can
+      for (BlockSlot slot = 0; slot < volume.slots_end(); ++slot) {
+        if (volume.in_use(slot)) volume.voxels(slot).voxels[5] = 1;
+      }
+    }
+  }
+  ASSERT_EQ(slices.size(), 8U);
+  for (std::size_t i = 0; i < slices[0].coords.size(); ++i) {
+    const auto mark = static_cast<Voxel>(1000 + slices[0].coords[i].x);
+    EXPECT_EQ(slices[0].voxels[i]->voxels[5], mark);
+    EXPECT_EQ(slices[0].voxels[i]->voxels[6], mark);
+  }
+  for (std::size_t i = 0; i < slices[0].apron_coords.size(); ++i) {
+    EXPECT_EQ(slices[0].apron_voxels[i]->voxels[5],
+              static_cast<Voxel>(1000 + slices[0].apron_coords[i].x));
+  }
+}
+
+TEST(TsdfVolume, TellsWhichNeighboursStay) {
+  TsdfVolume volume(ten_blocks());
+  allocate_corridor(volume);
+  const DetachedBlocks first = volume.shift_to({0.16, 0.0, 0.0}).at(0);
+  EXPECT_EQ(first.remaining.min, volume.min_block());
+  EXPECT_EQ(first.apron_coords.size(), 20U);
+  for (const ColorBlock* colors : first.apron_colors) EXPECT_EQ(colors, nullptr);
+  const DetachedBlocks second = volume.shift_to({0.32, 0.0, 0.0}).at(0);
+  EXPECT_EQ(second.apron_coords.size(), 40U);
+  for (std::size_t i = 0; i < second.apron_coords.size(); ++i) {
+    EXPECT_EQ(second.apron_colors[i] == nullptr, volume.contains(second.apron_coords[i]));
+  }
+  const DetachedBlocks last = volume.detach_all();
+  EXPECT_EQ(last.remaining.side, 0);
+  for (const ColorBlock* colors : last.apron_colors) EXPECT_NE(colors, nullptr);
 }
 
 TEST(TsdfVolume, EndsWithAFinalSliceOfEverything) {
