@@ -24,4 +24,10 @@ cv::Mat unregistered(const cv::Mat& depth) {
   return shifted;
 }
 
+void spoil(OniFrame& frame, int number, const CameraImitation& imitation) {
+  const auto is_turn = [&](int every) { return every > 0 && number % every == 0; };
+  if (is_turn(imitation.misfit_every)) frame.height /= 2;
+  if (is_turn(imitation.empty_every)) frame.width = frame.height = frame.dataSize = 0;
+}
+
 }  // namespace kintsugi::mapper

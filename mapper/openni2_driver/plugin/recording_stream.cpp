@@ -49,8 +49,7 @@ OniStatus RecordingStream::start() {
   {
     const std::lock_guard lock(mutex_);
     started_ = true;
-    last_due_utime_ = -1;
-    num_left_out_ = 0;
+    rate_filter_.restart();
   }
   playback_.start(kind_);
   return ONI_STATUS_OK;
@@ -161,7 +160,7 @@ OniStatus RecordingStream::convertDepthToColorCoordinates(StreamBase* /*color*/,
 bool RecordingStream::deliver(const PlayedFrame& played) {
   {
     const std::lock_guard lock(mutex_);
-    if (is_left_out(played)) return false;
+    if (!rate_filter_.passes(played.due_utime, mode_.fps, recording_.frame_rate_hz())) return false;
   }
   OniFrame* frame = getServices().acquireFrame();
   if (frame == nullptr) return true;
@@ -170,7 +169,7 @@ bool RecordingStream::deliver(const PlayedFrame& played) {
     const cv::Mat image = finish(played);
     frame->sensorType = kind_ == StreamKind::kDepth ? ONI_SENSOR_DEPTH : ONI_SENSOR_COLOR;
     frame->timestamp = static_cast<std::uint64_t>(played.utime);
-    frame->frameIndex = played.number - num_left_out_;
+    frame->frameIndex = played.number - rate_filter_.num_left_out();
     frame->videoMode = mode_;
     frame->width = image.cols;
     frame->height = image.rows;
@@ -182,7 +181,7 @@ bool RecordingStream::deliver(const PlayedFrame& played) {
     cv::Mat target(image.rows, image.cols, image.type(), frame->data,
                    static_cast<std::size_t>(frame->stride));
     image.copyTo(target);
-    spoil(played, *frame);
+    if (kind_ == StreamKind::kDepth) spoil(*frame, played.number, imitation_);
   }
   raiseNewFrame(frame);
   getServices().releaseFrame(frame);
@@ -192,20 +191,6 @@ bool RecordingStream::deliver(const PlayedFrame& played) {
 cv::Size RecordingStream::image_size() {
   const std::lock_guard lock(mutex_);
   return {mode_.resolutionX, mode_.resolutionY};
-}
-
-/// A mode slower than the recording takes the images nearest to its own times.
-bool RecordingStream::is_left_out(const PlayedFrame& frame) {
-  const std::int64_t interval_us = 1'000'000 / mode_.fps;
-  const std::int64_t half_recorded_us = 500'000 / recording_.frame_rate_hz();
-  const bool too_soon = last_due_utime_ >= 0 && mode_.fps < recording_.frame_rate_hz() &&
-                        frame.due_utime < last_due_utime_ + interval_us - half_recorded_us;
-  if (too_soon) {
-    ++num_left_out_;
-  } else {
-    last_due_utime_ = frame.due_utime;
-  }
-  return too_soon;
 }
 
 /// The image as the settings of the stream make it.
@@ -221,15 +206,6 @@ cv::Mat RecordingStream::finish(const PlayedFrame& frame) {
   }
   if (cropping_.enabled == FALSE) return image;
   return image(cv::Rect(cropping_.originX, cropping_.originY, cropping_.width, cropping_.height));
-}
-
-/// Makes of a depth image what a camera should not send, when that is wanted.
-void RecordingStream::spoil(const PlayedFrame& played, OniFrame& frame) const {
-  const auto is_turn = [&](int every) {
-    return kind_ == StreamKind::kDepth && every > 0 && played.number % every == 0;
-  };
-  if (is_turn(imitation_.misfit_every)) frame.height /= 2;
-  if (is_turn(imitation_.empty_every)) frame.width = frame.height = frame.dataSize = 0;
 }
 
 OniStatus RecordingStream::set_mirroring(bool mirrored) {

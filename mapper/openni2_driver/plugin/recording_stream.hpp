@@ -7,6 +7,7 @@
 #include "mapper/openni2_driver/plugin/camera_controls.hpp"
 #include "mapper/openni2_driver/plugin/oni_driver_api.hpp"
 #include "mapper/openni2_driver/plugin/playback.hpp"
+#include "mapper/openni2_driver/plugin/rate_filter.hpp"
 
 namespace kintsugi::mapper {
 
@@ -39,9 +40,7 @@ class RecordingStream : public oni::driver::StreamBase {
   [[nodiscard]] cv::Size image_size();
 
  private:
-  [[nodiscard]] bool is_left_out(const PlayedFrame& frame);
   [[nodiscard]] cv::Mat finish(const PlayedFrame& frame);
-  void spoil(const PlayedFrame& played, OniFrame& frame) const;
   OniStatus set_mirroring(bool mirrored);
   OniStatus set_mode(const OniVideoMode& mode);
   OniStatus set_cropping(const OniCropping& cropping);
@@ -61,8 +60,7 @@ class RecordingStream : public oni::driver::StreamBase {
   OniCropping cropping_;
   bool mirrored_;
   CameraControls controls_;
-  std::int64_t last_due_utime_ = -1;  ///< of the last image that was not left out; -1: none
-  int num_left_out_ = 0;
+  RateFilter rate_filter_;
 };
 
 }  // namespace kintsugi::mapper

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cstdint>
+
+namespace kintsugi::mapper {
+
+/// Leaves out what comes faster than a mode's rate: the images nearest to the mode's own times
+/// stay.
+class RateFilter {
+ public:
+  void restart() { *this = {}; }
+
+  /// @param utime of the image.
+  bool passes(std::int64_t utime, int mode_rate_hz, int recorded_rate_hz);
+
+  [[nodiscard]] int num_left_out() const { return num_left_out_; }
+
+ private:
+  std::int64_t last_utime_ = -1;  ///< of the last image that passed; -1: none
+  int num_left_out_ = 0;
+};
+
+}  // namespace kintsugi::mapper
