@@ -146,7 +146,8 @@ void MapperProcess::publish_status(bool finished) {
   MapperStatus status;
   statistics_.report(status);
   // Nobody knows where a camera is that is not there.
-  if (reader_.interrupted()) status.state = TrackingState::kLost;
+  said_interrupted_ = reader_.interrupted();
+  if (said_interrupted_) status.state = TrackingState::kLost;
   status.device = options_.source.device;
   status.finished = finished;
   status.frames_total = reader_.frames_total();
@@ -158,8 +159,10 @@ void MapperProcess::publish_status(bool finished) {
   status_clock_ = Stopwatch();
 }
 
+/// Now and then, and at once when the camera goes or comes.
 void MapperProcess::publish_status_when_due() {
-  if (status_clock_.elapsed_ms() >= kStatusPeriod_ms) publish_status(false);
+  const bool is_news = reader_.interrupted() != said_interrupted_;
+  if (is_news || status_clock_.elapsed_ms() >= kStatusPeriod_ms) publish_status(false);
 }
 
 void MapperProcess::log_start() const {

@@ -55,6 +55,7 @@ class MapperProcess {
   double extraction_ms_ = 0.0;  ///< of the pipeline, at the last frame
   Stopwatch run_clock_;
   Stopwatch status_clock_;
+  bool said_interrupted_ = false;  ///< in the last status
 };
 
 }  // namespace kintsugi::mapper

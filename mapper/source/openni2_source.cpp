@@ -152,12 +152,12 @@ void OpenNi2Source::check_for_silence() {
 
 void OpenNi2Source::interrupt(const std::string& reason) {
   ++counts_.interruptions;
+  config_.notify({SourceNotice::Kind::kInterrupted,
+                  "device '" + name_ + "' is gone: " + reason + "; waiting for it"});
   return_.emplace(config_, *device_);
   device_.reset();
   pairer_.finish();
   clock_.interrupt();
-  config_.notify({SourceNotice::Kind::kInterrupted,
-                  "device '" + name_ + "' is gone: " + reason + "; waiting for it"});
 }
 
 void OpenNi2Source::wait_for_camera() {
