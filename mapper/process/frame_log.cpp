@@ -17,8 +17,8 @@ std::string header() {
   std::string line = "frame_index,utime_us,state,reason,frame_ms,cpu_ms,read_ms,convert_ms";
   for (const Stage& stage : kStages) line += std::string(",") + stage.name;
   return line +
-         ",extract_ms,publish_ms,covered_share,inlier_share,rms_m,iterations,undetermined,slices,"
-         "memory_mb\n";
+         ",extract_ms,publish_ms,covered_share,overlap_share,inlier_share,behind_share,"
+         "in_front_share,rms_m,sigma_m,iterations,undetermined,slices,memory_mb\n";
 }
 
 std::string line_of(const RgbdFrame& frame, const TrackingResult& tracking, std::size_t num_slices,
@@ -34,10 +34,16 @@ std::string line_of(const RgbdFrame& frame, const TrackingResult& tracking, std:
   add_ms(timings.extract_ms);
   add_ms(timings.publish_ms);
   const RegistrationQuality& quality = tracking.quality;
-  return line + fmt::format(",{:.4f},{:.4f},{:.6f},{},{},{},{:.1f}\n", quality.covered_share,
-                            quality.inlier_share, quality.rms_m, tracking.iterations,
-                            quality.undetermined, num_slices,
-                            1e-6 * static_cast<double>(resident_memory_bytes()));
+  for (const double share : {quality.covered_share, quality.overlap_share, quality.inlier_share,
+                             quality.behind_share, quality.in_front_share}) {
+    line += fmt::format(",{:.4f}", share);
+  }
+  for (const double metres : {quality.rms_m, quality.sigma_m}) {
+    line += fmt::format(",{:.6f}", metres);
+  }
+  const double memory_mb = 1e-6 * static_cast<double>(resident_memory_bytes());
+  return line + fmt::format(",{},{},{},{:.1f}\n", tracking.iterations, quality.undetermined,
+                            num_slices, memory_mb);
 }
 
 }  // namespace

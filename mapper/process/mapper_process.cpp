@@ -179,9 +179,12 @@ void MapperProcess::log_change_of_state(const FrameResult& result, const RgbdFra
   if (tracking.state == last_state_) return;
   last_state_ = tracking.state;
   if (tracking.state == TrackingState::kLost) {
-    spdlog::warn("frame {}: lost, {} (covered {:.2f}, inliers {:.2f}, rms {:.1f} mm)",
-                 frame.frame_index, reason_text(tracking), tracking.quality.covered_share,
-                 tracking.quality.inlier_share, 1e3 * tracking.quality.rms_m);
+    const RegistrationQuality& quality = tracking.quality;
+    spdlog::warn(
+        "frame {}: lost, {} (overlap {:.2f}, inliers {:.2f}, behind {:.2f}, in front {:.2f}, "
+        "rms {:.1f} mm, sigma {:.1f} mm)",
+        frame.frame_index, reason_text(tracking), quality.overlap_share, quality.inlier_share,
+        quality.behind_share, quality.in_front_share, 1e3 * quality.rms_m, 1e3 * quality.sigma_m);
   } else {
     spdlog::info("frame {}: {}", frame.frame_index, state_text(tracking.state));
   }
