@@ -39,13 +39,13 @@ struct OpenNi2Device::Implementation {
     }
     create(depth, openni::SENSOR_DEPTH, "depth");
     set_depth_mode(device, depth, config.depth_mode, config.max_range_m);
-    if (device.hasSensor(openni::SENSOR_COLOR)) create_color();
+    if (device.hasSensor(openni::SENSOR_COLOR)) uses_color = create_color();
     if (openni::PlaybackControl* playback = device.getPlaybackControl()) {
       playback->setRepeatEnabled(false);
       playback->setSpeed(config.replay ? -1.0F : 1.0F);
     }
     start(depth, "depth");
-    if (color.isValid()) start(color, "colour");
+    if (uses_color) start(color, "colour");
   }
 
   ~Implementation() {
@@ -65,17 +65,20 @@ struct OpenNi2Device::Implementation {
     if (stream.create(device, sensor) != openni::STATUS_OK) fail(what, "created");
   }
 
-  /// The colour stream, unless its images do not lie on the depth images' pixels.
-  void create_color() {
+  /// False when the stream's images do not lie on the depth images' pixels: then it stays there,
+  /// not started, for destroying a stream of a .oni file may crash (see ~OpenNi2Device()).
+  bool create_color() {
     create(color, openni::SENSOR_COLOR, "colour");
     if (!set_color_mode(device, color, config.color_mode, mode_of(depth))) {
-      give_up_color("is " + to_string(mode_of(color)) + ", which does not cover depth of " +
-                    to_string(mode_of(depth)));
-    } else if (!is_registered() && !config.assume_registered) {
-      give_up_color(
-          "is not aligned with depth: the device cannot do it, and does not say that it is "
-          "(--assume-registered takes it as it is)");
+      say_without_color("is " + to_string(mode_of(color)) + ", which does not cover depth of " +
+                        to_string(mode_of(depth)));
+      return false;
     }
+    if (is_registered() || config.assume_registered) return true;
+    say_without_color(
+        "is not aligned with depth: the device cannot do it, and does not say that it is "
+        "(--assume-registered takes it as it is)");
+    return false;
   }
 
   /// Switches registration on where the device can.
@@ -87,8 +90,7 @@ struct OpenNi2Device::Implementation {
     return device.getImageRegistrationMode() == kRegistered;
   }
 
-  void give_up_color(const std::string& why) {
-    color.destroy();
+  void say_without_color(const std::string& why) const {
     config.notify({SourceNotice::Kind::kWarning,
                    "device '" + uri + "': depth alone, colour is not used: it " + why});
   }
@@ -122,6 +124,7 @@ struct OpenNi2Device::Implementation {
   openni::Device device;
   openni::VideoStream depth;
   openni::VideoStream color;
+  bool uses_color = false;
 };
 
 OpenNi2Device::OpenNi2Device(const std::string& uri, const SourceConfig& config)
@@ -211,7 +214,7 @@ std::string OpenNi2Device::serial_number() const {
 
 bool OpenNi2Device::is_recording() const { return implementation_->device.isFile(); }
 
-bool OpenNi2Device::has_color() const { return implementation_->color.isValid(); }
+bool OpenNi2Device::has_color() const { return implementation_->uses_color; }
 
 std::optional<int> OpenNi2Device::num_depth_frames() const {
   openni::PlaybackControl* playback = implementation_->device.getPlaybackControl();
@@ -232,7 +235,7 @@ cv::Size OpenNi2Device::image_size() const { return mode_of(implementation_->dep
 
 Intrinsics OpenNi2Device::intrinsics() const {
   const Implementation& impl = *implementation_;
-  return intrinsics_of(impl.device, impl.depth, impl.color);
+  return intrinsics_of(impl.device, impl.depth, impl.uses_color ? &impl.color : nullptr);
 }
 
 }  // namespace kintsugi::mapper

@@ -37,10 +37,10 @@ double focal_length_px(int pixels, double field_of_view_rad) {
 }  // namespace
 
 Intrinsics intrinsics_of(const openni::Device& device, const openni::VideoStream& depth,
-                         const openni::VideoStream& color) {
+                         const openni::VideoStream* color) {
   if (const auto own = own_calibration(device)) return *own;
-  const bool from_color = color.isValid() && color.getHorizontalFieldOfView() > 0.0F;
-  const openni::VideoStream& camera = from_color ? color : depth;
+  const bool from_color = color != nullptr && color->getHorizontalFieldOfView() > 0.0F;
+  const openni::VideoStream& camera = from_color ? *color : depth;
   const double width_rad = camera.getHorizontalFieldOfView();
   const double height_rad = camera.getVerticalFieldOfView();
   if (!(width_rad > 0.0 && height_rad > 0.0)) {
