@@ -1,91 +1,88 @@
 #include "mapper/core/block_allocation.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
+#include <cstdint>
 #include <vector>
 
 #include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/enumerable_thread_specific.h>
 #include <oneapi/tbb/parallel_for.h>
 
+#include "mapper/core/kernel_arguments.hpp"
+
 namespace kintsugi::mapper {
 namespace {
 
-using BlockCoords = std::vector<BlockCoord>;
+/// As the kernels pack them.
+using PackedBlocks = std::vector<std::uint32_t>;
 
 /// A block is 8 voxels wide and seen through many pixels: every other one finds them all.
 constexpr int kPixelStride = 2;
 
-/// Walks the part of a ray within the truncation distance of a depth, in steps of half a block.
-class BandWalker {
- public:
-  BandWalker(const CameraView& view, const TsdfVolume& volume)
-      : volume_(volume), blocks_per_m_(1.0F / (volume.resolution_m() * kBlockSide)) {
-    const float half_blocks = volume.truncation_m() * blocks_per_m_ * 2.0F;
-    half_steps_ = static_cast<int>(std::ceil(half_blocks - 1e-3F));
-    step_m_ = volume.truncation_m() / static_cast<float>(half_steps_);
-    camera_blocks_ = view.t_WC * blocks_per_m_;
-  }
-
-  /// Appends the blocks that do not exist yet; some of them more than once.
-  void append_missing(const Eigen::Vector3f& ray_W, float depth_m, BlockCoords& missing) const {
-    const Eigen::Vector3f ray_blocks = ray_W * blocks_per_m_;
-    for (int step = -half_steps_; step <= half_steps_; ++step) {
-      const float z_m = depth_m + static_cast<float>(step) * step_m_;
-      const Eigen::Vector3f point = camera_blocks_ + ray_blocks * z_m;
-      const BlockCoord coord =
-          make_block_coord(floor_int(point.x()), floor_int(point.y()), floor_int(point.z()));
-      if (!volume_.contains(coord) || volume_.find(coord) != kNoBlock) continue;
-      const auto recent = missing.end() - std::min<std::ptrdiff_t>(8, std::ssize(missing));
-      if (std::find(recent, missing.end(), coord) == missing.end()) missing.push_back(coord);
+/// The rays within the truncation distance of their depths, in steps of at most half a block.
+AllocationView make_allocation_view(const cv::Mat_<float>& depth_m, const Intrinsics& intrinsics,
+                                    const Pose& X_WC, const TsdfVolume& volume) {
+  const double block_m = volume.config().resolution_m * kBlockSide;
+  const BlockCoord& min = volume.min_block();
+  const Eigen::Vector3d origin_blocks =
+      X_WC.translation() / block_m - Eigen::Vector3d(min.x, min.y, min.z);
+  const double half_blocks = volume.truncation_m() / block_m * 2.0;
+  AllocationView view{
+      .depth_m = depth_m[0], .camera = pinhole_camera(intrinsics), .stride_px = kPixelStride};
+  view.half_steps = static_cast<int>(std::ceil(half_blocks - 1e-3));
+  view.step_m = volume.truncation_m() / static_cast<float>(view.half_steps);
+  for (int axis = 0; axis < 3; ++axis) {
+    view.origin_blocks[axis] = static_cast<float>(origin_blocks[axis]);
+    for (int axis_C = 0; axis_C < 3; ++axis_C) {
+      view.blocks_per_m[axis][axis_C] = static_cast<float>(X_WC.linear()(axis, axis_C) / block_m);
     }
   }
+  return view;
+}
 
- private:
-  static int floor_int(float value) {
-    const int truncated = static_cast<int>(value);
-    return truncated - static_cast<int>(static_cast<float>(truncated) > value);
-  }
-
-  const TsdfVolume& volume_;
-  float blocks_per_m_;
-  int half_steps_ = 0;
-  float step_m_ = 0.0F;
-  Eigen::Vector3f camera_blocks_;
-};
-
-BlockCoords find_missing_blocks(const cv::Mat_<float>& depth_m, const CameraView& view,
-                                float min_depth_m, float max_depth_m, const TsdfVolume& volume) {
-  const BandWalker walker(view, volume);
-  tbb::enumerable_thread_specific<BlockCoords> found;
-  const int num_rows = (view.height + kPixelStride - 1) / kPixelStride;
+/// Ascending, each once.
+PackedBlocks find_missing_blocks(const VolumeView& volume, const AllocationView& view,
+                                 const Kernels& kernels) {
+  tbb::enumerable_thread_specific<PackedBlocks> found;
+  const int num_rows = (view.camera.height + kPixelStride - 1) / kPixelStride;
   tbb::parallel_for(tbb::blocked_range<int>(0, num_rows, 16), [&](const auto& rows) {
-    BlockCoords& missing = found.local();
+    PackedBlocks& blocks = found.local();
     for (int row = rows.begin(); row < rows.end(); ++row) {
-      const int v = row * kPixelStride;
-      const float* depth_row = depth_m[v];
-      for (int u = 0; u < view.width; u += kPixelStride) {
-        const float depth = depth_row[u];
-        if (!(depth >= min_depth_m && depth <= max_depth_m)) continue;
-        const Eigen::Vector3f ray_C = view.ray_C(static_cast<float>(u), static_cast<float>(v));
-        walker.append_missing(view.R_WC * ray_C, depth, missing);
-      }
+      const std::size_t before = blocks.size();
+      blocks.resize(before + view.most_blocks_in_a_row());
+      const int count =
+          kernels.find_missing_blocks(volume, view, row * kPixelStride, &blocks[before]);
+      blocks.resize(before + count);
     }
   });
-  BlockCoords all;
-  for (const BlockCoords& part : found) all.insert(all.end(), part.begin(), part.end());
+  PackedBlocks all;
+  for (const PackedBlocks& part : found) all.insert(all.end(), part.begin(), part.end());
   std::sort(all.begin(), all.end());
   all.erase(std::unique(all.begin(), all.end()), all.end());
   return all;
 }
 
+BlockCoord unpack(std::uint32_t block, const BlockCoord& min) {
+  const auto coordinate = [block](int axis) {
+    constexpr std::uint32_t kMask = (1U << VolumeView::kSideBits) - 1;
+    return static_cast<int>((block >> (axis * VolumeView::kSideBits)) & kMask);
+  };
+  return make_block_coord(min.x + coordinate(0), min.y + coordinate(1), min.z + coordinate(2));
+}
+
 }  // namespace
 
-void allocate_seen_blocks(const cv::Mat_<float>& depth_m, const CameraView& view, float min_depth_m,
-                          float max_depth_m, TsdfVolume& volume) {
-  for (const BlockCoord& coord :
-       find_missing_blocks(depth_m, view, min_depth_m, max_depth_m, volume)) {
-    volume.allocate(coord);
+void allocate_seen_blocks(const cv::Mat_<float>& depth_m, const Intrinsics& intrinsics,
+                          const Pose& X_WC, float min_depth_m, float max_depth_m,
+                          const Kernels& kernels, TsdfVolume& volume) {
+  assert(depth_m.isContinuous());
+  AllocationView view = make_allocation_view(depth_m, intrinsics, X_WC, volume);
+  view.min_depth_m = min_depth_m;
+  view.max_depth_m = max_depth_m;
+  for (const std::uint32_t block : find_missing_blocks(view_of(volume), view, kernels)) {
+    volume.allocate(unpack(block, volume.min_block()));
   }
 }
 

@@ -84,11 +84,12 @@ void Integrator::integrate(const RgbdFrame& frame, const Pose& X_WC, TsdfVolume&
 
   const auto min_depth_m = static_cast<float>(config_.min_depth_m);
   const auto max_depth_m = static_cast<float>(config_.max_depth_m);
-  allocate_seen_blocks(frame.depth_m, view, min_depth_m, max_depth_m, volume);
+  const Kernels& kernels = kernels_for(instruction_set_);
+  const cv::Mat_<float> depth_m = continuous(frame.depth_m);
+  allocate_seen_blocks(depth_m, frame.intrinsics, X_WC, min_depth_m, max_depth_m, kernels, volume);
   const std::vector<VisibleBlock> visible =
       find_visible_blocks(volume, view, max_depth_m + volume.truncation_m());
 
-  const cv::Mat_<float> depth_m = continuous(frame.depth_m);
   cv::Mat_<cv::Vec4b> color_rgbx;
   if (has_color) cv::cvtColor(frame.color_rgb, color_rgbx, cv::COLOR_RGB2RGBA);
   IntegrationFrame integration_frame = make_integration_frame(view, volume);
@@ -97,10 +98,9 @@ void Integrator::integrate(const RgbdFrame& frame, const Pose& X_WC, TsdfVolume&
   integration_frame.depth_m = depth_m[0];
   if (has_color) integration_frame.color_rgbx = color_rgbx.ptr<std::uint32_t>();
 
-  const IntegrateBlock integrate_block = kernels_for(instruction_set_).integrate_block;
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, visible.size(), 32), [&](const auto& range) {
     for (std::size_t i = range.begin(); i < range.end(); ++i) {
-      integrate_block(integration_frame, make_integration_block(visible[i], view, volume));
+      kernels.integrate_block(integration_frame, make_integration_block(visible[i], view, volume));
     }
   });
 }

@@ -2,6 +2,8 @@
 
 #include <cassert>
 
+#include "mapper/core/tsdf_volume.hpp"
+
 namespace kintsugi::mapper {
 namespace {
 
@@ -32,6 +34,17 @@ PinholeCamera pinhole_camera(const Intrinsics& intrinsics) {
 SurfacePlanes planes_of(const SurfaceMap& surface) { return planes<const float>(surface); }
 
 MutableSurfacePlanes planes_of(SurfaceMap& surface) { return planes<float>(surface); }
+
+VolumeView view_of(const TsdfVolume& volume) {
+  assert(volume.side_blocks() < 1 << VolumeView::kSideBits);
+  const BlockCoord& min = volume.min_block();
+  return {.slots = volume.table(),
+          .voxels = volume.first_voxel(),
+          .table_side = volume.table_side(),
+          .side_blocks = volume.side_blocks(),
+          .min_block = {min.x, min.y, min.z},
+          .truncation_vox = static_cast<float>(volume.config().truncation_vox)};
+}
 
 RigidMotion rigid_motion(const Pose& X_BA) {
   RigidMotion motion;

@@ -3,15 +3,21 @@
 
 #include "lcmtypes/geometry.hpp"
 #include "mapper/core/kernels/surface_planes.hpp"
+#include "mapper/core/kernels/volume_view.hpp"
 #include "mapper/core/surface_map.hpp"
 
 namespace kintsugi::mapper {
+
+class TsdfVolume;
 
 PinholeCamera pinhole_camera(const Intrinsics& intrinsics);
 
 /// Views of the surface's planes, which must stay where they are and have no padding.
 SurfacePlanes planes_of(const SurfaceMap& surface);
 MutableSurfacePlanes planes_of(SurfaceMap& surface);
+
+/// Valid until the volume changes.
+VolumeView view_of(const TsdfVolume& volume);
 
 RigidMotion rigid_motion(const Pose& X_BA);
 

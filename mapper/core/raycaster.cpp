@@ -18,16 +18,6 @@
 namespace kintsugi::mapper {
 namespace {
 
-RaycastVolume make_raycast_volume(const TsdfVolume& volume) {
-  const BlockCoord& min = volume.min_block();
-  return {.slots = volume.table(),
-          .voxels = volume.first_voxel(),
-          .table_side = volume.table_side(),
-          .side_blocks = volume.side_blocks(),
-          .min_block = {min.x, min.y, min.z},
-          .truncation_vox = static_cast<float>(volume.config().truncation_vox)};
-}
-
 /// Without the images.
 RaycastView make_raycast_view(const Intrinsics& intrinsics, const Pose& X_WC,
                               const TsdfVolume& volume) {
@@ -69,7 +59,7 @@ SurfaceMap Raycaster::raycast(const TsdfVolume& volume, const Pose& X_WC,
       guide_depth_m.isContinuous() ? guide_depth_m : guide_depth_m.clone();
   cv::Mat_<float> depth_m(intrinsics.height, intrinsics.width);
 
-  const RaycastVolume raycast_volume = make_raycast_volume(volume);
+  const VolumeView volume_view = view_of(volume);
   RaycastView view = make_raycast_view(intrinsics, X_WC, volume);
   view.guide_m = guide_m.ptr<float>();
   view.guide_columns = guide_m.cols;
@@ -78,7 +68,7 @@ SurfaceMap Raycaster::raycast(const TsdfVolume& volume, const Pose& X_WC,
   view.depth_m = depth_m.ptr<float>();
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, tiles.size(), 16), [&](const auto& range) {
     for (std::size_t i = range.begin(); i < range.end(); ++i) {
-      kernels.raycast_tile(raycast_volume, view, tiles[i]);
+      kernels.raycast_tile(volume_view, view, tiles[i]);
     }
   });
   return surface_from_depth(depth_m, intrinsics, kernels);

@@ -2,6 +2,7 @@
 // The inner loops that run in vector registers, one set of them for each instruction set. All give
 // the same bytes; see pack_portable.hpp for how they are written.
 
+#include "mapper/core/kernels/allocation.hpp"
 #include "mapper/core/kernels/integration.hpp"
 #include "mapper/core/kernels/linearization.hpp"
 #include "mapper/core/kernels/raycast.hpp"
@@ -12,6 +13,7 @@ namespace kintsugi::mapper {
 enum class InstructionSet;
 
 struct Kernels {
+  FindMissingBlocks find_missing_blocks = nullptr;
   IntegrateBlock integrate_block = nullptr;
   LinearizeRows linearize_rows = nullptr;
   HalveDepthRow halve_depth_row = nullptr;

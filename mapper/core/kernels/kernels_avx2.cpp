@@ -1,5 +1,6 @@
 // The kernels compiled with -mavx2.
 
+#include "mapper/core/kernels/allocation_kernel.hpp"
 #include "mapper/core/kernels/integration_kernel.hpp"
 #include "mapper/core/kernels/kernels.hpp"
 #include "mapper/core/kernels/linearization_kernel.hpp"
@@ -10,6 +11,7 @@
 namespace kintsugi::mapper {
 
 const Kernels kAvx2Kernels = {
+    .find_missing_blocks = find_missing_blocks<Avx2Pack>,
     .integrate_block = integrate_block<Avx2Pack>,
     .linearize_rows = linearize_rows<Avx2Pack>,
     .halve_depth_row = SurfaceRows<Avx2Pack>::halve_depth,

@@ -1,5 +1,6 @@
 // The kernels compiled with -mavx512f -mavx512bw -mavx512dq -mavx512vl.
 
+#include "mapper/core/kernels/allocation_kernel.hpp"
 #include "mapper/core/kernels/integration_kernel.hpp"
 #include "mapper/core/kernels/kernels.hpp"
 #include "mapper/core/kernels/linearization_kernel.hpp"
@@ -10,6 +11,7 @@
 namespace kintsugi::mapper {
 
 const Kernels kAvx512Kernels = {
+    .find_missing_blocks = find_missing_blocks<Avx512Pack>,
     .integrate_block = integrate_block<Avx512Pack>,
     .linearize_rows = linearize_rows<Avx512Pack>,
     .halve_depth_row = SurfaceRows<Avx512Pack>::halve_depth,

@@ -1,5 +1,6 @@
 // The kernels for any processor.
 
+#include "mapper/core/kernels/allocation_kernel.hpp"
 #include "mapper/core/kernels/integration_kernel.hpp"
 #include "mapper/core/kernels/kernels.hpp"
 #include "mapper/core/kernels/linearization_kernel.hpp"
@@ -10,6 +11,7 @@
 namespace kintsugi::mapper {
 
 const Kernels kPortableKernels = {
+    .find_missing_blocks = find_missing_blocks<PortablePack>,
     .integrate_block = integrate_block<PortablePack>,
     .linearize_rows = linearize_rows<PortablePack>,
     .halve_depth_row = SurfaceRows<PortablePack>::halve_depth,

@@ -1,24 +1,10 @@
 #pragma once
 // Rays through the volume, for one tile of pixels at a time.
-//
-// Points are in "cube coordinates": voxels from the cube's lower corner, so that single precision
-// is enough wherever the cube is; voxel (i, j, k) has its centre at (i, j, k) + 0.5.
-
-#include <cstdint>
 
 #include "mapper/core/kernels/surface_planes.hpp"
+#include "mapper/core/kernels/volume_view.hpp"
 
 namespace kintsugi::mapper {
-
-/// The volume as vector registers reach it: by indices from two places.
-struct RaycastVolume {
-  const std::int32_t* slots = nullptr;    ///< the toroidal table of blocks; negative: no block
-  const std::uint32_t* voxels = nullptr;  ///< 512 words a slot; see tsdf_block.hpp
-  int table_side = 0;                     ///< blocks; a power of two
-  int side_blocks = 0;                    ///< of the cube
-  int min_block[3] = {};                  ///< the cube's lowest block
-  float truncation_vox = 0.0F;
-};
 
 /// Where the rays start, where the surface is expected on them and where their depths go.
 struct RaycastView {
@@ -45,7 +31,7 @@ struct RaycastTile {
 };
 
 /// Writes the depths of the tile's pixels.
-using RaycastTileFunction = void (*)(const RaycastVolume& volume, const RaycastView& view,
+using RaycastTileFunction = void (*)(const VolumeView& volume, const RaycastView& view,
                                      const RaycastTile& tile);
 
 }  // namespace kintsugi::mapper

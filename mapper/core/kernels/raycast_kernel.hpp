@@ -117,11 +117,10 @@ void find_surfaces(PixelGroup<Pack> (&groups)[kNumGroups]) {
 }
 
 template <typename Pack>
-void raycast_tile(const RaycastVolume& raycast_volume, const RaycastView& view,
-                  const RaycastTile& tile) {
+void raycast_tile(const VolumeView& volume_view, const RaycastView& view, const RaycastTile& tile) {
   constexpr int kSide = PixelGroup<Pack>::kSide;
   static_assert(RaycastTile::kSide_px == 2 * kSide);
-  const VolumeLanes<Pack> volume(raycast_volume);
+  const VolumeLanes<Pack> volume(volume_view);
   PixelGroup<Pack> groups[] = {{volume, view, tile, tile.u, tile.v},
                                {volume, view, tile, tile.u + kSide, tile.v},
                                {volume, view, tile, tile.u, tile.v + kSide},

@@ -1,7 +1,7 @@
 #pragma once
 // Reads the volume at sixteen points at once, over any pack.
 
-#include "mapper/core/kernels/raycast.hpp"
+#include "mapper/core/kernels/volume_view.hpp"
 
 namespace kintsugi::mapper {
 
@@ -32,7 +32,7 @@ class VolumeLanes {
     Float distance;  ///< as a fraction of the truncation distance
   };
 
-  explicit VolumeLanes(const RaycastVolume& volume) : volume_(volume) {}
+  explicit VolumeLanes(const VolumeView& volume) : volume_(volume) {}
 
   Float truncation_vox() const { return Float(volume_.truncation_vox); }
 
@@ -41,12 +41,19 @@ class VolumeLanes {
   }
   static Mask is_observed(const Int& voxel) { return shift_right<16>(voxel) != Int(0); }
 
+  /// Where the cube has a place for a block (in cube coordinates) but no block.
+  Mask is_missing(const Int& x, const Int& y, const Int& z, const Mask& mask) const {
+    const Mask is_inside = mask & is_in_cube(x, y, z, x, y, z);
+    const Int place = table_index<0>(x) + table_index<1>(y) + table_index<2>(z);
+    return is_inside & (gather(volume_.slots, place, is_inside) < Int(0));
+  }
+
   /// The voxels in which the points lie.
   Nearest nearest(const Vec3& point, const Mask& mask) const {
     const Coordinate x = locate<0>(to_int(floor(point.x)));
     const Coordinate y = locate<1>(to_int(floor(point.y)));
     const Coordinate z = locate<2>(to_int(floor(point.z)));
-    const Mask is_inside = mask & is_in_cube(x, y, z, x, y, z);
+    const Mask is_inside = mask & is_in_cube(x.block, y.block, z.block, x.block, y.block, z.block);
     const Int slot = gather(volume_.slots, x.table + y.table + z.table, is_inside);
     const Mask has_block = is_inside & (slot > Int(-1));
     const Int index = shift_left<kVoxelBits>(slot) + (x.voxel + y.voxel + z.voxel);
@@ -58,7 +65,8 @@ class VolumeLanes {
     const Cell x = cell<0>(point.x);
     const Cell y = cell<1>(point.y);
     const Cell z = cell<2>(point.z);
-    Mask is_known = mask & is_in_cube(x.at[0], y.at[0], z.at[0], x.at[1], y.at[1], z.at[1]);
+    Mask is_known = mask & is_in_cube(x.at[0].block, y.at[0].block, z.at[0].block, x.at[1].block,
+                                      y.at[1].block, z.at[1].block);
 
     const Int first_slot =
         gather(volume_.slots, x.at[0].table + y.at[0].table + z.at[0].table, is_known);
@@ -104,14 +112,19 @@ class VolumeLanes {
   };
 
   template <int kAxis>
-  Coordinate locate(const Int& voxel) const {
+  Int table_index(const Int& block) const {
     const int pitch = kAxis == 0   ? 1
                       : kAxis == 1 ? volume_.table_side
                                    : volume_.table_side * volume_.table_side;
-    const Int block = shift_right_signed<kBlockBits>(voxel);
     const Int wrapped = (block + Int(volume_.min_block[kAxis])) & Int(volume_.table_side - 1);
+    return wrapped * Int(pitch);
+  }
+
+  template <int kAxis>
+  Coordinate locate(const Int& voxel) const {
+    const Int block = shift_right_signed<kBlockBits>(voxel);
     const Int local = voxel & Int((1 << kBlockBits) - 1);
-    return {block, wrapped * Int(pitch), shift_left<kAxis * kBlockBits>(local)};
+    return {block, table_index<kAxis>(block), shift_left<kAxis * kBlockBits>(local)};
   }
 
   template <int kAxis>
@@ -123,11 +136,10 @@ class VolumeLanes {
   }
 
   /// Whether the blocks from the low to the high coordinates are in the cube.
-  Mask is_in_cube(const Coordinate& low_x, const Coordinate& low_y, const Coordinate& low_z,
-                  const Coordinate& high_x, const Coordinate& high_y,
-                  const Coordinate& high_z) const {
-    const Int lowest = low_x.block | low_y.block | low_z.block;  // negative where one of them is
-    const Int highest = max(max(high_x.block, high_y.block), high_z.block);
+  Mask is_in_cube(const Int& low_x, const Int& low_y, const Int& low_z, const Int& high_x,
+                  const Int& high_y, const Int& high_z) const {
+    const Int lowest = low_x | low_y | low_z;  // negative where one of them is
+    const Int highest = max(max(high_x, high_y), high_z);
     return (lowest > Int(-1)) & (highest < Int(volume_.side_blocks));
   }
 
@@ -135,7 +147,7 @@ class VolumeLanes {
     return a + fraction * (b - a);
   }
 
-  const RaycastVolume& volume_;
+  const VolumeView& volume_;
 };
 
 }  // namespace kintsugi::mapper
