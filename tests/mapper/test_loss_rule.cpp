@@ -52,7 +52,7 @@ TEST(LossRule, NamesWhatIsWrong) {
   quality.rms_m = 0.0141;
   EXPECT_EQ(rule.judge(quality), LossReason::kLargeResidual);
   quality = good();
-  quality.sigma_m = 0.011;
+  quality.sigma_m = 0.021;
   EXPECT_EQ(rule.judge(quality), LossReason::kUncertain);
   quality = good();
   quality.undetermined = 1;
