@@ -20,6 +20,21 @@ TEST(DepthToMetres, InvalidAndTooFarIsNan) {
   EXPECT_TRUE(std::isnan(depth_to_metres(raw, 1000.0, 100.0)(0, 5))) << "65535 at any range";
 }
 
+TEST(DepthToMetres, IsRightForEveryRawValueUpToTheRange) {
+  cv::Mat_<std::uint16_t> raw(1, 65536);
+  for (int i = 0; i < raw.cols; ++i) raw(0, i) = static_cast<std::uint16_t>(i);
+  for (const double units_per_m : {1000.0, 5000.0, 10000.0}) {
+    const cv::Mat_<float> metres = depth_to_metres(raw, units_per_m, 6.5);
+    for (int i = 0; i < raw.cols; ++i) {
+      if (i == 0 || i > 6.5 * units_per_m) {
+        ASSERT_TRUE(std::isnan(metres(0, i))) << i;
+      } else {
+        ASSERT_FLOAT_EQ(metres(0, i), static_cast<float>(i / units_per_m));
+      }
+    }
+  }
+}
+
 TEST(FrameConverter, KeepsTimesAndAddsNothing) {
   const Intrinsics camera{
       .fx = 10, .fy = 10, .cx = 2, .cy = 1, .width = 4, .height = 3, .distortion = {}};
