@@ -192,12 +192,12 @@ inline Float floor(const Float& a) {
 }
 /// Lanes 0, 2, ... 14 of the first, then those of the second.
 inline Float even_lanes(const Float& a, const Float& b) {
-  return for_each_lane<Float>([&](int i) { return i < 8 ? a.lanes[2 * i] : b.lanes[2 * i - 16]; });
+  return for_each_lane<Float>([&](int i) { return i < 8 ? a.lanes[i + i] : b.lanes[i + i - 16]; });
 }
 /// Lanes 1, 3, ... 15 of the first, then those of the second.
 inline Float odd_lanes(const Float& a, const Float& b) {
   return for_each_lane<Float>(
-      [&](int i) { return i < 8 ? a.lanes[2 * i + 1] : b.lanes[2 * i - 15]; });
+      [&](int i) { return i < 8 ? a.lanes[i + i + 1] : b.lanes[i + i - 15]; });
 }
 /// The sum in this order: lanes 8 apart, of these sums those 4 apart, then 2, then 1.
 inline float reduce_add(const Float& a) {

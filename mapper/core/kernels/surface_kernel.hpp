@@ -12,7 +12,8 @@ class SurfaceRows {
                           float* half_m) {
     for (int u = 0; u < width; u += Pack::kNumLanes) {
       const int count = lanes_until(width - u);
-      Four depth = load_four(upper_m + 2 * u, lower_m + 2 * u, count);
+      const int first = 2 * u;
+      Four depth = load_four(upper_m + first, lower_m + first, count);
       for (Float& z : depth.of) {
         z = select((z > Float(0.0F)) & (z <= Float(max_depth_m)), z, Float(kInfinity));
       }
@@ -39,8 +40,9 @@ class SurfaceRows {
     const int lower = upper + fine.camera.width;
     for (int u = 0; u < width; u += Pack::kNumLanes) {
       const int count = lanes_until(width - u);
+      const int first = 2 * u;
       const auto load = [&](const float* plane) {
-        return load_four(plane + upper + 2 * u, plane + lower + 2 * u, count);
+        return load_four(plane + upper + first, plane + lower + first, count);
       };
       Four depth = load(fine.depth_m);
       const Four normal_z = load(fine.normal_z);
@@ -63,10 +65,10 @@ class SurfaceRows {
   static std::int32_t count_in_box(const BoxCount& in, int v) {
     const PinholeCamera& camera = in.frame_C.camera;
     const Float y((static_cast<float>(v) - camera.cy) * camera.inverse_fy);
+    const int row = v * camera.width;
     std::int32_t result = 0;
     for (int u = 0; u < camera.width; u += Pack::kNumLanes) {
-      const Float depth =
-          Float::load(in.frame_C.depth_m + v * camera.width + u, lanes_until(camera.width - u));
+      const Float depth = Float::load(in.frame_C.depth_m + row + u, lanes_until(camera.width - u));
       const Float x = ray_x(camera, u);
       Mask is_inside = depth > Float(0.0F);
       for (int axis = 0; axis < 3; ++axis) {
@@ -164,7 +166,8 @@ class SurfaceRows {
   /// Of pixels from `u` on in a row that is not a border.
   static Vector normal_at(const MutableSurfacePlanes& surface, int v, int u, int count) {
     const PinholeCamera& camera = surface.camera;
-    const float* here = surface.depth_m + v * camera.width + u;
+    const int pixel = v * camera.width + u;
+    const float* here = surface.depth_m + pixel;
     const auto ray_y = [&](int row) {
       return Float((static_cast<float>(row) - camera.cy) * camera.inverse_fy);
     };
