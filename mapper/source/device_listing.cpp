@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "mapper/source/openni2_modes.hpp"
+#include "mapper/source/openni2_opening.hpp"
 #include "mapper/source/openni2_runtime.hpp"
 
 namespace kintsugi::mapper {
@@ -37,6 +38,9 @@ std::string describe(const std::string& uri) {
 }  // namespace
 
 std::string list_devices(const std::string& uri) {
+  if (names_a_file(uri)) {
+    throw std::runtime_error(uri + ": is a recording, which offers what it was recorded with");
+  }
   const auto runtime = OpenNi2Runtime::shared();
   if (!uri.empty()) return describe(uri);
   std::string text;

@@ -38,13 +38,6 @@ class TemporaryFile {
   fs::path path_;
 };
 
-/// A path to a file, in contrast to the URI of a device.
-bool names_a_file(const std::string& device) {
-  if (device.empty() || device.find("://") != std::string::npos) return false;
-  return fs::exists(device) || device.ends_with(".oni") || device.starts_with('/') ||
-         device.starts_with('.');
-}
-
 std::unique_ptr<OpenNi2Device> open_uri(const std::string& uri, const SourceConfig& config) {
   if (uri.size() > kMaxUri) {
     throw std::runtime_error("'" + uri + "' is longer than the 255 bytes that OpenNI2 can open");
@@ -53,6 +46,12 @@ std::unique_ptr<OpenNi2Device> open_uri(const std::string& uri, const SourceConf
 }
 
 }  // namespace
+
+bool names_a_file(const std::string& device) {
+  if (device.empty() || device.find("://") != std::string::npos) return false;
+  return fs::exists(device) || device.ends_with(".oni") || device.starts_with('/') ||
+         device.starts_with('.');
+}
 
 std::unique_ptr<OpenNi2Device> open_device(const SourceConfig& config, std::string& damage) {
   if (!names_a_file(config.device)) return open_uri(config.device, config);

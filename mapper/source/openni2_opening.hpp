@@ -8,6 +8,9 @@
 
 namespace kintsugi::mapper {
 
+/// A path to a file, in contrast to the URI of a device.
+bool names_a_file(const std::string& device);
+
 /// Opens the device that `config.device` names; a .oni file that is cut off as far as it goes, from
 /// a mended copy in the folder for temporary files, which lasts only until it is open.
 /// @param damage out: what is wrong with a .oni file, and how much of it is there; empty: nothing.

@@ -42,6 +42,8 @@ TEST(DeviceListing, SaysThatThereIsNone) {
 TEST(DeviceListing, SaysWhyADeviceCannotBeOpened) {
   EXPECT_THAT(test::error_of<std::runtime_error>([] { list_devices("folder:///no/such/folder"); }),
               HasSubstr("no such folder"));
+  EXPECT_THAT(test::error_of<std::runtime_error>([] { list_devices("./some.oni"); }),
+              HasSubstr("./some.oni: is a recording"));
 }
 
 }  // namespace
