@@ -17,6 +17,8 @@ struct MeshPiece {
     float y = 0.0F;
     float z = 0.0F;
     std::array<std::uint8_t, 3> color_rgb{};
+
+    bool operator==(const Vertex&) const = default;
   };
   using Triangle = std::array<std::uint32_t, 3>;  ///< indices of vertices, of any piece so far
 
