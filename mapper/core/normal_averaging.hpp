@@ -41,6 +41,12 @@ class PaddedPoints {
 
  private:
   static constexpr int kSide = kBlockSide + 2 * kReach;
+  /// Of 0 .. 63. Not every processor counts bits in one instruction, and a call costs more.
+  static constexpr std::array<std::uint8_t, 64> kNumBits = [] {
+    std::array<std::uint8_t, 64> counts{};
+    for (unsigned i = 0; i < 64; ++i) counts[i] = static_cast<std::uint8_t>(std::popcount(i));
+    return counts;
+  }();
   struct Row {
     unsigned mask = 0;  ///< bit x + kReach: voxel x has a point
     int start = 0;      ///< its first point
@@ -49,7 +55,8 @@ class PaddedPoints {
   const Row& row(int y, int z) const { return rows_[(z + kReach) * kSide + y + kReach]; }
   /// The row's first point not before voxel x.
   const Point* points_of(const Row& row, int x) const {
-    return points_.data() + row.start + std::popcount(row.mask & ((1U << (x + kReach)) - 1U));
+    const unsigned before = row.mask & ((1U << (x + kReach)) - 1U);
+    return points_.data() + row.start + kNumBits[before & 63U] + kNumBits[before >> 6];
   }
   Eigen::Vector3f mean_normal(const Point& point, int x, int y, int z, float radius_vox) const;
 
