@@ -1,6 +1,8 @@
 #include "mapper/core/block_points.hpp"
 
 #include <algorithm>
+#include <bit>
+#include <cstddef>
 #include <cstdlib>
 
 namespace kintsugi::mapper {
@@ -51,7 +53,7 @@ class BlockBits {
  private:
   const RowBits& row(int y, int z) const { return rows_[(z + 1) * kRowSide + y + 1]; }
 
-  std::array<RowBits, kRowSide * kRowSide> rows_{};
+  std::array<RowBits, std::size_t{kRowSide} * kRowSide> rows_{};
 };
 
 /// The mean of the crossings that lie in an observed voxel, from its centre in voxels; false where

@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 #include <array>
-#include <bit>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -45,8 +45,9 @@ class BlockPoints {
 
  private:
   std::vector<Point> points_;
-  std::array<std::uint8_t, kBlockSide * kBlockSide> row_masks_{};
-  std::array<std::uint16_t, kBlockSide * kBlockSide> row_starts_{};
+  static constexpr std::size_t kNumRows = std::size_t{kBlockSide} * kBlockSide;
+  std::array<std::uint8_t, kNumRows> row_masks_{};
+  std::array<std::uint16_t, kNumRows> row_starts_{};
 };
 
 /// Whether a block has voxels seen more often than the threshold on the surface's two sides.

@@ -75,7 +75,7 @@ class CornerRows {
     return {first, first + 1, first + kCornerSide, first + kCornerSide + 1};
   }
 
-  std::array<Row, kCornerSide * kCornerSide> rows_{};
+  std::array<Row, std::size_t{kCornerSide} * kCornerSide> rows_{};
 };
 
 /// The colour at `share` of the way from one voxel to the next; where only one has a colour, that.

@@ -2,6 +2,8 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <bit>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -61,7 +63,7 @@ class PaddedPoints {
   Eigen::Vector3f mean_normal(const Point& point, int x, int y, int z, float radius_vox) const;
 
   std::vector<Point> points_;
-  std::array<Row, kSide * kSide> rows_;
+  std::array<Row, std::size_t{kSide} * kSide> rows_;
 };
 
 }  // namespace kintsugi::mapper
