@@ -1,9 +1,8 @@
 #include "mapper/core/tracker.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <string>
+#include <utility>
 
 #include "lcmtypes/trajectory.hpp"
 #include "mapper/core/check.hpp"
@@ -15,7 +14,6 @@ namespace {
 
 /// Poses of single frames scatter by less than this, metres (and radians seen 1 m ahead).
 constexpr double kUnsteadiness_m = 0.02;
-constexpr std::int64_t kMinInliers = 100;  ///< fewer pairs than this determine no pose worth having
 
 /// Twist per second that carries `X_WA` to `X_WB` in `seconds`.
 Vector6d velocity_between(const Pose& X_WA, const Pose& X_WB, double seconds) {
@@ -33,15 +31,19 @@ Pose orthonormal(const Pose& X) {
   return clean;
 }
 
-std::optional<Vector6d> solve(const NormalEquations& equations) {
-  if (equations.inliers < kMinInliers) return std::nullopt;
-  const Vector6d xi = equations.A.ldlt().solve(equations.b);
-  if (!xi.allFinite()) return std::nullopt;
-  return xi;
+/// Adjoint of X_AB: takes the twist of a left increment of X_BC to that of X_AC.
+Matrix6d adjoint(const Pose& X_AB) {
+  const Eigen::Vector3d p = X_AB.translation();
+  Eigen::Matrix3d cross;
+  cross << 0, -p.z(), p.y(), p.z(), 0, -p.x(), -p.y(), p.x(), 0;
+  Matrix6d Ad = Matrix6d::Zero();
+  Ad.topLeftCorner<3, 3>() = Ad.bottomRightCorner<3, 3>() = X_AB.linear();
+  Ad.topRightCorner<3, 3>() = cross * X_AB.linear();
+  return Ad;
 }
 
-RegistrationQuality quality_of(const NormalEquations& equations, const Pose& X_VC,
-                               const SurfaceMap& frame, double covered, bool solved) {
+RegistrationQuality quality_of(const NormalEquations& equations, const SurfaceMap& frame,
+                               double covered, bool solved) {
   RegistrationQuality quality;
   quality.solved = solved;
   quality.covered_share = covered;
@@ -56,7 +58,6 @@ RegistrationQuality quality_of(const NormalEquations& equations, const Pose& X_V
     quality.rms_m =
         std::sqrt(equations.squared_residuals_m2 / static_cast<double>(equations.inliers));
   }
-  quality.sigma_m = pose_sigma_m(equations.A, X_VC, static_cast<int>(frame.depth_m.total()));
   return quality;
 }
 
@@ -72,6 +73,9 @@ void Tracker::Config::validate() const {
   check_range("retry_iteration_factor", retry_iteration_factor, 1, 100);
   check_range<std::int64_t>("max_prediction_us", max_prediction_us, 0, 60'000'000);
   check_range("max_acceleration", max_acceleration, 0.0, 1e6);
+  steps.observability.validate();
+  steps.photometric.validate();
+  check_range("min_keyframe_overlap", min_keyframe_overlap, 0.0, 1.0);
   loss.validate();
 }
 
@@ -86,6 +90,9 @@ void Tracker::start_at(const Pose& X_WC, const TrackingInput& frame, double cove
   motion_known_ = false;
   lost_ = false;
   loss_rule_.remember(covered_share, true);
+  Registration known;
+  known.X_WC = X_WC;
+  choose_keyframe(known, {frame.surface_C, frame.color_rgb});
 }
 
 Pose Tracker::predict(std::int64_t utime) const {
@@ -95,21 +102,25 @@ Pose Tracker::predict(std::int64_t utime) const {
 }
 
 TrackingResult Tracker::track(const TrackingInput& frame, const Model& model) {
-  Registration registration = register_frame(frame, model, predict(frame.utime), false);
+  PhotometricView view(frame.surface_C, frame.color_rgb);
+  const Views views{&view, view.has_color() && keyframe_ ? &*keyframe_ : nullptr};
+  Registration registration = register_frame(frame, model, views, predict(frame.utime), false);
   auto loss = follows_motion(registration.X_WC, frame.utime)
                   ? loss_rule_.judge(registration.quality)
                   : loss_rule_.judge_found_anew(registration.quality);
   if (loss) {
-    registration = register_widely(frame, model, X_WC_);
+    registration = register_widely(frame, model, views, X_WC_);
     loss = loss_rule_.judge_found_anew(registration.quality);
   }
   loss_rule_.remember(registration.quality.covered_share, !loss);
-  return loss ? lose(registration, *loss) : accept(registration, frame);
+  if (loss) return lose(registration, *loss);
+  choose_keyframe(registration, std::move(view));
+  return accept(registration, frame);
 }
 
 TrackingResult Tracker::register_anew(const TrackingInput& frame, const Model& model,
                                       const Pose& X_WC_start) const {
-  const Registration registration = register_widely(frame, model, X_WC_start);
+  const Registration registration = register_widely(frame, model, {}, X_WC_start);
   TrackingResult result;
   result.X_WC = registration.X_WC;
   result.quality = registration.quality;
@@ -130,16 +141,18 @@ bool Tracker::follows_motion(const Pose& X_WC, std::int64_t utime) const {
 }
 
 Tracker::Registration Tracker::register_widely(const TrackingInput& frame, const Model& model,
-                                               const Pose& X_WC_start) const {
+                                               const Views& views, const Pose& X_WC_start) const {
   // From far off the steps of one pass do not always suffice.
-  const Registration near = register_frame(frame, model, X_WC_start, true);
-  return near.quality.solved ? register_frame(frame, model, near.X_WC, false) : near;
+  const Registration near = register_frame(frame, model, views, X_WC_start, true);
+  return near.quality.solved ? register_frame(frame, model, views, near.X_WC, false) : near;
 }
 
 Tracker::Registration Tracker::register_frame(const TrackingInput& frame, const Model& model,
-                                              const Pose& X_WC_start, bool wide) const {
+                                              const Views& views, const Pose& X_WC_start,
+                                              bool wide) const {
   Registration registration;
   const SurfacePyramid& frame_C = frame.surface_C;
+  StepSolver solver(views.frame_C, views.keyframe, model.X_WV, config_.steps);
   Pose X_VC = model.X_WV.inverse() * X_WC_start;
   bool solved = true;
   const int coarsest = static_cast<int>(config_.iterations.size()) - 1;
@@ -151,9 +164,16 @@ Tracker::Registration Tracker::register_frame(const TrackingInput& frame, const 
     if (widened) gates.max_distance_m *= config_.retry_gate_factor;
     const int steps = config_.iterations[level] * (widened ? config_.retry_iteration_factor : 1);
     const double small_enough = config_.early_exit * std::exp2(level);
+    if (level == coarsest || level == 0) {  // roughly, before the first step; well, near the end
+      const int observed = std::min(std::max(level, 1), coarsest);
+      const SurfaceMap& surface_C = frame_C[observed];
+      solver.observe(
+          independent(geometric_information(surface_C, model.surface_V[observed], X_VC, gates),
+                      surface_C.depth_m.total()));
+    }
     for (int step = 0; step < steps; ++step) {
       registration.equations = linearize(frame_C[level], model.surface_V[level], X_VC, gates);
-      const auto xi = solve(registration.equations);
+      const auto xi = solver.solve(registration.equations, level, X_VC);
       solved = xi.has_value();
       if (!solved) break;
       X_VC = se3_retract(*xi) * X_VC;
@@ -163,9 +183,25 @@ Tracker::Registration Tracker::register_frame(const TrackingInput& frame, const 
   }
   registration.X_WC = orthonormal(model.X_WV * X_VC);
   registration.quality =
-      quality_of(registration.equations, X_VC, frame_C[level],
+      quality_of(registration.equations, frame_C[level],
                  covered_share(frame_C.front(), registration.X_WC, model.region_W), solved);
+  registration.quality.sigma_m =
+      pose_sigma_m(registration.equations.A + solver.photometric_information(), X_VC,
+                   static_cast<int>(frame_C[level].depth_m.total()));
+  registration.quality.undetermined = static_cast<int>(solver.undetermined().cols());
+  const Matrix6d to_C = adjoint(X_VC.inverse());
+  registration.open_to_depth_C = to_C * solver.open_to_depth();
+  registration.undetermined_C = to_C * solver.undetermined();
+  registration.compared_share = solver.compared_share();
   return registration;
+}
+
+void Tracker::choose_keyframe(const Registration& registration, PhotometricView view) {
+  if (!view.has_color()) return;
+  const bool depth_sufficed = registration.open_to_depth_C.cols() == 0;
+  if (depth_sufficed || registration.compared_share < config_.min_keyframe_overlap) {
+    keyframe_ = Keyframe{std::move(view), registration.X_WC};
+  }
 }
 
 TrackingResult Tracker::accept(const Registration& registration, const TrackingInput& frame) {
@@ -182,6 +218,8 @@ TrackingResult Tracker::accept(const Registration& registration, const TrackingI
   result.X_WC = X_WC_;
   result.quality = registration.quality;
   result.iterations = registration.iterations;
+  result.open_to_depth_C = registration.open_to_depth_C;
+  result.undetermined_C = registration.undetermined_C;
   return result;
 }
 
@@ -195,6 +233,8 @@ TrackingResult Tracker::lose(const Registration& registration, LossReason reason
   result.quality = registration.quality;
   result.iterations = registration.iterations;
   result.loss_reason = reason;
+  result.open_to_depth_C = registration.open_to_depth_C;
+  result.undetermined_C = registration.undetermined_C;
   return result;
 }
 

@@ -14,6 +14,8 @@
 #include "mapper/core/icp.hpp"
 #include "mapper/core/loss_rule.hpp"
 #include "mapper/core/observability.hpp"
+#include "mapper/core/photometric_view.hpp"
+#include "mapper/core/step_solver.hpp"
 #include "mapper/core/surface_pyramid.hpp"
 
 namespace kintsugi::mapper {
@@ -62,6 +64,8 @@ class Tracker {
     /// A hand's, m/s^2 (and rad/s^2): poses further from the prediction than it explains must fit
     /// as well as poses found anew.
     double max_acceleration = 30.0;
+    StepSolver::Config steps;
+    double min_keyframe_overlap = 0.6;  ///< of a frame with the keyframe; below, it is the next one
     LossRule::Config loss;
 
     /// @throws std::invalid_argument naming field, value and bound
@@ -80,7 +84,8 @@ class Tracker {
   TrackingResult track(const TrackingInput& frame, const Model& model);
 
   /// Registers a frame from a place where it may not be at all: wide gates, believed (kTracking)
-  /// only if it fits as a pose found anew must. What the tracker knows of the path stays as it is.
+  /// only if it fits as a pose found anew must, by depth alone. What the tracker knows of the path
+  /// stays as it is.
   TrackingResult register_anew(const TrackingInput& frame, const Model& model,
                                const Pose& X_WC_start) const;
 
@@ -93,12 +98,21 @@ class Tracker {
     RegistrationQuality quality;
     NormalEquations equations;
     int iterations = 0;
+    TwistBasis open_to_depth_C = TwistBasis(6, 0);
+    TwistBasis undetermined_C = TwistBasis(6, 0);
+    double compared_share = 1.0;  ///< of the pixels, with the keyframe; 1 if there was no need to
+  };
+  /// Brightness of a frame and of what it is compared with; null: depth alone.
+  struct Views {
+    PhotometricView* frame_C = nullptr;
+    Keyframe* keyframe = nullptr;
   };
 
-  Registration register_frame(const TrackingInput& frame, const Model& model,
+  Registration register_frame(const TrackingInput& frame, const Model& model, const Views& views,
                               const Pose& X_WC_start, bool wide) const;
-  Registration register_widely(const TrackingInput& frame, const Model& model,
+  Registration register_widely(const TrackingInput& frame, const Model& model, const Views& views,
                                const Pose& X_WC_start) const;
+  void choose_keyframe(const Registration& registration, PhotometricView view);
   bool follows_motion(const Pose& X_WC, std::int64_t utime) const;
   TrackingResult accept(const Registration& registration, const TrackingInput& frame);
   TrackingResult lose(const Registration& registration, LossReason reason);
@@ -110,6 +124,7 @@ class Tracker {
   Vector6d velocity_C_ = Vector6d::Zero();  ///< m/s, rad/s: X_WC(t + dt) = X_WC retract(v dt)
   bool motion_known_ = false;               ///< velocity_C_ was measured
   bool lost_ = false;
+  std::optional<Keyframe> keyframe_;  ///< what colours are compared with; none without colour
 };
 
 }  // namespace kintsugi::mapper
