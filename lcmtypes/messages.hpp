@@ -169,7 +169,7 @@ struct MapperStatus {
   std::int64_t frames_total = -1;  ///< -1: not known (a live camera)
   std::int64_t frames_tracked = 0;
   std::int64_t frames_lost = 0;
-  std::int64_t frames_relocalised = 0;  ///< of those tracked, found again by a keyframe
+  std::int64_t frames_relocalised = 0;  ///< of those tracked, the ones that ended a loss
   std::int64_t frames_dropped = 0;
   std::int64_t keyframes = 0;
   std::int32_t undetermined = 0;  ///< directions of motion that the last frame left open, 0 to 6

@@ -195,11 +195,11 @@ void MapperProcess::log_summary() const {
   const SourceCounts counts = reader_.counts();
   if (reader_.finished()) spdlog::info("end: {}", reader_.end_reason());
   spdlog::info(
-      "{} frames in {:.1f} s ({:.1f} ms each, {:.1f} ms of CPU): {} located, {} lost, {} dropped, "
-      "{} bad, {} interruptions",
+      "{} frames in {:.1f} s ({:.1f} ms each, {:.1f} ms of CPU): {} located, {} lost, found again "
+      "{} times, {} dropped, {} bad, {} interruptions",
       statistics_.frames(), elapsed_s, statistics_.mean_frame_ms(), statistics_.mean_cpu_ms(),
-      statistics_.frames_tracked(), statistics_.frames_lost(), counts.frames_dropped,
-      counts.frames_bad, counts.interruptions);
+      statistics_.frames_tracked(), statistics_.frames_lost(), statistics_.frames_relocalised(),
+      counts.frames_dropped, counts.frames_bad, counts.interruptions);
   spdlog::info("{} slices, {} points, {} messages published", publisher_.slices_published(),
                publisher_.points_published(), publisher_.chunks_published());
   if (!options_.output_path_file.empty()) {

@@ -21,6 +21,9 @@ double quantile(const std::vector<double>& ascending, double share) {
 }  // namespace
 
 void RunStatistics::add(const TrackingResult& tracking, const FrameTimings& timings) {
+  if (state_ == TrackingState::kLost && tracking.state == TrackingState::kTracking) {
+    ++frames_relocalised_;
+  }
   state_ = tracking.state;
   loss_reason_ = reason_text(tracking);
   undetermined_ = tracking.quality.undetermined;
@@ -47,6 +50,7 @@ void RunStatistics::report(MapperStatus& status) {
   status.frames_read = frames_;
   status.frames_tracked = frames_tracked_;
   status.frames_lost = frames_lost_;
+  status.frames_relocalised = frames_relocalised_;
   status.memory_bytes = resident_memory_bytes();
   status.frame_rate_hz = elapsed_s > 0.0 ? frames / elapsed_s : 0.0;
   std::sort(frame_times_ms_.begin(), frame_times_ms_.end());

@@ -20,6 +20,7 @@ class RunStatistics {
   std::int64_t frames() const { return frames_; }
   std::int64_t frames_tracked() const { return frames_tracked_; }
   std::int64_t frames_lost() const { return frames_lost_; }
+  std::int64_t frames_relocalised() const { return frames_relocalised_; }
   /// Means over the run, milliseconds a frame.
   double mean_frame_ms() const { return mean_over_run(frame_ms_); }
   double mean_cpu_ms() const { return mean_over_run(cpu_ms_); }
@@ -33,6 +34,7 @@ class RunStatistics {
   std::int64_t frames_ = 0;
   std::int64_t frames_tracked_ = 0;
   std::int64_t frames_lost_ = 0;
+  std::int64_t frames_relocalised_ = 0;
   double frame_ms_ = 0.0;  ///< of the whole run
   double cpu_ms_ = 0.0;    ///< of the whole run
   TrackingState state_ = TrackingState::kStarting;

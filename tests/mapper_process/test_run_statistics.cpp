@@ -35,6 +35,18 @@ TEST(RunStatistics, CountsFramesByTheirState) {
   EXPECT_GT(status.memory_bytes, 1 << 20);
 }
 
+TEST(RunStatistics, CountsTheFramesThatEndALoss) {
+  RunStatistics statistics;
+  for (const auto state : {TrackingState::kStarting, TrackingState::kTracking, TrackingState::kLost,
+                           TrackingState::kLost, TrackingState::kTracking, TrackingState::kTracking,
+                           TrackingState::kLost, TrackingState::kTracking}) {
+    statistics.add(tracked(state), {});
+  }
+  MapperStatus status;
+  statistics.report(status);
+  EXPECT_EQ(status.frames_relocalised, 2);
+}
+
 TEST(RunStatistics, TellsWhyTheLastFrameIsLost) {
   RunStatistics statistics;
   TrackingResult lost = tracked(TrackingState::kLost);
