@@ -44,12 +44,15 @@ Options parse_command_line(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     std::exit(app.exit(error));
   }
+  options.run.device_rests = options.run.device.starts_with("synthetic://");
   return options;
 }
 
 void run(Options& options) {
   std::cout << "# " << options.run.device << ", " << options.run.frames << " frames after "
-            << options.run.warm_up_frames << ", " << name_of(best_instruction_set()) << "\n\n";
+            << options.run.warm_up_frames << ", " << name_of(best_instruction_set());
+  if (options.run.device_rests) std::cout << ", mapped while the device does not render";
+  std::cout << "\n\n";
   std::vector<FrameRun> runs;
   for (const int threads : options.threads) {
     for (const double resolution_m : options.resolutions_m) {

@@ -1,7 +1,10 @@
 #include "tests/bench/frame_run.hpp"
 
+#include <chrono>
 #include <memory>
 #include <optional>
+#include <thread>
+#include <utility>
 
 #include <oneapi/tbb/global_control.h>
 
@@ -12,7 +15,7 @@
 namespace kintsugi::mapper::bench {
 namespace {
 
-/// Adds the threads it is given to those it watches from now on.
+/// CPU time of some threads since a moment.
 class CpuOfThreads {
  public:
   explicit CpuOfThreads(Threads threads) : threads_(std::move(threads)), start_ms_(total_ms()) {}
@@ -25,7 +28,21 @@ class CpuOfThreads {
   double start_ms_;
 };
 
-std::optional<FrameSample> run_frame(FrameSource& source, MapperPipeline& pipeline, FrameRun& run) {
+/// Until the threads have done nothing for a while.
+void wait_for_rest(const CpuOfThreads& threads) {
+  constexpr std::chrono::milliseconds kWhile{5};
+  constexpr double kNothing_ms = 0.01;
+  double before_ms = threads.total_ms();
+  for (;;) {
+    std::this_thread::sleep_for(kWhile);
+    const double now_ms = threads.total_ms();
+    if (now_ms - before_ms < kNothing_ms) return;
+    before_ms = now_ms;
+  }
+}
+
+std::optional<FrameSample> run_frame(FrameSource& source, const CpuOfThreads& source_cpu,
+                                     MapperPipeline& pipeline, FrameRun& run) {
   FrameSample sample;
   const double cpu_before_ms = process_cpu_ms();
   const double converted_before_ms = source.counts().convert_ms;
@@ -34,7 +51,9 @@ std::optional<FrameSample> run_frame(FrameSource& source, MapperPipeline& pipeli
   if (!frame) return std::nullopt;
   sample.convert_ms = source.counts().convert_ms - converted_before_ms;
   sample.read_ms = stopwatch.lap_ms() - sample.convert_ms;
+  if (run.config.device_rests) wait_for_rest(source_cpu);
   sample.read_convert_cpu_ms = process_cpu_ms() - cpu_before_ms;
+  stopwatch.lap_ms();
   const FrameResult result = pipeline.process(*frame);
   sample.frame_ms = sample.read_ms + sample.convert_ms + stopwatch.lap_ms();
   sample.frame_cpu_ms = process_cpu_ms() - cpu_before_ms;
@@ -67,7 +86,7 @@ FrameRun run_frames(const FrameRunConfig& config) {
       worker_cpu.restart();
       run.frames_lost = run.slices = 0;
     }
-    const auto sample = run_frame(*source, pipeline, run);
+    const auto sample = run_frame(*source, source_cpu, pipeline, run);
     if (!sample) break;
     if (i >= config.warm_up_frames) run.samples.push_back(*sample);
   }

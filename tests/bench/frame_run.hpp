@@ -14,6 +14,9 @@ struct FrameRunConfig {
   int frames = 300;
   int warm_up_frames = 10;  ///< mapped and not counted: memory is touched for the first time
   int threads = 2;          ///< of the parallel stages
+  /// Waits, before a frame is mapped, until the device has made the images that it makes ahead: for
+  /// a device that renders, which costs many times what mapping does. No row has that wait.
+  bool device_rests = false;
   MapperPipeline::Config pipeline;
 };
 

@@ -68,6 +68,7 @@ TEST(FrameRun, TimesEachFrameAfterTheWarmUp) {
   config.device = "synthetic://box-room?frames=7";
   config.frames = 4;
   config.warm_up_frames = 3;
+  config.device_rests = true;
   config.pipeline.volume = {.volume_size_m = 8.0, .resolution_m = 0.02};  // the whole room
   const FrameRun run = run_frames(config);
   ASSERT_EQ(run.samples.size(), 4U);

@@ -238,6 +238,16 @@ TEST_F(RoomPair, GivesTheSumsOfASlowReference) {
               1e-3 * slow.squared_residuals_m2);
 }
 
+TEST_F(RoomPair, MayHaveTwoSizesOfImages) {
+  const SurfaceMap small_frame =
+      testing::render_room(testing::looking_at_the_crate() * X_VC_, testing::test_camera(75, 131));
+  const NormalEquations slow = slow_linearize(small_frame, model_, X_VC_, {});
+  const NormalEquations fast = linearize(small_frame, model_, X_VC_, {});
+  ASSERT_GT(slow.inliers, 3'000);
+  EXPECT_NEAR(fast.inliers, slow.inliers, 3);
+  EXPECT_LT((fast.A - slow.A).norm(), 1e-3 * slow.A.norm());  // three pixels of these
+}
+
 void expect_same_bits(const NormalEquations& a, const NormalEquations& b) {
   EXPECT_EQ(a.A, b.A);
   EXPECT_EQ(a.b, b.b);
