@@ -2,10 +2,15 @@
 
 #include <cassert>
 
+#include "mapper/core/kernels/block_layout.hpp"
 #include "mapper/core/tsdf_volume.hpp"
 
 namespace kintsugi::mapper {
 namespace {
+
+static_assert(BlockLayout::kSide == kBlockSide);
+static_assert(1 << BlockLayout::kVoxelBits == kBlockVoxels);
+static_assert(BlockLayout::kDistanceScale == kDistanceScale);
 
 template <typename Number, typename Surface>
 Planes<Number> planes(Surface& surface) {

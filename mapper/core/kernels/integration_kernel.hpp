@@ -1,6 +1,7 @@
 #pragma once
 // Fusion of a frame into a block, two rows of eight voxels at a time, over any pack.
 
+#include "mapper/core/kernels/block_layout.hpp"
 #include "mapper/core/kernels/integration.hpp"
 
 namespace kintsugi::mapper {
@@ -13,7 +14,7 @@ class BlockIntegration {
         width_(static_cast<float>(frame.width)),
         height_(static_cast<float>(frame.height)) {
     const Float x = to_float(Int::iota() & Int(kSide - 1));
-    const Float y = to_float(shift_right<kSideBits>(Int::iota()));
+    const Float y = to_float(shift_right<BlockLayout::kSideBits>(Int::iota()));
     for (int axis = 0; axis < 3; ++axis) {
       lane_C_[axis] = x * Float(frame.step_C[0][axis]) + y * Float(frame.step_C[1][axis]);
     }
@@ -43,9 +44,7 @@ class BlockIntegration {
   using Int = typename Pack::Int;
   using Mask = typename Pack::Mask;
 
-  static constexpr int kSideBits = 3;  // of kBlockSide
-  static constexpr int kSide = 1 << kSideBits;
-  static constexpr float kScale = 32767.0F;  // kDistanceScale
+  static constexpr int kSide = BlockLayout::kSide;
   static_assert(Pack::kNumLanes == 2 * kSide);
 
   void fuse_two_rows(const Float point_C[3], std::uint32_t* voxels, std::uint32_t* colors) const {
@@ -78,8 +77,8 @@ class BlockIntegration {
     const Float mean = to_float(shift_right_signed<16>(shift_left<16>(voxel)));
     const Float weight = to_float(shift_right<16>(voxel));
     const Float raised = weight + Float(1.0F);
-    const Float measured =
-        min(sdf_m * Float(frame_.inverse_truncation), Float(1.0F)) * Float(kScale);
+    const Float measured = min(sdf_m * Float(frame_.inverse_truncation), Float(1.0F)) *
+                           Float(BlockLayout::kDistanceScale);
     const Float fused = (mean * weight + measured) * (Float(1.0F) / raised);
     const Float half = select(fused < Float(0.0F), Float(-0.5F), Float(0.5F));
     const Int rounded = to_int(fused + half);

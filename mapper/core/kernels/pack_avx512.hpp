@@ -4,6 +4,12 @@
 
 #include <cstdint>
 
+#if defined(__GNUC__) && !defined(__clang__)
+// GCC's own header reads an undefined register on purpose (its bug 105593).
+#pragma GCC diagnostic ignored "-Wuninitialized"
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
+#endif
+
 #include <immintrin.h>
 
 namespace kintsugi::mapper {

@@ -2,6 +2,7 @@
 // Sixteen rays at once, over any pack: from nearest voxel to nearest voxel until they go from free
 // space into a surface, then to where the interpolated distance is zero.
 
+#include "mapper/core/kernels/block_layout.hpp"
 #include "mapper/core/kernels/volume_lanes.hpp"
 
 namespace kintsugi::mapper {
@@ -46,7 +47,7 @@ class RayLanes {
         : exit_vox(select(direction < Float(0.0F), Float(0.0F), Float(kSide))),
           m_per_vox(select(direction == Float(0.0F), Float(kNever), Float(1.0F) / direction)) {}
 
-    static constexpr float kSide = 8.0F;    // kBlockSide
+    static constexpr float kSide = BlockLayout::kSide;
     static constexpr float kNever = 1e30F;  // a ray that does not move along this axis
 
     /// From a coordinate to the face through which the ray leaves its block.

@@ -1,6 +1,7 @@
 #pragma once
 // Reads the volume at sixteen points at once, over any pack.
 
+#include "mapper/core/kernels/block_layout.hpp"
 #include "mapper/core/kernels/volume_view.hpp"
 
 namespace kintsugi::mapper {
@@ -19,10 +20,6 @@ class VolumeLanes {
   using Mask = typename Pack::Mask;
   using Vec3 = Vec3Lanes<Pack>;
 
-  static constexpr int kBlockBits = 3;                     ///< kBlockSide is 1 << kBlockBits
-  static constexpr int kVoxelBits = 9;                     ///< kBlockVoxels is 1 << kVoxelBits
-  static constexpr float kInverseScale = 1.0F / 32767.0F;  // 1 / kDistanceScale
-
   struct Nearest {
     Mask has_block;
     Int voxel;  ///< 0, never observed, where there is no block
@@ -37,7 +34,8 @@ class VolumeLanes {
   Float truncation_vox() const { return Float(volume_.truncation_vox); }
 
   static Float distance_of(const Int& voxel) {
-    return to_float(shift_right_signed<16>(shift_left<16>(voxel))) * Float(kInverseScale);
+    return to_float(shift_right_signed<16>(shift_left<16>(voxel))) *
+           Float(1.0F / BlockLayout::kDistanceScale);
   }
   static Mask is_observed(const Int& voxel) { return shift_right<16>(voxel) != Int(0); }
 
@@ -56,7 +54,7 @@ class VolumeLanes {
     const Mask is_inside = mask & is_in_cube(x.block, y.block, z.block, x.block, y.block, z.block);
     const Int slot = gather(volume_.slots, x.table + y.table + z.table, is_inside);
     const Mask has_block = is_inside & (slot > Int(-1));
-    const Int index = shift_left<kVoxelBits>(slot) + (x.voxel + y.voxel + z.voxel);
+    const Int index = shift_left<BlockLayout::kVoxelBits>(slot) + (x.voxel + y.voxel + z.voxel);
     return {has_block, gather(volume_.voxels, index, has_block)};
   }
 
@@ -86,7 +84,8 @@ class VolumeLanes {
         slot = select(is_elsewhere, other, slot);
         is_known = is_known & (slot > Int(-1));
       }
-      const Int index = shift_left<kVoxelBits>(slot) + (cx.voxel + cy.voxel + cz.voxel);
+      const Int index =
+          shift_left<BlockLayout::kVoxelBits>(slot) + (cx.voxel + cy.voxel + cz.voxel);
       const Int voxel = gather(volume_.voxels, index, is_known);
       is_known = is_known & is_observed(voxel);
       corners[i] = distance_of(voxel);
@@ -122,9 +121,9 @@ class VolumeLanes {
 
   template <int kAxis>
   Coordinate locate(const Int& voxel) const {
-    const Int block = shift_right_signed<kBlockBits>(voxel);
-    const Int local = voxel & Int((1 << kBlockBits) - 1);
-    return {block, table_index<kAxis>(block), shift_left<kAxis * kBlockBits>(local)};
+    const Int block = shift_right_signed<BlockLayout::kSideBits>(voxel);
+    const Int local = voxel & Int(BlockLayout::kSide - 1);
+    return {block, table_index<kAxis>(block), shift_left<kAxis * BlockLayout::kSideBits>(local)};
   }
 
   template <int kAxis>
