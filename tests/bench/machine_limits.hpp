@@ -9,7 +9,10 @@ namespace kintsugi::mapper::bench {
 /// Loops that do one kind of work and nothing else. Each returns something that depends on all of
 /// it, so that none is optimised away.
 struct MachineLimits {
-  /// `count` rounds of 8 independent chains of one multiplication and one addition, in 16 lanes.
+  static constexpr int kNumChains = 12;  ///< as many as hide the latency of an operation
+
+  /// `count` rounds of kNumChains independent chains of one multiplication and one addition, in 16
+  /// lanes.
   float (*calculate)(std::size_t count);
   /// The sum of `count` numbers; a multiple of 64.
   float (*read)(const float* numbers, std::size_t count);
@@ -30,14 +33,17 @@ struct MachineLoops {
   using Mask = typename Pack::Mask;
 
   static float calculate(std::size_t count) {
-    Float a[8];
-    for (int i = 0; i < 8; ++i) a[i] = Float(static_cast<float>(i));
+    constexpr int kNumChains = MachineLimits::kNumChains;
+    Float chains[kNumChains];
+    for (int i = 0; i < kNumChains; ++i) chains[i] = Float(static_cast<float>(i));
     const Float factor(0.999F);
     const Float term(0.001F);
     for (std::size_t round = 0; round < count; ++round) {
-      for (Float& chain : a) chain = chain * factor + term;
+      for (Float& chain : chains) chain = chain * factor + term;
     }
-    return reduce_add((a[0] + a[1] + a[2] + a[3]) + (a[4] + a[5] + a[6] + a[7]));
+    Float sum(0.0F);
+    for (const Float& chain : chains) sum = sum + chain;
+    return reduce_add(sum);
   }
 
   static float read(const float* numbers, std::size_t count) {
