@@ -10,8 +10,9 @@
 #include <cmath>
 #include <cstdio>
 #include <exception>
-#include <fstream>
 #include <iostream>
+#include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -36,6 +37,7 @@ struct Options {
   int step = 1;
   bool true_poses = false;
   bool only_shifts = false;
+  bool forget_points = false;
   std::size_t threads = 0;
   int memory_rows = 10;
   std::string cloud;
@@ -51,6 +53,8 @@ Options parse_command_line(int argc, char** argv) {
   app.add_option("--step", options.step, "map every so manieth frame")->capture_default_str();
   app.add_flag("--true-poses", options.true_poses, "of a synthetic scene, instead of tracking");
   app.add_flag("--only-shifts", options.only_shifts, "of a synthetic scene, with true poses");
+  app.add_flag("--forget-points", options.forget_points,
+               "keep no points, so that the memory is the mapper's; no surface error then");
   app.add_option("--threads", options.threads, "of the parallel stages; 0: one per core");
   app.add_option("--memory-rows", options.memory_rows, "how often to print the memory");
   app.add_option("--min-weight", options.pipeline.slices.extractor.weight_threshold)
@@ -102,6 +106,12 @@ class Run {
         options_.pipeline.given_path.push_back({scene_->utime(i), scene_->X_WC(i)});
       }
     }
+    if (!scene_) {
+      SourceConfig config;
+      config.device = options_.device;
+      config.replay = true;
+      source_ = open_frame_source(config);
+    }
     if (!options_.cloud.empty()) cloud_.emplace(options_.cloud);
     if (!options_.mesh.empty()) {
       mesh_.emplace(options_.mesh);
@@ -111,17 +121,12 @@ class Run {
 
   void play() {
     MapperPipeline pipeline(options_.pipeline);
-    SourceConfig config;
-    config.device = options_.device;
-    config.replay = true;
-    const auto source = open_frame_source(config);
-    const std::int64_t total = source->frames_total() / options_.step;
+    const std::int64_t total = scene_ ? scene_->num_frames() / options_.step : 1000;
     const std::int64_t planned = options_.frames == 0 ? total : options_.frames;
     const std::int64_t row = std::max<std::int64_t>(1, planned / options_.memory_rows);
-    for (std::int64_t i = 0; options_.frames == 0 || i < options_.frames * options_.step; ++i) {
-      const auto frame = source->next();
+    for (int i = 0; options_.frames == 0 || i < options_.frames; ++i) {
+      const auto frame = next_frame(i * options_.step);
       if (!frame) break;
-      if (i % options_.step != 0) continue;
       map(pipeline, *frame);
       if (frame_ms_.size() % static_cast<std::size_t>(row) == 0) print_memory(pipeline);
     }
@@ -136,10 +141,10 @@ class Run {
   void report() const {
     print_times("frame", frame_ms_);
     std::printf("%zu slices, %zu points; worker busy %.0f ms, %.2f us a point; lost %d frames\n",
-                num_slices_, points_W_.size(), extraction_ms_,
-                1e3 * extraction_ms_ / static_cast<double>(points_W_.size()), num_lost_);
+                num_slices_, num_points_, extraction_ms_,
+                1e3 * extraction_ms_ / static_cast<double>(num_points_), num_lost_);
     if (mesh_) std::printf("mesh of %ld triangles\n", static_cast<long>(mesh_->num_triangles()));
-    if (!scene_) return;
+    if (!scene_ || options_.forget_points) return;
     const Pose X_SW = options_.true_poses ? Pose::Identity() : scene_->X_WC(0);
     const SurfaceError error = surface_error(points_W_, scene_->scene(), X_SW);
     std::printf(
@@ -151,6 +156,25 @@ class Run {
   }
 
  private:
+  /// Of a scene only the frames that are asked for are rendered; a recording is read through.
+  std::optional<RgbdFrame> next_frame(int index) {
+    if (!scene_) {
+      for (; num_read_ < index; ++num_read_) source_->next();
+      ++num_read_;
+      return source_->next();
+    }
+    if (index >= scene_->num_frames()) return std::nullopt;
+    RgbdFrame frame;
+    frame.utime = scene_->utime(index);
+    frame.frame_index = index;
+    frame.intrinsics = scene_->intrinsics();
+    const cv::Mat_<std::uint16_t> depth_mm = scene_->depth_mm(index);
+    depth_mm.convertTo(frame.depth_m, CV_32F, 1e-3);
+    frame.depth_m.setTo(std::numeric_limits<float>::quiet_NaN(), depth_mm == 0);
+    frame.color_rgb = scene_->truth(index).color_rgb;
+    return frame;
+  }
+
   void map(MapperPipeline& pipeline, const RgbdFrame& frame) {
     FrameResult result = pipeline.process(frame);
     const bool is_located = result.tracking.state == TrackingState::kTracking ||
@@ -164,6 +188,8 @@ class Run {
     for (const CloudSlice& slice : slices) {
       ++num_slices_;
       if (cloud_) cloud_->append(slice.points_W);
+      num_points_ += slice.points_W.size();
+      if (options_.forget_points) continue;
       points_W_.insert(points_W_.end(), slice.points_W.begin(), slice.points_W.end());
     }
   }
@@ -172,16 +198,20 @@ class Run {
     std::printf("frame %5zu: %6ld blocks in the cube, volume %7.1f MB, process at most %7.1f MB\n",
                 frame_ms_.size(), static_cast<long>(pipeline.num_blocks()),
                 static_cast<double>(pipeline.volume_bytes()) / (1 << 20), peak_memory_mb());
+    std::fflush(stdout);
   }
 
   Options options_;
   std::optional<synthetic::Sequence> scene_;
+  std::unique_ptr<FrameSource> source_;  ///< of a recording
+  int num_read_ = 0;
   std::optional<CloudWriter> cloud_;
   std::optional<MeshWriter> mesh_;
   std::vector<CloudPoint> points_W_;
   std::vector<double> frame_ms_;
   double extraction_ms_ = 0.0;
   std::size_t num_slices_ = 0;
+  std::size_t num_points_ = 0;
   int num_lost_ = 0;
 };
 
