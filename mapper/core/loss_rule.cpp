@@ -1,25 +1,20 @@
 #include "mapper/core/loss_rule.hpp"
 
 #include <algorithm>
-#include <string>
 
 #include "mapper/core/check.hpp"
 
 namespace kintsugi::mapper {
-namespace {
-
-void validate(const std::string& name, const LossRule::Evidence& evidence) {
-  check_range(name + ".min_overlap_share", evidence.min_overlap_share, 0.0, 1.0);
-  check_range(name + ".min_inlier_share", evidence.min_inlier_share, 0.0, 1.0);
-  check_range(name + ".max_behind_share", evidence.max_behind_share, 0.0, 1.0);
-  check_range(name + ".max_in_front_share", evidence.max_in_front_share, 0.0, 1.0);
-  check_range(name + ".max_rms_m", evidence.max_rms_m, 1e-6, 1.0);
-  check_range(name + ".max_sigma_m", evidence.max_sigma_m, 1e-6, 1e6);
+void Evidence::validate(const std::string& name) const {
+  check_range(name + ".min_overlap_share", min_overlap_share, 0.0, 1.0);
+  check_range(name + ".min_inlier_share", min_inlier_share, 0.0, 1.0);
+  check_range(name + ".max_behind_share", max_behind_share, 0.0, 1.0);
+  check_range(name + ".max_in_front_share", max_in_front_share, 0.0, 1.0);
+  check_range(name + ".max_rms_m", max_rms_m, 1e-6, 1.0);
+  check_range(name + ".max_sigma_m", max_sigma_m, 1e-6, 1e6);
 }
 
-/// What of the evidence is missing.
-std::optional<LossReason> find_fault(const RegistrationQuality& quality,
-                                     const LossRule::Evidence& needed) {
+std::optional<LossReason> find_fault(const RegistrationQuality& quality, const Evidence& needed) {
   if (!quality.solved) return LossReason::kNotSolved;
   if (quality.overlap_share < needed.min_overlap_share) return LossReason::kTooLittleOverlap;
   if (quality.inlier_share < needed.min_inlier_share) return LossReason::kTooFewInliers;
@@ -31,14 +26,12 @@ std::optional<LossReason> find_fault(const RegistrationQuality& quality,
   return std::nullopt;
 }
 
-}  // namespace
-
 void LossRule::Config::validate() const {
   check_range("min_covered_share", min_covered_share, 0.0, 1.0);
   check_range("max_covered_drop", max_covered_drop, 0.0, 1.0);
   check_range("recent_view_decay", recent_view_decay, 0.0, 1.0);
-  mapper::validate("following", following);
-  mapper::validate("found_anew", found_anew);
+  following.validate("following");
+  found_anew.validate("found_anew");
   check_range("grace_frames", grace_frames, 0, 1'000'000);
 }
 

@@ -2,6 +2,7 @@
 // When is a registration not to be believed?
 
 #include <optional>
+#include <string>
 #include <string_view>
 
 namespace kintsugi::mapper {
@@ -38,6 +39,22 @@ enum class LossReason {
 
 std::string_view to_string(LossReason reason);
 
+/// What a registration must show at least. Measured on right and wrong poses: bench_loss_evidence.
+struct Evidence {
+  double min_overlap_share = 0.0;   ///< of all pixels
+  double min_inlier_share = 0.0;    ///< of the overlap
+  double max_behind_share = 1.0;    ///< of the overlap
+  double max_in_front_share = 1.0;  ///< of the overlap
+  double max_rms_m = 1.0;
+  double max_sigma_m = 1.0;
+
+  /// @throws std::invalid_argument naming `name`.field, value and bound
+  void validate(const std::string& name) const;
+};
+
+/// What of the evidence is missing; nothing if it is all there.
+std::optional<LossReason> find_fault(const RegistrationQuality& quality, const Evidence& needed);
+
 /// Judges frames one after another. It remembers how much of the view was covered.
 ///
 /// A pose that continues the camera's motion has that motion in its favour; one that was found anew
@@ -45,17 +62,6 @@ std::string_view to_string(LossReason reason);
 /// and similar places look alike: it must fit much better.
 class LossRule {
  public:
-  /// What a registration must show at least. Measured on right and wrong poses:
-  /// bench_loss_evidence.
-  struct Evidence {
-    double min_overlap_share = 0.0;   ///< of all pixels
-    double min_inlier_share = 0.0;    ///< of the overlap
-    double max_behind_share = 1.0;    ///< of the overlap
-    double max_in_front_share = 1.0;  ///< of the overlap
-    double max_rms_m = 1.0;
-    double max_sigma_m = 1.0;
-  };
-
   struct Config {
     double min_covered_share = 0.02;  ///< of all pixels
     double max_covered_drop = 0.4;    ///< may fall by this much of the recent one

@@ -26,6 +26,7 @@ void MapperPipeline::Config::validate() const {
   integrator.validate();
   raycaster.validate();
   tracker.validate();
+  relocalizer.validate();
   slices.validate();
   check_range("finest_tracking_width_px", finest_tracking_width_px, 16, 16384);
 }
@@ -36,13 +37,16 @@ MapperPipeline::MapperPipeline(const Config& config)
       integrator_(config.integrator),
       raycaster_(config.raycaster),
       tracker_(config.tracker),
+      relocalizer_(config.relocalizer),
       slice_worker_(config.slices) {}
 
 FrameResult MapperPipeline::process(const RgbdFrame& frame) {
   FrameResult result;
   StageClock clock;
   utime_ = frame.utime;
-  result.tracking = locate(frame, clock);
+  const TrackingInput input = prepare(frame);
+  clock.end_of(&StageTimes::prepare_ms);
+  result.tracking = locate(input);
   clock.end_of(&StageTimes::track_ms);
   if (is_located(result.tracking.state)) {
     X_WC_ = result.tracking.X_WC;
@@ -50,7 +54,7 @@ FrameResult MapperPipeline::process(const RgbdFrame& frame) {
     clock.end_of(&StageTimes::shift_ms);
     integrator_.integrate(frame, X_WC_, volume_);
     clock.end_of(&StageTimes::integrate_ms);
-    render_model(frame, X_WC_);
+    remember_view(frame, input);
     clock.end_of(&StageTimes::raycast_ms);
   }
   result.times = clock.wall();
@@ -64,21 +68,28 @@ std::vector<CloudSlice> MapperPipeline::finish() {
   return slice_worker_.drain();
 }
 
-TrackingResult MapperPipeline::locate(const RgbdFrame& frame, StageClock& clock) {
-  if (!config_.given_path.empty()) return locate_on_given_path(frame);
-  const TrackingInput input{
-      frame.utime,
-      pyramid_from_depth(frame.depth_m, frame.intrinsics, halvings(frame.intrinsics),
-                         static_cast<int>(config_.tracker.iterations.size()),
-                         static_cast<float>(config_.integrator.max_depth_m)),
-      frame.color_rgb};
-  clock.end_of(&StageTimes::prepare_ms);
-  return model_ ? tracker_.track(input, *model_) : start(input);
+TrackingInput MapperPipeline::prepare(const RgbdFrame& frame) const {
+  if (!config_.given_path.empty()) return {frame.utime, {}, frame.color_rgb};
+  return {frame.utime,
+          pyramid_from_depth(frame.depth_m, frame.intrinsics, halvings(frame.intrinsics),
+                             static_cast<int>(config_.tracker.iterations.size()),
+                             static_cast<float>(config_.integrator.max_depth_m)),
+          frame.color_rgb};
 }
 
-TrackingResult MapperPipeline::locate_on_given_path(const RgbdFrame& frame) const {
+TrackingResult MapperPipeline::locate(const TrackingInput& input) {
+  if (!config_.given_path.empty()) return locate_on_given_path(input.utime);
+  if (!model_) return start(input);
+  TrackingResult result = tracker_.track(input, *model_);
+  if (result.state == TrackingState::kLost) {
+    if (const auto found = find_again(input)) result = *found;
+  }
+  return result;
+}
+
+TrackingResult MapperPipeline::locate_on_given_path(std::int64_t utime) const {
   TrackingResult result;
-  const auto X_WC = pose_at(config_.given_path, frame.utime);
+  const auto X_WC = pose_at(config_.given_path, utime);
   result.state = X_WC ? TrackingState::kGiven : TrackingState::kLost;
   result.X_WC = X_WC.value_or(X_WC_);
   return result;
@@ -95,20 +106,33 @@ TrackingResult MapperPipeline::start(const TrackingInput& input) {
   return result;
 }
 
+std::optional<TrackingResult> MapperPipeline::find_again(const TrackingInput& input) {
+  const SurfaceMap& surface_C = input.surface_C.front();
+  const auto map_from_pose = [&](const Pose& X_WV) {
+    return map_from(X_WV, surface_C.intrinsics, surface_C.depth_m);
+  };
+  const auto found = relocalizer_.find(input, tracker_, map_from_pose);
+  if (found) tracker_.start_at(found->X_WC, input, found->quality.covered_share);
+  return found;
+}
+
 int MapperPipeline::shift(const RgbdFrame& frame, const Pose& X_WC) {
   std::vector<DetachedBlocks> left = volume_.shift_to(X_WC.translation());
   for (DetachedBlocks& blocks : left) slice_worker_.submit(std::move(blocks), frame.utime, X_WC);
   return static_cast<int>(left.size());
 }
 
-void MapperPipeline::render_model(const RgbdFrame& frame, const Pose& X_WC) {
+void MapperPipeline::remember_view(const RgbdFrame& frame, const TrackingInput& input) {
   if (!config_.given_path.empty()) return;  // nothing is registered with it
-  Intrinsics camera = frame.intrinsics;
-  for (int i = 0; i < halvings(frame.intrinsics); ++i) camera = half_size(camera);
-  SurfaceMap surface_V = raycaster_.raycast(volume_, X_WC, camera, frame.depth_m);
-  model_ = Model{pyramid_from_surface(std::move(surface_V),
-                                      static_cast<int>(config_.tracker.iterations.size())),
-                 X_WC, region_of(volume_)};
+  model_ = map_from(X_WC_, input.surface_C.front().intrinsics, frame.depth_m);
+  relocalizer_.remember(input, *model_);
+}
+
+Model MapperPipeline::map_from(const Pose& X_WV, const Intrinsics& camera,
+                               const cv::Mat_<float>& guide_depth_m) const {
+  return {pyramid_from_surface(raycaster_.raycast(volume_, X_WV, camera, guide_depth_m),
+                               static_cast<int>(config_.tracker.iterations.size())),
+          X_WV, region_of(volume_)};
 }
 
 int MapperPipeline::halvings(const Intrinsics& intrinsics) const {

@@ -11,6 +11,7 @@
 #include "lcmtypes/trajectory.hpp"
 #include "mapper/core/integrator.hpp"
 #include "mapper/core/raycaster.hpp"
+#include "mapper/core/relocalizer.hpp"
 #include "mapper/core/rgbd_frame.hpp"
 #include "mapper/core/slice_worker.hpp"
 #include "mapper/core/stage_times.hpp"
@@ -32,9 +33,16 @@ struct FrameResult {
 /// leaves the volume as slices, numbered from 0 without gaps.
 ///
 /// The same frames give the same poses and the same slices, bit by bit, whatever the number of
-/// threads; only with which frame a finished slice is handed out depends on timing. A frame that is
-/// lost changes nothing: the map and the last good pose stay. `session` and `map_name` of the
-/// slices are left for who publishes them.
+/// threads; only with which frame a finished slice is handed out depends on timing. `session` and
+/// `map_name` of the slices are left for who publishes them.
+///
+///     Starting --first frame with a surface in the cube--> Tracking
+///     Tracking --the loss rule does not believe a pose--> Lost
+///     Lost     --found near the last pose (Tracker), or by a keyframe (Relocalizer)--> Tracking
+///
+/// Only what is tracked is fused. A frame that is lost changes nothing: map and last pose stay. A
+/// camera found elsewhere takes the cube with it, and what leaves the cube goes out as slices.
+/// With given poses there is no Starting and no Tracking: each frame is Given, or Lost.
 class MapperPipeline {
  public:
   struct Config {
@@ -42,6 +50,7 @@ class MapperPipeline {
     Integrator::Config integrator;
     Raycaster::Config raycaster;
     Tracker::Config tracker;
+    Relocalizer::Config relocalizer;
     SliceWorker::Config slices;
     int finest_tracking_width_px = 320;  ///< images are halved while at least this remains
     Trajectory given_path;  ///< if not empty, replaces tracking; a frame without a pose is lost
@@ -66,11 +75,16 @@ class MapperPipeline {
   double extraction_ms() const { return slice_worker_.busy_ms(); }
 
  private:
-  TrackingResult locate(const RgbdFrame& frame, StageClock& clock);
-  TrackingResult locate_on_given_path(const RgbdFrame& frame) const;
+  TrackingInput prepare(const RgbdFrame& frame) const;
+  TrackingResult locate(const TrackingInput& input);
+  TrackingResult locate_on_given_path(std::int64_t utime) const;
   TrackingResult start(const TrackingInput& input);
   int shift(const RgbdFrame& frame, const Pose& X_WC);
-  void render_model(const RgbdFrame& frame, const Pose& X_WC);
+  std::optional<TrackingResult> find_again(const TrackingInput& input);
+  void remember_view(const RgbdFrame& frame, const TrackingInput& input);
+  /// The map's surface as seen from a pose; the guide is that of Raycaster::raycast().
+  Model map_from(const Pose& X_WV, const Intrinsics& camera,
+                 const cv::Mat_<float>& guide_depth_m) const;
   int halvings(const Intrinsics& intrinsics) const;
 
   Config config_;
@@ -78,6 +92,7 @@ class MapperPipeline {
   Integrator integrator_;
   Raycaster raycaster_;
   Tracker tracker_;
+  Relocalizer relocalizer_;
   SliceWorker slice_worker_;
   std::optional<Model> model_;    ///< none before the first fused frame
   Pose X_WC_ = Pose::Identity();  ///< of the last fused frame

@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
-#include "mapper/core/mapper_pipeline.hpp"
 #include "lcmtypes/trajectory_error.hpp"
+#include "mapper/core/mapper_pipeline.hpp"
 #include "tests/mapper/synthetic_frames.hpp"
 
 namespace kintsugi::mapper {
@@ -79,7 +79,8 @@ TEST(MapperPipeline, FollowsTheCameraWithNoise) {
   EXPECT_THAT(output.states, ::testing::Each(TrackingState::kTracking));
   // Noise of 2 to 8 mm a pixel at 1 to 2.4 m is averaged over 1e4 pixels and many frames; what
   // remains is drift of the model. The target for whole rooms is 10 mm.
-  EXPECT_LT(absolute_trajectory_error(output.path, noisy_office().true_path).translation_m.rmse, 0.010);
+  EXPECT_LT(absolute_trajectory_error(output.path, noisy_office().true_path).translation_m.rmse,
+            0.010);
 }
 
 TEST(MapperPipeline, NumbersSlicesFromZeroAndEndsWithTheFinalOne) {
@@ -134,7 +135,55 @@ TEST(MapperPipeline, FusesNothingWhileLostAndGoesOnWhenTheViewReturns) {
     EXPECT_EQ(result.tracking.state, TrackingState::kTracking) << i;
     rest.path.push_back({frames[i].utime, result.tracking.X_WC});
   }
-  EXPECT_LT(absolute_trajectory_error(rest.path, noisy_office().true_path).translation_m.rmse, 0.010);
+  EXPECT_LT(absolute_trajectory_error(rest.path, noisy_office().true_path).translation_m.rmse,
+            0.010);
+}
+
+/// A slow pan and a return to its beginning, between the frames seen then: what the camera does
+/// meanwhile is not seen.
+Output pan_and_return(bool with_color, bool covered) {
+  static const SyntheticRun office = synthetic_run("office", 48, true, 5);
+  std::vector<RgbdFrame> frames;
+  Trajectory true_path;
+  const auto play = [&](const RgbdFrame& frame, const Pose& X_WC) {
+    frames.push_back(frame);
+    frames.back().utime = 33'333 * static_cast<std::int64_t>(frames.size());
+    if (!with_color) frames.back().color_rgb.release();
+    true_path.push_back({frames.back().utime, X_WC});
+  };
+  for (int i = 0; i < 48; i += 2) play(office.frames[i], office.true_path[i].X_WC);
+  for (int i = 0; covered && i < 5; ++i) play(blank(office.frames[0]), Pose::Identity());
+  for (int i = 1; i < 12; i += 2) play(office.frames[i], office.true_path[i].X_WC);
+  MapperPipeline::Config config = small_config();
+  Output output = run(config, frames);
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const Pose X_W_true = office.true_path[0].X_WC.inverse() * true_path[i].X_WC;
+    if (output.states[i] == TrackingState::kTracking) {
+      // A centimetre and a half a voxel: drift along the way, and noise.
+      EXPECT_LT((output.path[i].X_WC.translation() - X_W_true.translation()).norm(), 0.02) << i;
+    }
+  }
+  return output;
+}
+
+class MapperPipelineReturn : public ::testing::TestWithParam<bool> {};
+
+TEST_P(MapperPipelineReturn, KnowsAPlaceAgainAfterTheCameraWasCovered) {
+  const Output output = pan_and_return(GetParam(), true);
+  for (int i = 0; i < 24; ++i) EXPECT_EQ(output.states[i], TrackingState::kTracking) << i;
+  for (int i = 24; i < 29; ++i) EXPECT_EQ(output.states[i], TrackingState::kLost) << i;
+  EXPECT_EQ(output.states.back(), TrackingState::kTracking);
+}
+
+TEST_P(MapperPipelineReturn, KnowsAPlaceAgainAfterAJump) {
+  const Output output = pan_and_return(GetParam(), false);
+  EXPECT_EQ(output.states.back(), TrackingState::kTracking);
+}
+
+INSTANTIATE_TEST_SUITE_P(Color, MapperPipelineReturn, ::testing::Bool());
+
+TEST(MapperPipeline, GivesTheSameBytesWhenItLosesItsWay) {
+  expect_same(pan_and_return(true, true), pan_and_return(true, true));
 }
 
 TEST(MapperPipeline, StartsWithTheFirstFrameThatShowsSomething) {
