@@ -34,7 +34,7 @@ std::vector<int> smallest(std::vector<std::pair<double, int>> keys, int count) {
 
 }  // namespace
 
-SurfaceMap Keyframe::surface() const {
+SurfaceMap Place::surface() const {
   cv::Mat_<float> depth_m;
   depth_raw.convertTo(depth_m, CV_32F, 1.0 / kRawPerMetre);
   depth_m.setTo(std::numeric_limits<float>::quiet_NaN(), depth_raw == 0);
@@ -53,7 +53,7 @@ void KeyframeMap::Config::validate() const {
 KeyframeMap::KeyframeMap(const Config& config) : config_((config.validate(), config)) {}
 
 bool KeyframeMap::is_due(const Pose& X_WC) const {
-  return std::none_of(keyframes_.begin(), keyframes_.end(), [&](const Keyframe& keyframe) {
+  return std::none_of(keyframes_.begin(), keyframes_.end(), [&](const Place& keyframe) {
     const Pose X_KC = keyframe.X_WC.inverse() * X_WC;
     return X_KC.translation().norm() < config_.spacing_m &&
            rotation_angle_rad(X_KC) < config_.spacing_rad;

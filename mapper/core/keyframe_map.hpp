@@ -13,9 +13,9 @@
 
 namespace kintsugi::mapper {
 
-/// One place: where the camera was, what it looked like there, and the map's surface as seen from
+/// A keyframe: where the camera was, what it looked like there, and the map's surface as seen from
 /// there, kept for when the volume has moved on.
-struct Keyframe {
+struct Place {
   Pose X_WC = Pose::Identity();
   PlaceView view;
   Intrinsics camera;                  ///< of the surface: a small image, 160x120 of 640x480
@@ -59,7 +59,7 @@ class KeyframeMap {
 
   int size() const { return static_cast<int>(keyframes_.size()); }
   /// @pre similar_to() was called since the last add().
-  const Keyframe& operator[](int number) const { return keyframes_[number]; }
+  const Place& operator[](int number) const { return keyframes_[number]; }
 
  private:
   void finish_last();
@@ -67,7 +67,7 @@ class KeyframeMap {
   std::vector<int> by_depth(const PlaceView& view) const;
 
   Config config_;
-  std::vector<Keyframe> keyframes_;
+  std::vector<Place> keyframes_;
   DescriptorIndex index_;
   std::future<PlaceView> view_of_last_;  ///< valid while the last keyframe's view is not there yet
 };

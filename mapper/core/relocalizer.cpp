@@ -15,7 +15,7 @@ const SurfaceMap& coarse(const SurfacePyramid& pyramid) {
   return pyramid[std::min<std::size_t>(1, pyramid.size() - 1)];
 }
 
-std::optional<double> correlation_between(const Keyframe& keyframe, const SurfaceMap& surface_K,
+std::optional<double> correlation_between(const Place& keyframe, const SurfaceMap& surface_K,
                                           const PlaceView& view, const TrackingInput& frame,
                                           const Pose& X_WC) {
   if (view.intensity.empty() || keyframe.view.intensity.empty()) return std::nullopt;
@@ -55,7 +55,7 @@ std::optional<TrackingResult> Relocalizer::find(const TrackingInput& frame, cons
   return found;
 }
 
-std::optional<TrackingResult> Relocalizer::try_keyframe(const Keyframe& keyframe,
+std::optional<TrackingResult> Relocalizer::try_keyframe(const Place& keyframe,
                                                         const PlaceView& view,
                                                         const TrackingInput& frame,
                                                         const Tracker& tracker,

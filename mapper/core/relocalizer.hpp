@@ -59,7 +59,7 @@ class Relocalizer {
   int num_keyframes() const { return keyframes_.size(); }
 
  private:
-  std::optional<TrackingResult> try_keyframe(const Keyframe& keyframe, const PlaceView& view,
+  std::optional<TrackingResult> try_keyframe(const Place& keyframe, const PlaceView& view,
                                              const TrackingInput& frame, const Tracker& tracker,
                                              const MapView& map_from) const;
   /// `X_WC_features`: what the features say, if they say anything.
