@@ -15,6 +15,11 @@ inline Eigen::Vector3d voxel_center_W(const TsdfVolume& volume, const BlockCoord
   return (first + voxel + Eigen::Vector3d::Constant(0.5)) * volume.config().resolution_m;
 }
 
+/// Position of a voxel in its block, from its place in the block's array.
+inline Eigen::Vector3d voxel_of_index(int index) {
+  return Eigen::Vector3i(index % 8, index / 8 % 8, index / 64).cast<double>();
+}
+
 /// Allocates every block of the cube whose middle is within 12 voxels of the surface: all that
 /// come within 5 voxels of it.
 template <typename Function>
@@ -36,8 +41,7 @@ void set_exact_distances(TsdfVolume& volume, int weight, Function signed_distanc
   for (BlockSlot slot = 0; slot < volume.slots_end(); ++slot) {
     if (!volume.in_use(slot)) continue;
     for (int i = 0; i < kBlockVoxels; ++i) {
-      const Eigen::Vector3d p_W =
-          voxel_center_W(volume, volume.coord(slot), Eigen::Vector3d(i % 8, i / 8 % 8, i / 64));
+      const Eigen::Vector3d p_W = voxel_center_W(volume, volume.coord(slot), voxel_of_index(i));
       const double fraction = std::clamp(signed_distance_m(p_W) / volume.truncation_m(), -1.0, 1.0);
       const auto raw = static_cast<std::int16_t>(std::lround(fraction * kDistanceScale));
       volume.voxels(slot).voxels[i] =

@@ -24,8 +24,7 @@ int for_each_observed(const TsdfVolume& volume, Check check) {
     for (int i = 0; i < kBlockVoxels; ++i) {
       const Voxel voxel = volume.voxels(slot).voxels[i];
       if (voxel_weight(voxel) == 0) continue;
-      const Eigen::Vector3d index(i % 8, i / 8 % 8, i / 64);
-      check(testing::voxel_center_W(volume, volume.coord(slot), index),
+      check(testing::voxel_center_W(volume, volume.coord(slot), testing::voxel_of_index(i)),
             static_cast<double>(voxel_distance(voxel)));
       ++count;
     }

@@ -40,13 +40,13 @@ TEST(TsdfBlockPool, CopiesVoxels) {
 
 TEST(TsdfBlockPool, KeepsWhatIsLentUntilTheLoanEndsOnAnyThread) {
   TsdfBlockPool pool;
-  std::vector<BlockSlot> slots;
-  for (int i = 0; i < 10; ++i) slots.push_back(pool.take(at(i)));
+  std::vector<BlockSlot> slots(10);
+  for (int i = 0; i < 10; ++i) slots[i] = pool.take(at(i));
   std::shared_ptr<const void> loan = pool.lend(slots);
   EXPECT_EQ(pool.take(at(20)), 10) << "nothing is free";
   std::thread([&loan] { loan.reset(); }).join();
-  std::vector<BlockSlot> again;
-  for (int i = 0; i < 10; ++i) again.push_back(pool.take(at(30 + i)));
+  std::vector<BlockSlot> again(10);
+  for (int i = 0; i < 10; ++i) again[i] = pool.take(at(30 + i));
   std::sort(again.begin(), again.end());
   EXPECT_EQ(again, slots);
   EXPECT_EQ(pool.end(), 11);
