@@ -42,6 +42,11 @@ AllocationView make_allocation_view(const cv::Mat_<float>& depth_m, const Intrin
   return view;
 }
 
+int most_blocks_in_a_row(const AllocationView& view) {
+  const int num_pixels = (view.camera.width + view.stride_px - 1) / view.stride_px;
+  return num_pixels * (2 * view.half_steps + 1);
+}
+
 /// Ascending, each once.
 PackedBlocks find_missing_blocks(const VolumeView& volume, const AllocationView& view,
                                  const Kernels& kernels) {
@@ -51,7 +56,7 @@ PackedBlocks find_missing_blocks(const VolumeView& volume, const AllocationView&
     PackedBlocks& blocks = found.local();
     for (int row = rows.begin(); row < rows.end(); ++row) {
       const std::size_t before = blocks.size();
-      blocks.resize(before + view.most_blocks_in_a_row());
+      blocks.resize(before + most_blocks_in_a_row(view));
       const int count =
           kernels.find_missing_blocks(volume, view, row * kPixelStride, &blocks[before]);
       blocks.resize(before + count);

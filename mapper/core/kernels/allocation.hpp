@@ -20,15 +20,11 @@ struct AllocationView {
   float blocks_per_m[3][3] = {};  ///< [axis of the cube][axis of C]
   float step_m = 0.0F;            ///< along the camera's z
   int half_steps = 0;             ///< from each depth forwards, and backwards
-
-  int most_blocks_in_a_row() const {
-    return ((camera.width + stride_px - 1) / stride_px) * (2 * half_steps + 1);
-  }
 };
 
 /// Writes the blocks of the cube that row `v` needs and that do not exist, in cube coordinates x |
 /// y << kSideBits | z << 2 kSideBits, some of them more than once. Returns how many: at most
-/// view.most_blocks_in_a_row().
+/// one for each step of each pixel that is looked at.
 using FindMissingBlocks = int (*)(const VolumeView& volume, const AllocationView& view, int v,
                                   std::uint32_t* blocks);
 
