@@ -66,7 +66,7 @@ inline void integrate_slowly(const IntegrationFrame& frame, const IntegrationBlo
       // Kernels take the rows by twos.
       const float first =
           block.origin_C[axis] + (static_cast<float>(z) * frame.step_C[2][axis] +
-                                  static_cast<float>(y / 2 * 2) * frame.step_C[1][axis]);
+                                  static_cast<float>(y - y % 2) * frame.step_C[1][axis]);
       point_C[axis] = first + (static_cast<float>(x) * frame.step_C[0][axis] +
                                static_cast<float>(y % 2) * frame.step_C[1][axis]);
     }
