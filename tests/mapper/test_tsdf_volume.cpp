@@ -212,7 +212,7 @@ TEST(TsdfVolume, KeepsItsMemoryOnAWalkOfAnyLength) {
   EXPECT_EQ(volume.memory_bytes(), bytes_after_20);
   // The cube, three slices of two layers with a layer to either side: 4 KB a block, and the table.
   constexpr std::size_t kBlocks = 200 + 3 * 80;
-  constexpr std::size_t kTable = 16 * 16 * 16 * sizeof(BlockSlot);
+  constexpr std::size_t kTable = std::size_t{16} * 16 * 16 * sizeof(BlockSlot);
   constexpr std::size_t kHugePages = 2 * (std::size_t{2} << 20U);  // memory comes in these
   EXPECT_LE(volume.memory_bytes(), 2 * kBlocks * 4096 + kTable + kHugePages);
 }

@@ -35,7 +35,7 @@ class Bytes {
   explicit Bytes(std::string bytes) : bytes_(std::move(bytes)) {}
   std::string line() {
     const std::size_t end = bytes_.find('\n', position_);
-    const std::string result = bytes_.substr(position_, end - position_);
+    std::string result = bytes_.substr(position_, end - position_);
     position_ = end + 1;
     return result;
   }
@@ -142,8 +142,8 @@ TEST(MeshWriter, WritesWhatAReaderOfPlyExpects) {
 TEST(CloudReader, ReadsWhatTheWriterWrote) {
   const kintsugi::testing::TemporaryFolder folder;
   CloudWriter writer(folder.path() / "map.ply");
-  std::vector<CloudPoint> points;
-  for (int i = 0; i < 100; ++i) points.push_back(example_point(i));
+  std::vector<CloudPoint> points(100);
+  for (int i = 0; i < 100; ++i) points[i] = example_point(i);
   writer.append(points);
   writer.commit();
   EXPECT_EQ(read_cloud(folder.path() / "map.ply"), points);
