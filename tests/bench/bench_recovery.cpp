@@ -84,13 +84,15 @@ std::string in_mm(std::optional<double> metres) {
 }
 
 void print_header() {
-  std::cout << "| disturbance | frames | located | wrong (> 3 cm) | worst, mm | good | refused | "
+  std::cout << "| disturbance | frames | located | fused wrongly | worst, mm | off reference | "
+               "worst, mm | good | refused | "
                "recovered / never | until found, median / max, s | ATE, mm | frame, median / max, "
-               "ms |\n|---|---|---|---|---|---|---|---|---|---|---|\n";
+               "ms |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
 }
 
 void print_row(const std::string& name, const RecoveryMeasures& m) {
-  std::cout << "| " << name << " | " << m.frames << " | " << m.located << " | " << m.wrong << " | "
+  std::cout << "| " << name << " | " << m.frames << " | " << m.located << " | " << m.misplaced
+            << " | " << in_mm(m.worst_misplacement_m) << " | " << m.off << " | "
             << in_mm(m.worst_error_m) << " | " << m.good << " | " << m.refused << std::fixed
             << std::setprecision(1) << " (" << (m.good > 0 ? 100.0 * m.refused / m.good : 0.0)
             << " %) | " << m.recoveries << " / " << m.never_recovered << std::setprecision(2)

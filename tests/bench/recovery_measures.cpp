@@ -1,6 +1,9 @@
 #include "tests/bench/recovery_measures.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
 
 #include "lcmtypes/trajectory_error.hpp"
 
@@ -15,12 +18,61 @@ void measure_errors(const std::vector<FrameOutcome>& outcomes,
     measures.located += outcome.located ? 1 : 0;
     if (outcome.located && reference) {
       const double error_m = pose_error_m(outcome.tracking.X_WC, *reference);
-      measures.wrong += error_m > kWrong_m ? 1 : 0;
+      measures.off += error_m > kWrong_m ? 1 : 0;
       measures.worst_error_m = std::max(measures.worst_error_m, error_m);
     }
     if (is_good(outcome)) {
       ++measures.good;
       measures.refused += outcome.located ? 0 : 1;
+    }
+  }
+}
+
+/// A frame as it was fused, and where it truly belongs.
+struct Fused {
+  Pose X_WC;
+  Pose X_WC_true;
+};
+
+/// How far the frame is from where a frame fused rightly at the same place would put it: the least
+/// over all within kSamePlace_m, or from the nearest one.
+double misplacement_m(const Fused& frame, const std::vector<Fused>& right) {
+  double least_m = std::numeric_limits<double>::infinity();
+  double nearest_m = std::numeric_limits<double>::infinity();
+  double by_nearest_m = 0.0;
+  for (const Fused& other : right) {
+    const double distance_m = pose_error_m(frame.X_WC_true, other.X_WC_true);
+    const double error_m = pose_error_m(other.X_WC.inverse() * frame.X_WC,
+                                        other.X_WC_true.inverse() * frame.X_WC_true);
+    if (distance_m < kSamePlace_m) least_m = std::min(least_m, error_m);
+    if (distance_m < nearest_m) {
+      nearest_m = distance_m;
+      by_nearest_m = error_m;
+    }
+  }
+  return nearest_m < kSamePlace_m ? least_m : by_nearest_m;  // 0 for the first frame
+}
+
+void measure_misplacement(const std::vector<FrameOutcome>& outcomes,
+                          const std::vector<std::optional<Pose>>& X_WC_reference,
+                          const std::vector<std::optional<Pose>>& X_WC_true,
+                          RecoveryMeasures& measures) {
+  const std::array paths = {&X_WC_reference, &X_WC_true};
+  std::array<std::vector<Fused>, paths.size()> right;
+  for (const FrameOutcome& outcome : outcomes) {
+    if (!outcome.located) continue;
+    double error_m = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < paths.size(); ++i) {
+      const auto& X_WC = paths[i]->at(outcome.planned.frame);
+      if (X_WC)
+        error_m = std::min(error_m, misplacement_m({outcome.tracking.X_WC, *X_WC}, right[i]));
+    }
+    if (std::isinf(error_m)) continue;  // nothing is known of the frame
+    measures.worst_misplacement_m = std::max(measures.worst_misplacement_m, error_m);
+    measures.misplaced += error_m > kWrong_m ? 1 : 0;
+    for (std::size_t i = 0; error_m <= kWrong_m && i < paths.size(); ++i) {
+      const auto& X_WC = paths[i]->at(outcome.planned.frame);
+      if (X_WC) right[i].push_back({outcome.tracking.X_WC, *X_WC});
     }
   }
 }
@@ -75,6 +127,7 @@ RecoveryMeasures measure(const std::vector<FrameOutcome>& outcomes,
   RecoveryMeasures measures;
   measures.frames = static_cast<int>(outcomes.size());
   measure_errors(outcomes, X_WC_reference, measures);
+  measure_misplacement(outcomes, X_WC_reference, X_WC_true, measures);
   measure_recoveries(outcomes, measures);
   measures.ate_m = ate_of(outcomes, X_WC_true);
   std::vector<double> times_ms;

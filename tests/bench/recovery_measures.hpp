@@ -11,8 +11,13 @@ namespace kintsugi::mapper::bench {
 struct RecoveryMeasures {
   int frames = 0;
   int located = 0;
-  int wrong = 0;                   ///< located with a pose error above kWrong_m: fused wrongly
-  double worst_error_m = 0.0;      ///< of the located ones
+  /// Located more than kWrong_m off what frames fused rightly at the same place say: fused wrongly.
+  /// Drift over a long way, which is no wrong fusion, does not count. Places are told by the
+  /// reference and by the truth; neither is exact for a recording, so a frame is wrong by both.
+  int misplaced = 0;
+  double worst_misplacement_m = 0.0;
+  int off = 0;                     ///< located more than kWrong_m off the reference, drift and all
+  double worst_error_m = 0.0;      ///< of the located ones, against the reference
   int good = 0;                    ///< see is_good()
   int refused = 0;                 ///< good and yet not located
   int recoveries = 0;              ///< losses with a good frame that ended with a located one
@@ -26,6 +31,8 @@ struct RecoveryMeasures {
 
 /// A fused frame further off than this is wrong.
 inline constexpr double kWrong_m = 0.03;
+/// Frames see the same place when their poses differ by less, in the terms of pose_error_m().
+inline constexpr double kSamePlace_m = 0.5;
 /// A view is good when so much of it has been fused before.
 inline constexpr double kGoodViewShare = 0.5;
 

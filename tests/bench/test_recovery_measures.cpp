@@ -29,10 +29,26 @@ TEST(RecoveryMeasures, CountsErrorsOnBothSides) {
               reference, reference);
   EXPECT_EQ(measures.frames, 5);
   EXPECT_EQ(measures.located, 3);
-  EXPECT_EQ(measures.wrong, 1);
+  EXPECT_EQ(measures.off, 1);
   EXPECT_NEAR(measures.worst_error_m, 0.031, 1e-12);
   EXPECT_EQ(measures.good, 4);     // not frame 3: its view is new
   EXPECT_EQ(measures.refused, 1);  // frame 2
+}
+
+TEST(RecoveryMeasures, ToldApartFromDriftAWrongFusionDisagreesWithItsSurroundings) {
+  std::vector<std::optional<Pose>> truth;
+  std::vector<FrameOutcome> outcomes;
+  for (int i = 0; i < 20; ++i) {  // 10 cm a frame, of which 4 mm are lost each time
+    truth.emplace_back(at(0.1 * i));
+    outcomes.push_back(outcome(i, true, 0.096 * i));
+  }
+  RecoveryMeasures measures = measure(outcomes, truth, truth);
+  EXPECT_EQ(measures.misplaced, 0);
+  EXPECT_EQ(measures.off, 12);
+  for (int i = 15; i < 20; ++i) outcomes[i].tracking.X_WC.translation().y() = 0.2;
+  measures = measure(outcomes, truth, truth);
+  EXPECT_EQ(measures.misplaced, 5);  // also those that agree with each other
+  EXPECT_GT(measures.worst_misplacement_m, 0.2 - 1e-9);
 }
 
 TEST(RecoveryMeasures, TimesALossFromItsFirstGoodFrame) {
