@@ -35,13 +35,15 @@ class NormalPairs {
     if (std::isnan(frame_.normal_z(v, u))) return;
     const Eigen::Vector3f p = R_VC_ * frame_.point(v, u) + p_VC_;
     const auto& camera = model_.intrinsics;
-    const float x = static_cast<float>(camera.fx) * p.x() / p.z() + static_cast<float>(camera.cx);
-    const float y = static_cast<float>(camera.fy) * p.y() / p.z() + static_cast<float>(camera.cy);
+    const float x =
+        static_cast<float>(camera.fx) * p.x() / p.z() + static_cast<float>(camera.cx) + 0.5F;
+    const float y =
+        static_cast<float>(camera.fy) * p.y() / p.z() + static_cast<float>(camera.cy) + 0.5F;
     // Written so that a NaN on either side fails these.
-    if (!(p.z() > 0.0F && x > -0.5F && y > -0.5F)) return;
-    if (!(x < model_.depth_m.cols - 0.5F && y < model_.depth_m.rows - 0.5F)) return;
-    const int col = static_cast<int>(x + 0.5F);
-    const int row = static_cast<int>(y + 0.5F);
+    if (!(p.z() > 0.0F && x >= 0.0F && y >= 0.0F)) return;
+    if (!(x < model_.depth_m.cols && y < model_.depth_m.rows)) return;
+    const int col = static_cast<int>(x);
+    const int row = static_cast<int>(y);
     const Eigen::Vector3f model_normal = model_.normal(row, col);
     const Eigen::Vector3f frame_normal = R_VC_ * frame_.normal(v, u);
     if (!((model_.point(row, col) - p).squaredNorm() < max_squared_distance_)) return;

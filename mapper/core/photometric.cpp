@@ -85,7 +85,8 @@ class PixelPairs {
         static_cast<float>(camera.fy) * point_K.y() / point_K.z() + static_cast<float>(camera.cy);
     if (!(x >= 1.0F && y >= 1.0F)) return std::nullopt;
     if (!(x < depth_m.cols - 2.0F && y < depth_m.rows - 2.0F)) return std::nullopt;
-    const float seen_m = depth_m(static_cast<int>(y + 0.5F), static_cast<int>(x + 0.5F));
+    const float seen_m =
+        depth_m(static_cast<int>(std::lround(y)), static_cast<int>(std::lround(x)));
     const double allowed_m =
         std::max(config_.min_depth_step_m, config_.depth_sigmas * depth_sigma_m(point_K.z()));
     if (!(std::abs(seen_m - point_K.z()) < allowed_m)) return std::nullopt;  // false for a NaN
