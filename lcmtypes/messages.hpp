@@ -176,11 +176,10 @@ struct MapperStatus {
   std::int64_t slices_published = 0;
   std::int64_t points_published = 0;
   std::int64_t chunks_published = 0;
-  std::int64_t blocks = 0;          ///< voxel blocks in use
-  std::int64_t memory_bytes = 0;    ///< resident, of the whole process
-  std::int64_t volume_bytes = 0;    ///< of it, the volume
-  std::int64_t queue_bytes = 0;     ///< of it, what waits to be sent
-  std::int64_t keyframe_bytes = 0;  ///< of it, the keyframes
+  std::int64_t blocks = 0;        ///< voxel blocks in use
+  std::int64_t memory_bytes = 0;  ///< resident, of the whole process
+  std::int64_t volume_bytes = 0;  ///< of it, the volume
+  std::int64_t queue_bytes = 0;   ///< of it, what waits to be sent
   double frame_rate_hz = 0.0;
   /// Wall time from a frame taken to its messages sent, of the frames since the last status.
   double frame_p50_ms = 0.0;

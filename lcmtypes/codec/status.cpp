@@ -34,7 +34,6 @@ struct Small<MapperStatus> : Copied<MapperStatus, mapper_status_t> {
     to.memory_bytes = from.memory_bytes;
     to.volume_bytes = from.volume_bytes;
     to.queue_bytes = from.queue_bytes;
-    to.keyframe_bytes = from.keyframe_bytes;
     to.frame_rate_hz = from.frame_rate_hz;
     to.frame_p50_ms = from.frame_p50_ms;
     to.frame_p99_ms = from.frame_p99_ms;
@@ -71,7 +70,6 @@ struct Small<MapperStatus> : Copied<MapperStatus, mapper_status_t> {
     check.not_negative("memory_bytes", m.memory_bytes);
     check.not_negative("volume_bytes", m.volume_bytes);
     check.not_negative("queue_bytes", m.queue_bytes);
-    check.not_negative("keyframe_bytes", m.keyframe_bytes);
     check.finite("frame_rate_hz", m.frame_rate_hz);
     check.finite("frame_p50_ms", m.frame_p50_ms);
     check.finite("frame_p99_ms", m.frame_p99_ms);

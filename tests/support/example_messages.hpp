@@ -130,7 +130,6 @@ inline MapperStatus example_mapper_status() {
   status.memory_bytes = 14;
   status.volume_bytes = 15;
   status.queue_bytes = 16;
-  status.keyframe_bytes = 17;
   status.frame_rate_hz = 20.5;
   status.frame_p50_ms = 21.5;
   status.frame_p99_ms = 22.5;
