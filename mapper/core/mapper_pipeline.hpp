@@ -71,6 +71,7 @@ class MapperPipeline {
   std::vector<CloudSlice> finish();
 
   std::int64_t num_blocks() const { return static_cast<std::int64_t>(volume_.num_blocks()); }
+  int num_keyframes() const { return relocalizer_.num_keyframes(); }
   std::int64_t volume_bytes() const { return static_cast<std::int64_t>(volume_.memory_bytes()); }
   double extraction_ms() const { return slice_worker_.busy_ms(); }
 

@@ -152,6 +152,7 @@ void MapperProcess::publish_status(bool finished) {
   status.finished = finished;
   status.frames_total = reader_.frames_total();
   status.frames_dropped = reader_.counts().frames_dropped;
+  status.keyframes = pipeline_.num_keyframes();
   status.blocks = pipeline_.num_blocks();
   status.volume_bytes = pipeline_.volume_bytes();
   status.queue_bytes = static_cast<std::int64_t>(publisher_.queued_bytes());
