@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "lcmtypes/trajectory.hpp"
 #include "mapper/core/rgbd_frame.hpp"
 #include "mapper/core/surface_pyramid.hpp"
-#include "lcmtypes/trajectory.hpp"
 #include "mapper/synthetic/renderer.hpp"
 #include "mapper/synthetic/scenes.hpp"
 #include "mapper/synthetic/sensor_model.hpp"
