@@ -84,6 +84,8 @@ std::optional<TrackingResult> Relocalizer::try_keyframe(const Place& keyframe,
 bool Relocalizer::is_believed(const TrackingResult& result,
                               const std::optional<Pose>& X_WC_features,
                               std::optional<double> correlation) const {
+  // A small piece of a view may fit in many places.
+  if (result.quality.overlap_share < config_.with_witness.min_overlap_share) return false;
   if (correlation && *correlation < config_.min_correlation) return false;
   if (result.state == TrackingState::kTracking) return true;
   if (!X_WC_features) return false;

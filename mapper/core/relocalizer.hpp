@@ -31,7 +31,7 @@ class Relocalizer {
                                    ///< 0.63 and more, but wrong ones may have as much
     double witness_distance_m = 0.1;  ///< so near the features' pose must be to that found
     double witness_angle_rad = 0.1;
-    Evidence with_witness{.min_overlap_share = 0.2,
+    Evidence with_witness{.min_overlap_share = 0.25,
                           .min_inlier_share = 0.4,
                           .max_behind_share = 0.16,
                           .max_in_front_share = 0.2,
