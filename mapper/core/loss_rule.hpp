@@ -72,7 +72,7 @@ class LossRule {
                        .max_in_front_share = 0.4,
                        .max_rms_m = 0.014,
                        .max_sigma_m = 0.02};
-    Evidence found_anew{.min_overlap_share = 0.2,
+    Evidence found_anew{.min_overlap_share = 0.25,
                         .min_inlier_share = 0.4,
                         .max_behind_share = 0.08,
                         .max_in_front_share = 0.15,
