@@ -61,6 +61,26 @@ TEST(Tracker, RecoversKnownMotions) {
   }
 }
 
+// With the frame's normals exact too there is no such pair, and what is left is where the iterations
+// stop and single precision.
+TEST(Tracker, RecoversKnownMotionsToATenthOfAMillimetre) {
+  constexpr double kClean_m = 1e-4;
+  constexpr double kClean_rad = 1e-4;
+  const Pose X_WV = testing::looking_at_the_crate();
+  const Model model = model_at(X_WV);
+  for (const Vector6d& motion :
+       {twist(0, 0, 0, 0, 0, 0), twist(0.03, -0.02, 0.02, 0, 0, 0),
+        twist(0, 0, 0, 0.03, -0.03, 0.03), twist(-0.02, 0.03, 0.02, 0.02, 0.03, -0.03)}) {
+    Tracker tracker({});
+    tracker.start_at(X_WV, frame_at(X_WV, 0), 1.0);
+    const Pose X_WC_true = X_WV * se3_retract(motion);
+    const TrackingInput frame{kFrame_us, model_at(X_WC_true).surface_V, {}};
+    const TrackingResult result = tracker.track(frame, model);
+    EXPECT_LT(distance_m(result.X_WC, X_WC_true), kClean_m) << motion.transpose();
+    EXPECT_LT(angle_rad(result.X_WC, X_WC_true), kClean_rad) << motion.transpose();
+  }
+}
+
 TEST(Tracker, PredictsConstantVelocityAcrossMissingFrames) {
   const Pose X_W0 = testing::looking_at_the_crate();
   const Pose step = se3_retract(twist(0.01, 0.005, 0.01, 0.005, 0.01, -0.005));
