@@ -75,7 +75,11 @@ std::optional<TrackingResult> Relocalizer::try_keyframe(const Place& keyframe,
   TrackingResult result = map_reaches ? in_map : near;
   const auto correlation =
       correlation_between(keyframe, seen_then.surface_V.front(), view, frame, result.X_WC);
-  if (!is_believed(result, X_WC_features, correlation)) return std::nullopt;
+  // With the keyframe's own surface the frame must agree; with the map it may be off by the drift.
+  const bool may_disagree = map_reaches && X_WC_features;
+  if (!is_believed(result, may_disagree ? X_WC_features : std::nullopt, correlation)) {
+    return std::nullopt;
+  }
   result.state = TrackingState::kTracking;
   result.loss_reason.reset();
   return result;
