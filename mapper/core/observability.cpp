@@ -91,6 +91,7 @@ ObservableSplit split_observable(const Information& information, const TwistBasi
   split.open = space * solver.eigenvectors().leftCols(num_open);
   split.determined = space * solver.eigenvectors().rightCols(space.cols() - num_open);
   split.least_reliability = reliability(0);
+  if (num_open < space.cols()) split.least_determined = reliability(num_open);
   return split;
 }
 

@@ -39,6 +39,7 @@ struct ObservableSplit {
   TwistBasis determined = Matrix6d::Identity();
   TwistBasis open = TwistBasis(6, 0);
   double least_reliability = 1.0;  ///< smallest rho in the space; 1 if the space is empty
+  double least_determined = 1.0;   ///< of the determined directions; 1 if there are none
 };
 
 struct ObservabilityConfig {

@@ -21,6 +21,7 @@ void StepSolver::observe(const Information& geometric) {
   undetermined_ = geometry_.open;
   photometric_information_.setZero();
   compared_share_ = 1.0;
+  photometric_reliability_ = 1.0;
 }
 
 std::optional<Vector6d> StepSolver::solve(const NormalEquations& geometric, int level,
@@ -47,6 +48,7 @@ Vector6d StepSolver::photometric_part(const Vector6d& geometric_part, int level,
                                                  geometry_.open, config_.observability);
   exposure_ = equations.exposure;
   undetermined_ = split.open;
+  photometric_reliability_ = split.least_determined;
   photometric_information_ = equations.information.A;
   compared_share_ = static_cast<double>(equations.pixels) / static_cast<double>(pixels);
   return solve_in(split.determined, equations.information.A,

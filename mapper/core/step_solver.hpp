@@ -46,6 +46,9 @@ class StepSolver {
   /// the frame's pixels that were compared with the keyframe, 1 if there was no need to.
   const Matrix6d& photometric_information() const { return photometric_information_; }
   double compared_share() const { return compared_share_; }
+  /// Of the last step: the least reliability with which colour decides one of the directions that
+  /// it decides; 1 if it decides none.
+  double photometric_reliability() const { return photometric_reliability_; }
 
  private:
   Vector6d photometric_part(const Vector6d& geometric_part, int level, const Pose& X_VC);
@@ -59,6 +62,7 @@ class StepSolver {
   std::optional<Exposure> exposure_;
   Matrix6d photometric_information_ = Matrix6d::Zero();
   double compared_share_ = 1.0;
+  double photometric_reliability_ = 1.0;
 };
 
 }  // namespace kintsugi::mapper

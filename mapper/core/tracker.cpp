@@ -14,6 +14,8 @@ namespace {
 
 /// Poses of single frames scatter by less than this, metres (and radians seen 1 m ahead).
 constexpr double kUnsteadiness_m = 0.02;
+/// Metres or radians: keyframes for colour are not nearer to each other where it decides alone.
+constexpr double kKeyframeStep = 0.05;
 
 /// Twist per second that carries `X_WA` to `X_WB` in `seconds`.
 Vector6d velocity_between(const Pose& X_WA, const Pose& X_WB, double seconds) {
@@ -76,6 +78,7 @@ void Tracker::Config::validate() const {
   steps.observability.validate();
   steps.photometric.validate();
   check_range("min_keyframe_overlap", min_keyframe_overlap, 0.0, 1.0);
+  check_range("min_keyframe_reliability", min_keyframe_reliability, 0.0, 1.0);
   loss.validate();
 }
 
@@ -193,13 +196,22 @@ Tracker::Registration Tracker::register_frame(const TrackingInput& frame, const 
   registration.open_to_depth_C = to_C * solver.open_to_depth();
   registration.undetermined_C = to_C * solver.undetermined();
   registration.compared_share = solver.compared_share();
+  registration.photometric_reliability = solver.photometric_reliability();
   return registration;
+}
+
+bool Tracker::is_worn(const Registration& registration) const {
+  if (!keyframe_ || registration.compared_share < config_.min_keyframe_overlap) return true;
+  if (registration.photometric_reliability >= config_.min_keyframe_reliability) return false;
+  // One from the frame before would hardly be better, and each change adds an error of its own.
+  const Pose X_KC = keyframe_->X_WK.inverse() * registration.X_WC;
+  return std::max(X_KC.translation().norm(), rotation_angle_rad(X_KC)) > kKeyframeStep;
 }
 
 void Tracker::choose_keyframe(const Registration& registration, PhotometricView view) {
   if (!view.has_color()) return;
   const bool depth_sufficed = registration.open_to_depth_C.cols() == 0;
-  if (depth_sufficed || registration.compared_share < config_.min_keyframe_overlap) {
+  if (depth_sufficed || is_worn(registration)) {
     keyframe_ = Keyframe{std::move(view), registration.X_WC};
   }
 }

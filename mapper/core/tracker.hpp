@@ -66,6 +66,8 @@ class Tracker {
     double max_acceleration = 30.0;
     StepSolver::Config steps;
     double min_keyframe_overlap = 0.6;  ///< of a frame with the keyframe; below, it is the next one
+    double min_keyframe_reliability = 0.7;  ///< likewise of what the keyframe decides: it grows
+                                            ///< unlike the view long before it leaves it
     LossRule::Config loss;
 
     /// @throws std::invalid_argument naming field, value and bound
@@ -100,6 +102,7 @@ class Tracker {
     int iterations = 0;
     TwistBasis open_to_depth_C = TwistBasis(6, 0);
     TwistBasis undetermined_C = TwistBasis(6, 0);
+    double photometric_reliability = 1.0;  ///< least, of what colour decides
     double compared_share = 1.0;  ///< of the pixels, with the keyframe; 1 if there was no need to
   };
   /// Brightness of a frame and of what it is compared with; null: depth alone.
@@ -112,6 +115,7 @@ class Tracker {
                               const Pose& X_WC_start, bool wide) const;
   Registration register_widely(const TrackingInput& frame, const Model& model, const Views& views,
                                const Pose& X_WC_start) const;
+  bool is_worn(const Registration& registration) const;
   void choose_keyframe(const Registration& registration, PhotometricView view);
   bool follows_motion(const Pose& X_WC, std::int64_t utime) const;
   TrackingResult accept(const Registration& registration, const TrackingInput& frame);
