@@ -10,6 +10,8 @@ namespace kintsugi::mapper {
 namespace {
 
 constexpr int kDescriptorBytes = 32;
+constexpr std::size_t kDescriptorBits = 256;
+static_assert(kDescriptorBits == 8U * kDescriptorBytes);
 constexpr int kNearBits = 64;
 
 }  // namespace
@@ -17,7 +19,7 @@ constexpr int kNearBits = 64;
 DescriptorIndex::DescriptorIndex() {
   std::mt19937 random(1);
   for (Table& table : tables_) {
-    std::array<int, 8 * kDescriptorBytes> bits;
+    std::array<int, kDescriptorBits> bits;
     std::iota(bits.begin(), bits.end(), 0);
     for (int i = 0; i < kKeyBits; ++i) {  // Fisher and Yates; std::shuffle differs by library
       std::swap(bits[i], bits[i + random() % (bits.size() - i)]);

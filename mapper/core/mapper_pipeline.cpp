@@ -111,7 +111,7 @@ std::optional<TrackingResult> MapperPipeline::find_again(const TrackingInput& in
   const auto map_from_pose = [&](const Pose& X_WV) {
     return map_from(X_WV, surface_C.intrinsics, surface_C.depth_m);
   };
-  const auto found = relocalizer_.find(input, tracker_, map_from_pose);
+  auto found = relocalizer_.find(input, tracker_, map_from_pose);
   if (found) tracker_.start_at(found->X_WC, input, found->quality.covered_share);
   return found;
 }

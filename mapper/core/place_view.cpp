@@ -55,8 +55,8 @@ ImageFeatures features_of(const cv::Mat& gray, const SurfaceMap& surface_C, int 
     const float u = (corner.pt.x + 0.5F) * scale - 0.5F;
     const float v = (corner.pt.y + 0.5F) * scale - 0.5F;
     features.rays_C.emplace_back((u - camera.cx) / camera.fx, (v - camera.cy) / camera.fy);
-    const int col = std::clamp(static_cast<int>(u + 0.5F), 0, camera.width - 1);
-    const int row = std::clamp(static_cast<int>(v + 0.5F), 0, camera.height - 1);
+    const int col = std::clamp(static_cast<int>(std::lround(u)), 0, camera.width - 1);
+    const int row = std::clamp(static_cast<int>(std::lround(v)), 0, camera.height - 1);
     features.depths_m.push_back(surface_C.depth_m(row, col));
   }
   return features;

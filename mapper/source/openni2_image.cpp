@@ -85,7 +85,7 @@ cv::Mat_<std::uint16_t> copy_depth(const openni::VideoFrameRef& frame, bool mirr
 
 cv::Mat_<cv::Vec3b> copy_color(const openni::VideoFrameRef& frame, bool mirrored,
                                cv::Size depth_size) {
-  const cv::Mat rgb = whole_image(frame, to_rgb(frame), mirrored);
+  cv::Mat rgb = whole_image(frame, to_rgb(frame), mirrored);
   if (rgb.size() == depth_size) return rgb;
   const auto part = registered_part(rgb.size(), depth_size);
   if (!part) throw std::runtime_error("colour that does not cover the depth image");

@@ -35,6 +35,7 @@ std::vector<openni::DeviceInfo> plugged_in_cameras() {
   openni::Array<openni::DeviceInfo> listed;
   openni::OpenNI::enumerateDevices(&listed);
   std::vector<openni::DeviceInfo> cameras;
+  cameras.reserve(static_cast<std::size_t>(listed.getSize()));
   for (int i = 0; i < listed.getSize(); ++i) cameras.push_back(listed[i]);
   return cameras;
 }

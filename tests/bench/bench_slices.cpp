@@ -181,10 +181,10 @@ class Run {
                             result.tracking.state == TrackingState::kGiven;
     if (!is_located) ++num_lost_;
     frame_ms_.push_back(result.times.total_ms());
-    take(std::move(result.slices));
+    take(result.slices);
   }
 
-  void take(std::vector<CloudSlice> slices) {
+  void take(const std::vector<CloudSlice>& slices) {
     for (const CloudSlice& slice : slices) {
       ++num_slices_;
       if (cloud_) cloud_->append(slice.points_W);

@@ -49,7 +49,7 @@ struct MachineLoops {
   static float read(const float* numbers, std::size_t count) {
     Float sums[4] = {Float(0.0F), Float(0.0F), Float(0.0F), Float(0.0F)};
     for (std::size_t i = 0; i < count; i += 64) {
-      for (int k = 0; k < 4; ++k) sums[k] = sums[k] + Float::load(numbers + i + 16 * k);
+      for (std::size_t k = 0; k < 4; ++k) sums[k] = sums[k] + Float::load(numbers + i + 16 * k);
     }
     return reduce_add((sums[0] + sums[1]) + (sums[2] + sums[3]));
   }

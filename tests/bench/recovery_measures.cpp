@@ -131,6 +131,7 @@ RecoveryMeasures measure(const std::vector<FrameOutcome>& outcomes,
   measure_recoveries(outcomes, measures);
   measures.ate_m = ate_of(outcomes, X_WC_true);
   std::vector<double> times_ms;
+  times_ms.reserve(outcomes.size());
   for (const FrameOutcome& outcome : outcomes) times_ms.push_back(outcome.frame_ms);
   const ErrorStatistics statistics = statistics_of(times_ms);
   measures.median_frame_ms = statistics.median;

@@ -14,7 +14,7 @@ Pose at(double x_m) {
 FrameOutcome outcome(int frame, bool located, double x_m, double view_known = 1.0,
                      Damage damage = Damage::kNone) {
   FrameOutcome result;
-  result.planned = {frame, frame * 100'000, damage};
+  result.planned = {frame, frame * std::int64_t{100'000}, damage};
   result.located = located;
   result.tracking.X_WC = at(x_m);
   result.view_known = view_known;

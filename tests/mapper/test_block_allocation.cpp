@@ -43,6 +43,7 @@ std::vector<BlockCoord> allocate(const View& view, InstructionSet instruction_se
   allocate_seen_blocks(view.frame.depth_m, view.frame.intrinsics, view.X_WC, kMinDepth_m,
                        kMaxDepth_m, kernels_for(instruction_set), volume);
   std::vector<BlockCoord> coords;
+  coords.reserve(static_cast<std::size_t>(volume.slots_end()));
   for (BlockSlot slot = 0; slot < volume.slots_end(); ++slot) coords.push_back(volume.coord(slot));
   return coords;
 }

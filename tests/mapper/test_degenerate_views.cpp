@@ -12,7 +12,6 @@
 namespace kintsugi::mapper {
 namespace {
 
-using testing::angle_rad;
 using testing::distance_m;
 using testing::synthetic_run;
 using testing::SyntheticRun;

@@ -61,8 +61,8 @@ TEST(Tracker, RecoversKnownMotions) {
   }
 }
 
-// With the frame's normals exact too there is no such pair, and what is left is where the iterations
-// stop and single precision.
+// With the frame's normals exact too there is no such pair, and what is left is where the
+// iterations stop and single precision.
 TEST(Tracker, RecoversKnownMotionsToATenthOfAMillimetre) {
   constexpr double kClean_m = 1e-4;
   constexpr double kClean_rad = 1e-4;
