@@ -19,8 +19,6 @@
 namespace kintsugi::mapper {
 namespace {
 
-using testing::View;
-
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr double kResolution_m = 0.01;
 constexpr Raycaster::Config kFromNearby = {.min_depth_m = 0.02};

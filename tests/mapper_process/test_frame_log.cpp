@@ -97,7 +97,7 @@ TEST(FrameLog, SaysWhyAFrameIsLost) {
 
 TEST(FrameLog, NamesAFileThatCannotBeWritten) {
   try {
-    FrameLog("/no/such/folder/frames.csv");
+    const FrameLog log("/no/such/folder/frames.csv");
     ADD_FAILURE() << "accepted";
   } catch (const std::runtime_error& error) {
     EXPECT_THAT(error.what(), HasSubstr("/no/such/folder/frames.csv: cannot be written: No such"));
