@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kDescriptorBytes = 32;
 constexpr std::size_t kDescriptorBits = 256;
-static_assert(kDescriptorBits == 8U * kDescriptorBytes);
+static_assert(kDescriptorBits / 8 == kDescriptorBytes);
 constexpr int kNearBits = 64;
 
 }  // namespace
