@@ -1,4 +1,5 @@
 #include <cmath>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -40,12 +41,15 @@ Model model_at(const Pose& X_WV) {
 constexpr double kExactData_m = 5e-4;
 constexpr double kExactData_rad = 3e-4;
 
+std::vector<Vector6d> known_motions() {
+  return {twist(0, 0, 0, 0, 0, 0), twist(0.03, -0.02, 0.02, 0, 0, 0),
+          twist(0, 0, 0, 0.03, -0.03, 0.03), twist(-0.02, 0.03, 0.02, 0.02, 0.03, -0.03)};
+}
+
 TEST(Tracker, RecoversKnownMotions) {
   const Pose X_WV = testing::looking_at_the_crate();
   const Model model = model_at(X_WV);
-  for (const Vector6d& motion :
-       {twist(0, 0, 0, 0, 0, 0), twist(0.03, -0.02, 0.02, 0, 0, 0),
-        twist(0, 0, 0, 0.03, -0.03, 0.03), twist(-0.02, 0.03, 0.02, 0.02, 0.03, -0.03)}) {
+  for (const Vector6d& motion : known_motions()) {
     Tracker tracker({});
     tracker.start_at(X_WV, frame_at(X_WV, 0), 1.0);
     const Pose X_WC_true = X_WV * se3_retract(motion);
@@ -68,9 +72,7 @@ TEST(Tracker, RecoversKnownMotionsToATenthOfAMillimetre) {
   constexpr double kClean_rad = 1e-4;
   const Pose X_WV = testing::looking_at_the_crate();
   const Model model = model_at(X_WV);
-  for (const Vector6d& motion :
-       {twist(0, 0, 0, 0, 0, 0), twist(0.03, -0.02, 0.02, 0, 0, 0),
-        twist(0, 0, 0, 0.03, -0.03, 0.03), twist(-0.02, 0.03, 0.02, 0.02, 0.03, -0.03)}) {
+  for (const Vector6d& motion : known_motions()) {
     Tracker tracker({});
     tracker.start_at(X_WV, frame_at(X_WV, 0), 1.0);
     const Pose X_WC_true = X_WV * se3_retract(motion);
