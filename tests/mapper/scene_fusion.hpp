@@ -25,6 +25,17 @@ inline Intrinsics small_camera() {
   return {.fx = 262.5, .fy = 262.5, .cx = 159.5, .cy = 119.5, .width = 320, .height = 240};
 }
 
+/// Of any size, about as wide a view.
+inline Intrinsics camera_of(int width, int height) {
+  const double f = 0.82 * width;
+  return {.fx = f,
+          .fy = f,
+          .cx = 0.5 * width - 0.5,
+          .cy = 0.5 * height - 0.5,
+          .width = width,
+          .height = height};
+}
+
 inline View make_view(const synthetic::Scene& scene, const Pose& X_WC,
                       const Intrinsics& camera = small_camera()) {
   const synthetic::RenderedFrame rendered = synthetic::render(scene, camera, X_WC);

@@ -19,19 +19,11 @@
 namespace kintsugi::mapper {
 namespace {
 
+using testing::camera_of;
+
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr double kResolution_m = 0.01;
 constexpr Raycaster::Config kFromNearby = {.min_depth_m = 0.02};
-
-Intrinsics camera_of(int width, int height) {
-  const double f = 0.82 * width;
-  return {.fx = f,
-          .fy = f,
-          .cx = 0.5 * width - 0.5,
-          .cy = 0.5 * height - 0.5,
-          .width = width,
-          .height = height};
-}
 
 /// What there is to look at, and from where: the cases in which rays end differently.
 struct Scenario {

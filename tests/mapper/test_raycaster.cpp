@@ -15,6 +15,7 @@
 namespace kintsugi::mapper {
 namespace {
 
+using testing::camera_of;
 using testing::fuse;
 using ::testing::HasSubstr;
 using testing::percentile;
@@ -25,16 +26,6 @@ constexpr double kResolution_m = 0.01;
 
 TsdfVolume::Config volume_of(double size_m) {
   return {.volume_size_m = size_m, .resolution_m = kResolution_m};
-}
-
-Intrinsics camera_of(int width, int height) {
-  const double f = 0.82 * width;
-  return {.fx = f,
-          .fy = f,
-          .cx = 0.5 * width - 0.5,
-          .cy = 0.5 * height - 0.5,
-          .width = width,
-          .height = height};
 }
 
 bool same_bytes(const cv::Mat& a, const cv::Mat& b) {
