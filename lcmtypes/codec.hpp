@@ -5,8 +5,9 @@
 // A bulk message (BulkMessage below) is a header and a payload of packed records, cut into chunks
 // that each fit one datagram: num_chunks(), encode_chunk(), decode_chunk<CloudSlice>(), join().
 //
-// Decoding trusts nothing: every byte of the message must be accounted for, and counts are compared
-// with the message's size before anything is allocated for them.
+// Decoding trusts nothing: every byte of the message must be accounted for, counts are compared
+// with the message's size before anything is allocated for them, and the message must have its
+// checksum.
 
 #include <array>
 #include <concepts>
@@ -52,6 +53,10 @@ inline constexpr int kMaxImageSide_px = 16384;
 inline constexpr std::size_t kDefaultMaxChunkBytes = 60'000;
 /// Smallest limit that leaves room for a header with the longest strings.
 inline constexpr std::size_t kMinMaxChunkBytes = 1'400;
+
+/// `text` as a field may hold it: control characters become spaces, and what is too long is cut.
+/// For texts from outside, such as the reason of a system error.
+std::string fitting_text(std::string text);
 
 /// The LCM message of `message`. Throws std::invalid_argument naming a field out of its bounds.
 template <SmallMessage Message>

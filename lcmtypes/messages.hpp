@@ -165,21 +165,29 @@ struct MapperStatus {
   TrackingState state = TrackingState::kStarting;
   std::string loss_reason;  ///< why the last frame was not believed; empty when it was
   bool finished = false;    ///< every slice of the session has been published
+  bool lingering = false;   ///< nothing is left to publish; stays to send again what is missed
   std::int64_t frames_read = 0;
   std::int64_t frames_total = -1;  ///< -1: not known (a live camera)
   std::int64_t frames_tracked = 0;
   std::int64_t frames_lost = 0;
   std::int64_t frames_relocalised = 0;  ///< of those tracked, the ones that ended a loss
   std::int64_t frames_dropped = 0;
+  std::int64_t frames_resumed = 0;  ///< of those read, the ones read again to resume a session
   std::int64_t keyframes = 0;
   std::int32_t undetermined = 0;  ///< directions of motion that the last frame left open, 0 to 6
   std::int64_t slices_published = 0;
   std::int64_t points_published = 0;
   std::int64_t chunks_published = 0;
-  std::int64_t blocks = 0;        ///< voxel blocks in use
-  std::int64_t memory_bytes = 0;  ///< resident, of the whole process
-  std::int64_t volume_bytes = 0;  ///< of it, the volume
-  std::int64_t queue_bytes = 0;   ///< of it, what waits to be sent
+  std::int64_t chunks_resent = 0;
+  std::int64_t requests_received = 0;    ///< for chunks to be sent again
+  std::int64_t store_bytes = 0;          ///< disk use of its log, from which it resends
+  std::int64_t store_waiting_bytes = 0;  ///< published and not on disk yet
+  std::int64_t store_lost_chunks = 0;    ///< published, and cannot be sent again any more
+  std::string store_problem;             ///< why the log cannot be written; empty when it can
+  std::int64_t blocks = 0;               ///< voxel blocks in use
+  std::int64_t memory_bytes = 0;         ///< resident, of the whole process
+  std::int64_t volume_bytes = 0;         ///< of it, the volume
+  std::int64_t queue_bytes = 0;          ///< of it, what waits to be sent
   double frame_rate_hz = 0.0;
   /// Wall time from a frame taken to its messages sent, of the frames since the last status.
   double frame_p50_ms = 0.0;
@@ -205,39 +213,61 @@ struct SegmenterStatus {
   std::int64_t map_session = 0;
   std::string map_name;
   std::string mode;
-  bool finished = false;  ///< the final slice and every earlier one are segmented and published
+  bool finished = false;   ///< the final slice and every earlier one are segmented and published
+  bool lingering = false;  ///< nothing is left to publish; stays to send again what is missed
+  std::int64_t maps = 0;   ///< being kept now
   std::int64_t slices_received = 0;
   std::int64_t slices_segmented = 0;
   std::int64_t slices_corrected = 0;  ///< higher revisions that replaced what was segmented
   std::int64_t slices_missing = 0;    ///< known to exist, and given up until they come after all
   std::int64_t lag_slices = 0;        ///< received, or known to exist, and not yet segmented
+  std::int64_t queue_bytes = 0;       ///< received and not yet segmented
   std::int64_t points = 0;
   std::int64_t points_rejected = 0;
   std::int64_t segments = 0;
   std::int64_t chunks_received = 0;
   std::int64_t chunks_duplicate = 0;
   std::int64_t chunks_missing = 0;
+  std::int64_t chunks_refused = 0;   ///< there was no room: asked for again later
+  std::int64_t chunks_given_up = 0;  ///< missing, and nobody answers
+  std::int64_t requests_sent = 0;    ///< for missing chunks
+  std::int64_t chunks_resent = 0;
+  std::int64_t requests_received = 0;
+  std::int64_t states_sent = 0;  ///< full states, for receivers that came late
+  std::int64_t state_bytes = 0;  ///< of the last of them
   std::int64_t messages_bad = 0;
   std::int64_t memory_bytes = 0;
+  std::string problem;    ///< what a person must see to, e.g. a file that cannot be written
   double slice_ms = 0.0;  ///< of the last slice
   double slice_mean_ms = 0.0;
   double slice_max_ms = 0.0;
+
+  bool operator==(const SegmenterStatus&) const = default;
 };
 
 struct ViewerStatus {
   std::int64_t utime = 0;
   std::int64_t session = 0;
-  bool finished = false;  ///< the final update has been drawn and written
+  std::int64_t map_session = 0;  ///< of the mapper whose map it draws, 0: none yet
+  std::string map_name;          ///< of that mapper
+  bool finished = false;         ///< the final update has been drawn and written
   std::int64_t slices_received = 0;
   std::int64_t updates_applied = 0;
-  std::int64_t lag_slices = 0;  ///< received slices without an applied update
+  std::int64_t lag_slices = 0;   ///< received slices without an applied update
+  std::int64_t queue_bytes = 0;  ///< received and not yet drawn
   std::int64_t points = 0;
   std::int64_t segments = 0;
   std::int64_t snapshots_written = 0;
   std::int64_t chunks_missing = 0;
+  std::int64_t chunks_refused = 0;   ///< there was no room: asked for again later
+  std::int64_t chunks_given_up = 0;  ///< missing, and nobody answers
+  std::int64_t requests_sent = 0;    ///< for missing chunks
   std::int64_t messages_bad = 0;
   std::int64_t memory_bytes = 0;
   double render_ms = 0.0;  ///< of the last picture
+  std::string problem;     ///< what a person must see to, e.g. a file that cannot be written
+
+  bool operator==(const ViewerStatus&) const = default;
 };
 
 /// The sender of a reliable stream says what exists.
@@ -247,6 +277,12 @@ struct Heartbeat {
   std::string channel;
   std::int64_t first_sequence = 0;  ///< the oldest that can still be resent
   std::int64_t next_sequence = 0;   ///< one past the newest
+  /// Who has everything from here on lacks nothing: what went before is superseded by the full
+  /// state sent from here. 0: nothing is superseded.
+  std::int64_t state_sequence = 0;
+  std::string map_name;  ///< of the map the stream carries; empty: several
+
+  bool operator==(const Heartbeat&) const = default;
 };
 
 struct SequenceRange {

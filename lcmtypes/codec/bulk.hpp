@@ -182,10 +182,11 @@ Chunk<Message> decode_chunk(ByteView data) {
 
     chunk.part = std::move(wire.data);
     wire.data.clear();
+    wire.checksum = 0;
     wire.sequence = 0;
     wire.chunk_index = 0;
     Traits::set_part(wire, 0, 0);
-    chunk.identity = codec::encode_wire(wire);
+    chunk.identity = codec::bytes_of(wire);
     return chunk;
   });
 }

@@ -3,13 +3,16 @@
 #include <algorithm>
 #include <cmath>
 
-namespace kintsugi::codec {
+namespace kintsugi {
+namespace codec {
 namespace {
 
 // A rotation that was normalised in double is orthonormal to 1e-15; 1e-6 moves a point at 10 m by
 // a hundredth of a millimetre.
 constexpr double kRotationTolerance = 1e-6;
 constexpr double kMaxPosition_m = 1e6;
+
+bool is_control(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; }
 
 }  // namespace
 
@@ -22,8 +25,7 @@ void Check::text(const char* field, const std::string& value) const {
     fail(field, std::to_string(value.size()) + " bytes long",
          "at most " + std::to_string(kMaxStringBytes));
   }
-  const auto control = [](unsigned char c) { return c < 0x20 || c == 0x7F; };
-  const auto bad = std::find_if(value.begin(), value.end(), control);
+  const auto bad = std::find_if(value.begin(), value.end(), is_control);
   if (bad != value.end()) {
     fail(field, "a text with byte " + std::to_string(static_cast<unsigned char>(*bad)),
          "no control characters");
@@ -55,4 +57,12 @@ Pose pose_from_wire(const double (&rows)[12]) {
   return X;
 }
 
-}  // namespace kintsugi::codec
+}  // namespace codec
+
+std::string fitting_text(std::string text) {
+  if (text.size() > kMaxStringBytes) text.resize(kMaxStringBytes);
+  std::replace_if(text.begin(), text.end(), codec::is_control, ' ');
+  return text;
+}
+
+}  // namespace kintsugi

@@ -8,6 +8,10 @@
 namespace kintsugi {
 namespace codec {
 
+/// Frames come from other people's drivers too.
+template <>
+inline constexpr bool kChecksumOptional<rgbd_frame_t> = true;
+
 template <>
 struct Bulk<RgbdFrameMessage> : PlacedByByte<rgbd_frame_t> {
   static constexpr int kNumStrings = 0;

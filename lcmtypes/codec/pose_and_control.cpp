@@ -44,7 +44,7 @@ struct Small<CameraPose> : Shape<camera_pose_t> {
 
 template <>
 struct Small<Heartbeat> : Copied<Heartbeat, heartbeat_t> {
-  static constexpr int kNumStrings = 1;
+  static constexpr int kNumStrings = 2;
 
   template <class From, class To>
   static void copy(const From& from, To& to) {
@@ -52,14 +52,18 @@ struct Small<Heartbeat> : Copied<Heartbeat, heartbeat_t> {
     to.session = from.session;
     to.first_sequence = from.first_sequence;
     to.next_sequence = from.next_sequence;
+    to.state_sequence = from.state_sequence;
     to.channel = from.channel;
+    to.map_name = from.map_name;
   }
   static void check(const Check& check, const Heartbeat& m) {
     check.not_negative("utime", m.utime);
     check.positive("session", m.session);
     check.range<std::int64_t>("next_sequence", m.next_sequence, 0, kMaxSequence);
     check.range<std::int64_t>("first_sequence", m.first_sequence, 0, m.next_sequence);
+    check.range<std::int64_t>("state_sequence", m.state_sequence, 0, m.next_sequence);
     check.text("channel", m.channel);
+    check.text("map_name", m.map_name);
   }
 };
 

@@ -27,10 +27,8 @@ std::size_t check_string(const Check& check, ByteView data, std::size_t place) {
   return end;
 }
 
-}  // namespace
-
-void check_wire(const WireShape& shape, ByteView data) {
-  const Check check(shape.type);
+/// Fingerprint, lengths and counts against the size of the message.
+void check_size(const Check& check, const WireShape& shape, ByteView data) {
   if (data.size() > std::numeric_limits<std::int32_t>::max()) {
     check.fail("size", data.size(), "less than 2 GiB");
   }
@@ -55,6 +53,21 @@ void check_wire(const WireShape& shape, ByteView data) {
         "array count", count,
         std::to_string(rest) + " bytes of " + std::to_string(shape.bytes_per_count) + " each");
   }
+}
+
+void check_checksum(const Check& check, const WireShape& shape, ByteView data) {
+  const std::uint32_t claimed = claimed_checksum(data);
+  if (claimed == 0 && shape.checksum_optional) return;
+  const std::uint32_t computed = compute_checksum(data);
+  if (claimed != computed) check.fail("checksum", claimed, std::to_string(computed));
+}
+
+}  // namespace
+
+void check_wire(const WireShape& shape, ByteView data) {
+  const Check check(shape.type);
+  check_size(check, shape, data);
+  check_checksum(check, shape, data);
 }
 
 }  // namespace kintsugi::codec

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "lcmtypes/codec.hpp"
+#include "lcmtypes/codec/checksum.hpp"
 #include "tests/support/allocation_limit.hpp"
 #include "tests/support/example_messages.hpp"
 
@@ -52,6 +53,12 @@ std::vector<Subject> subjects() {
           bulk("snapshot", example_snapshot(50))};
 }
 
+/// As a sender would make it that means harm: what the message says is false, its checksum right.
+Bytes with_checksum(Bytes message) {
+  if (message.size() >= codec::kChecksumEnd) codec::set_checksum(message);
+  return message;
+}
+
 /// True when `data` decodes. Anything but a DecodeError, or a large allocation, fails the test.
 bool decodes(const Subject& subject, ByteView data) {
   bool valid = false;
@@ -72,6 +79,7 @@ TEST(CodecHostile, EveryTruncationIsRefused) {
     for (std::size_t size = 0; size < subject.message.size(); ++size) {
       const Bytes cut(subject.message.begin(), subject.message.begin() + static_cast<int>(size));
       EXPECT_FALSE(decodes(subject, cut)) << subject.name << " cut to " << size;
+      EXPECT_FALSE(decodes(subject, with_checksum(cut))) << subject.name << " cut to " << size;
     }
   }
 }
@@ -81,6 +89,7 @@ TEST(CodecHostile, TrailingBytesAreRefused) {
     Bytes longer = subject.message;
     longer.push_back(0);
     EXPECT_FALSE(decodes(subject, longer)) << subject.name;
+    EXPECT_FALSE(decodes(subject, with_checksum(longer))) << subject.name;
   }
 }
 
@@ -93,6 +102,26 @@ TEST(CodecHostile, OtherTypesAreRefused) {
   }
 }
 
+TEST(CodecHostile, AChangedByteAnywhereIsRefused) {
+  for (const Subject& subject : subjects()) {
+    for (std::size_t place = 0; place < subject.message.size(); ++place) {
+      for (const int change : {0x01, 0x80, 0xFF}) {
+        Bytes mutated = subject.message;
+        mutated[place] = static_cast<std::uint8_t>(mutated[place] ^ change);
+        EXPECT_FALSE(decodes(subject, mutated)) << subject.name << ", byte " << place;
+      }
+    }
+  }
+}
+
+TEST(CodecHostile, OnlyRawFramesMayComeWithoutAChecksum) {
+  for (const Subject& subject : subjects()) {
+    Bytes message = subject.message;
+    std::fill_n(message.begin() + codec::kChecksumPlace, 4, std::uint8_t{0});
+    EXPECT_EQ(decodes(subject, message), subject.name == std::string("rgbd_frame")) << subject.name;
+  }
+}
+
 TEST(CodecHostile, MutationsDecodeOrAreRefusedAndNothingElse) {
   std::mt19937 random(1);
   for (const Subject& subject : subjects()) {
@@ -102,7 +131,7 @@ TEST(CodecHostile, MutationsDecodeOrAreRefusedAndNothingElse) {
       for (int i = 1 + static_cast<int>(random() % 4); i > 0; --i) {
         mutated[random() % mutated.size()] = static_cast<std::uint8_t>(random());
       }
-      valid += decodes(subject, mutated) ? 1 : 0;
+      valid += decodes(subject, with_checksum(mutated)) ? 1 : 0;
     }
     // The fields without bounds (times, points) may change freely; the others must be caught.
     EXPECT_GT(valid, 0) << subject.name;
@@ -113,13 +142,13 @@ TEST(CodecHostile, MutationsDecodeOrAreRefusedAndNothingElse) {
 TEST(CodecHostile, EveryFourBytesMayClaimToBeAHugeCount) {
   for (const Subject& subject : subjects()) {
     for (const std::uint32_t claim : {0x7FFFFFFFU, 0x77359400U, 0x80000000U, 0xFFFFFFFFU, 0U}) {
-      for (std::size_t place = 8; place + 4 <= subject.message.size(); ++place) {
+      for (std::size_t place = codec::kChecksumEnd; place + 4 <= subject.message.size(); ++place) {
         Bytes mutated = subject.message;
         for (int i = 0; i < 4; ++i) {
           mutated[place + static_cast<std::size_t>(i)] =
               static_cast<std::uint8_t>(claim >> (24 - 8 * i));
         }
-        decodes(subject, mutated);
+        decodes(subject, with_checksum(mutated));
       }
     }
   }
@@ -135,7 +164,7 @@ TEST(CodecHostile, RandomBytesAreRefused) {
       if (noise.size() >= 8 && trial % 2 == 0) {
         std::copy_n(subject.message.begin(), 8, noise.begin());
       }
-      EXPECT_FALSE(decodes(subject, noise)) << subject.name;
+      EXPECT_FALSE(decodes(subject, with_checksum(noise))) << subject.name;
     }
   }
 }
@@ -207,6 +236,14 @@ TEST(CodecBounds, NameTypeFieldValueAndBound) {
               HasSubstr("undetermined is 7, expected 0 .. 6"));
   EXPECT_THAT(refusal(example_heartbeat(), [](Heartbeat& h) { h.first_sequence = 18; }),
               HasSubstr("first_sequence is 18, expected 0 .. 17"));
+  EXPECT_THAT(refusal(example_heartbeat(), [](Heartbeat& h) { h.state_sequence = 18; }),
+              HasSubstr("state_sequence is 18, expected 0 .. 17"));
+  EXPECT_THAT(refusal(example_heartbeat(), [](Heartbeat& h) { h.state_sequence = -1; }),
+              HasSubstr("state_sequence is -1"));
+  EXPECT_THAT(refusal(example_mapper_status(), [](MapperStatus& s) { s.store_bytes = -1; }),
+              HasSubstr("mapper_status_t.store_bytes is -1, expected >= 0"));
+  EXPECT_THAT(refusal(example_segmenter_status(), [](SegmenterStatus& s) { s.problem = "a\nb"; }),
+              HasSubstr("segmenter_status_t.problem is a text with byte 10"));
   EXPECT_THAT(refusal(example_resend_request(),
                       [](ResendRequest& r) {
                         r.ranges = {{5, 4}};
@@ -216,13 +253,21 @@ TEST(CodecBounds, NameTypeFieldValueAndBound) {
 
 TEST(CodecBounds, AMessageThatLiesInOneFieldIsRefusedWithThatField) {
   Bytes message = encode(example_camera_pose());
-  message[8 + 24] = 9;  // state: after fingerprint, utime, session, frame_index
+  message[8 + 4 + 24] = 9;  // state: after fingerprint, checksum, utime, session, frame_index
   try {
-    (void)decode<CameraPose>(message);
+    (void)decode<CameraPose>(with_checksum(message));
     FAIL() << "accepted";
   } catch (const DecodeError& error) {
     EXPECT_STREQ(error.what(), "camera_pose_t.state is 9, expected 0 .. 3");
   }
+}
+
+TEST(CodecBounds, AnyTextCanBeMadeToFit) {
+  SegmenterStatus status = example_segmenter_status();
+  status.problem = fitting_text("cannot write:\n\tno space" + std::string(2'000, '!'));
+  const SegmenterStatus received = decode<SegmenterStatus>(encode(status));
+  EXPECT_EQ(received.problem.substr(0, 23), "cannot write:  no space");
+  EXPECT_EQ(received.problem.size(), kMaxStringBytes);
 }
 
 TEST(CodecBounds, TwentyBytesThatClaimTwoBillionPointsTakeNothing) {

@@ -232,14 +232,14 @@ TEST(StreamSubscriber, LearnsFromHeartbeatsWhatNeverCame) {
   const auto beat = [&](const Heartbeat& heartbeat) {
     receiver.stream.handle(channels::kHeartbeat, encode(heartbeat));
   };
-  beat({1, 42, "SEGMENT_UPDATE", 0, 50});  // another stream
+  beat({1, 42, "SEGMENT_UPDATE", 0, 50, 0, ""});  // another stream
   EXPECT_EQ(receiver.stream.counts().chunks_missing, 0);
-  beat({1, 42, "CLOUD_SLICE", 2, 5});
+  beat({1, 42, "CLOUD_SLICE", 2, 5, 0, ""});
   EXPECT_EQ(receiver.stream.counts().chunks_missing, 5);
   ASSERT_THAT(receiver.stream.gaps(), SizeIs(1));
   EXPECT_EQ(receiver.stream.gaps()[0].first_sequence, 2);
   EXPECT_THAT(receiver.stream.gaps()[0].ranges, ElementsAre(SequenceRange{0, 4}));
-  beat({1, 42, "CLOUD_SLICE", 2, 3});  // older than the last
+  beat({1, 42, "CLOUD_SLICE", 2, 3, 0, ""});  // older than the last
   EXPECT_EQ(receiver.stream.counts().chunks_missing, 5);
 }
 
@@ -305,7 +305,7 @@ TEST(StreamSubscriber, ForgetsTheSessionLongestSilent) {
   Receiver receiver(config);
   for (const std::int64_t session : {1, 2, 3}) {
     receiver.stream.handle(channels::kHeartbeat,
-                           encode(Heartbeat{1, session, "CLOUD_SLICE", 0, 4}));
+                           encode(Heartbeat{1, session, "CLOUD_SLICE", 0, 4, 0, ""}));
   }
   ASSERT_THAT(receiver.stream.gaps(), SizeIs(2));
   EXPECT_EQ(receiver.stream.gaps()[0].session, 2);

@@ -114,6 +114,7 @@ inline MapperStatus example_mapper_status() {
   status.device = "synthetic://office";
   status.state = TrackingState::kLost;
   status.finished = true;
+  status.lingering = true;
   status.loss_reason = "too few inliers";
   status.frames_read = 2;
   status.frames_total = 3;
@@ -121,11 +122,18 @@ inline MapperStatus example_mapper_status() {
   status.frames_lost = 5;
   status.frames_relocalised = 6;
   status.frames_dropped = 7;
+  status.frames_resumed = 40;
   status.keyframes = 8;
   status.undetermined = 3;
   status.slices_published = 10;
   status.points_published = 11;
   status.chunks_published = 12;
+  status.chunks_resent = 41;
+  status.requests_received = 42;
+  status.store_bytes = 43;
+  status.store_waiting_bytes = 44;
+  status.store_lost_chunks = 45;
+  status.store_problem = "no space left";
   status.blocks = 13;
   status.memory_bytes = 14;
   status.volume_bytes = 15;
@@ -170,14 +178,46 @@ inline SegmenterStatus example_segmenter_status() {
   status.slice_mean_ms = 14.5;
   status.slice_max_ms = 15.5;
   status.slices_missing = 16;
+  status.lingering = true;
+  status.maps = 22;
+  status.queue_bytes = 23;
+  status.chunks_refused = 24;
+  status.chunks_given_up = 25;
+  status.requests_sent = 26;
+  status.chunks_resent = 27;
+  status.requests_received = 28;
+  status.states_sent = 29;
+  status.state_bytes = 30;
+  status.problem = "cannot write segments.ply";
   return status;
 }
 
 inline ViewerStatus example_viewer_status() {
-  return {1, 45, true, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11.5};
+  ViewerStatus status;
+  status.utime = 1;
+  status.session = 45;
+  status.map_session = 42;
+  status.map_name = "office";
+  status.finished = true;
+  status.slices_received = 2;
+  status.updates_applied = 3;
+  status.lag_slices = 4;
+  status.queue_bytes = 5;
+  status.points = 6;
+  status.segments = 7;
+  status.snapshots_written = 8;
+  status.chunks_missing = 9;
+  status.chunks_refused = 10;
+  status.chunks_given_up = 11;
+  status.requests_sent = 12;
+  status.messages_bad = 13;
+  status.memory_bytes = 14;
+  status.render_ms = 15.5;
+  status.problem = "cannot write final.png";
+  return status;
 }
 
-inline Heartbeat example_heartbeat() { return {1, 42, "CLOUD_SLICE", 3, 17}; }
+inline Heartbeat example_heartbeat() { return {1, 42, "CLOUD_SLICE", 3, 17, 5, "office"}; }
 
 inline ResendRequest example_resend_request() {
   return {1, 42, "CLOUD_SLICE", 99, {{0, 0}, {5, 9}, {12, 1'000'000}}};

@@ -40,33 +40,6 @@ inline bool operator==(const CameraPose& a, const CameraPose& b) {
          a.state == b.state && equal(a.X_WC, b.X_WC);
 }
 
-inline bool operator==(const SegmenterStatus& a, const SegmenterStatus& b) {
-  return a.utime == b.utime && a.session == b.session && a.map_session == b.map_session &&
-         a.map_name == b.map_name && a.mode == b.mode && a.finished == b.finished &&
-         a.slices_received == b.slices_received && a.slices_segmented == b.slices_segmented &&
-         a.slices_corrected == b.slices_corrected && a.slices_missing == b.slices_missing &&
-         a.lag_slices == b.lag_slices && a.points == b.points &&
-         a.points_rejected == b.points_rejected && a.segments == b.segments &&
-         a.chunks_received == b.chunks_received && a.chunks_duplicate == b.chunks_duplicate &&
-         a.chunks_missing == b.chunks_missing && a.messages_bad == b.messages_bad &&
-         a.memory_bytes == b.memory_bytes && a.slice_ms == b.slice_ms &&
-         a.slice_mean_ms == b.slice_mean_ms && a.slice_max_ms == b.slice_max_ms;
-}
-
-inline bool operator==(const ViewerStatus& a, const ViewerStatus& b) {
-  return a.utime == b.utime && a.session == b.session && a.finished == b.finished &&
-         a.slices_received == b.slices_received && a.updates_applied == b.updates_applied &&
-         a.lag_slices == b.lag_slices && a.points == b.points && a.segments == b.segments &&
-         a.snapshots_written == b.snapshots_written && a.chunks_missing == b.chunks_missing &&
-         a.messages_bad == b.messages_bad && a.memory_bytes == b.memory_bytes &&
-         a.render_ms == b.render_ms;
-}
-
-inline bool operator==(const Heartbeat& a, const Heartbeat& b) {
-  return a.utime == b.utime && a.session == b.session && a.channel == b.channel &&
-         a.first_sequence == b.first_sequence && a.next_sequence == b.next_sequence;
-}
-
 inline bool operator==(const ResendRequest& a, const ResendRequest& b) {
   return a.utime == b.utime && a.session == b.session && a.channel == b.channel &&
          a.receiver == b.receiver && a.ranges == b.ranges;
