@@ -1,0 +1,177 @@
+# Sourced by faults: the rows, how a run with a fault is made and compared with one without, and how it is printed.
+#
+# A row is a line in a file of scripts/faults.d,
+#     fault_row NAME "WHAT IS DONE" FUNCTION [ARGUMENT...]
+# and its FUNCTION, which is called in an empty folder of its own, in a network of its own as (perhaps mapped) root,
+# with $quick 0 or 1 and RANDOM seeded. It calls what is below: reference, faulty and the fault; must for whatever has
+# to hold; and sets figure[COLUMN]. A row without figures of its own needs only reference, faulty and same_map.
+
+source "$(dirname "${BASH_SOURCE[0]}")/trio.sh"
+
+declare -A row_what=() row_call=()
+row_names=()
+fault_row() {
+  row_names+=("$1")
+  row_what[$1]="$2"
+  row_call[$1]="$(printf '%q ' "${@:3}")"
+}
+has_row() { [[ -n "${row_call[$1]:-}" ]]; }
+list_rows() {
+  local name
+  for name in "${row_names[@]}"; do printf '%-20s %s\n' "$name" "${row_what[$name]}"; done
+}
+for group in "$kintsugi_root"/scripts/faults.d/*.sh; do source "$group"; done
+
+# The columns of the table. A row sets figure[COLUMN]; `-` stands for what it did not measure.
+columns=(lost requested resent seconds reference_s lag_slices mapper_mb segmenter_mb viewer_mb)
+column_titles=("datagrams lost" requested resent "time, s" "without, s" "most slices behind"
+  "mapper, MB" "segmenter, MB" "viewer, MB")
+declare -A figure=()
+notes=() failures=()
+
+table_line() { printf '| %s ' "$@"; printf '|\n'; }
+print_header() {
+  table_line row fault holds "${column_titles[@]}" notes
+  printf '|%s\n' "$(printf -- '---|%.0s' row fault holds "${columns[@]}" notes)"
+}
+
+# note TEXT: into the row's last column. must TEXT COMMAND...: what has to hold; TEXT says what does not.
+note() { notes+=("$*"); }
+must() {
+  local what="$1"
+  shift
+  "$@" || failures+=("$what")
+}
+# skip_row WHY: this machine does not permit it.
+skip_row() {
+  say "$row_name skipped: $*"
+  exit 77
+}
+joined() { local IFS=';'; local text="$*"; printf '%s' "${text//;/; }"; }
+
+# run_row OUT NAME: inside its network. Prints its line, adds it to faults.csv, fails when something does not hold.
+run_row() {
+  local column cells=() holds=yes
+  runs="$1" row_name="$2"
+  export KINTSUGI_PRIVATE_BUS=1
+  RANDOM="$seed"
+  mkdir -p "$runs"
+  rm -rf "${runs:?}/$row_name"
+  mkdir "$runs/$row_name"
+  cd "$runs/$row_name"
+  trap end_faulty EXIT
+  eval "${row_call[$row_name]}"
+  ((${#failures[@]})) && holds="**no**: $(joined "${failures[@]}")"
+  for column in "${columns[@]}"; do cells+=("${figure[$column]:--}"); done
+  table_line "$row_name" "${row_what[$row_name]}" "$holds" "${cells[@]}" "$(joined "${notes[@]}")"
+  [[ -e "$runs/faults.csv" ]] || (IFS=,; echo "row,holds,${columns[*]}") >"$runs/faults.csv"
+  (IFS=,; echo "$row_name,$((${#failures[@]} == 0)),${cells[*]}") >>"$runs/faults.csv"
+  ((${#failures[@]} == 0))
+}
+
+# What the trio maps in most rows: the session is fixed, for the map names it; every frame is mapped, so that two runs
+# give the same slices. The small one is for tests.
+scene=(--replay --every 1000000 --no-log)
+if_quick() { ((quick)); }
+choose_scene() {
+  if if_quick; then
+    scene+=(--device 'synthetic://office?frames=120' --resolution 0.02 --volume-size 3.2 --mapper '--session=7 --shift=8')
+  else
+    scene+=(--device synthetic://office --resolution 0.006 --volume-size 3.072 --mapper '--session=7 --shift=8')
+  fi
+}
+
+now_s() { printf '%s' "$EPOCHREALTIME"; }
+since_s() { awk -v a="$1" -v b="$EPOCHREALTIME" 'BEGIN { printf "%.1f", b - a }'; }
+calculate() { awk "BEGIN { printf \"%.${2:-2}f\", $1 }"; }
+
+# run_to_end NAME COMMAND...: scripts/trio with options, into the folder NAME; NAME.txt has what it said, NAME/seconds
+# how long it took. Fails as it fails.
+run_to_end() {
+  local name="$1" start="$EPOCHREALTIME"
+  shift
+  "$kintsugi_root/scripts/trio" --out "$name" "$@" >"$name.txt" 2>&1 || return
+  since_s "$start" >"$name/seconds"
+}
+
+# reference [OPTION...]: the folder $reference with the run that nothing befell: of this row's scene and these further
+# options. Rows with the same share one.
+reference() {
+  local key
+  key="$(printf '%s\n' "$quick" "${LCM_DEFAULT_URL}" "${scene[@]}" "$@" | cksum | cut -d' ' -f1)"
+  reference="$runs/reference-$key"
+  if [[ ! -e "$reference/seconds" ]]; then
+    (cd "$runs" && run_to_end "reference-$key" "${scene[@]}" "$@") || {
+      say "$row_name: the run without a fault failed: $reference.txt"
+      tail -n 20 "$reference.txt" >&2
+      exit 1
+    }
+  fi
+  figure[reference_s]="$(<"$reference/seconds")"
+}
+
+# faulty_start [OPTION...]: the run that something shall befall, in the background, in the folder `faulty`.
+# faulty_wait: until its end. faulty: both. end_faulty: whatever still runs of it.
+faulty_start() {
+  faulty_since="$EPOCHREALTIME"
+  "$kintsugi_root/scripts/trio" --out faulty "${scene[@]}" "$@" >faulty.txt 2>&1 &
+  faulty_pid=$!
+}
+faulty_wait() {
+  local code=0
+  wait "$faulty_pid" || code=$?
+  faulty_pid=""
+  figure[seconds]="$(since_s "$faulty_since")"
+  ((code == 0)) || { failures+=("trio ended with exit code $code, see $PWD/faulty.txt"); tail -n 20 faulty.txt >&2; }
+  read_figures faulty
+}
+faulty() { faulty_start "$@" && faulty_wait; }
+end_faulty() {
+  [[ -n "${faulty_pid:-}" ]] || return 0
+  kill -TERM "$faulty_pid" 2>/dev/null && wait "$faulty_pid" || true
+}
+
+# pid_of NAME: of a process of the faulty run; waits for it 20 s at most.
+pid_of() {
+  local i
+  for ((i = 0; i < 200; i++)); do
+    [[ -s "faulty/$1.pid" ]] && { cat "faulty/$1.pid"; return; }
+    sleep 0.1
+  done
+  return 1
+}
+
+# status_last RUN PROCESS FIELD, status_most ...: out of what the processes of a run said about themselves; 0: nothing.
+status_last() { awk -F, -v p="$2" -v f="$3" '$2 == p && $3 == f { v = $4 } END { print v + 0 }' "$1/status.csv"; }
+status_most() {
+  awk -F, -v p="$2" -v f="$3" '$2 == p && $3 == f && $4 > v { v = $4 } END { print v + 0 }' "$1/status.csv"
+}
+
+# read_figures RUN: what its statuses tell.
+read_figures() {
+  local process
+  [[ -s "$1/status.csv" ]] || return 0
+  for process in mapper segmenter viewer; do
+    figure[${process}_mb]="$(calculate "1e-6 * $(status_most "$1" "$process" memory_bytes)" 0)"
+  done
+  figure[lag_slices]="$(status_most "$1" segmenter lag_slices)"
+  figure[requested]=$(($(status_most "$1" segmenter requests_sent) + $(status_most "$1" viewer requests_sent)))
+  figure[resent]=$(($(status_most "$1" mapper chunks_resent) + $(status_most "$1" segmenter chunks_resent)))
+}
+
+# same_map [RUN]: the map of the faulty run, and its pictures, are those of the reference, byte for byte.
+same_map() {
+  local run="${1:-faulty}" file
+  for file in segments.ply map_final.png segments_final.png; do
+    must "$file differs from that of $reference" cmp -s "$reference/$file" "$run/$file"
+  done
+  must "half-written files are left in $run" no_partial_files "$run"
+}
+no_partial_files() { ! compgen -G "$1/*.partial*" >/dev/null; }
+
+# the_usual [OPTION...]: the row whose fault is already there.
+the_usual() {
+  reference "$@"
+  faulty "$@"
+  same_map
+}
