@@ -6,14 +6,15 @@
 namespace kintsugi::viewer {
 namespace {
 
-/// Boxes of each kChunkPoints consecutive points.
+/// Boxes of each kChunkPoints consecutive points; those that are not finite are left out.
 std::vector<Eigen::AlignedBox3f> chunk_boxes(std::span<const CloudPoint> points_W) {
   std::vector<Eigen::AlignedBox3f> boxes;
   for (std::size_t first = 0; first < points_W.size(); first += Scene::kChunkPoints) {
     Eigen::AlignedBox3f box;
     const std::size_t count = std::min(Scene::kChunkPoints, points_W.size() - first);
     for (const CloudPoint& p : points_W.subspan(first, count)) {
-      box.extend(Eigen::Vector3f(p.x, p.y, p.z));
+      const Eigen::Vector3f p_W(p.x, p.y, p.z);
+      if (p_W.allFinite()) box.extend(p_W);
     }
     boxes.push_back(box);
   }

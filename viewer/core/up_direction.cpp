@@ -6,6 +6,11 @@
 namespace kintsugi::viewer {
 namespace {
 
+/// Normals are rounded to multiples of 2^-20, so that sums of up to 2^32 of them are exact in
+/// double precision: the same in whatever order slices came, and nothing is left of what was taken
+/// back.
+constexpr double kStepsPerUnit = 1 << 20;
+
 /// Bin of a unit vector with y <= 0 in the octahedral map of the sphere (Meyer et al. 2010): the
 /// half with y <= 0 is the whole of the square |a| + |b| <= 1 turned by 45 degrees.
 int bin_of(const Eigen::Vector3d& n, int side) {
@@ -46,11 +51,11 @@ void UpDirection::count(std::span<const CloudPoint> points_W, double sign) {
     Eigen::Vector3d normal(p.nx, p.ny, p.nz);
     if (!(std::abs(normal.squaredNorm() - 1.0) < 0.1)) continue;
     if (normal.y() > 0.0) normal = -normal;
+    normal = (normal * kStepsPerUnit).array().round() / kStepsPerUnit;
     Eigen::Vector4d& bin = bins_[static_cast<std::size_t>(bin_of(normal, kSide))];
     bin.head<3>() += sign * normal;
     bin.w() += sign;
     total_ += sign;
-    if (bin.w() == 0.0) bin.setZero();  // no rounding is left of what is gone
   }
 }
 

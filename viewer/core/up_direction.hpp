@@ -15,7 +15,8 @@ namespace kintsugi::viewer {
 /// camera was held level. Floors and table tops face up and ceilings face down: the direction
 /// nearest to -y along which most normals lie is up. The normals are summed in bins over the
 /// sphere, n and -n together, and up is the mean shift over the bins from their fullest place
-/// within kMaxTilt_rad of -y. With too few points there, or none, up is -y.
+/// within kMaxTilt_rad of -y. With too few points there, or none, up is -y. It depends on which
+/// points are there, not on the order in which they came.
 class UpDirection {
  public:
   UpDirection() : bins_(std::size_t{kSide} * kSide, Eigen::Vector4d::Zero()) {}

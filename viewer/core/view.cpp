@@ -28,7 +28,7 @@ std::optional<std::array<double, 6>> parse_six_numbers(const std::string& text) 
 }
 
 /// Points spread evenly over the map, of those whose normals do not face along `forward_W`: what a
-/// camera looking there can see.
+/// camera looking there can see. What is not finite is not drawn either.
 std::vector<Eigen::Vector3d> sample(std::span<const PointChunk> chunks,
                                     const Eigen::Vector3d& forward_W) {
   constexpr std::size_t kEnough = 50'000;  // to fit a view to within a pixel or so
@@ -40,7 +40,8 @@ std::vector<Eigen::Vector3d> sample(std::span<const PointChunk> chunks,
     for (std::size_t i = 0; i < chunk.points_W.size(); i += step) {
       const CloudPoint& p = chunk.points_W[i];
       if (forward_W.dot(Eigen::Vector3d(p.nx, p.ny, p.nz)) > 0.0) continue;
-      points_W.emplace_back(p.x, p.y, p.z);
+      const Eigen::Vector3d p_W(p.x, p.y, p.z);
+      if (p_W.allFinite()) points_W.push_back(p_W);
     }
   }
   return points_W;
