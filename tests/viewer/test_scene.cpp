@@ -60,7 +60,7 @@ TEST(Scene, IsEmptyAtFirst) {
   EXPECT_EQ(nullptr, scene.slice(0));
   EXPECT_TRUE(scene.chunks().empty());
   EXPECT_TRUE(scene.box_W().isEmpty());
-  EXPECT_FALSE(scene.X_WC().has_value());
+  EXPECT_FALSE(scene.heard_track().X_WC.has_value());
   EXPECT_EQ(0, scene.lag_slices());
 }
 
@@ -159,7 +159,8 @@ TEST(Scene, EndsWithTheSameLabelsInWhateverOrderSlicesRevisionsAndUpdatesArrive)
     EXPECT_EQ(num_points, scene.counts().points);  // of earlier revisions none is left
     EXPECT_EQ(std::ssize(run.truth), scene.counts().labelled_slices);
     EXPECT_EQ(0, scene.lag_slices());
-    EXPECT_EQ(2 * count, scene.counts().updates + scene.counts().ignored_updates);
+    const SceneCounts& counts = scene.counts();
+    EXPECT_EQ(2 * count, counts.updates + counts.repeated_updates + counts.ignored_updates);
     EXPECT_EQ(0, scene.counts().ignored_runs);
   }
 }
@@ -254,11 +255,72 @@ TEST(Scene, StartsTheLabelsAnewWithANewSegmenter) {
   restarted.session = kSegmenterSession + 1;
   apply(scene, restarted, 0);
   EXPECT_EQ(Labels({5, 5}), labels_of(scene, 0));
-  EXPECT_EQ(Labels({0, 0}), labels_of(scene, 1));
+  EXPECT_EQ(Labels({1, 1}), labels_of(scene, 1));  // to be looked at until the new ones come
   EXPECT_EQ(1, scene.lag_slices());
+  EXPECT_EQ(2, scene.counts().labellings);  // nothing was labelled for the first time
 
   apply(scene, update_of(1, {3, 3}), 10);  // late, of the segmenter that is gone
-  EXPECT_EQ(Labels({0, 0}), labels_of(scene, 1));
+  EXPECT_EQ(Labels({1, 1}), labels_of(scene, 1));
+  EXPECT_EQ(1, scene.counts().ignored_updates);
+
+  SegmentUpdate run = update_of(0, {5, 5}, {{1, 0, 1, 6}});
+  run.session = restarted.session;
+  apply(scene, run, 1);
+  scene.discard_old_labels();
+  EXPECT_EQ(Labels({5, 5}), labels_of(scene, 0));
+  EXPECT_EQ(Labels({6, 0}), labels_of(scene, 1));
+}
+
+TEST(Scene, LearnsNothingFromADescriptionOfWhatItShows) {
+  const RandomRun run(3);
+  Scene scene(kMapSession);
+  for (const CloudSlice& slice : run.slices) scene.add_slice(slice);
+  std::int64_t sequence = 0;
+  for (const SegmentUpdate& update : run.updates) apply(scene, update, sequence++);
+  const SceneCounts before = scene.counts();
+
+  for (int round = 0; round < 2; ++round) {
+    std::int32_t num_slices = 0;
+    for (const auto& [id, labels] : run.truth) {
+      SegmentUpdate description = update_of(id, labels);
+      description.slice_revision = run.newest.at(id);
+      description.num_slices = ++num_slices;
+      description.sequence = sequence++;
+      EXPECT_FALSE(scene.apply_update(description)) << id;
+      EXPECT_EQ(0, scene.lag_slices());
+    }
+  }
+  EXPECT_EQ(before.updates, scene.counts().updates);
+  EXPECT_EQ(before.labellings, scene.counts().labellings);
+  EXPECT_EQ(2 * std::ssize(run.truth), scene.counts().repeated_updates);
+  EXPECT_EQ(std::ssize(run.truth), scene.announced_slices());
+}
+
+TEST(Scene, IsTheSameFromADescriptionAsFromAllThatWentBefore) {
+  const RandomRun run(4);
+  Scene there(kMapSession);
+  Scene late(kMapSession);
+  std::int64_t sequence = 0;
+  for (const SegmentUpdate& update : run.updates) apply(there, update, sequence++);
+  std::int32_t num_slices = 0;
+  for (const auto& [id, labels] : run.truth) {
+    SegmentUpdate description = update_of(id, labels);
+    description.slice_revision = run.newest.at(id);
+    description.num_slices = ++num_slices;
+    apply(late, description, sequence);
+    apply(there, description, sequence++);
+  }
+  for (auto slice = run.slices.rbegin(); slice != run.slices.rend(); ++slice) {
+    late.add_slice(*slice);
+    there.add_slice(*slice);
+  }
+  for (const auto& [id, labels] : run.truth) {
+    EXPECT_EQ(labels, labels_of(there, id));
+    EXPECT_EQ(labels, labels_of(late, id));
+  }
+  EXPECT_EQ(0, late.lag_slices());
+  EXPECT_EQ(there.counts().labelled_slices, late.counts().labelled_slices);
+  EXPECT_EQ(there.newest_slice()->id, late.newest_slice()->id);
 }
 
 TEST(Scene, ShowsTheSliceSegmentedLastOrWithoutSegmenterTheLast) {
@@ -292,23 +354,75 @@ TEST(Scene, CutsSlicesIntoChunksThatHoldEveryPointOnceInItsBox) {
   EXPECT_EQ(5.0F, scene.box_W().max().x());
 }
 
-TEST(Scene, FollowsTheCameraWhileItIsTracked) {
-  Scene scene(kMapSession);
+CameraPose pose_at(std::int64_t utime, double z_m) {
   CameraPose pose;
   pose.state = TrackingState::kTracking;
-  for (int i = 0; i <= 100; ++i) {
-    pose.utime = 1'000 + i;
-    pose.X_WC.translation().z() = 0.01 * i;
-    scene.add_pose(pose);
-  }
-  pose.state = TrackingState::kLost;
-  pose.X_WC.translation().z() = 5.0;
-  scene.add_pose(pose);
-  EXPECT_DOUBLE_EQ(1.0, scene.X_WC()->translation().z());
+  pose.utime = utime;
+  pose.X_WC.translation().z() = z_m;
+  return pose;
+}
+
+TEST(Scene, FollowsTheCameraWhileItIsTracked) {
+  Scene scene(kMapSession);
+  for (int i = 0; i <= 100; ++i) EXPECT_TRUE(scene.add_pose(pose_at(1'000 + i, 0.01 * i)));
+  CameraPose lost = pose_at(2'000, 5.0);
+  lost.state = TrackingState::kLost;
+  EXPECT_FALSE(scene.add_pose(lost));
+  EXPECT_FALSE(scene.add_pose(pose_at(1'050, 5.0)));  // came late
+  const CameraTrack track = scene.heard_track();
+  EXPECT_DOUBLE_EQ(1.0, track.X_WC->translation().z());
   EXPECT_EQ(100, scene.utime() - scene.first_utime());
   // 1 m in steps of at least 2 cm; rounding may make a step 3 cm.
-  EXPECT_GE(scene.path_W().size(), 34U);
-  EXPECT_LE(scene.path_W().size(), 51U);
+  EXPECT_GE(track.path_W.size(), 34U);
+  EXPECT_LE(track.path_W.size(), 51U);
+}
+
+TEST(Scene, TakesThePosesOfTheSlicesWhereNoneWasHeard) {
+  constexpr std::int64_t kSecond_us = 1'000'000;
+  Scene scene(kMapSession);
+  for (const std::int32_t id : {3, 0, 2, 1}) {  // at 0, 1, 2 and 3 s
+    CloudSlice slice = slice_of(id, 1);
+    slice.utime = id * kSecond_us;
+    slice.X_WC.translation() = Eigen::Vector3d(100.0, 0.0, id);  // off the path that is heard
+    scene.add_slice(slice);
+  }
+  for (int i = 8; i <= 22; ++i) {  // heard from 0.8 s to 2.2 s
+    scene.add_pose(pose_at(i * kSecond_us / 10, 0.1 * i));
+  }
+  const CameraTrack track = scene.heard_track();
+  ASSERT_EQ(17U, track.path_W.size());
+  EXPECT_EQ(Eigen::Vector3f(100.0F, 0.0F, 0.0F), track.path_W.front());
+  for (std::size_t i = 1; i + 1 < track.path_W.size(); ++i) EXPECT_EQ(0.0F, track.path_W[i].x());
+  EXPECT_EQ(Eigen::Vector3f(100.0F, 0.0F, 3.0F), track.path_W.back());
+  EXPECT_EQ(3.0, track.X_WC->translation().z());  // newer than what was heard
+  EXPECT_EQ(0, scene.first_utime());
+
+  const CameraTrack known = scene.slice_track();
+  ASSERT_EQ(4U, known.path_W.size());
+  for (int i = 0; i < 4; ++i) EXPECT_EQ(static_cast<float>(i), known.path_W[i].z());
+}
+
+TEST(PendingUpdates, KeepsNoMoreThanItsBoundWhateverSlicesAreNamed) {
+  constexpr std::size_t kMaxBytes = 10'000;
+  PendingUpdates pending(kMaxBytes);
+  std::mt19937 random(1);
+  std::uniform_int_distribution<std::int32_t> any(0, INT32_MAX);
+  int kept = 0;
+  for (int i = 0; i < 1'000; ++i) kept += pending.add({{any(random), 0, 1, 7, any(random)}, 0});
+  EXPECT_GT(kept, 0);
+  EXPECT_LT(kept, 1'000);
+  EXPECT_LE(pending.bytes(), kMaxBytes);
+  EXPECT_EQ(PendingUpdates::Outcome::kNoRoom, pending.add({1, 0}, {Labels(1'000), 0}));
+  pending.clear();
+  EXPECT_EQ(0U, pending.bytes());
+  EXPECT_EQ(PendingUpdates::Outcome::kNews, pending.add({1, 0}, {Labels(1'000), 5}));
+  EXPECT_EQ(PendingUpdates::Outcome::kKnown, pending.add({1, 0}, {Labels(1'000), 6}));
+  EXPECT_EQ(PendingUpdates::Outcome::kKnown, pending.add({1, 0}, {Labels(1'000, 3), 4}));
+  EXPECT_EQ(PendingUpdates::Outcome::kNews, pending.add({1, 0}, {Labels(2'000, 3), 7}));
+  pending.take_up_to({1, 0}, [](SliceKey, const PendingUpdates::Entry& entry) {
+    EXPECT_EQ(Labels(2'000, 3), entry.labels->labels);
+  });
+  EXPECT_EQ(0U, pending.bytes());
 }
 
 }  // namespace

@@ -42,10 +42,10 @@ std::vector<cv::Mat3b> draw_points(std::span<const PointChunk> chunks, const Vir
   return images;
 }
 
-void draw_camera(cv::Mat3b& image, const VirtualCamera& camera, const Scene& scene,
+void draw_camera(cv::Mat3b& image, const VirtualCamera& camera, const CameraTrack& track,
                  double frustum_m) {
-  draw_path(image, camera, scene.path_W());
-  if (scene.X_WC()) draw_frustum(image, camera, *scene.X_WC(), frustum_m);
+  draw_path(image, camera, track.path_W);
+  if (track.X_WC) draw_frustum(image, camera, *track.X_WC, frustum_m);
 }
 
 /// Where the parts of the figure go: two columns, map above slice, the caption below both.
@@ -96,8 +96,9 @@ void Renderer::Config::validate() const {
 
 Renderer::Renderer(const Config& config) : config_(config) { config_.validate(); }
 
-cv::Mat3b Renderer::draw_figure(const Scene& scene, const FollowedCamera& followed,
-                                const View& view, const std::string& caption) const {
+cv::Mat3b Renderer::draw_figure(const Scene& scene, const CameraTrack& track,
+                                const FollowedCamera& followed, const View& view,
+                                const std::string& caption) const {
   constexpr std::array kColorings{Coloring::kTrue, Coloring::kSegments};
   constexpr std::array kMapTitles{"map", "segments"};
   const Layout layout = layout_of(config_.width_px, config_.height_px);
@@ -119,7 +120,7 @@ cv::Mat3b Renderer::draw_figure(const Scene& scene, const FollowedCamera& follow
       newest == nullptr ? "no slice yet" : "newest slice: " + std::to_string(newest->id);
 
   for (std::size_t i = 0; i < kColorings.size(); ++i) {
-    draw_camera(maps[i], map_camera, scene, config_.frustum_m);
+    draw_camera(maps[i], map_camera, track, config_.frustum_m);
     draw_title(maps[i], kMapTitles[i]);
     draw_title(slices[i], slice_title);
     maps[i].copyTo(figure(layout.map[i]));
@@ -129,23 +130,28 @@ cv::Mat3b Renderer::draw_figure(const Scene& scene, const FollowedCamera& follow
   return figure;
 }
 
-cv::Mat3b Renderer::draw_map(const Scene& scene, const FollowedCamera& followed, const View& view,
+cv::Mat3b Renderer::draw_map(const Scene& scene, const CameraTrack& track,
+                             const FollowedCamera& followed, const View& view,
                              Coloring coloring) const {
   const VirtualCamera camera =
       camera_for(view, scene, followed, config_.width_px, config_.height_px, config_.view);
   cv::Mat3b image = draw_points(scene.chunks(), camera, std::array{coloring}, config_).front();
-  draw_camera(image, camera, scene, config_.frustum_m);
+  draw_camera(image, camera, track, config_.frustum_m);
   return image;
 }
 
 std::string caption(const Scene& scene) {
-  const SceneCounts& counts = scene.counts();
   const double time_s = 1e-6 * static_cast<double>(scene.utime() - scene.first_utime());
   std::array<char, 32> time{};
   std::snprintf(time.data(), time.size(), "%.1f s", time_s);
-  return std::string(time.data()) + "   " + with_thousands(counts.points) + " points   " +
-         with_thousands(counts.segments) + " segments   " + with_thousands(counts.slices) +
-         " slices   lag " + std::to_string(scene.lag_slices());
+  return std::string(time.data()) + "   " + final_caption(scene);
+}
+
+std::string final_caption(const Scene& scene) {
+  const SceneCounts& counts = scene.counts();
+  return with_thousands(counts.points) + " points   " + with_thousands(counts.segments) +
+         " segments   " + with_thousands(counts.slices) + " slices   lag " +
+         std::to_string(scene.lag_slices());
 }
 
 }  // namespace kintsugi::viewer

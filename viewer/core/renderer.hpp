@@ -4,6 +4,7 @@
 
 #include <opencv2/core.hpp>
 
+#include "viewer/core/camera_track.hpp"
 #include "viewer/core/scene.hpp"
 #include "viewer/core/shade.hpp"
 #include "viewer/core/splat.hpp"
@@ -31,12 +32,13 @@ class Renderer {
 
   /// The paper's Fig. 1 in one picture: the map in true colour and its segments side by side, the
   /// newest slice below each on its own, the camera's path, and a caption.
-  cv::Mat3b draw_figure(const Scene& scene, const FollowedCamera& followed, const View& view,
+  cv::Mat3b draw_figure(const Scene& scene, const CameraTrack& track,
+                        const FollowedCamera& followed, const View& view,
                         const std::string& caption) const;
 
   /// The map alone in one coloring, filling the picture.
-  cv::Mat3b draw_map(const Scene& scene, const FollowedCamera& followed, const View& view,
-                     Coloring coloring) const;
+  cv::Mat3b draw_map(const Scene& scene, const CameraTrack& track, const FollowedCamera& followed,
+                     const View& view, Coloring coloring) const;
 
   const Config& config() const { return config_; }
 
@@ -44,7 +46,10 @@ class Renderer {
   Config config_;
 };
 
-/// What the caption says: time, points, segments, slices, lag.
+/// What the caption of a picture of the run says: time, points, segments, slices, lag.
 std::string caption(const Scene& scene);
+
+/// That of a final picture: the same without the time, which depends on the poses that were heard.
+std::string final_caption(const Scene& scene);
 
 }  // namespace kintsugi::viewer

@@ -1,6 +1,7 @@
 #include "viewer/core/scene.hpp"
 
 #include <algorithm>
+#include <tuple>
 #include <utility>
 
 namespace kintsugi::viewer {
@@ -34,13 +35,13 @@ void append_chunks(const SceneSlice& slice, std::vector<PointChunk>& chunks) {
 
 }  // namespace
 
-void Scene::add_slice(CloudSlice message) {
+bool Scene::add_slice(CloudSlice message) {
   SceneSlice* slice = nullptr;
   if (const auto found = slices_.find(message.id); found != slices_.end()) {
     slice = &found->second;
     if (message.revision <= slice->revision) {
       ++counts_.ignored_slices;
-      return;
+      return false;
     }
     counts_.points -= static_cast<std::int64_t>(slice->points_W.size());
     up_.remove(slice->points_W);
@@ -65,33 +66,38 @@ void Scene::add_slice(CloudSlice message) {
   advance_time(slice->utime);
   up_.add(slice->points_W);
   apply_pending(*slice);
-}
-
-bool Scene::accept_segmenter(std::int64_t session) {
-  if (session == segmenter_session_) return true;
-  if (std::ranges::count(superseded_segmenters_, session) > 0) return false;
-  if (segmenter_session_ != 0) {
-    superseded_segmenters_.push_back(segmenter_session_);
-    discard_labels();
-  }
-  segmenter_session_ = session;
   return true;
 }
 
-void Scene::discard_labels() {
+bool Scene::accept_segmenter(std::int64_t session) {
+  if (session > segmenter_session_) {
+    if (segmenter_session_ != 0) expect_labels_anew();
+    segmenter_session_ = session;
+  }
+  return session == segmenter_session_;
+}
+
+/// The labels stay to be looked at; any update takes their place.
+void Scene::expect_labels_anew() {
   for (auto& [id, slice] : slices_) {
-    std::ranges::fill(slice.labels, kNoSegment);
     std::ranges::fill(slice.label_updates, 0U);
     slice.labelled = false;
   }
   counts_.labelled_slices = 0;
-  counts_.segments = 0;
   pending_.clear();
-  pending_runs_ = 0;
   newest_update_.reset();
-  newest_labelled_id_ = -1;
   announced_slices_ = 0;
   final_update_seen_ = false;
+}
+
+void Scene::discard_old_labels() {
+  for (auto& [id, slice] : slices_) {
+    if (slice.labelled || !slice.was_labelled) continue;
+    for (std::size_t i = 0; i < slice.labels.size(); ++i) {
+      if (slice.label_updates[i] == 0) slice.labels[i] = kNoSegment;
+    }
+    slice.was_labelled = false;
+  }
 }
 
 Scene::Presence Scene::presence(SliceKey key) const {
@@ -100,142 +106,151 @@ Scene::Presence Scene::presence(SliceKey key) const {
   return found->second.revision == key.revision ? Presence::kHere : Presence::kReplaced;
 }
 
-void Scene::apply_update(const SegmentUpdate& update) {
+bool Scene::apply_update(const SegmentUpdate& update) {
   const bool is_numbered = update.sequence >= 0 && update.sequence < UINT32_MAX;
   if (update.map_session != map_session_ || !is_numbered || !accept_segmenter(update.session)) {
     ++counts_.ignored_updates;
-    return;
+    return false;
   }
-  ++counts_.updates;
   const auto number = static_cast<std::uint32_t>(update.sequence);
+  const Effect effect =
+      use_labels({update.slice_id, update.slice_revision}, {update.labels, number});
+  bool changed = effect == Effect::kNews;
+  changed |= use_counts(update, number);
+  for (const LabelRun& run : update.runs) changed |= use_run({run, number});
+  if (effect == Effect::kIgnored) {
+    ++counts_.ignored_updates;
+  } else {
+    ++(changed ? counts_.updates : counts_.repeated_updates);
+  }
+  return changed;
+}
+
+/// True when they say something new about the map.
+bool Scene::use_counts(const SegmentUpdate& update, std::uint32_t number) {
+  const auto before = std::tuple(counts_.segments, announced_slices_, final_update_seen_);
   if (!newest_update_ || number >= *newest_update_) {
     newest_update_ = number;
     counts_.segments = update.num_segments;
-    announced_slices_ = update.num_slices;
   }
+  // A description of the whole map counts up to it again.
+  announced_slices_ = std::max<std::int64_t>(announced_slices_, update.num_slices);
   final_update_seen_ = final_update_seen_ || update.is_final;
-  use_labels({update.slice_id, update.slice_revision}, {update.labels, number});
-  for (const LabelRun& run : update.runs) use_run({run, number});
+  return before != std::tuple(counts_.segments, announced_slices_, final_update_seen_);
 }
 
-void Scene::use_labels(SliceKey key, PendingLabels labels) {
+Scene::Effect Scene::use_labels(SliceKey key, PendingUpdates::Labels labels) {
   switch (presence(key)) {
     case Presence::kHere:
-      apply_labels(slices_.at(key.id), labels);
-      break;
+      return apply_labels(slices_.at(key.id), labels);
     case Presence::kReplaced:
-      ignore_counted_update();
-      break;
+      return Effect::kIgnored;
     case Presence::kNotYet:
-      auto& waiting = pending_[key].labels;
-      if (!waiting || waiting->number <= labels.number) waiting = std::move(labels);
       break;
   }
+  switch (pending_.add(key, std::move(labels))) {
+    case PendingUpdates::Outcome::kNews:
+      return Effect::kNews;
+    case PendingUpdates::Outcome::kKnown:
+      return Effect::kNothingNew;
+    case PendingUpdates::Outcome::kNoRoom:
+      break;
+  }
+  return Effect::kIgnored;
 }
 
-void Scene::use_run(const PendingRun& pending) {
-  const SliceKey key{pending.run.slice_id, pending.run.slice_revision};
+bool Scene::use_run(const PendingUpdates::Run& run) {
+  const SliceKey key{run.run.slice_id, run.run.slice_revision};
   switch (presence(key)) {
     case Presence::kHere:
-      apply_run(slices_.at(key.id), pending);
-      break;
+      return apply_run(slices_.at(key.id), run);
     case Presence::kReplaced:
-      break;
+      return false;
     case Presence::kNotYet:
-      if (pending_runs_ < kMaxPendingRuns) {
-        pending_[key].runs.push_back(pending);
-        ++pending_runs_;
-      } else {
-        ++counts_.ignored_runs;
-      }
       break;
   }
+  const bool is_kept = pending_.add(run);
+  if (!is_kept) ++counts_.ignored_runs;
+  return is_kept;
 }
 
 /// Applies what waited for this revision; what waited for earlier ones means nothing any more.
 void Scene::apply_pending(SceneSlice& slice) {
-  const auto end = pending_.upper_bound({slice.id, slice.revision});
-  for (auto it = pending_.lower_bound({slice.id, 0}); it != end; it = pending_.erase(it)) {
-    const auto& [key, pending] = *it;
-    pending_runs_ -= pending.runs.size();
-    if (key.revision < slice.revision) {
-      if (pending.labels) ignore_counted_update();
-      continue;
+  const auto apply = [&](SliceKey key, const PendingUpdates::Entry& pending) {
+    Effect effect = Effect::kIgnored;
+    if (key.revision == slice.revision) {
+      for (const PendingUpdates::Run& run : pending.runs) apply_run(slice, run);
+      if (pending.labels) effect = apply_labels(slice, *pending.labels);
     }
-    for (const PendingRun& run : pending.runs) apply_run(slice, run);
-    if (pending.labels) apply_labels(slice, *pending.labels);
-  }
+    if (pending.labels && effect == Effect::kIgnored) {
+      --counts_.updates;  // counted when it came
+      ++counts_.ignored_updates;
+    }
+  };
+  pending_.take_up_to({slice.id, slice.revision}, apply);
 }
 
-void Scene::ignore_counted_update() {
-  ++counts_.ignored_updates;
-  --counts_.updates;
-}
-
-void Scene::apply_labels(SceneSlice& slice, const PendingLabels& pending) {
-  if (pending.labels.size() != slice.labels.size()) {
-    ignore_counted_update();
-    return;
-  }
+Scene::Effect Scene::apply_labels(SceneSlice& slice, const PendingUpdates::Labels& update) {
+  if (update.labels.size() != slice.labels.size()) return Effect::kIgnored;
+  bool changed = !slice.labelled;
   for (std::size_t i = 0; i < slice.labels.size(); ++i) {
-    if (slice.label_updates[i] > pending.number + 1) continue;
-    slice.labels[i] = pending.labels[i];
-    slice.label_updates[i] = pending.number + 1;
+    if (slice.label_updates[i] > update.number + 1) continue;
+    changed |= slice.labels[i] != update.labels[i];
+    slice.labels[i] = update.labels[i];
+    slice.label_updates[i] = update.number + 1;
   }
-  if (!slice.labelled) {
-    ++counts_.labelled_slices;
-    ++counts_.labellings;
-  }
+  if (!slice.labelled) ++counts_.labelled_slices;
+  if (!slice.was_labelled) ++counts_.labellings;
   slice.labelled = true;
-  if (!slice.points_W.empty()) newest_labelled_id_ = std::max(newest_labelled_id_, slice.id);
+  slice.was_labelled = true;
+  return changed ? Effect::kNews : Effect::kNothingNew;
 }
 
-void Scene::apply_run(SceneSlice& slice, const PendingRun& pending) {
-  const LabelRun& run = pending.run;
+bool Scene::apply_run(SceneSlice& slice, const PendingUpdates::Run& update) {
+  const LabelRun& run = update.run;
   const auto size = static_cast<std::int64_t>(slice.labels.size());
   if (run.first < 0 || run.count <= 0 || std::int64_t{run.first} + run.count > size) {
     ++counts_.ignored_runs;
-    return;
+    return false;
   }
+  bool changed = false;
   const auto first = static_cast<std::size_t>(run.first);
   for (std::size_t i = first; i < first + static_cast<std::size_t>(run.count); ++i) {
-    if (slice.label_updates[i] > pending.number + 1) continue;
+    if (slice.label_updates[i] > update.number + 1) continue;
+    changed |= slice.labels[i] != run.segment_id;
     slice.labels[i] = run.segment_id;
-    slice.label_updates[i] = pending.number + 1;
+    slice.label_updates[i] = update.number + 1;
   }
+  return changed;
 }
 
-void Scene::add_pose(const CameraPose& pose) {
-  if (pose.state == TrackingState::kStarting || pose.state == TrackingState::kLost) return;
+bool Scene::add_pose(const CameraPose& pose) {
+  if (!poses_.add(pose)) return false;
   advance_time(pose.utime);
-  X_WC_ = pose.X_WC;
-  const Eigen::Vector3f position_W = pose.X_WC.translation().cast<float>();
-  if (path_W_.empty() || (position_W - path_W_.back()).norm() >= kPathStep_m) {
-    path_W_.push_back(position_W);
-  }
+  return true;
+}
+
+std::vector<TimedPose> Scene::slice_poses() const {
+  std::vector<TimedPose> poses;
+  poses.reserve(slices_.size());
+  for (const auto& [id, slice] : slices_) poses.push_back({slice.utime, slice.X_WC});
+  std::ranges::stable_sort(poses, {}, &TimedPose::utime);
+  return poses;
 }
 
 void Scene::advance_time(std::int64_t utime) {
-  if (utime_ == 0) first_utime_ = utime;
-  utime_ = std::max(utime_, utime);
+  utime_ = std::max(utime_.value_or(utime), utime);
+  first_utime_ = std::min(first_utime_.value_or(utime), utime);
 }
 
 std::int64_t Scene::lag_slices() const {
   const std::int64_t known = std::max(counts_.slices, announced_slices_);
-  return known - counts_.labelled_slices + superseded_slices();
-}
-
-/// Labelled slices of which the segmenter knows a newer revision.
-std::int64_t Scene::superseded_slices() const {
-  std::int64_t count = 0;
-  std::int32_t counted_id = -1;
-  for (const auto& [key, pending] : pending_) {
-    const SceneSlice* const here = slice(key.id);
-    if (!pending.labels || here == nullptr || !here->labelled || key.id == counted_id) continue;
-    counted_id = key.id;
-    ++count;
-  }
-  return count;
+  // Of a labelled slice the segmenter may know a newer revision.
+  const auto is_labelled = [this](std::int32_t id) {
+    const SceneSlice* const here = slice(id);
+    return here != nullptr && here->labelled;
+  };
+  return known - counts_.labelled_slices + pending_.count_labelled_if(is_labelled);
 }
 
 const SceneSlice* Scene::slice(std::int32_t id) const {
@@ -244,11 +259,14 @@ const SceneSlice* Scene::slice(std::int32_t id) const {
 }
 
 const SceneSlice* Scene::newest_slice() const {
-  if (newest_labelled_id_ >= 0) return slice(newest_labelled_id_);
+  const SceneSlice* newest = nullptr;
   for (auto it = slices_.rbegin(); it != slices_.rend(); ++it) {
-    if (!it->second.points_W.empty()) return &it->second;
+    const SceneSlice& slice = it->second;
+    if (slice.points_W.empty()) continue;
+    if (slice.was_labelled) return &slice;
+    if (newest == nullptr) newest = &slice;
   }
-  return nullptr;
+  return newest;
 }
 
 std::vector<PointChunk> Scene::chunks() const {
@@ -273,9 +291,8 @@ Eigen::AlignedBox3f Scene::box_W() const {
 
 std::int64_t Scene::memory_bytes() const {
   constexpr std::int64_t kBytesPerPoint = sizeof(CloudPoint) + 2 * sizeof(std::uint32_t);
-  return counts_.points * kBytesPerPoint +
-         static_cast<std::int64_t>(pending_runs_ * sizeof(PendingRun)) +
-         static_cast<std::int64_t>(path_W_.capacity() * sizeof(Eigen::Vector3f));
+  return counts_.points * kBytesPerPoint + static_cast<std::int64_t>(pending_.bytes()) +
+         poses_.memory_bytes();
 }
 
 }  // namespace kintsugi::viewer

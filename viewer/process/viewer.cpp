@@ -130,7 +130,7 @@ void Viewer::draw_snapshot_now() {
 
 cv::Mat3b Viewer::draw(const View& view) {
   const Clock::time_point start = Clock::now();
-  cv::Mat3b figure = renderer_.draw_figure(*scene_, followed_, view, caption(*scene_));
+  cv::Mat3b figure = renderer_.draw_figure(*scene_, scene_->heard_track(), followed_, view, caption(*scene_));
   const Clock::time_point end = Clock::now();
   render_ms_ = milliseconds(end - start);
   history_.add_render_time(*scene_, render_ms_);
@@ -167,9 +167,9 @@ void Viewer::write_final_as(const std::string& suffix) {
   const cv::Mat3b figure = draw(OverviewView{});
   save("final" + suffix + ".png", figure);
   save("map_final" + suffix + ".png",
-       renderer_.draw_map(*scene_, followed_, OverviewView{}, Coloring::kTrue));
+       renderer_.draw_map(*scene_, scene_->slice_track(), followed_, OverviewView{}, Coloring::kTrue));
   save("segments_final" + suffix + ".png",
-       renderer_.draw_map(*scene_, followed_, OverviewView{}, Coloring::kSegments));
+       renderer_.draw_map(*scene_, scene_->slice_track(), followed_, OverviewView{}, Coloring::kSegments));
   if (config_.plots) save("plots" + suffix + ".png", history_.draw({1000, 900}));
   on_snapshot_(figure, caption(*scene_));
   changed_since_final_ = false;
