@@ -8,7 +8,7 @@
 
 #include "lcmtypes/stop_signal.hpp"
 #include "segmenter/options.hpp"
-#include "segmenter/segmenter_process.hpp"
+#include "segmenter/process/segmenter_process.hpp"
 
 namespace kintsugi::segmenter {
 namespace {
@@ -23,14 +23,14 @@ void add_options(CLI::App& app, Options& options) {
   SegmenterProcess::Config& process = options.process;
   add_segmentation_options(app, process.processor.map);
   app.add_option(
-         "--out", process.output_folder,
+         "--out", process.files.folder,
          "folder for segments.ply and segments.json, written at the end, on SIGUSR1, and as "
          "--write-every says")
       ->capture_default_str();
   app.add_option("--write-every", process.processor.write_every,
                  "also write them after so many slices; 0: do not")
       ->capture_default_str();
-  app.add_option("--save", process.save_file,
+  app.add_option("--save", process.files.save_file,
                  "keep the map in this file too, whenever segments.ply is written, for --resume");
   app.add_option("--resume", process.resume_file,
                  "go on with the map in this file: slices it has are not segmented again; mode and "

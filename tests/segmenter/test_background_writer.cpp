@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include "segmenter/background_writer.hpp"
-#include "segmenter/slice_processor.hpp"
+#include "segmenter/process/background_writer.hpp"
+#include "segmenter/process/slice_processor.hpp"
 #include "tests/segmenter/slice_session.hpp"
 
 namespace kintsugi::segmenter {

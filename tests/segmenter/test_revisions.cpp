@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "segmenter/slice_processor.hpp"
+#include "segmenter/process/slice_processor.hpp"
 #include "tests/segmenter/room_session.hpp"
 #include "tests/segmenter/slice_session.hpp"
 

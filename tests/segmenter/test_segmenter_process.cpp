@@ -11,8 +11,8 @@
 #include "lcmtypes/message_subscriber.hpp"
 #include "lcmtypes/stop_signal.hpp"
 #include "segmenter/io/ply_reader.hpp"
-#include "segmenter/process_status.hpp"
-#include "segmenter/segmenter_process.hpp"
+#include "segmenter/process/process_status.hpp"
+#include "segmenter/process/segmenter_process.hpp"
 #include "tests/segmenter/program.hpp"
 #include "tests/segmenter/room_session.hpp"
 #include "tests/segmenter/session_log.hpp"
@@ -341,7 +341,7 @@ class Listener {
 SegmenterProcess::Config on_the_bus(const TemporaryFolder& folder, const std::string& mode) {
   SegmenterProcess::Config config;
   config.lcm_url = kPrivateBusUrl;
-  config.output_folder = folder.path();
+  config.files.folder = folder.path();
   config.exit_on_final = true;
   config.processor.map.mode = mode;
   return config;

@@ -1,4 +1,4 @@
-#include "segmenter/process_status.hpp"
+#include "segmenter/process/process_status.hpp"
 
 #include <fstream>
 

@@ -3,7 +3,7 @@
 
 #include "lcmtypes/messages.hpp"
 #include "lcmtypes/stream_subscriber.hpp"
-#include "segmenter/slice_processor.hpp"
+#include "segmenter/process/slice_processor.hpp"
 
 namespace kintsugi::segmenter {
 

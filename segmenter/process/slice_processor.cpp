@@ -1,4 +1,4 @@
-#include "segmenter/slice_processor.hpp"
+#include "segmenter/process/slice_processor.hpp"
 
 #include <algorithm>
 #include <stdexcept>

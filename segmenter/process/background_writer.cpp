@@ -1,4 +1,4 @@
-#include "segmenter/background_writer.hpp"
+#include "segmenter/process/background_writer.hpp"
 
 #include <algorithm>
 #include <utility>

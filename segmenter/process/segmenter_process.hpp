@@ -2,19 +2,20 @@
 // The segmenter between the bus, or a log, and its files.
 
 #include <atomic>
+#include <chrono>
 #include <exception>
 #include <filesystem>
 #include <memory>
 #include <mutex>
 #include <string>
-#include <thread>
 
 #include "lcmtypes/bus.hpp"
-#include "lcmtypes/stream_publisher.hpp"
-#include "lcmtypes/stream_subscriber.hpp"
-#include "segmenter/background_writer.hpp"
-#include "segmenter/slice_processor.hpp"
-#include "segmenter/slice_queue.hpp"
+#include "lcmtypes/bus_thread.hpp"
+#include "segmenter/process/map_writer.hpp"
+#include "segmenter/process/slice_processor.hpp"
+#include "segmenter/process/slice_queue.hpp"
+#include "segmenter/process/slice_receiver.hpp"
+#include "segmenter/process/update_publisher.hpp"
 
 namespace kintsugi::segmenter {
 
@@ -33,8 +34,7 @@ class SegmenterProcess {
     std::string lcm_url;        ///< empty: the default bus
     std::filesystem::path log;  ///< read slices from this log; empty: from the bus
     bool publish = true;        ///< updates and status on the bus
-    std::filesystem::path output_folder = ".";
-    std::filesystem::path save_file;    ///< also keep the map here, to go on with; empty: do not
+    MapWriter::Config files;
     std::filesystem::path resume_file;  ///< go on with the map kept here; empty: begin anew
     bool exit_on_final = false;         ///< end when the final slice is segmented and published
     std::chrono::milliseconds status_period{250};  ///< > 0
@@ -44,8 +44,8 @@ class SegmenterProcess {
     void validate() const;
   };
 
-  /// Opens bus and log. Throws std::invalid_argument for an invalid config, std::runtime_error
-  /// where they cannot be opened.
+  /// Opens the bus. Throws std::invalid_argument for an invalid config, std::runtime_error where
+  /// it cannot be opened.
   explicit SegmenterProcess(const Config& config);
   ~SegmenterProcess();
 
@@ -56,41 +56,39 @@ class SegmenterProcess {
   int run();
 
  private:
-  void receive_from_bus();
-  void receive_from_log();
+  // The thread of run().
+  void receive();
+  void watch();
+  void publish_status();
+  [[nodiscard]] bool has_ended() const;
+  [[nodiscard]] bool nothing_is_queued() const;
+  [[nodiscard]] int exit_status() const;
+
+  // The working thread.
   void work();
   void work_until_end();
-  void resume();
   void offer_all(std::vector<CloudSlice> slices);
-  void publish(SegmentUpdate update);
-  void save(const SegmentMap& map, SliceProcessor::Save why);
-  template <class Action>
-  void try_to_write(Action&& action);
-  void tell_what_was_done() const;
-  void fail(const std::string& what);
-  void publish_status();
-  void wait_for_end();
+  void write(const SegmentMap& map, SliceProcessor::Save why);
+
   [[nodiscard]] SliceProcessor::Counts counts() const;
-  [[nodiscard]] bool nothing_is_queued() const;
 
   Config config_;
   std::int64_t session_;
-  std::unique_ptr<Bus> bus_;                    // null: nothing is published
-  std::unique_ptr<StreamPublisher> publisher_;  // null likewise
+  std::unique_ptr<Bus> bus_;  // null: neither heard nor published
+  UpdatePublisher updates_;
   SliceQueue queue_;
-  StreamSubscriber<CloudSlice> subscriber_;
-  BackgroundWriter writer_;
+  SliceReceiver receiver_;
+  MapWriter writer_;
   SliceProcessor processor_;  // of the working thread
 
   mutable std::mutex mutex_;  // guards what the working thread tells the others
   SliceProcessor::Counts counts_;
 
-  std::exception_ptr failure_;      // of the working thread; read when it has ended
-  bool status_has_failed_ = false;  // of the thread of run()
+  std::exception_ptr failure_;  // of the working thread; read when it has ended
+  std::string status_problem_;  // of the thread of run()
   std::atomic<bool> ending_{false};
   std::atomic<bool> working_{true};
-  std::atomic<bool> has_failed_{false};    // in something that did not stop the work
-  std::atomic<bool> is_write_due_{false};  // the files of the last writing are not there
+  std::unique_ptr<BusThread> bus_thread_;  // last: it uses the rest
 };
 
 }  // namespace kintsugi::segmenter
