@@ -43,6 +43,13 @@ std::string complete_url(const std::string& asked) {
   return url + separator + "recv_buf_size=" + std::to_string(kReceiveBufferBytes);
 }
 
+/// True when multicast goes further than this host: ttl > 0; LCM's default is 0.
+bool leaves_host(const std::string& url) {
+  const std::size_t option = url.find("ttl=");
+  return url.starts_with("udpm://") && option != std::string::npos &&
+         std::atoi(url.c_str() + option + 4) > 0;
+}
+
 }  // namespace
 
 struct Bus::Subscriber {
@@ -103,6 +110,10 @@ void Bus::publish(const std::string& channel, ByteView message) {
     throw std::runtime_error("cannot publish " + std::to_string(message.size()) + " bytes on " +
                              channel + " of the bus " + url_);
   }
+}
+
+std::size_t Bus::max_message_bytes() const {
+  return leaves_host(url_) ? kMinMaxChunkBytes : kDefaultMaxChunkBytes;
 }
 
 void Bus::subscribe(const std::string& channel, Handler handler) {

@@ -2,6 +2,7 @@
 // One LCM instance: opened with a clear error, callbacks that may throw.
 
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <exception>
 #include <functional>
@@ -59,6 +60,11 @@ class Bus {
   bool handle(std::chrono::milliseconds timeout);
 
   const std::string& url() const { return url_; }
+
+  /// The largest message that arrives well: one datagram where the bus stays on this host (or is a
+  /// file), one Ethernet frame where it leaves it (ttl > 0). What a StreamPublisher takes as
+  /// max_chunk_bytes. Bytes.
+  std::size_t max_message_bytes() const;
 
  private:
   struct Subscriber;

@@ -4,16 +4,33 @@
 #include <utility>
 
 namespace kintsugi {
+namespace {
 
-BusThread::BusThread(Bus& bus)
-    : thread_([this, &bus] {
+constexpr std::chrono::milliseconds kTickPeriod{20};
+
+}  // namespace
+
+BusThread::BusThread(Bus& bus, std::function<void()> tick)
+    : thread_([this, &bus, tick = std::move(tick)] {
         try {
-          while (!stopping_) bus.handle(std::chrono::milliseconds(50));
+          run(bus, tick);
         } catch (...) {
           failure_ = std::current_exception();
           failed_ = true;
         }
       }) {}
+
+void BusThread::run(Bus& bus, const std::function<void()>& tick) {
+  auto last_tick = std::chrono::steady_clock::now();
+  while (!stopping_) {
+    bus.handle(kTickPeriod);
+    const auto now = std::chrono::steady_clock::now();
+    if (tick && now - last_tick >= kTickPeriod) {
+      last_tick = now;
+      tick();
+    }
+  }
+}
 
 BusThread::~BusThread() { join(); }
 
