@@ -1,5 +1,5 @@
 #pragma once
-// Which numbers of a stream have been seen.
+// A set of the numbers of a stream.
 
 #include <cstddef>
 #include <cstdint>
@@ -15,19 +15,28 @@ class SequenceSet {
  public:
   /// False when `number` was there already.
   bool insert(std::int64_t number);
+  /// `range.first` <= `range.last`.
+  void insert(SequenceRange range);
   void erase(std::int64_t number);
   bool contains(std::int64_t number) const;
 
-  /// The numbers in [0, end) that are not there, as at most `max_ranges` ranges, lowest first.
-  std::vector<SequenceRange> missing(std::int64_t end, std::size_t max_ranges) const;
-  std::int64_t count_missing(std::int64_t end) const;
+  /// The numbers in [begin, end) that are not there, as at most `max_ranges` ranges, lowest first.
+  std::vector<SequenceRange> missing(std::int64_t begin, std::int64_t end,
+                                     std::size_t max_ranges) const;
+  std::int64_t count_missing(std::int64_t begin, std::int64_t end) const;
+  /// The lowest number >= `begin` that is not there.
+  std::int64_t lowest_missing(std::int64_t begin) const;
 
+  std::vector<SequenceRange> ranges() const;
   std::size_t num_ranges() const { return ranges_.size(); }
-  /// Fills the lowest gap above the first range, as though it had been seen; returns its size.
-  std::int64_t close_lowest_gap();
 
  private:
-  std::map<std::int64_t, std::int64_t> ranges_;  // first -> last, inclusive
+  using Ranges = std::map<std::int64_t, std::int64_t>;  // first -> last, inclusive
+
+  /// The first range that ends at `number` or above.
+  Ranges::const_iterator reaching(std::int64_t number) const;
+
+  Ranges ranges_;
 };
 
 }  // namespace kintsugi

@@ -1,38 +1,20 @@
 #include "lcmtypes/stream_publisher.hpp"
 
+#include <chrono>
+#include <memory>
 #include <stdexcept>
+#include <utility>
 
 #include "lcmtypes/channels.hpp"
 
 namespace kintsugi {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
-[[noreturn]] void refuse(const std::string& what) {
-  throw std::invalid_argument("StreamPublisher: " + what);
-}
-
-const StreamPublisher::Config& validated(const StreamPublisher::Config& config) {
-  config.validate();
-  return config;
-}
+// Requests that wait for the thread. More come only from many receivers or a hostile one, while
+// the thread is held up; receivers ask again.
+constexpr std::size_t kMaxWaitingRequests = 256;
 
 }  // namespace
-
-void StreamPublisher::Config::validate() const {
-  if (!(rate_bytes_per_s > 0.0)) {
-    refuse("rate_bytes_per_s is " + std::to_string(rate_bytes_per_s) + ", expected > 0");
-  }
-  if (burst_bytes == 0) refuse("burst_bytes is 0, expected > 0");
-  if (max_chunk_bytes < kMinMaxChunkBytes) {
-    refuse("max_chunk_bytes is " + std::to_string(max_chunk_bytes) + ", expected at least " +
-           std::to_string(kMinMaxChunkBytes));
-  }
-  if (heartbeat_period.count() <= 0) {
-    refuse("heartbeat_period is " + std::to_string(heartbeat_period.count()) + " ms, expected > 0");
-  }
-}
 
 StreamPublisher::StreamPublisher(Bus& bus, std::string channel, std::int64_t session,
                                  const Config& config, SentStore* store)
@@ -41,62 +23,106 @@ StreamPublisher::StreamPublisher(Bus& bus, std::string channel, std::int64_t ses
 
 StreamPublisher::StreamPublisher(Transmit transmit, std::string channel, std::int64_t session,
                                  const Config& config, SentStore* store)
-    : transmit_(std::move(transmit)),
-      channel_(std::move(channel)),
+    : channel_(std::move(channel)),
       session_(session),
-      config_(validated(config)),
-      store_(store),
-      bucket_(config.rate_bytes_per_s, static_cast<double>(config.burst_bytes)),
+      max_chunk_bytes_(config.max_chunk_bytes),
+      sender_(std::move(transmit), channel_, session, config, store),
+      next_sequence_(sender_.next_sequence()),
       thread_([this] { run(); }) {}
 
 StreamPublisher::~StreamPublisher() {
   {
     const std::lock_guard lock(mutex_);
     stopping_ = true;
+    has_news_ = true;
   }
   wake_.notify_all();
   thread_.join();
 }
 
 template <BulkMessage Message>
-void StreamPublisher::publish(Message message) {
+StreamSender::Job StreamPublisher::job_of(Message message) const {
   if (message.session != session_) {
-    refuse("the message's session is " + std::to_string(message.session) + ", expected " +
-           std::to_string(session_));
+    throw std::invalid_argument("StreamPublisher: the message's session is " +
+                                std::to_string(message.session) + ", expected " +
+                                std::to_string(session_));
   }
-  Job job;
-  job.num_chunks = num_chunks(message, config_.max_chunk_bytes);
+  StreamSender::Job job;
+  job.num_chunks = num_chunks(message, max_chunk_bytes_);
   job.bytes = static_cast<std::size_t>(payload_bytes(message));
-  job.encode = [limit = config_.max_chunk_bytes,
+  job.encode = [limit = max_chunk_bytes_,
                 shared = std::make_shared<const Message>(std::move(message))](std::int64_t sequence,
                                                                               std::int32_t index) {
     return encode_chunk(*shared, sequence, index, limit);
   };
-  enqueue(std::move(job));
+  return job;
+}
+
+template <BulkMessage Message>
+void StreamPublisher::publish(Message message) {
+  std::vector<StreamSender::Job> jobs;
+  jobs.push_back(job_of(std::move(message)));
+  enqueue(std::move(jobs));
+}
+
+template <BulkMessage Message>
+void StreamPublisher::publish_state(std::vector<Message> messages) {
+  std::vector<StreamSender::Job> jobs;
+  jobs.reserve(messages.size());
+  for (Message& message : messages) jobs.push_back(job_of(std::move(message)));
+  if (jobs.empty()) throw std::invalid_argument("StreamPublisher: a state without messages");
+  jobs.front().starts_state = true;
+  enqueue(std::move(jobs));
 }
 
 template void StreamPublisher::publish(CloudSlice);
 template void StreamPublisher::publish(SegmentUpdate);
 template void StreamPublisher::publish(RgbdFrameMessage);
 template void StreamPublisher::publish(Snapshot);
+template void StreamPublisher::publish_state(std::vector<CloudSlice>);
+template void StreamPublisher::publish_state(std::vector<SegmentUpdate>);
 
-void StreamPublisher::enqueue(Job job) {
+void StreamPublisher::enqueue(std::vector<StreamSender::Job> jobs) {
   {
     const std::lock_guard lock(mutex_);
     if (failure_) std::rethrow_exception(failure_);
-    queued_bytes_ += job.bytes;
-    queue_.push_back(std::move(job));
+    for (StreamSender::Job& job : jobs) {
+      new_bytes_ += job.bytes;
+      new_jobs_.push_back(std::move(job));
+    }
+    has_news_ = true;
   }
   wake_.notify_all();
+}
+
+bool StreamPublisher::request(const ResendRequest& request) {
+  if (request.session != session_ || request.channel != channel_) return false;
+  {
+    const std::lock_guard lock(mutex_);
+    if (new_requests_.size() < kMaxWaitingRequests) new_requests_.push_back(request);
+    has_news_ = true;
+  }
+  wake_.notify_all();
+  return true;
+}
+
+void StreamPublisher::subscribe(Bus& bus) {
+  bus.subscribe(channels::kResendRequest, [this](ByteView message) {
+    try {
+      request(decode<ResendRequest>(message));
+    } catch (const DecodeError&) {
+      const std::lock_guard lock(mutex_);
+      ++requests_bad_;
+    }
+  });
 }
 
 void StreamPublisher::flush() {
   std::unique_lock lock(mutex_);
   ++num_flushing_;
+  has_news_ = true;
   wake_.notify_all();
-  idle_.wait(lock, [this] {
-    return failure_ || (queue_.empty() && heartbeat_sequence_ == next_sequence_);
-  });
+  done_.wait(lock, [this] { return failure_ || (new_jobs_.empty() && sender_is_done_); });
   --num_flushing_;
   if (failure_) std::rethrow_exception(failure_);
 }
@@ -108,77 +134,64 @@ std::int64_t StreamPublisher::chunks_published() const {
 
 std::size_t StreamPublisher::queued_bytes() const {
   const std::lock_guard lock(mutex_);
-  return queued_bytes_;
+  return new_bytes_ + queued_bytes_;
+}
+
+StreamPublisherCounts StreamPublisher::counts() const {
+  const std::lock_guard lock(mutex_);
+  StreamPublisherCounts counts = counts_;
+  counts.requests_bad = requests_bad_;
+  return counts;
+}
+
+double StreamPublisher::time_since_request_s() const {
+  const std::lock_guard lock(mutex_);
+  return now_s_ - last_request_s_;
 }
 
 void StreamPublisher::run() {
   try {
     std::unique_lock lock(mutex_);
     while (true) {
-      if (!queue_.empty()) {
-        send_message(lock);
-      } else if (heartbeat_is_due()) {
-        send_heartbeat(lock);
-      } else if (stopping_) {
-        return;
-      } else {
-        wake_.wait_until(lock, next_heartbeat_);
+      const double now_s = clock_.now_s();
+      const std::vector<ResendRequest> requests = hand_over(now_s);
+      if (stopping_ && sender_.is_done()) return;
+      lock.unlock();
+      for (const ResendRequest& request : requests) sender_.request(request, now_s);
+      const double wait_s = sender_.step(now_s);
+      lock.lock();
+      note_progress(now_s);
+      if (wait_s > 0.0) {
+        wake_.wait_for(lock, std::chrono::duration<double>(wait_s), [this] { return has_news_; });
       }
     }
   } catch (...) {
     const std::lock_guard lock(mutex_);
     failure_ = std::current_exception();
-    idle_.notify_all();
+    done_.notify_all();
   }
 }
 
-/// Every heartbeat_period; and at once when somebody waits until everything is sent.
-bool StreamPublisher::heartbeat_is_due() const {
-  const bool is_waited_for = stopping_ || num_flushing_ > 0;
-  return Clock::now() >= next_heartbeat_ ||
-         (is_waited_for && heartbeat_sequence_ != next_sequence_);
+/// Takes what others have left for the thread since it last looked; the requests are for the
+/// caller, because what they call must not meet the lock.
+std::vector<ResendRequest> StreamPublisher::hand_over(double now_s) {
+  has_news_ = false;
+  if (!new_requests_.empty()) last_request_s_ = now_s;
+  for (StreamSender::Job& job : new_jobs_) sender_.push(std::move(job));
+  new_jobs_.clear();
+  new_bytes_ = 0;
+  if (stopping_ || num_flushing_ > 0) sender_.announce();
+  note_progress(now_s);
+  return std::exchange(new_requests_, {});
 }
 
-void StreamPublisher::send_message(std::unique_lock<std::mutex>& lock) {
-  const Job& job = queue_.front();  // stays where it is while others are added behind it
-  for (std::int32_t index = 0; index < job.num_chunks; ++index) {
-    const std::int64_t sequence = next_sequence_;
-    lock.unlock();
-    const Bytes chunk = job.encode(sequence, index);
-    if (store_ != nullptr) store_->add(sequence, chunk);
-    pace(chunk.size());
-    transmit_(channel_, chunk);
-    lock.lock();
-    ++next_sequence_;
-    if (Clock::now() >= next_heartbeat_) send_heartbeat(lock);
-  }
-  queued_bytes_ -= job.bytes;
-  queue_.pop_front();
-}
-
-void StreamPublisher::send_heartbeat(std::unique_lock<std::mutex>& lock) {
-  Heartbeat heartbeat;
-  heartbeat.session = session_;
-  heartbeat.channel = channel_;
-  heartbeat.next_sequence = next_sequence_;
-  lock.unlock();
-  heartbeat.utime = wall_clock_us();
-  heartbeat.first_sequence = store_ != nullptr ? store_->first_sequence() : heartbeat.next_sequence;
-  transmit_(channels::kHeartbeat, encode(heartbeat));
-  next_heartbeat_ = Clock::now() + config_.heartbeat_period;
-  lock.lock();
-  heartbeat_sequence_ = heartbeat.next_sequence;
-  idle_.notify_all();
-}
-
-void StreamPublisher::pace(std::size_t bytes) {
-  const auto size = static_cast<double>(bytes);
-  const auto now_s = [this] {
-    return std::chrono::duration<double>(Clock::now() - start_).count();
-  };
-  const double delay_s = bucket_.delay_s(size, now_s());
-  if (delay_s > 0.0) std::this_thread::sleep_for(std::chrono::duration<double>(delay_s));
-  bucket_.take(size, now_s());
+void StreamPublisher::note_progress(double now_s) {
+  now_s_ = now_s;
+  next_sequence_ = sender_.next_sequence();
+  queued_bytes_ = sender_.queued_bytes();
+  counts_ = sender_.counts();
+  sender_is_done_ = sender_.is_done();
+  if (sender_is_done_ && num_flushing_ > 0) done_.notify_all();
 }
 
 }  // namespace kintsugi

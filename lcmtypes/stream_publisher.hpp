@@ -1,60 +1,45 @@
 #pragma once
-// A numbered stream of bulk messages onto the bus, paced so that a stock receive buffer keeps up.
+// A numbered stream of bulk messages onto the bus, paced so that a stock receive buffer keeps up,
+// with resends for who asks.
 
-#include <chrono>
 #include <condition_variable>
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <exception>
-#include <functional>
-#include <memory>
 #include <mutex>
 #include <string>
 #include <thread>
-#include <utility>
+#include <vector>
 
 #include "lcmtypes/bus.hpp"
 #include "lcmtypes/codec.hpp"
-#include "lcmtypes/token_bucket.hpp"
+#include "lcmtypes/patient_clock.hpp"
+#include "lcmtypes/stream_sender.hpp"
 
 namespace kintsugi {
 
-/// Keeps what a stream has sent, for those who missed it.
-class SentStore {
- public:
-  virtual ~SentStore() = default;
-  /// Called for every chunk before it is sent, in order of `sequence`, from the pacing thread.
-  virtual void add(std::int64_t sequence, ByteView message) = 0;
-  /// The oldest sequence number that can still be sent again; one past the newest: none.
-  virtual std::int64_t first_sequence() const = 0;
-};
-
 /// Publishes bulk messages of one type on one channel as chunks with consecutive sequence numbers
-/// from 0, under a token bucket, and heartbeats that say how far the stream has come.
+/// from 0, under a token bucket; keeps them in a store, from which it resends what is asked for;
+/// says with heartbeats how far the stream has come.
 ///
 /// publish() only queues; a thread of the publisher encodes and sends chunk by chunk, so that
 /// memory is that of the queued messages: a caller that outruns the bucket watches queued_bytes().
+///
+/// With a store that holds chunks of the session already, the session goes on: the messages must be
+/// published again from its first one on. Chunks that the store has are compared with it instead of
+/// sent; one that differs is an error. Without any publish() the earlier session is served.
 class StreamPublisher {
  public:
-  struct Config {
-    double rate_bytes_per_s = 10e6;  ///< > 0
-    /// Sent at once after a pause, bytes. Two datagrams: a stock receive buffer holds three.
-    std::size_t burst_bytes = 120'000;
-    std::size_t max_chunk_bytes = kDefaultMaxChunkBytes;  ///< largest LCM message, bytes
-    std::chrono::milliseconds heartbeat_period{200};      ///< > 0
+  using Config = StreamPublisherConfig;
+  using Transmit = StreamSender::Transmit;
 
-    void validate() const;
-  };
-  using Transmit = std::function<void(const std::string& channel, ByteView message)>;
-
-  /// Publishes on `bus`, which must outlive this. `store` may be null.
+  /// Publishes on `bus`; it and `store` (may be null: no resends) must outlive this.
   StreamPublisher(Bus& bus, std::string channel, std::int64_t session, const Config& config,
                   SentStore* store = nullptr);
   /// Hands what it sends to `transmit`, called from one thread: a log, a test.
   StreamPublisher(Transmit transmit, std::string channel, std::int64_t session,
                   const Config& config, SentStore* store = nullptr);
-  /// Sends what is queued, unless sending has failed.
+  /// Sends what is queued, unless sending has failed; resends nothing more.
   ~StreamPublisher();
   StreamPublisher(const StreamPublisher&) = delete;
   StreamPublisher& operator=(const StreamPublisher&) = delete;
@@ -64,46 +49,58 @@ class StreamPublisher {
   template <BulkMessage Message>
   void publish(Message message);
 
+  /// Publishes messages that together say everything: a receiver that has them and what comes after
+  /// lacks nothing, and need not ask for what went before. As publish(); not empty.
+  template <BulkMessage Message>
+  void publish_state(std::vector<Message> messages);
+
+  /// Somebody asks for chunks; false when they are not of this session and channel.
+  bool request(const ResendRequest& request);
+  /// From now on answers what is asked on `bus`; this must outlive bus.handle().
+  void subscribe(Bus& bus);
+
   /// Waits until everything queued is sent, and a heartbeat after it. Throws what sending threw.
   void flush();
 
   std::int64_t chunks_published() const;  ///< also the next sequence number
   std::size_t queued_bytes() const;       ///< of messages not yet sent in full
+  StreamPublisherCounts counts() const;
+  /// Since somebody last asked for something, or since the start when nobody has. Seconds in which
+  /// a stopped process does not age.
+  double time_since_request_s() const;
 
  private:
-  struct Job {
-    std::int32_t num_chunks = 0;
-    std::size_t bytes = 0;
-    std::function<Bytes(std::int64_t sequence, std::int32_t index)> encode;
-  };
-
-  void enqueue(Job job);
-  // The thread. What takes the lock gives it up while it encodes, waits and sends.
+  template <BulkMessage Message>
+  StreamSender::Job job_of(Message message) const;
+  void enqueue(std::vector<StreamSender::Job> jobs);
   void run();
-  void send_message(std::unique_lock<std::mutex>& lock);
-  void send_heartbeat(std::unique_lock<std::mutex>& lock);
-  void pace(std::size_t bytes);
-  bool heartbeat_is_due() const;
+  // With the lock held:
+  std::vector<ResendRequest> hand_over(double now_s);
+  void note_progress(double now_s);
 
-  const Transmit transmit_;
   const std::string channel_;
   const std::int64_t session_;
-  const Config config_;
-  SentStore* const store_;
-  TokenBucket bucket_;  // this and the next are used by the thread alone
-  std::chrono::steady_clock::time_point next_heartbeat_ = std::chrono::steady_clock::now();
-  const std::chrono::steady_clock::time_point start_ = next_heartbeat_;
+  const std::size_t max_chunk_bytes_;
+  PatientClock clock_;
+  StreamSender sender_;  // of the thread alone
 
   mutable std::mutex mutex_;  // guards what follows
   std::condition_variable wake_;
-  std::condition_variable idle_;
-  std::deque<Job> queue_;
-  std::size_t queued_bytes_ = 0;
-  std::int64_t next_sequence_ = 0;
-  std::int64_t heartbeat_sequence_ = -1;  // the next_sequence of the last heartbeat
-  int num_flushing_ = 0;                  // callers of flush() that wait
+  std::condition_variable done_;
+  std::vector<StreamSender::Job> new_jobs_;  // for the thread, as the requests
+  std::vector<ResendRequest> new_requests_;
+  std::size_t new_bytes_ = 0;  // of new_jobs_
+  bool has_news_ = false;      // the thread should look
+  int num_flushing_ = 0;       // callers of flush() that wait
   bool stopping_ = false;
   std::exception_ptr failure_;
+  bool sender_is_done_ = false;  // these say what the thread has last seen of sender_
+  std::int64_t next_sequence_ = 0;
+  std::size_t queued_bytes_ = 0;
+  StreamPublisherCounts counts_;
+  std::int64_t requests_bad_ = 0;
+  double last_request_s_ = 0.0;
+  double now_s_ = 0.0;
 
   std::thread thread_;
 };

@@ -11,10 +11,10 @@ namespace {
 TEST(SequenceSet, NamesTheGapsUpToAnEnd) {
   SequenceSet set;
   for (const std::int64_t number : {2, 3, 7}) EXPECT_TRUE(set.insert(number));
-  EXPECT_EQ(set.missing(10, 100), (std::vector<SequenceRange>{{0, 1}, {4, 6}, {8, 9}}));
-  EXPECT_EQ(set.missing(10, 2), (std::vector<SequenceRange>{{0, 1}, {4, 6}}));
-  EXPECT_EQ(set.missing(8, 100), (std::vector<SequenceRange>{{0, 1}, {4, 6}}));
-  EXPECT_EQ(set.count_missing(10), 7);
+  EXPECT_EQ(set.missing(0, 10, 100), (std::vector<SequenceRange>{{0, 1}, {4, 6}, {8, 9}}));
+  EXPECT_EQ(set.missing(0, 10, 2), (std::vector<SequenceRange>{{0, 1}, {4, 6}}));
+  EXPECT_EQ(set.missing(0, 8, 100), (std::vector<SequenceRange>{{0, 1}, {4, 6}}));
+  EXPECT_EQ(set.count_missing(0, 10), 7);
   EXPECT_EQ(set.num_ranges(), 2U);
 }
 
@@ -33,24 +33,13 @@ TEST(SequenceSet, AgreesWithAPlainSetUnderRandomInsertsAndErasures) {
     }
     ASSERT_EQ(set.contains(number), plain.contains(number));
     std::set<std::int64_t> missing;
-    for (const auto& [first, last] : set.missing(kEnd, 100)) {
+    for (const auto& [first, last] : set.missing(0, kEnd, 100)) {
       for (std::int64_t i = first; i <= last; ++i) missing.insert(i);
     }
     ASSERT_EQ(missing.size() + plain.size(), static_cast<std::size_t>(kEnd));
     for (const std::int64_t i : missing) ASSERT_FALSE(plain.contains(i));
-    ASSERT_EQ(set.count_missing(kEnd), static_cast<std::int64_t>(missing.size()));
+    ASSERT_EQ(set.count_missing(0, kEnd), static_cast<std::int64_t>(missing.size()));
   }
-}
-
-TEST(SequenceSet, ClosesTheLowestGapFirst) {
-  SequenceSet set;
-  for (const std::int64_t number : {5, 8, 9, 20}) set.insert(number);
-  EXPECT_EQ(set.close_lowest_gap(), 5);  // 0 .. 4
-  EXPECT_EQ(set.close_lowest_gap(), 2);  // 6 .. 7
-  EXPECT_EQ(set.missing(21, 9), (std::vector<SequenceRange>{{10, 19}}));
-  EXPECT_EQ(set.close_lowest_gap(), 10);
-  EXPECT_EQ(set.close_lowest_gap(), 0);
-  EXPECT_EQ(set.num_ranges(), 1U);
 }
 
 }  // namespace

@@ -66,7 +66,7 @@ struct Receiver {
   std::vector<std::string> reasons;
   StreamSubscriber<CloudSlice> stream;
 
-  explicit Receiver(const StreamSubscriberConfig& config = {})
+  explicit Receiver(const StreamSubscriber<CloudSlice>::Config& config = {})
       : stream(
             channels::kCloudSlice, [this](CloudSlice slice) { slices.push_back(std::move(slice)); },
             [this](const DecodeError& reason) { reasons.emplace_back(reason.what()); }, config) {}
@@ -124,25 +124,20 @@ TEST(StreamPublisher, SendsWhatIsQueuedBeforeItGoesAway) {
 }
 
 TEST(StreamPublisher, StoresEachChunkBeforeItIsSent) {
-  struct Store : SentStore {
-    std::vector<Bytes> chunks;
-    void add(std::int64_t sequence, ByteView message) override {
-      EXPECT_EQ(sequence, static_cast<std::int64_t>(chunks.size()));
-      chunks.emplace_back(message.begin(), message.end());
-    }
-    std::int64_t first_sequence() const override { return 0; }
-  } store;
+  RecentChunks store(10'000'000);
   Recording recording;
   const auto transmit = recording.transmit();
   StreamPublisher publisher(
       [&](const std::string& channel, ByteView message) {
         transmit(channel, message);
-        EXPECT_GE(store.chunks.size(), recording.chunks.size());
+        EXPECT_GE(store.next_sequence(), static_cast<std::int64_t>(recording.chunks.size()));
       },
       channels::kCloudSlice, 42, fast(), &store);
   publisher.publish(example_slice(1'000, 0));
   publisher.flush();
-  EXPECT_EQ(store.chunks, recording.chunks);
+  for (std::size_t i = 0; i < recording.chunks.size(); ++i) {
+    EXPECT_EQ(store.find(static_cast<std::int64_t>(i)), recording.chunks[i]);
+  }
   EXPECT_EQ(recording.heartbeats.back().first_sequence, 0);
 }
 
@@ -281,26 +276,32 @@ TEST(StreamSubscriber, CountsAndDropsBadMessages) {
   EXPECT_THAT(receiver.slices, SizeIs(1));
 }
 
-TEST(StreamSubscriber, StaysWithinItsMemoryBoundAndReportsWhatItDropped) {
-  StreamSubscriberConfig config;
+TEST(StreamSubscriber, TakesOnlyWhatIsMissingLowestBeyondItsMemoryBound) {
+  StreamSubscriber<CloudSlice>::Config config;
   config.max_pending_bytes = 20'000;
   Receiver receiver(config);
-  const std::vector<Bytes> chunks = chunks_of(example_slices(20, 300));
-  ASSERT_EQ(chunks.size(), 60U);  // three each
+  const std::vector<Bytes> chunks = chunks_of(example_slices(300, 300));
+  ASSERT_EQ(chunks.size(), 900U);  // three each
+  std::int64_t offered = 0;
   for (std::size_t i = 0; i < chunks.size(); ++i) {
-    if (i % 3 != 2) receiver.receive(chunks[i]);
+    if (i % 3 == 2) continue;
+    receiver.receive(chunks[i]);
+    ++offered;
   }
   const StreamCounts before = receiver.stream.counts();
   EXPECT_EQ(before.messages_complete, 0);
-  EXPECT_GE(before.chunks_evicted, 30);
-  EXPECT_EQ(before.chunks_missing, 19 + before.chunks_evicted);
-  receiver.receive(chunks);  // what was dropped may come again
-  EXPECT_THAT(receiver.slices, SizeIs(20));
+  EXPECT_LE(before.chunks_received, 256);  // from the lowest missing one, number 2, on
+  EXPECT_EQ(before.chunks_received + before.chunks_refused, offered);
+  EXPECT_EQ(before.chunks_missing, 899 - before.chunks_received);
+  EXPECT_GT(receiver.stream.pending_bytes(), config.max_pending_bytes);
+  receiver.receive(chunks);  // what was refused comes again
+  EXPECT_THAT(receiver.slices, SizeIs(300));
   EXPECT_EQ(receiver.stream.counts().chunks_missing, 0);
+  EXPECT_EQ(receiver.stream.pending_bytes(), 0U);
 }
 
 TEST(StreamSubscriber, ForgetsTheSessionLongestSilent) {
-  StreamSubscriberConfig config;
+  StreamSubscriber<CloudSlice>::Config config;
   config.max_sessions = 2;
   Receiver receiver(config);
   for (const std::int64_t session : {1, 2, 3}) {
@@ -311,14 +312,17 @@ TEST(StreamSubscriber, ForgetsTheSessionLongestSilent) {
   EXPECT_EQ(receiver.stream.gaps()[0].session, 2);
 }
 
-TEST(StreamSubscriber, BoundsTheGapsItRemembers) {
-  StreamSubscriberConfig config;
+TEST(StreamSubscriber, RefusesWhatWouldOpenTooManyGaps) {
+  StreamSubscriber<CloudSlice>::Config config;
   config.max_gaps_per_session = 4;
   Receiver receiver(config);
   const std::vector<Bytes> chunks = chunks_of(example_slices(40, 1));
   for (std::size_t i = 1; i < chunks.size(); i += 2) receiver.receive(chunks[i]);
-  EXPECT_THAT(receiver.slices, SizeIs(20));
-  EXPECT_LE(receiver.stream.gaps()[0].ranges.size(), 4U);
+  EXPECT_THAT(receiver.slices, SizeIs(4));
+  EXPECT_EQ(receiver.stream.counts().chunks_refused, 16);
+  receiver.receive(chunks);
+  EXPECT_THAT(receiver.slices, SizeIs(40));
+  EXPECT_EQ(receiver.stream.counts().chunks_missing, 0);
 }
 
 TEST(Stream, CarriesTheOtherBulkMessagesToo) {
