@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <exception>
 #include <iostream>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@
 #include "lcmtypes/message_subscriber.hpp"
 #include "lcmtypes/stop_signal.hpp"
 #include "lcmtypes/tools/progress.hpp"
+#include "lcmtypes/tools/status_log.hpp"
 
 namespace kintsugi {
 namespace {
@@ -29,11 +31,15 @@ struct Options {
   bool until_finished = false;
   bool viewer = false;
   std::vector<std::string> until_ready;
+  std::string log_file;
   double timeout_s = 60.0;
 };
 
-void subscribe_statuses(Bus& bus, Progress& progress) {
-  const auto keep = [&progress](const auto& status) { progress.update(status, wall_clock_us()); };
+void subscribe_statuses(Bus& bus, Progress& progress, std::optional<StatusLog>& log) {
+  const auto keep = [&progress, &log](const auto& status) {
+    progress.update(status, wall_clock_us());
+    if (log) log->append(status);
+  };
   subscribe<MapperStatus>(bus, channels::kMapperStatus, keep);
   subscribe<SegmenterStatus>(bus, channels::kSegmenterStatus, keep);
   subscribe<ViewerStatus>(bus, channels::kViewerStatus, keep);
@@ -82,7 +88,9 @@ double idle_s(const Progress& progress, std::int64_t start_us) {
 int watch(const Options& options) {
   Bus bus(options.url);
   Progress progress;
-  subscribe_statuses(bus, progress);
+  std::optional<StatusLog> log;
+  if (!options.log_file.empty()) log.emplace(options.log_file);
+  subscribe_statuses(bus, progress, log);
   LinePrinter printer;
   const std::int64_t start_us = wall_clock_us();
   std::int64_t next_line_us = start_us + kSecond_us;
@@ -145,6 +153,7 @@ int main(int argc, char** argv) {
                  "Exit 0 when each of these has been heard: mapper, segmenter, viewer")
       ->delimiter(',')
       ->check(CLI::IsMember({"mapper", "segmenter", "viewer"}));
+  app.add_option("--log", options.log_file, "Every number in every status into this file, CSV");
   app.add_option("--timeout", options.timeout_s,
                  "Seconds without progress until giving up; 0: never")
       ->check(CLI::NonNegativeNumber)

@@ -1,0 +1,55 @@
+#include <algorithm>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "lcmtypes/tools/status_log.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace kintsugi {
+namespace {
+
+using ::testing::Contains;
+
+std::vector<std::string> lines_of(const std::filesystem::path& file) {
+  std::vector<std::string> lines;
+  std::ifstream in(file);
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  return lines;
+}
+
+TEST(StatusLog, HasALineForEachNumber) {
+  const testing::TemporaryFolder folder;
+  const auto file = folder.path() / "status.csv";
+  StatusLog log(file);
+  MapperStatus mapper;
+  mapper.utime = 5;
+  mapper.session = 1'795'297'648'789'758;  // a wall clock in microseconds: no digit may be lost
+  mapper.finished = true;
+  mapper.frame_p50_ms = 12.5;
+  log.append(mapper);
+  SegmenterStatus segmenter;
+  segmenter.utime = 6;
+  segmenter.lag_slices = 3;
+  log.append(segmenter);
+  StatusLog(file).append(ViewerStatus{});  // one that goes on with the file
+
+  const auto lines = lines_of(file);
+  EXPECT_EQ(lines.front(), "utime_us,process,field,value");
+  EXPECT_EQ(std::count(lines.begin(), lines.end(), lines.front()), 1);
+  EXPECT_THAT(lines, Contains("5,mapper,session,1795297648789758"));
+  EXPECT_THAT(lines, Contains("5,mapper,finished,1"));
+  EXPECT_THAT(lines, Contains("5,mapper,frame_p50_ms,12.500000"));
+  EXPECT_THAT(lines, Contains("6,segmenter,lag_slices,3"));
+  EXPECT_THAT(lines, Contains("0,viewer,memory_bytes,0"));
+}
+
+TEST(StatusLog, SaysWhatCannotBeWritten) {
+  EXPECT_THROW(StatusLog("/nonexistent/status.csv"), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace kintsugi
