@@ -1,13 +1,14 @@
-# Sourced by trio, replay and demo: starting, watching and stopping the processes of one run.
+# Sourced by trio, replay and faults: starting, watching and stopping the processes of one run.
 # Every function works on the run in $out; each process writes its log to $out/NAME.log.
 
 kintsugi_root="$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)"
 KINTSUGI_BIN="${KINTSUGI_BIN:-$kintsugi_root/build/release/bin}"
 declare -A trio_pid=()      # name -> process id
 declare -A trio_command=()  # name -> command line, quoted
-declare -A trio_restarts=() # name -> how often it was restarted
+declare -A trio_since=()    # name -> when it was started, s since the script was
+declare -A trio_quick=()    # name -> how many of its starts in a row were soon followed by its death
 declare -A trio_cpu_s=()    # name -> CPU time, s, when last looked at (not of those it replaced)
-stop_requested=0            # set by the script's trap
+stop_requested=0            # how often a person asked to stop: counted by the script's trap
 
 say() { printf '%s: %s\n' "$(basename "$0")" "$*" >&2; }
 
@@ -20,14 +21,16 @@ check_programs() {
   exit 1
 }
 
-# trio_start NAME COMMAND...: in the background. The process gets a session of its own, so that Ctrl-C reaches only
-# the script, and is ended with the script should that be killed.
+# trio_start NAME COMMAND...: in the background, its process id in $out/NAME.pid. The process gets a session of its own,
+# so that Ctrl-C reaches only the script, and is ended with the script should that be killed.
 trio_start() {
   local name="$1"
   shift
   trio_command[$name]="$(printf '%q ' "$@")"
+  trio_since[$name]="$SECONDS"
   setpriv --pdeathsig TERM setsid "$@" >>"$out/$name.log" 2>&1 &
   trio_pid[$name]=$!
+  echo "$!" >"$out/$name.pid"
 }
 
 trio_alive() { [[ -n "${trio_pid[$1]:-}" ]] && kill -0 "${trio_pid[$1]}" 2>/dev/null; }
@@ -36,14 +39,14 @@ trio_alive() { [[ -n "${trio_pid[$1]:-}" ]] && kill -0 "${trio_pid[$1]}" 2>/dev/
 trio_note_cpu() {
   local name line
   for name in "$@"; do
-    line="$(cat "/proc/${trio_pid[$name]}/stat" 2>/dev/null)" || continue
+    line="$(cat "/proc/${trio_pid[$name]:-none}/stat" 2>/dev/null)" || continue
     trio_cpu_s[$name]="$(awk -v hz="$(getconf CLK_TCK)" '{ printf "%.2f", ($12 + $13) / hz }' <<<"${line##*) }")"
   done
 }
 
-# trio_stop SIGNAL SECONDS NAME...: asks the named processes to stop and waits; kills what does not.
+# trio_stop SIGNAL SECONDS NAME...: asks the named processes to stop and waits; kills what does not, and fails then.
 trio_stop() {
-  local signal="$1" seconds="$2" name deadline
+  local signal="$1" seconds="$2" name deadline killed=0
   shift 2
   for name in "$@"; do
     trio_alive "$name" && kill -s "$signal" "${trio_pid[$name]}" 2>/dev/null
@@ -54,14 +57,23 @@ trio_stop() {
     trio_alive "$name" || continue
     say "$name did not stop within $seconds s; killing it"
     kill -KILL "${trio_pid[$name]}" 2>/dev/null || true
+    killed=1
   done
+  ((!killed))
+}
+
+# known PROGRAM OPTION...: those of the options that the program has.
+known() {
+  local option help
+  help="$("$KINTSUGI_BIN/$1" --help)"
+  for option in "${@:2}"; do grep -q -- "${option%%=*}\b" <<<"$help" && printf '%s\n' "$option"; done
+  return 0
 }
 
 # last_words NAME: the end of its log, for a person who asks why.
 last_words() { tail -n 5 "$out/$1.log" 2>/dev/null | sed "s/^/  $1: /" >&2; }
 
-# trio_wait_ready NAME...: until each has been heard on the bus; a stream has no resends yet, so whoever starts
-# before its receivers loses its first slices.
+# trio_wait_ready NAME...: until each has been heard on the bus; while a log is played nobody sends its slices again.
 trio_wait_ready() {
   local name list
   list="$(IFS=,; echo "$*")"
@@ -73,55 +85,96 @@ trio_wait_ready() {
 
 # trio_record FILE, trio_end_record FILE: the whole bus into an LCM log, which gets its name when it is complete.
 trio_record() {
-  trio_start logger lcm-logger -q -f ${LCM_DEFAULT_URL:+--lcm-url="$LCM_DEFAULT_URL"} "$1.partial"
+  trio_start logger lcm-logger -q -a ${LCM_DEFAULT_URL:+--lcm-url="$LCM_DEFAULT_URL"} "$1.partial"
 }
 trio_end_record() {
   trio_stop INT 10 logger
   mv "$1.partial" "$1"
 }
 
-# trio_watch NAME...: shows the progress until every named process has ended. One that a signal killed is started
-# again, three times at most; an error that one reports itself ends the run. When the first named has ended and
-# nothing moves for 60 s, the others are told to write what they have.
+# trio_watch LEADER NAME... viewer: shows the progress until the viewer has drawn the whole map and ended by itself; then
+# ends the others, the leader last, for they are asked for what is missing until then. One that a signal killed is
+# started again; an error that one reports itself ends the run.
 trio_watch() {
-  local name code leader="$1" failed=0 leader_stopped=0
-  local -A ended=()
-  setsid "$KINTSUGI_BIN/kintsugi-status" --until-finished --viewer --timeout 60 &
-  trio_pid[progress]=$!
-  while ((${#ended[@]} < $#)); do
+  local name leader="$1" asked=0
+  trio_failed=0
+  trio_show_progress 60
+  while [[ -n "${trio_pid[viewer]:-}" ]]; do
     sleep 0.2 || true
     trio_note_cpu "$@"
     for name in "$@"; do
-      [[ -n "${ended[$name]:-}" ]] || trio_alive "$name" && continue
-      code=0
-      wait "${trio_pid[$name]}" 2>/dev/null || code=$?
-      trio_restart "$name" "$code" && continue
-      ended[$name]=1
-      ((code == 0)) && continue
-      say "$name ended with an error (exit code $code):"
-      last_words "$name"
-      failed=1 stop_requested=1
+      [[ -z "${trio_pid[$name]:-}" ]] || trio_alive "$name" || trio_ended "$name"
     done
-    if ((stop_requested && !leader_stopped)); then
-      leader_stopped=1
-      say "stopping; what the map holds is published, segmented, drawn and written"
-      trio_alive "$leader" && kill -s INT "${trio_pid[$leader]}"
+    if ((stop_requested && !asked)); then
+      asked=1
+      say "stopping; what the map holds is published, segmented, drawn and written (Ctrl-C again: stop at once)"
+      trio_alive "$leader" && kill -s TERM "${trio_pid[$leader]}"
     fi
-    if ! trio_alive "$leader" && ! trio_alive progress; then
-      trio_stop TERM 60 "$@"
+    if ((stop_requested > 1)) || trio_stands_still "$leader"; then
+      trio_stop TERM 60 viewer || trio_failed=1
     fi
   done
+  trio_close "$@"
   trio_stop TERM 2 progress
-  return "$failed"
+  return "$trio_failed"
 }
 
-# trio_restart NAME CODE: starts a process again that a signal killed; fails when it is not to be started again.
+# trio_show_progress SECONDS: until all have finished, or nothing moved for so long.
+trio_show_progress() {
+  trio_stop TERM 2 progress
+  setsid "$KINTSUGI_BIN/kintsugi-status" --until-finished --viewer --timeout "$1" --log "$out/status.csv" &
+  trio_pid[progress]=$!
+}
+
+# trio_stands_still LEADER: everything is mapped, or nothing will be, and yet the viewer does not get on. A camera that
+# is silent may come back.
+trio_stands_still() {
+  local code=0
+  trio_alive progress && return 1
+  [[ -n "${trio_pid[progress]:-}" ]] && { wait "${trio_pid[progress]}" || code=$?; }
+  ((code == 0)) && return 1
+  trio_alive "$1" && ! grep -q ',mapper,finished,1' "$out/status.csv" || return 0
+  trio_show_progress 60
+  return 1
+}
+
+# trio_ended NAME: sees to one that has ended. One that a signal killed is started again, unless it died within 2 s of
+# its start 5 times running.
+trio_ended() {
+  local name="$1" code=0
+  wait "${trio_pid[$name]}" 2>/dev/null || code=$?
+  unset "trio_pid[$name]"
+  ((code == 0 || code == 143)) && return # by itself, or as it was told to
+  ((SECONDS - trio_since[$name] < 2)) && trio_quick[$name]=$((${trio_quick[$name]:-0} + 1)) || trio_quick[$name]=0
+  if ((code > 128 && !stop_requested && trio_quick[$name] < 5)); then
+    say "$name was killed (signal $((code - 128))); starting it again"
+    trio_restart "$name"
+  else
+    trio_failed=1
+    say "$name ended with an error (exit code $code):"
+    last_words "$name"
+    trio_show_progress 5 # the others may still finish what there is, but need not
+  fi
+}
+
+# trio_restart NAME: with the command it had; the mapper goes on with the session in its store.
 trio_restart() {
-  local name="$1" code="$2"
-  ((code > 128 && !stop_requested && ${trio_restarts[$name]:-0} < 3)) || return 1
-  trio_restarts[$name]=$((${trio_restarts[$name]:-0} + 1))
-  say "$name was killed (signal $((code - 128))); starting it again"
-  eval "trio_start $name ${trio_command[$name]}"
+  local command="${trio_command[$1]}"
+  [[ "$1" == mapper && -s "$out/mapper.lcm" ]] && command="${command/ --store=/ --resume=}"
+  eval "trio_start $1 $command"
+}
+
+# trio_close LEADER NAME...: ends those that have done all they have to, the leader last. One that is killed at this
+# moment is started again, and finishes first.
+trio_close() {
+  local name
+  for name in "${@:2}" "$1"; do
+    while [[ -n "${trio_pid[$name]:-}" ]]; do
+      trio_stop TERM 60 "$name" || { trio_failed=1; break; }
+      trio_ended "$name"
+      trio_alive "$name" && "$KINTSUGI_BIN/kintsugi-status" --until-finished --timeout 60 >/dev/null
+    done
+  done
 }
 
 # trio_summary: what the run took and wrote.
@@ -142,18 +195,27 @@ map_final.png|the whole map in true colour
 segments_final.png|the whole map, each segment in its own colour
 run.mp4|the run as a video
 trajectory.txt|the camera's path (TUM format)
+mapper.lcm|everything the mapper published (scripts/replay plays it; --resume goes on with it)
+segmenter.map|the segment map as kintsugi-segmenter --resume takes it
 run.lcm|everything that was on the bus (scripts/replay plays it)
+status.csv|every number the processes said about themselves
 FILES
-  printf '  %-28s %s\n' "$out/snapshot_*.png" "$(find "$out" -name 'snapshot_*.png' | wc -l) pictures of the run"
+  printf '  %-28s %s\n' "$out/snapshot_*.png" "$(find "$out" -maxdepth 1 -name 'snapshot_*.png' | wc -l) pictures of the run"
+}
+
+# end_trio: the script's exit trap.
+end_trio() {
+  trio_stop TERM 10 "${!trio_pid[@]}"
+  rm -f "$out"/{mapper,segmenter,viewer,logger,player}.pid
 }
 
 # check_network COMMAND...: when LCM cannot work here, says what is wrong and what cures it, and runs COMMAND on a
-# private bus instead. A receive buffer that is merely small loses nothing at the paced rate: it is only said.
+# private bus instead. A receive buffer that is small only costs time: what is lost is sent again.
 check_network() {
   local rmem
   rmem="$(cat /proc/sys/net/core/rmem_max 2>/dev/null || echo 0)"
   if ((rmem < 2097152)); then
-    say "note: the largest receive buffer is $rmem bytes; bursts may be lost. This cures it:"
+    say "note: the largest receive buffer is $rmem bytes; what is lost is sent again, which takes time. This cures it:"
     say "  sudo sysctl -w net.core.rmem_max=4194304"
   fi
   [[ -n "${LCM_DEFAULT_URL:-}" ]] && return

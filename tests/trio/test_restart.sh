@@ -7,9 +7,8 @@ run_trio "${small_room[@]}" --replay --out quiet
 "$root/scripts/trio" "${small_room[@]}" --replay --out "$work/killed" >trio.txt 2>&1 &
 trio=$!
 wait_for_file killed/mapper.log
-viewer="$(pgrep -f -- "kintsugi-viewer.*--out=$work/killed" | head -n 1)"
-[[ -n "$viewer" ]] || fail "no viewer to kill"
-kill -KILL "$viewer"
+wait_for_file killed/viewer.pid
+kill -KILL "$(<killed/viewer.pid)"
 wait "$trio" || {
   cat trio.txt
   fail "trio with a killed viewer"
