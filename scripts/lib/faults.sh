@@ -2,9 +2,9 @@
 #
 # A row is a line in a file of scripts/faults.d,
 #     fault_row NAME "WHAT IS DONE" FUNCTION [ARGUMENT...]
-# and its FUNCTION, which is called in an empty folder of its own, in a network of its own as (perhaps mapped) root,
-# with $quick 0 or 1 and RANDOM seeded. It calls what is below: reference, faulty and the fault; must for whatever has
-# to hold; and sets figure[COLUMN]. A row without figures of its own needs only reference, faulty and same_map.
+# and its FUNCTION, which is called in an empty folder, in a network and with mounts of its own, as (perhaps mapped)
+# root, with $quick 0 or 1 and RANDOM seeded. It calls what is below: reference, faulty and the fault; must for whatever
+# has to hold; and sets figure[COLUMN]. A row without figures of its own needs only reference, faulty and same_map.
 
 source "$(dirname "${BASH_SOURCE[0]}")/trio.sh"
 
@@ -47,7 +47,7 @@ skip_row() {
   say "$row_name skipped: $*"
   exit 77
 }
-joined() { local IFS=';'; local text="$*"; printf '%s' "${text//;/; }"; }
+joined() { printf '%s' "${1:-}"; (($# < 2)) || printf '; %s' "${@:2}"; }
 
 # run_row OUT NAME: inside its network. Prints its line, adds it to faults.csv, fails when something does not hold.
 run_row() {
@@ -125,9 +125,18 @@ faulty_wait() {
   ((code == 0)) || { failures+=("trio ended with exit code $code, see $PWD/faulty.txt"); tail -n 20 faulty.txt >&2; }
   read_figures faulty
 }
+# faulty_fails: waits for its end, which has to be one with an error.
+faulty_fails() {
+  local code=0
+  wait "$faulty_pid" || code=$?
+  faulty_pid=""
+  figure[seconds]="$(since_s "$faulty_since")"
+  ((code))
+}
 faulty() { faulty_start "$@" && faulty_wait; }
 end_faulty() {
   [[ -n "${faulty_pid:-}" ]] || return 0
+  kill -CONT "$(<faulty/mapper.pid)" "$(<faulty/segmenter.pid)" "$(<faulty/viewer.pid)" 2>/dev/null || true
   kill -TERM "$faulty_pid" 2>/dev/null && wait "$faulty_pid" || true
 }
 

@@ -1,0 +1,83 @@
+# The disk that everything is written to is full: the mapper's log, the segmenter's saved map, the viewer's snapshots.
+
+fault_row disk-full "disk full in the middle of a run, for 5 s" disk_full_row
+fault_row disk-full-end "disk full from the middle of a run on; then space, and scripts/trio --resume" disk_full_end_row
+
+# small_disk: the folder `faulty` becomes a disk of its own. What is on it is copied to `kept` by keep_disk.
+small_disk() {
+  mkdir faulty
+  mount -t tmpfs -o size=64m kintsugi-faults faulty 2>/dev/null || skip_row "mounting a tmpfs is not permitted"
+}
+keep_disk() { cp -r faulty kept; }
+
+# fill_disk: until free_disk; what others give free is taken at once.
+fill_disk() {
+  (while :; do
+    cat /dev/zero >>faulty/ballast 2>/dev/null || true
+    sleep 0.05
+  done) &
+  filler=$!
+}
+free_disk() {
+  kill "$filler" && wait "$filler" 2>/dev/null || true
+  rm faulty/ballast
+}
+
+# watch_statuses: into a file that is not on the small disk.
+watch_statuses() {
+  "$KINTSUGI_BIN/kintsugi-status" --log statuses.csv >/dev/null 2>&1 &
+  watcher=$!
+}
+unwatch_statuses() { kill "$watcher" && wait "$watcher" || true; }
+
+# said_problem PROCESS FIELD PATTERN: that its status named such a problem.
+said_problem() { grep -qE "^[0-9]+,$1,$2,.*$3" statuses.csv; }
+
+problems_are_said() {
+  must "the mapper does not say that its log cannot be written" said_problem mapper store_problem 'No space'
+  must "the segmenter does not say that its map cannot be saved" said_problem segmenter problem 'No space'
+  must "the viewer does not say that its pictures cannot be written" said_problem viewer problem 'No space'
+}
+
+# A snapshot and a saved map with each slice, so that all three writers meet the full disk.
+disk_scene() {
+  choose_scene
+  scene+=(--every 1 --segmenter '--save-every=1')
+}
+
+disk_full_row() {
+  disk_scene
+  reference
+  small_disk
+  watch_statuses
+  faulty_start
+  pid_of mapper >/dev/null
+  sleep "$(calculate "0.3 * ${figure[reference_s]}")"
+  fill_disk
+  sleep 5
+  free_disk
+  faulty_wait
+  unwatch_statuses
+  keep_disk
+  problems_are_said
+  same_map
+}
+
+disk_full_end_row() {
+  disk_scene
+  reference
+  small_disk
+  watch_statuses
+  faulty_start
+  pid_of mapper >/dev/null
+  sleep "$(calculate "0.3 * ${figure[reference_s]}")"
+  fill_disk
+  must "trio did not say that not all is written" faulty_fails
+  unwatch_statuses
+  must "half-written files are left" no_partial_files faulty
+  free_disk
+  problems_are_said
+  "$kintsugi_root/scripts/trio" --resume --out faulty >resumed.txt 2>&1 || failures+=("scripts/trio --resume failed")
+  keep_disk
+  same_map
+}

@@ -1,0 +1,43 @@
+# A process is killed (SIGKILL) at a random moment of a run, and started again by scripts/trio.
+
+for process in segmenter viewer mapper; do
+  fault_row "kill-$process" "$process killed at a random moment, 20 runs" kill_row "$process"
+done
+fault_row kill-all "all three killed, each at a random moment of its own, 20 runs" kill_row segmenter viewer mapper
+
+# kill_at MOMENT PROCESS: seconds after the start of the faulty run; without effect when it has ended by then.
+kill_at() {
+  local wait_s pid
+  wait_s="$(calculate "$1 - $(since_s "$faulty_since")")"
+  [[ "$wait_s" == -* ]] || sleep "$wait_s"
+  pid="$(pid_of "$2")" && kill -KILL "$pid" 2>/dev/null || true
+}
+
+# A random number of seconds within a run like the reference, which has something left to do by then.
+random_moment() { calculate "0.95 * ${figure[reference_s]} * $RANDOM / 32768" 2; }
+
+kill_row() {
+  local num_runs=20 run process kills=0 most_s=0 moments
+  if_quick && num_runs=2
+  choose_scene
+  reference
+  for ((run = 1; run <= num_runs; ++run)); do
+    moments=""
+    faulty_start
+    while read -r moment process; do
+      moments+="${moments:+, }$process at $moment s"
+      kill_at "$moment" "$process"
+    done < <(for process in "$@"; do echo "$(random_moment) $process"; done | sort -g)
+    faulty_wait
+    kills=$((kills + $(grep -c 'was killed' faulty.txt || true)))
+    most_s="$(calculate "$most_s > ${figure[seconds]} ? $most_s : ${figure[seconds]}" 1)"
+    same_map
+    if ((${#failures[@]})); then
+      failures+=("in run $run: $moments")
+      return
+    fi
+    rm -rf faulty
+  done
+  figure[seconds]="$most_s"
+  note "$kills kills in $num_runs runs; the longest run is given"
+}
