@@ -46,6 +46,8 @@ class StreamSession {
   std::int64_t count_missing() const;
   std::int64_t count_given_up() const;
   bool is_complete() const { return missing(1).empty(); }
+  /// Something is missing, and all of it has been given up.
+  bool has_given_up() const { return !is_complete() && count_given_up() == count_missing(); }
 
   std::int64_t state_sequence() const { return state_; }
   std::int64_t first_sequence() const { return first_; }

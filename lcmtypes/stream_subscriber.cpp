@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <optional>
 #include <stdexcept>
-#include <tuple>
 #include <utility>
 
 #include "lcmtypes/channels.hpp"
@@ -15,9 +14,6 @@ namespace {
 constexpr std::size_t kRequestBytes = 64;
 constexpr std::size_t kRequestRangeBytes = 16;
 constexpr std::size_t kMinRequestBytes = kRequestBytes + kMaxStringBytes + kRequestRangeBytes;
-
-// Session numbers kept of those that are over; beyond it the oldest.
-constexpr std::size_t kMaxIgnored = 4'096;
 
 void expect_at_least(const char* name, std::size_t value, std::size_t least) {
   if (value >= least) return;
@@ -42,7 +38,8 @@ StreamSubscriber<Message>::StreamSubscriber(std::string channel, OnMessage on_me
     : channel_(std::move(channel)),
       on_message_(std::move(on_message)),
       on_bad_(std::move(on_bad)),
-      config_((config.validate(), config)) {}
+      config_((config.validate(), config)),
+      sessions_(config.requests, config.max_sessions) {}
 
 template <BulkMessage Message>
 void StreamSubscriber<Message>::subscribe(Bus& bus) {
@@ -74,19 +71,20 @@ bool StreamSubscriber<Message>::handle(const std::string& channel, ByteView mess
   return true;
 }
 
-/// Keeps the chunk; returns all those of its message when it was the last one missing.
+/// Takes the chunk in; returns all those of its message when it was the last one missing.
 template <BulkMessage Message>
 std::vector<Chunk<Message>> StreamSubscriber<Message>::add(Chunk<Message> chunk) {
-  const StreamRoom room = config_.room ? config_.room() : StreamRoom::kPlenty;
+  const StreamRoom room = ask_for_room();
   const bool is_wanted = !config_.wanted || config_.wanted(chunk.header);
   const std::int64_t id = chunk.header.session;
   const std::lock_guard lock(mutex_);
   if (!is_wanted) {
     ++counts_.chunks_unwanted;
-    if (sessions_.contains(id)) ignore(id);  // known by a heartbeat that did not name its map
+    // A heartbeat that did not name its map may have made it known.
+    if (sessions_.find(id) != nullptr) sessions_.end(id);
     return {};
   }
-  Session* session = heard_of(id);
+  Session* session = sessions_.heard_of(id);
   if (session != nullptr) session->numbers.note(chunk.sequence);
   if (session == nullptr || session->numbers.has(chunk.sequence)) {
     ++counts_.chunks_duplicate;
@@ -96,36 +94,24 @@ std::vector<Chunk<Message>> StreamSubscriber<Message>::add(Chunk<Message> chunk)
     ++counts_.chunks_refused;
     return {};
   }
-  return collect(*session, std::move(chunk));
+  return keep(*session, std::move(chunk));
 }
 
 template <BulkMessage Message>
-std::vector<Chunk<Message>> StreamSubscriber<Message>::collect(Session& session,
-                                                               Chunk<Message> chunk) {
-  // Chunks of one message have consecutive numbers: that of the first one tells messages apart.
-  const std::int64_t first_sequence = chunk.sequence - chunk.index;
-  Pending& pending = session.pending[first_sequence];
-  if (!pending.chunks.empty() && pending.chunks.front().identity != chunk.identity) {
-    const std::int64_t other = pending.chunks.front().sequence;
-    drop(session, first_sequence);  // one of the two is false; the true ones can be sent again
+std::vector<Chunk<Message>> StreamSubscriber<Message>::keep(Session& session,
+                                                            Chunk<Message> chunk) {
+  if (const auto other = session.messages.conflict(chunk)) {
+    // One of the two is false. The true ones can be sent again.
+    for (const std::int64_t sequence : session.messages.drop(chunk)) session.numbers.drop(sequence);
     throw DecodeError("chunk " + std::to_string(chunk.sequence) + " of " + channel_ +
-                      " has another header than chunk " + std::to_string(other) +
+                      " has another header than chunk " + std::to_string(*other) +
                       " of the same message");
   }
-  const std::size_t bytes = sizeof(chunk) + chunk.part.size() + chunk.identity.size();
-  session.numbers.keep(chunk.sequence, bytes);
+  session.numbers.keep(chunk.sequence, MessageAssembler<Message>::bytes(chunk));
   ++counts_.chunks_received;
-  pending.bytes += bytes;
-  pending_bytes_ += bytes;
-  const auto count = static_cast<std::size_t>(chunk.count);
-  pending.chunks.push_back(std::move(chunk));
-  if (pending.chunks.size() < count) return {};
-
-  ++counts_.messages_complete;
-  std::vector<Chunk<Message>> chunks = take(session, first_sequence);
-  std::sort(chunks.begin(), chunks.end(),
-            [](const auto& a, const auto& b) { return a.index < b.index; });
-  return chunks;
+  Chunks complete = session.messages.add(std::move(chunk));
+  if (!complete.empty()) ++counts_.messages_complete;
+  return complete;
 }
 
 template <BulkMessage Message>
@@ -135,99 +121,49 @@ void StreamSubscriber<Message>::add(const Heartbeat& heartbeat) {
   if (heartbeat.channel != channel_ || !is_wanted) return;
   const std::lock_guard lock(mutex_);
   ++counts_.heartbeats;
-  Session* session = heard_of(heartbeat.session);
+  Session* session = sessions_.heard_of(heartbeat.session);
   if (session == nullptr) return;
   session->numbers.hear(heartbeat);
-  while (!session->pending.empty() &&
-         session->pending.begin()->first < session->numbers.state_sequence()) {
-    drop(*session, session->pending.begin()->first);
+  for (const auto sequence : session->messages.drop_before(session->numbers.state_sequence())) {
+    session->numbers.drop(sequence);
   }
-}
-
-/// The session, a new one if need be; null: it is ignored.
-template <BulkMessage Message>
-typename StreamSubscriber<Message>::Session* StreamSubscriber<Message>::heard_of(std::int64_t id) {
-  if (ignored_.contains(id)) return nullptr;
-  if (!sessions_.contains(id) && sessions_.size() >= config_.max_sessions) {
-    erase(std::min_element(sessions_.begin(), sessions_.end(), [](const auto& a, const auto& b) {
-            const auto worth = [](const Session& session) {
-              return std::tuple(session.numbers.chunks_kept(), session.last_heard);
-            };
-            return worth(a.second) < worth(b.second);
-          })->first);
-  }
-  Session& session = sessions_.try_emplace(id, config_.requests).first->second;
-  session.last_heard = ++clock_;
-  return &session;
 }
 
 template <BulkMessage Message>
 void StreamSubscriber<Message>::forget(std::int64_t session) {
   const std::lock_guard lock(mutex_);
-  ignore(session);
+  sessions_.end(session);
 }
 
 template <BulkMessage Message>
-void StreamSubscriber<Message>::ignore(std::int64_t id) {
-  erase(id);
-  ignored_.insert(id);
-  if (ignored_.size() > kMaxIgnored) ignored_.erase(ignored_.begin());
-}
-
-template <BulkMessage Message>
-void StreamSubscriber<Message>::erase(std::int64_t id) {
-  const auto session = sessions_.find(id);
-  if (session == sessions_.end()) return;
-  for (const auto& [first_sequence, pending] : session->second.pending) {
-    pending_bytes_ -= pending.bytes;
-  }
-  sessions_.erase(session);
-}
-
-/// Removes a pending message and returns its chunks.
-template <BulkMessage Message>
-std::vector<Chunk<Message>> StreamSubscriber<Message>::take(Session& session,
-                                                            std::int64_t first_sequence) {
-  const auto place = session.pending.find(first_sequence);
-  std::vector<Chunk<Message>> chunks = std::move(place->second.chunks);
-  pending_bytes_ -= place->second.bytes;
-  session.pending.erase(place);
-  return chunks;
-}
-
-/// As though the chunks of the message had not come.
-template <BulkMessage Message>
-void StreamSubscriber<Message>::drop(Session& session, std::int64_t first_sequence) {
-  for (const Chunk<Message>& chunk : take(session, first_sequence)) {
-    session.numbers.drop(chunk.sequence);
-  }
+StreamRoom StreamSubscriber<Message>::ask_for_room() const {
+  return config_.room ? config_.room() : StreamRoom::kPlenty;
 }
 
 template <BulkMessage Message>
 StreamRoom StreamSubscriber<Message>::less_when_full(StreamRoom room) const {
-  const bool is_full = pending_bytes_ > config_.max_pending_bytes;
+  const bool is_full = sessions_.pending_bytes() > config_.max_pending_bytes;
   return is_full && room == StreamRoom::kPlenty ? StreamRoom::kOnlyNext : room;
 }
 
 template <BulkMessage Message>
 std::vector<ResendRequest> StreamSubscriber<Message>::poll(double now_s) {
-  const StreamRoom room = config_.room ? config_.room() : StreamRoom::kPlenty;
-  const std::size_t ranges_per_request =
-      std::min(kMaxResendRanges,
-               (config_.max_request_bytes - kRequestBytes - channel_.size()) / kRequestRangeBytes);
+  const StreamRoom room = ask_for_room();
+  const std::size_t max_ranges =
+      (config_.max_request_bytes - kRequestBytes - channel_.size()) / kRequestRangeBytes;
+  ResendRequest request;
+  request.channel = channel_;
+  request.receiver = config_.receiver;
   std::vector<ResendRequest> requests;
   const std::lock_guard lock(mutex_);
-  for (auto& [id, session] : sessions_) {
+  for (auto& [id, session] : sessions_.all()) {
     const auto ranges = session.numbers.poll(less_when_full(room), config_.max_asked_bytes,
                                              kMaxResendRanges, now_s);
-    for (std::size_t from = 0; from < ranges.size(); from += ranges_per_request) {
-      ResendRequest& request = requests.emplace_back();
-      request.session = id;
-      request.channel = channel_;
-      request.receiver = config_.receiver;
-      const auto first = ranges.begin() + static_cast<std::ptrdiff_t>(from);
-      const std::size_t count = std::min(ranges_per_request, ranges.size() - from);
-      request.ranges.assign(first, first + static_cast<std::ptrdiff_t>(count));
+    request.session = id;
+    for (std::size_t from = 0; from < ranges.size(); from += max_ranges) {
+      const std::size_t to = std::min(from + max_ranges, ranges.size());
+      request.ranges.assign(ranges.data() + from, ranges.data() + to);
+      requests.push_back(request);
     }
   }
   counts_.requests_sent += static_cast<std::int64_t>(requests.size());
@@ -246,7 +182,7 @@ template <BulkMessage Message>
 StreamCounts StreamSubscriber<Message>::counts() const {
   const std::lock_guard lock(mutex_);
   StreamCounts counts = counts_;
-  for (const auto& [id, session] : sessions_) {
+  for (const auto& [id, session] : sessions_.all()) {
     counts.chunks_missing += session.numbers.count_missing();
     counts.chunks_given_up += session.numbers.count_given_up();
   }
@@ -256,14 +192,14 @@ StreamCounts StreamSubscriber<Message>::counts() const {
 template <BulkMessage Message>
 std::size_t StreamSubscriber<Message>::pending_bytes() const {
   const std::lock_guard lock(mutex_);
-  return pending_bytes_;
+  return sessions_.pending_bytes();
 }
 
 template <BulkMessage Message>
 std::vector<StreamGap> StreamSubscriber<Message>::gaps() const {
   const std::lock_guard lock(mutex_);
   std::vector<StreamGap> gaps;
-  for (const auto& [id, session] : sessions_) {
+  for (const auto& [id, session] : sessions_.all()) {
     const StreamSession& numbers = session.numbers;
     if (numbers.is_complete()) continue;
     gaps.push_back({id, numbers.first_sequence(), numbers.next_sequence(), numbers.count_given_up(),
@@ -275,16 +211,15 @@ std::vector<StreamGap> StreamSubscriber<Message>::gaps() const {
 template <BulkMessage Message>
 bool StreamSubscriber<Message>::is_complete(std::int64_t session) const {
   const std::lock_guard lock(mutex_);
-  const auto known = sessions_.find(session);
-  return known != sessions_.end() && known->second.numbers.is_complete();
+  const Session* known = sessions_.find(session);
+  return known != nullptr && known->numbers.is_complete();
 }
 
 template <BulkMessage Message>
 bool StreamSubscriber<Message>::has_given_up(std::int64_t session) const {
   const std::lock_guard lock(mutex_);
-  const auto known = sessions_.find(session);
-  return known != sessions_.end() && !known->second.numbers.is_complete() &&
-         known->second.numbers.count_given_up() == known->second.numbers.count_missing();
+  const Session* known = sessions_.find(session);
+  return known != nullptr && known->numbers.has_given_up();
 }
 
 template class StreamSubscriber<CloudSlice>;

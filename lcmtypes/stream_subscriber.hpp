@@ -4,15 +4,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <map>
 #include <mutex>
-#include <set>
 #include <string>
 #include <vector>
 
 #include "lcmtypes/bus.hpp"
 #include "lcmtypes/codec.hpp"
-#include "lcmtypes/stream_session.hpp"
+#include "lcmtypes/stream_sessions.hpp"
 
 namespace kintsugi {
 
@@ -110,27 +108,14 @@ class StreamSubscriber {
   void forget(std::int64_t session);
 
  private:
-  struct Pending {
-    std::vector<Chunk<Message>> chunks;  // as they came
-    std::size_t bytes = 0;
-  };
-  struct Session {
-    explicit Session(const ResendRequests::Config& config) : numbers(config) {}
+  using Session = typename StreamSessions<Message>::Session;
+  using Chunks = std::vector<Chunk<Message>>;
 
-    StreamSession numbers;
-    std::int64_t last_heard = 0;
-    std::map<std::int64_t, Pending> pending;  // by the sequence number of the message's chunk 0
-  };
-
-  std::vector<Chunk<Message>> add(Chunk<Message> chunk);
+  Chunks add(Chunk<Message> chunk);
   void add(const Heartbeat& heartbeat);
+  StreamRoom ask_for_room() const;
   // With the lock held:
-  Session* heard_of(std::int64_t id);
-  void ignore(std::int64_t id);
-  void erase(std::int64_t id);
-  std::vector<Chunk<Message>> collect(Session& session, Chunk<Message> chunk);
-  std::vector<Chunk<Message>> take(Session& session, std::int64_t first_sequence);
-  void drop(Session& session, std::int64_t first_sequence);
+  Chunks keep(Session& session, Chunk<Message> chunk);
   StreamRoom less_when_full(StreamRoom room) const;
 
   const std::string channel_;
@@ -139,10 +124,7 @@ class StreamSubscriber {
   const Config config_;
 
   mutable std::mutex mutex_;  // guards what follows; not held in callbacks
-  std::map<std::int64_t, Session> sessions_;
-  std::set<std::int64_t> ignored_;  // sessions
-  std::size_t pending_bytes_ = 0;
-  std::int64_t clock_ = 0;  // counts messages
+  StreamSessions<Message> sessions_;
   StreamCounts counts_;
 };
 
