@@ -1,0 +1,236 @@
+#pragma once
+// One sender and several receivers of a stream on a network in memory, in a time of its own:
+// minutes of loss, delay, stalls and crashes in milliseconds, the same on every run.
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <queue>
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "lcmtypes/channels.hpp"
+#include "lcmtypes/patient_clock.hpp"
+#include "lcmtypes/stream_sender.hpp"
+#include "lcmtypes/stream_subscriber.hpp"
+
+namespace kintsugi::testing {
+
+/// Calls functions at their times, in order.
+class Simulation {
+ public:
+  double now_s() const { return now_s_; }
+
+  void at(double time_s, std::function<void()> what) {
+    events_.push({std::max(time_s, now_s_), num_events_++, std::move(what)});
+  }
+  void after(double seconds, std::function<void()> what) { at(now_s_ + seconds, std::move(what)); }
+
+  /// Until nothing is left to do before `time_s`, or `done` (may be empty).
+  void run_until(double time_s, const std::function<bool()>& done = {}) {
+    while (!events_.empty() && events_.top().time_s <= time_s && !(done && done())) {
+      Event event = events_.top();
+      events_.pop();
+      now_s_ = event.time_s;
+      event.what();
+    }
+    if (!done || !done()) now_s_ = time_s;
+  }
+
+ private:
+  struct Event {
+    double time_s = 0.0;
+    std::int64_t order = 0;
+    std::function<void()> what;
+
+    bool operator<(const Event& other) const {  // the first is the greatest
+      return std::pair(other.time_s, other.order) < std::pair(time_s, order);
+    }
+  };
+
+  std::priority_queue<Event> events_;
+  std::int64_t num_events_ = 0;
+  double now_s_ = 0.0;
+};
+
+/// What happens to a datagram, each with a probability of its own.
+struct Link {
+  double loss = 0.0;
+  double duplication = 0.0;
+  double reordering = 0.0;         ///< delayed by up to max_reordering_s more
+  double max_reordering_s = 0.03;  ///< shorter than a receiver waits before it asks
+  double delay_s = 0.001;
+};
+
+/// A process that receives the stream. `Message` is CloudSlice: what is tested knows no type.
+class SimulatedReceiver {
+ public:
+  using Subscriber = StreamSubscriber<CloudSlice>;
+  static constexpr std::size_t kSocketBytes = 200'000;
+  static constexpr double kTickPeriod_s = 0.02;
+
+  Link link;
+  std::map<std::int32_t, int> times_received;  // by slice
+  std::int64_t datagrams_lost = 0;             // of chunks
+  std::int64_t datagrams_unsocketed = 0;       // of them, because nobody emptied the socket
+  std::int64_t requests = 0;
+  std::int64_t chunks_asked = 0;  // the same one asked twice counts twice
+  double last_request_s = 0.0;
+  std::size_t max_pending_bytes = 0;
+  std::function<void(const ResendRequest&)> on_request;
+
+  SimulatedReceiver(Simulation& simulation, const Link& its_link, std::uint32_t seed,
+                    const Subscriber::Config& config = {})
+      : link(its_link),
+        subscriber(
+            channels::kCloudSlice, [this](CloudSlice slice) { ++times_received[slice.id]; }, {},
+            config),
+        simulation_(simulation),
+        random_(seed),
+        clock_([this] { return simulation_.now_s(); }) {
+    tick();
+  }
+
+  Subscriber subscriber;
+
+  /// A datagram on its way to this process.
+  void send(const std::string& channel, const std::shared_ptr<const Bytes>& bytes) {
+    if (happens(link.loss)) {
+      if (channel != channels::kHeartbeat) ++datagrams_lost;
+      return;
+    }
+    for (int copies = happens(link.duplication) ? 2 : 1; copies > 0; --copies) {
+      const double more_s = happens(link.reordering) ? link.max_reordering_s * uniform() : 0.0;
+      simulation_.after(link.delay_s + more_s, [this, channel, bytes] { arrive(channel, bytes); });
+    }
+  }
+
+  /// As SIGSTOP and SIGCONT.
+  void stop() { stopped_ = true; }
+  void go_on() {
+    stopped_ = false;
+    socket_bytes_ = 0;
+    for (const auto& [channel, bytes] : std::exchange(socket_, {})) handle(channel, *bytes);
+  }
+
+ private:
+  void arrive(const std::string& channel, const std::shared_ptr<const Bytes>& bytes) {
+    if (!stopped_) return handle(channel, *bytes);
+    if (socket_bytes_ + bytes->size() > kSocketBytes) {
+      if (channel == channels::kHeartbeat) return;
+      ++datagrams_lost;
+      ++datagrams_unsocketed;
+      return;
+    }
+    socket_bytes_ += bytes->size();
+    socket_.emplace_back(channel, bytes);
+  }
+
+  void handle(const std::string& channel, const Bytes& bytes) {
+    subscriber.handle(channel, bytes);
+    max_pending_bytes = std::max(max_pending_bytes, subscriber.pending_bytes());
+  }
+
+  void tick() {
+    simulation_.after(kTickPeriod_s, [this] { tick(); });
+    if (stopped_) return;
+    for (const ResendRequest& request : subscriber.poll(clock_.now_s())) {
+      ++requests;
+      last_request_s = simulation_.now_s();
+      for (const SequenceRange& range : request.ranges) {
+        chunks_asked += range.last - range.first + 1;
+      }
+      if (happens(link.loss)) continue;
+      simulation_.after(link.delay_s, [this, request] { on_request(request); });
+    }
+  }
+
+  double uniform() { return std::uniform_real_distribution<double>()(random_); }
+  bool happens(double probability) { return uniform() < probability; }
+
+  Simulation& simulation_;
+  std::mt19937 random_;
+  PatientClock clock_;
+  bool stopped_ = false;
+  std::size_t socket_bytes_ = 0;
+  std::vector<std::pair<std::string, std::shared_ptr<const Bytes>>> socket_;
+};
+
+/// The process that sends, and its network.
+class SimulatedSender {
+ public:
+  std::vector<std::unique_ptr<SimulatedReceiver>> receivers;
+  std::int64_t chunks_on_wire = 0;
+
+  SimulatedSender(Simulation& simulation, const StreamPublisherConfig& config, SentStore* store,
+                  std::int64_t session = 42)
+      : simulation_(simulation), config_(config), store_(store), session_(session) {
+    start();
+  }
+
+  SimulatedReceiver& join(const Link& link, std::uint32_t seed,
+                          const SimulatedReceiver::Subscriber::Config& config = {}) {
+    auto& receiver = *receivers.emplace_back(
+        std::make_unique<SimulatedReceiver>(simulation_, link, seed, config));
+    receiver.on_request = [this](const ResendRequest& request) {
+      if (!sender_ || request.session != session_) return;
+      sender_->request(request, simulation_.now_s());
+      wake();
+    };
+    return receiver;
+  }
+
+  void publish(const CloudSlice& slice, bool starts_state = false) {
+    StreamSender::Job job;
+    job.num_chunks = num_chunks(slice, config_.max_chunk_bytes);
+    job.bytes = static_cast<std::size_t>(payload_bytes(slice));
+    job.starts_state = starts_state;
+    job.encode = [slice, limit = config_.max_chunk_bytes](std::int64_t sequence,
+                                                          std::int32_t index) {
+      return encode_chunk(slice, sequence, index, limit);
+    };
+    sender_->push(std::move(job));
+    wake();
+  }
+
+  /// As SIGKILL; and a new process that goes on with the store.
+  void crash() { sender_.reset(); }
+  void start() {
+    sender_.emplace(
+        [this](const std::string& channel, ByteView message) { transmit(channel, message); },
+        channels::kCloudSlice, session_, config_, store_);
+    wake();
+  }
+  bool is_running() const { return sender_.has_value(); }
+  StreamSender& sender() { return *sender_; }
+
+ private:
+  void transmit(const std::string& channel, ByteView message) {
+    if (channel != channels::kHeartbeat) ++chunks_on_wire;
+    const auto bytes = std::make_shared<const Bytes>(message.begin(), message.end());
+    for (const auto& receiver : receivers) receiver->send(channel, bytes);
+  }
+
+  void wake() {
+    const std::int64_t wake = ++last_wake_;  // an older one has nothing more to do
+    simulation_.after(0.0, [this, wake] { step(wake); });
+  }
+  void step(std::int64_t wake) {
+    if (wake != last_wake_ || !sender_) return;
+    const double wait_s = sender_->step(simulation_.now_s());
+    simulation_.after(wait_s, [this, wake] { step(wake); });
+  }
+
+  Simulation& simulation_;
+  const StreamPublisherConfig config_;
+  SentStore* const store_;
+  const std::int64_t session_;
+  std::optional<StreamSender> sender_;
+  std::int64_t last_wake_ = 0;
+};
+
+}  // namespace kintsugi::testing
