@@ -6,14 +6,14 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "lcmtypes/log_format.hpp"
+
 namespace kintsugi {
 namespace {
 
-// An event: sync word, number, time, bytes of the channel, bytes of the data (all big-endian),
-// channel, data.
-constexpr std::int64_t kEventHeaderBytes = 28;
-constexpr std::int64_t kMaxChannelBytes = 63;  // of LCM
-constexpr std::uint64_t kSyncWord = 0xEDA1DA01;
+using log_format::kEventHeaderBytes;
+using log_format::kMaxChannelBytes;
+using log_format::kSyncWord;
 using EventHeader = std::array<std::uint8_t, kEventHeaderBytes>;
 
 std::uint64_t big_endian(const EventHeader& bytes, std::size_t place, std::size_t num_bytes) {
@@ -53,7 +53,10 @@ LogReader::LogReader(const std::filesystem::path& path) : path_(path) {
 std::optional<LogEvent> LogReader::next() {
   if (damage_ || position_ == size_) return {};
   EventHeader header{};
-  if (!read(file_, header)) return stop("cut off in an event's header");
+  if (!read(file_, header)) {
+    is_cut_off_ = true;
+    return stop("cut off in an event's header");
+  }
   if (big_endian(header, 0, 4) != kSyncWord) return stop("expected the sync word of an event");
   const auto channel_bytes = static_cast<std::int32_t>(big_endian(header, 20, 4));
   const auto data_bytes = static_cast<std::int32_t>(big_endian(header, 24, 4));
@@ -62,8 +65,10 @@ std::optional<LogEvent> LogReader::next() {
                 " bytes and data of " + std::to_string(data_bytes));
   }
   const std::int64_t end = position_ + kEventHeaderBytes + channel_bytes + data_bytes;
-  if (end > size_)
+  if (end > size_) {
+    is_cut_off_ = true;
     return stop("the event lacks its last " + std::to_string(end - size_) + " bytes");
+  }
 
   std::string channel(static_cast<std::size_t>(channel_bytes), '\0');
   data_.resize(static_cast<std::size_t>(data_bytes));

@@ -32,6 +32,10 @@ class LogReader {
   /// After next() returned nothing: where and how the log is damaged; nothing when it is whole.
   const std::optional<std::string>& damage() const { return damage_; }
 
+  /// The damage is that the file ends before its last event does, as when a writer was killed.
+  bool is_cut_off() const { return is_cut_off_; }
+
+  /// Of the events that next() gave; the data of the last one ends here.
   std::int64_t bytes_read() const { return position_; }
   std::int64_t bytes_total() const { return size_; }
 
@@ -45,6 +49,7 @@ class LogReader {
   std::int64_t index_ = 0;
   Bytes data_;  // of the last event
   std::optional<std::string> damage_;
+  bool is_cut_off_ = false;
 };
 
 }  // namespace kintsugi
