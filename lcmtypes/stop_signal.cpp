@@ -36,6 +36,8 @@ void install_stop_signals() {
 
 bool stop_requested() { return g_stop != 0; }
 
+void rearm_stop_signals() { g_stop = 0; }
+
 bool take_write_request() {
   if (g_write == 0) return false;
   g_write = 0;  // a signal between the two lines asks for what is about to be written anyway

@@ -9,6 +9,10 @@ void install_stop_signals();
 
 bool stop_requested();
 
+/// The stop that was asked for has been heeded: the next signal asks again, instead of ending the
+/// process at once.
+void rearm_stop_signals();
+
 /// True once after each SIGUSR1.
 bool take_write_request();
 
