@@ -8,8 +8,8 @@
 #include <tbb/global_control.h>
 
 #include "lcmtypes/stop_signal.hpp"
-#include "mapper/process/mapper_process.hpp"
 #include "mapper/process/options.hpp"
+#include "mapper/process/run_mapper.hpp"
 
 int main(int argc, char** argv) {
   using namespace kintsugi::mapper;
@@ -24,7 +24,7 @@ int main(int argc, char** argv) {
       thread_limit = std::make_unique<tbb::global_control>(
           tbb::global_control::max_allowed_parallelism, options.threads);
     }
-    MapperProcess(options).run();
+    run_mapper(options);
     return 0;
   } catch (const std::exception& error) {
     spdlog::error("kintsugi-mapper: {}", error.what());

@@ -6,7 +6,7 @@
 
 namespace kintsugi::mapper {
 
-FrameReader::FrameReader(SourceConfig config) {
+FrameReader::FrameReader(SourceConfig config, const Attach& attach) {
   config.stop_requested = [this, outer = std::move(config.stop_requested)] {
     return stop_ || outer();
   };
@@ -16,6 +16,7 @@ FrameReader::FrameReader(SourceConfig config) {
     outer(notice);
   };
   source_ = open_frame_source(config);
+  if (attach) source_ = attach(std::move(source_));
   name_ = source_->name();
   frames_total_ = source_->frames_total();
   thread_ = std::thread([this] { run(); });

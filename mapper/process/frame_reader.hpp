@@ -5,6 +5,7 @@
 #include <condition_variable>
 #include <cstdint>
 #include <exception>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -26,8 +27,11 @@ struct TimedFrame {
 /// mapped.
 class FrameReader {
  public:
-  /// Opens the source. @throws as open_frame_source()
-  explicit FrameReader(SourceConfig config);
+  using Attach = std::function<std::unique_ptr<FrameSource>(std::unique_ptr<FrameSource>)>;
+
+  /// Opens the source, and reads from what `attach` (may be empty) makes of it.
+  /// @throws as open_frame_source() and `attach`
+  explicit FrameReader(SourceConfig config, const Attach& attach = {});
   /// Reads from a source that is open already; `config.stop_requested` cannot reach it.
   explicit FrameReader(std::unique_ptr<FrameSource> source);
   ~FrameReader();

@@ -1,19 +1,57 @@
 #include "mapper/process/map_publisher.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "lcmtypes/channels.hpp"
+#include "mapper/process/mapping_options.hpp"
+#include "mapper/process/stored_stream.hpp"
 #include "mapper/source/rgbd_frame_encoder.hpp"
 
 namespace kintsugi::mapper {
 
-MapPublisher::MapPublisher(const Config& config)
-    : config_(config),
-      bus_(config.lcm_url),
-      slice_stream_(bus_, channels::kCloudSlice, config.session, config.stream) {
+MapPublisher::MapPublisher(const Config& config, SessionLog& log)
+    : config_(config), log_(log), bus_(config.lcm_url) {
+  const auto send = [this](const std::string& channel, ByteView message) {
+    if (channel == channels::kHeartbeat) log_.add(channel, message);  // chunks are there already
+    bus_.publish(channel, message);
+  };
+  slice_stream_ = std::make_unique<StreamPublisher>(
+      send, channels::kCloudSlice, config_.session, stream_config(config_.map_name),
+      &log_.stream(channels::kCloudSlice, config_.session));
+  slice_stream_->subscribe(bus_);
   if (config_.publish_frames) {
-    frame_stream_.emplace(bus_, channels::kRgbdFrame, config.session, config.stream);
+    frame_stream_ = std::make_unique<StreamPublisher>(bus_, channels::kRgbdFrame, config_.session,
+                                                      stream_config(config_.map_name));
   }
+  serve_earlier_sessions();
+  bus_thread_.emplace(bus_, [this] { log_.retry(); });
+}
+
+StreamPublisher::Config MapPublisher::stream_config(const std::string& map_name) const {
+  StreamPublisher::Config config = config_.stream;
+  config.max_chunk_bytes = bus_.max_message_bytes();
+  config.map_name = map_name;
+  return config;
+}
+
+void MapPublisher::serve_earlier_sessions() {
+  for (const StoredSession& earlier : log_.sessions()) {
+    if (earlier.session == config_.session) continue;
+    const auto name = earlier.options.find(kMapNameOption);
+    earlier_sessions_.push_back(std::make_unique<StreamPublisher>(
+        bus_, channels::kCloudSlice, earlier.session,
+        stream_config(name == earlier.options.end() ? "" : name->second),
+        &log_.stream(channels::kCloudSlice, earlier.session)));
+    earlier_sessions_.back()->subscribe(bus_);
+  }
+}
+
+template <SmallMessage Message>
+void MapPublisher::publish(const std::string& channel, const Message& message) {
+  const Bytes bytes = encode(message);
+  log_.add(channel, bytes);
+  bus_.publish(channel, bytes);
 }
 
 void MapPublisher::publish_slices(std::vector<CloudSlice> slices) {
@@ -22,23 +60,36 @@ void MapPublisher::publish_slices(std::vector<CloudSlice> slices) {
     slice.map_name = config_.map_name;
     points_published_ += static_cast<std::int64_t>(slice.points_W.size());
     ++slices_published_;
-    slice_stream_.publish(std::move(slice));
+    slice_stream_->publish(std::move(slice));
   }
 }
 
 void MapPublisher::publish_pose(CameraPose pose) {
   pose.session = config_.session;
-  bus_.publish(channels::kCameraPose, pose);
+  publish(channels::kCameraPose, pose);
 }
 
 void MapPublisher::publish_status(MapperStatus status) {
   status.utime = wall_clock_us();
   status.session = config_.session;
   status.map_name = config_.map_name;
-  status.slices_published = slices_published_;
-  status.points_published = points_published_;
+  status.slices_published += slices_published_;  // of an ended session there are some
+  status.points_published += points_published_;
   status.chunks_published = chunks_published();
-  bus_.publish(channels::kMapperStatus, status);
+  status.queue_bytes = static_cast<std::int64_t>(queued_bytes());
+  const auto add_counts = [&status](const StreamPublisher& stream) {
+    const StreamPublisherCounts counts = stream.counts();
+    status.chunks_resent += counts.chunks_resent;
+    status.requests_received += counts.requests_received;
+  };
+  add_counts(*slice_stream_);
+  for (const Stream& earlier : earlier_sessions_) add_counts(*earlier);
+  const SessionLog::Report report = log_.report();
+  status.store_bytes = report.size_bytes;
+  status.store_waiting_bytes = report.waiting_bytes;
+  status.store_lost_chunks = report.lost_chunks;
+  status.store_problem = report.problem.substr(0, kMaxStringBytes);
+  publish(channels::kMapperStatus, status);
 }
 
 void MapPublisher::publish_frame(const RgbdFrame& frame) {
@@ -47,17 +98,35 @@ void MapPublisher::publish_frame(const RgbdFrame& frame) {
 }
 
 void MapPublisher::flush() {
-  slice_stream_.flush();
+  slice_stream_->flush();
   if (frame_stream_) frame_stream_->flush();
 }
 
+double MapPublisher::time_since_request_s() const {
+  double time_s = slice_stream_->time_since_request_s();
+  for (const Stream& earlier : earlier_sessions_) {
+    time_s = std::min(time_s, earlier->time_since_request_s());
+  }
+  return time_s;
+}
+
 std::size_t MapPublisher::queued_bytes() const {
-  return slice_stream_.queued_bytes() + (frame_stream_ ? frame_stream_->queued_bytes() : 0);
+  return slice_stream_->queued_bytes() + (frame_stream_ ? frame_stream_->queued_bytes() : 0);
 }
 
 bool MapPublisher::has_room() const {
-  return slice_stream_.queued_bytes() <= config_.max_queued_bytes &&
+  return slice_stream_->queued_bytes() <= config_.max_queued_bytes &&
          (!frame_stream_ || frame_stream_->queued_bytes() <= config_.max_queued_bytes);
+}
+
+MapPublisher::Config publisher_config(const Options& options, std::int64_t session) {
+  MapPublisher::Config config;
+  config.lcm_url = options.lcm_url;
+  config.map_name = options.map_name;
+  config.session = session;
+  config.publish_frames = options.publish_frames;
+  config.stream.rate_bytes_per_s = 1e6 * options.rate_mb_s;
+  return config;
 }
 
 }  // namespace kintsugi::mapper

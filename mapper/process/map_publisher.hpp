@@ -1,19 +1,27 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "lcmtypes/bus.hpp"
+#include "lcmtypes/bus_thread.hpp"
 #include "lcmtypes/messages.hpp"
 #include "lcmtypes/stream_publisher.hpp"
 #include "mapper/core/rgbd_frame.hpp"
+#include "mapper/process/options.hpp"
+#include "mapper/process/session_log.hpp"
 
 namespace kintsugi::mapper {
 
-/// Everything the mapper says on the bus. The bulk streams are paced and drop nothing: who
-/// publishes faster than they flow looks at has_room() and waits.
+/// Everything the mapper says on the bus, and in its log before that; and the answers to those who
+/// missed something. The bulk streams are paced and drop nothing: who publishes faster than they
+/// flow looks at has_room() and waits.
+///
+/// Of a session that goes on, the slices must be published again from the first one: what the log
+/// has is compared with it and not sent. Sessions that ended earlier in the log are served too.
 class MapPublisher {
  public:
   struct Config {
@@ -21,13 +29,13 @@ class MapPublisher {
     std::string map_name;
     std::int64_t session = 0;
     bool publish_frames = false;
-    int jpeg_quality = 90;  ///< of published frames
-    StreamPublisher::Config stream;
+    int jpeg_quality = 90;                      ///< of published frames
+    StreamPublisher::Config stream;             ///< chunks are as large as the bus takes them
     std::size_t max_queued_bytes = 32U << 20U;  ///< per stream; no room above this
   };
 
   /// @throws std::runtime_error when the bus cannot be opened, with the cure
-  explicit MapPublisher(const Config& config);
+  MapPublisher(const Config& config, SessionLog& log);
 
   void publish_slices(std::vector<CloudSlice> slices);
   void publish_pose(CameraPose pose);
@@ -42,20 +50,37 @@ class MapPublisher {
   /// What waits to be sent.
   std::size_t queued_bytes() const;
 
-  /// Waits until everything is sent.
+  /// Waits until everything is sent. @throws std::runtime_error when sending failed, or when a
+  ///   slice of a session that goes on differs from what the log has
   void flush();
+
+  /// Since somebody asked for something again, seconds.
+  double time_since_request_s() const;
 
   std::int64_t slices_published() const { return slices_published_; }
   std::int64_t points_published() const { return points_published_; }
-  std::int64_t chunks_published() const { return slice_stream_.chunks_published(); }
+  std::int64_t chunks_published() const { return slice_stream_->chunks_published(); }
 
  private:
+  using Stream = std::unique_ptr<StreamPublisher>;
+
+  StreamPublisher::Config stream_config(const std::string& map_name) const;
+  void serve_earlier_sessions();
+  template <SmallMessage Message>
+  void publish(const std::string& channel, const Message& message);
+
   Config config_;
+  SessionLog& log_;
   Bus bus_;
-  StreamPublisher slice_stream_;
-  std::optional<StreamPublisher> frame_stream_;
+  Stream slice_stream_;
+  Stream frame_stream_;                   ///< null: frames are not published
+  std::vector<Stream> earlier_sessions_;  ///< only served
   std::int64_t slices_published_ = 0;
   std::int64_t points_published_ = 0;
+  std::optional<BusThread> bus_thread_;  ///< last: stops before the rest goes
 };
+
+/// What the options ask for.
+MapPublisher::Config publisher_config(const Options& options, std::int64_t session);
 
 }  // namespace kintsugi::mapper

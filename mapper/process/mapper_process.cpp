@@ -9,6 +9,7 @@
 
 #include "lcmtypes/atomic_file.hpp"
 #include "lcmtypes/stop_signal.hpp"
+#include "mapper/process/linger.hpp"
 #include "mapper/process/state_text.hpp"
 
 namespace kintsugi::mapper {
@@ -26,19 +27,11 @@ void log_notice(const SourceNotice& notice) {
   spdlog::log(is_good ? spdlog::level::info : spdlog::level::warn, "{}", notice.text);
 }
 
-SourceConfig source_config(const Options& options) {
+SourceConfig source_config(const Options& options, const Resumption& resumption) {
   SourceConfig config = options.source;
+  if (resumption.continues()) config.replay = true;  // what was dropped is known
   config.stop_requested = [] { return stop_requested(); };
   config.notify = log_notice;
-  return config;
-}
-
-MapPublisher::Config publisher_config(const Options& options) {
-  MapPublisher::Config config;
-  config.lcm_url = options.lcm_url;
-  config.map_name = options.map_name;
-  config.session = options.session;
-  config.publish_frames = options.publish_frames;
   return config;
 }
 
@@ -54,12 +47,14 @@ bool is_located(TrackingState state) {
 
 }  // namespace
 
-MapperProcess::MapperProcess(const Options& options)
+MapperProcess::MapperProcess(const Options& options, SessionLog& log, Resumption& resumption)
     : options_(options),
-      reader_(source_config(options)),
+      resumption_(resumption),
+      reader_(source_config(options, resumption),
+              [&](auto source) { return resumption.attach(std::move(source)); }),
       map_files_(options.cloud_file, options.mesh_file),
       pipeline_(pipeline_config(options, map_files_)),
-      publisher_(publisher_config(options)) {
+      publisher_(publisher_config(options, resumption.session()), log) {
   if (!options.timings_file.empty()) frame_log_.emplace(options.timings_file);
 }
 
@@ -70,11 +65,13 @@ void MapperProcess::run() {
   map_files_.commit();
   write_path();
   log_summary();
+  lingering_ = true;
+  linger(publisher_, options_.linger_s, [this] { publish_status(); });
   throw_failures();
 }
 
 void MapperProcess::map_frames() {
-  publish_status(false);
+  publish_status();
   cpu_ms_ = process_cpu_ms();
   while (!reader_.finished() && !stop_requested()) {
     if (options_.max_frames > 0 && statistics_.frames() >= options_.max_frames) return;
@@ -105,11 +102,15 @@ void MapperProcess::map_frame(const TimedFrame& read) {
   measure(read, timings);
   statistics_.add(tracking, timings);
   if (frame_log_) frame_log_->append(frame, tracking, num_slices, timings);
+  if (resumption_.was_mapped(frame.utime)) ++frames_resumed_;
+  last_utime_ = frame.utime;
 }
 
 void MapperProcess::publish_frame(const RgbdFrame& frame, FrameResult& result) {
   const TrackingResult& tracking = result.tracking;
-  publisher_.publish_pose({frame.utime, 0, frame.frame_index, tracking.state, tracking.X_WC});
+  if (!resumption_.was_mapped(frame.utime)) {
+    publisher_.publish_pose({frame.utime, 0, frame.frame_index, tracking.state, tracking.X_WC});
+  }
   publisher_.publish_frame(frame);
   publish_slices(std::move(result.slices));
 }
@@ -130,9 +131,14 @@ void MapperProcess::measure(const TimedFrame& read, FrameTimings& timings) {
 }
 
 void MapperProcess::publish_rest() {
-  publish_slices(pipeline_.finish());
+  finished_ = resumption_.has_caught_up(last_utime_);
+  if (finished_) {
+    publish_slices(pipeline_.finish());
+  } else {
+    spdlog::warn("stopped before all was made again that had been mapped: resume once more");
+  }
   publisher_.flush();
-  publish_status(true);
+  publish_status();
 }
 
 void MapperProcess::write_path() {
@@ -142,20 +148,21 @@ void MapperProcess::write_path() {
   file.commit();
 }
 
-void MapperProcess::publish_status(bool finished) {
+void MapperProcess::publish_status() {
   MapperStatus status;
   statistics_.report(status);
   // Nobody knows where a camera is that is not there.
   said_interrupted_ = reader_.interrupted();
   if (said_interrupted_) status.state = TrackingState::kLost;
   status.device = options_.source.device;
-  status.finished = finished;
+  status.finished = finished_;
+  status.lingering = lingering_;
+  status.frames_resumed = frames_resumed_;
   status.frames_total = reader_.frames_total();
   status.frames_dropped = reader_.counts().frames_dropped;
   status.keyframes = pipeline_.num_keyframes();
   status.blocks = pipeline_.num_blocks();
   status.volume_bytes = pipeline_.volume_bytes();
-  status.queue_bytes = static_cast<std::int64_t>(publisher_.queued_bytes());
   publisher_.publish_status(std::move(status));
   status_clock_ = Stopwatch();
 }
@@ -163,7 +170,7 @@ void MapperProcess::publish_status(bool finished) {
 /// Now and then, and at once when the camera goes or comes.
 void MapperProcess::publish_status_when_due() {
   const bool is_news = reader_.interrupted() != said_interrupted_;
-  if (is_news || status_clock_.elapsed_ms() >= kStatusPeriod_ms) publish_status(false);
+  if (is_news || status_clock_.elapsed_ms() >= kStatusPeriod_ms) publish_status();
 }
 
 void MapperProcess::log_start() const {
@@ -172,7 +179,7 @@ void MapperProcess::log_start() const {
                options_.source.replay ? ", replayed" : "",
                reader_.frames_total() < 0 ? "unknown" : std::to_string(reader_.frames_total()));
   spdlog::info("volume {:.2f} m, voxel {:.2f} mm, map '{}', session {}", volume.volume_size_m,
-               1e3 * volume.resolution_m, options_.map_name, options_.session);
+               1e3 * volume.resolution_m, options_.map_name, resumption_.session());
 }
 
 void MapperProcess::log_change_of_state(const FrameResult& result, const RgbdFrame& frame) {

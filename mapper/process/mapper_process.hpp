@@ -11,18 +11,21 @@
 #include "mapper/process/map_files.hpp"
 #include "mapper/process/map_publisher.hpp"
 #include "mapper/process/options.hpp"
+#include "mapper/process/resumption.hpp"
 #include "mapper/process/run_statistics.hpp"
 
 namespace kintsugi::mapper {
 
-/// kintsugi-mapper: reads frames, maps them, says on the bus what came of it.
+/// Reads frames, maps them, says on the bus what came of it.
 class MapperProcess {
  public:
-  /// Opens the device and the bus. @throws std::runtime_error when either cannot be opened
-  explicit MapperProcess(const Options& options);
+  /// Opens the device and the bus. `log` and `resumption` must outlive this.
+  /// @throws std::runtime_error when either cannot be opened
+  MapperProcess(const Options& options, SessionLog& log, Resumption& resumption);
 
   /// Until the device ends, max_frames, or a stop signal. Then the final slice is published and
-  /// everything sent, and the files asked for written.
+  /// everything sent, and the files asked for written; then it stays to answer requests. Stopped
+  /// before it has made again what an interrupted session had, it leaves the session unfinished.
   /// @throws std::runtime_error when reading, sending or writing failed or the recording ended
   ///   before its time; what could be mapped and sent before that was
   void run();
@@ -35,7 +38,7 @@ class MapperProcess {
   void measure(const TimedFrame& read, FrameTimings& timings);
   void publish_rest();
   void write_path();
-  void publish_status(bool finished);
+  void publish_status();
   void publish_status_when_due();
   void log_start() const;
   void log_change_of_state(const FrameResult& result, const RgbdFrame& frame);
@@ -43,6 +46,7 @@ class MapperProcess {
   void throw_failures() const;
 
   const Options options_;
+  Resumption& resumption_;
   FrameReader reader_;
   MapFiles map_files_;  ///< before the pipeline, whose worker writes to it
   MapperPipeline pipeline_;
@@ -56,6 +60,10 @@ class MapperProcess {
   Stopwatch run_clock_;
   Stopwatch status_clock_;
   bool said_interrupted_ = false;  ///< in the last status
+  bool finished_ = false;          ///< every slice is published
+  bool lingering_ = false;
+  std::int64_t last_utime_ = -1;     ///< of the last mapped frame
+  std::int64_t frames_resumed_ = 0;  ///< mapped, the ones that had been mapped before
 };
 
 }  // namespace kintsugi::mapper

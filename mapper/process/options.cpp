@@ -6,7 +6,6 @@
 
 #include <CLI/CLI.hpp>
 
-#include "lcmtypes/bus.hpp"
 #include "lcmtypes/codec.hpp"
 #include "mapper/core/check.hpp"
 #include "mapper/source/device_listing.hpp"
@@ -78,6 +77,20 @@ void add_bus_flags(CLI::App& app, Options& options) {
   app.add_option("--lcm-url", options.lcm_url, "as LCM has it; empty: LCM's default");
   app.add_option("--map-name", options.map_name, "tells mappers on one bus apart");
   app.add_option("--session", options.session, "number of this run; 0: by the clock");
+  app.add_option("--rate", options.rate_mb_s, "most that slices may take of the bus, MB/s");
+}
+
+void add_store_flags(CLI::App& app, Options& options) {
+  app.option_defaults()->group("So that nothing is lost");
+  app.add_option("--store", options.store_file,
+                 "LCM log of what is published, for resends; empty: a temporary one");
+  app.add_option("--resume", options.resume_file,
+                 "log of a run that was interrupted, whose last session goes on");
+  app.add_option("--store-file-size", options.store_file_size_mb,
+                 "then the log goes on in FILE.1.lcm and so on, MB");
+  app.add_option("--linger", options.linger_s,
+                 "at the end, stay until nobody has asked for anything for so long, s; -1: until a "
+                 "signal");
 }
 
 /// The device's own option for where it writes its truth.
@@ -97,7 +110,6 @@ void complete(Options& options) {
   auto& volume = options.pipeline.volume;
   volume.resolution_m = options.resolution_m == 0.0 ? volume.volume_size_m / kDefaultVoxelsPerSide
                                                     : options.resolution_m;
-  if (options.session == 0) options.session = new_session();
   options.source.lcm_url = options.lcm_url;
   if (options.lock_exposure_s >= 0.0) {
     options.source.lock_exposure_after_s = options.lock_exposure_s;
@@ -115,7 +127,14 @@ void Options::validate() const {
   source.validate();
   pipeline.validate();
   check_range<std::int64_t>("--max-frames", max_frames, 0, 1'000'000'000);
-  check_range<std::int64_t>("--session", session, 1, INT64_MAX);
+  check_range<std::int64_t>("--session", session, 0, INT64_MAX);
+  check_range("--rate", rate_mb_s, 0.001, 1e6);
+  check_range("--store-file-size", store_file_size_mb, 1.0, 1e9);
+  if (std::isnan(linger_s)) throw std::invalid_argument("--linger is nan");
+  if (!store_file.empty() && !resume_file.empty() && store_file != resume_file) {
+    throw std::invalid_argument("--store is '" + store_file + "' and --resume is '" + resume_file +
+                                "': a log that is resumed is also the one that is written");
+  }
   check_range("--threads", threads, 0, 1024);
   if (std::isnan(lock_exposure_s)) throw std::invalid_argument("--lock-exposure is nan");
   if (!cloud_file.empty() && cloud_file == mesh_file) {
@@ -136,6 +155,7 @@ std::variant<Options, int> parse_command_line(int argc, const char* const* argv)
   add_mapping_flags(app, options);
   add_output_flags(app, options);
   add_bus_flags(app, options);
+  add_store_flags(app, options);
   app.option_defaults()->group("Help and configuration");
   app.set_config("--config", "", "read flags from this file (TOML)");
   bool print_config = false;

@@ -25,8 +25,13 @@ struct Options {
   bool publish_frames = false;   ///< RGBD_FRAME too
   std::string lcm_url;           ///< empty: LCM's default
   std::string map_name = "map";
-  std::int64_t session = 0;  ///< > 0; 0: by the clock
-  int threads = 0;           ///< for the parallel stages; 0: one per core
+  std::int64_t session = 0;  ///< > 0; 0: by the clock, or that of the log that is resumed
+  double rate_mb_s = 10.0;   ///< of the bulk streams, 1e6 bytes a second
+  std::string store_file;    ///< LCM log of what is published; empty: one without a name
+  std::string resume_file;   ///< log to continue, instead of store_file; empty: begin anew
+  double store_file_size_mb = 1000.0;  ///< then another file begins
+  double linger_s = 2.0;  ///< stay until nobody has asked for so long; < 0: until a signal
+  int threads = 0;        ///< for the parallel stages; 0: one per core
 
   /// @throws std::invalid_argument naming the field, its value and its bound
   void validate() const;

@@ -53,7 +53,9 @@ TEST(Options, DefaultsAreTheDesigns) {
   EXPECT_DOUBLE_EQ(options.pipeline.volume.resolution_m, 4.5 / 512);
   EXPECT_EQ(options.pipeline.volume.shift_vox, 14);
   EXPECT_EQ(options.pipeline.slices.extractor.weight_threshold, 8);
-  EXPECT_GT(options.session, 0);
+  EXPECT_EQ(options.session, 0) << "by the clock, or of the log that is resumed";
+  EXPECT_DOUBLE_EQ(options.rate_mb_s, 10.0);
+  EXPECT_DOUBLE_EQ(options.linger_s, 2.0);
   EXPECT_FALSE(options.source.replay);
 }
 
