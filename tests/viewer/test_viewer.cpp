@@ -1,7 +1,9 @@
 #include <filesystem>
+#include <set>
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "tests/support/temporary_folder.hpp"
@@ -16,28 +18,45 @@ using kintsugi::testing::TemporaryFolder;
 
 class ViewerTest : public ::testing::Test {
  protected:
-  Viewer make_viewer(const std::string& map_name = "") {
+  Viewer make_viewer() {
     Viewer::Config config;
     config.renderer.width_px = 160;
     config.renderer.height_px = 120;
     config.folder = folder_.path();
-    config.map_name = map_name;
     config.every_slices = 4;
     return {config,
-            [this](const cv::Mat3b&, const std::string& caption) { captions_.push_back(caption); }};
+            {.on_picture = [this](const cv::Mat3b&,
+                                  const std::string& caption) { captions_.push_back(caption); },
+             .on_forgotten = [this](std::int64_t session) { forgotten_.insert(session); }}};
   }
   bool exists(const std::string& name) const { return fs::exists(folder_ / name); }
+
+  /// The first `count` slices of the room, with their updates, as another session.
+  void add_session(Viewer& viewer, std::int64_t session, std::size_t count, double now_s) const {
+    for (std::size_t i = 0; i < count; ++i) {
+      CloudSlice slice = room_.slices[i];
+      SegmentUpdate update = room_.updates[i];
+      slice.session = update.map_session = session;
+      viewer.add(slice, now_s);
+      viewer.add(update, now_s);
+    }
+  }
+
+  static constexpr double kNow_s = 100.0;
+  static constexpr double kLater_s = kNow_s + 6.0;  // longer than the viewer's patience
 
   const TemporaryFolder folder_;
   const SyntheticMap room_ = make_room(2.5, 0.1);  // 10 slices
   std::vector<std::string> captions_;
+  std::set<std::int64_t> forgotten_;
 };
 
 TEST_F(ViewerTest, WritesNothingWithoutAMap) {
   Viewer viewer = make_viewer();
-  viewer.add(room_.poses.front());
+  viewer.add(room_.poses.front(), kNow_s);
   viewer.draw_if_due();
   viewer.draw_snapshot_now();
+  viewer.write_finals(kLater_s, false);
   viewer.close();
   EXPECT_TRUE(fs::is_empty(folder_.path()));
   EXPECT_FALSE(viewer.finished());
@@ -45,21 +64,39 @@ TEST_F(ViewerTest, WritesNothingWithoutAMap) {
 
 TEST_F(ViewerTest, WaitsForTheSegmentsOfTheSlicesItShows) {
   Viewer viewer = make_viewer();
-  viewer.add(room_.updates[0]);  // there is a segmenter, so slices count when they have segments
-  for (const CloudSlice& slice : room_.slices) viewer.add(slice);
+  viewer.add(room_.updates[0], kNow_s);  // there is a segmenter: slices count with their segments
+  for (const CloudSlice& slice : room_.slices) viewer.add(slice, kNow_s);
   viewer.draw_if_due();
   EXPECT_FALSE(exists("snapshot_000000.png"));
-  for (std::size_t i = 1; i < 4; ++i) viewer.add(room_.updates[i]);
+  for (std::size_t i = 1; i < 4; ++i) viewer.add(room_.updates[i], kNow_s);
   viewer.draw_if_due();
   EXPECT_TRUE(exists("snapshot_000003.png"));
   EXPECT_EQ(1U, captions_.size());
 }
 
+TEST_F(ViewerTest, DrawsOneSnapshotOfAMapThatWasThereBefore) {
+  Viewer viewer = make_viewer();
+  for (const CloudSlice& slice : room_.slices) viewer.add(slice, kNow_s);
+  viewer.draw_if_due();
+  EXPECT_EQ(1U, captions_.size());
+  for (const SegmentUpdate& update : room_.updates) viewer.add(update, kNow_s);
+  viewer.draw_if_due();  // again, with its segments
+  EXPECT_EQ(2U, captions_.size());
+  for (SegmentUpdate update : room_.updates) {  // described for someone else who came late
+    update.sequence += 100;
+    update.num_segments = room_.updates.back().num_segments;
+    viewer.add(update, kNow_s);
+    viewer.draw_if_due();
+  }
+  EXPECT_EQ(2U, captions_.size());
+  EXPECT_EQ(10, viewer.status().updates_applied);
+}
+
 TEST_F(ViewerTest, DrawsCorrectedSlicesAgain) {
   Viewer viewer = make_viewer();
   for (std::size_t i = 0; i < 4; ++i) {
-    viewer.add(room_.slices[i]);
-    viewer.add(room_.updates[i]);
+    viewer.add(room_.slices[i], kNow_s);
+    viewer.add(room_.updates[i], kNow_s);
   }
   viewer.draw_if_due();
   EXPECT_EQ(1U, captions_.size());
@@ -69,9 +106,9 @@ TEST_F(ViewerTest, DrawsCorrectedSlicesAgain) {
     SegmentUpdate update = room_.updates[i];
     slice.revision = update.slice_revision = 1;
     update.sequence += 100;
-    viewer.add(update);
+    viewer.add(update, kNow_s);
     EXPECT_EQ(1, viewer.status().lag_slices);
-    viewer.add(slice);
+    viewer.add(slice, kNow_s);
     EXPECT_EQ(0, viewer.status().lag_slices);
     viewer.draw_if_due();
   }
@@ -81,64 +118,160 @@ TEST_F(ViewerTest, DrawsCorrectedSlicesAgain) {
 TEST_F(ViewerTest, IsFinishedWhenTheFinalUpdateIsDrawn) {
   Viewer viewer = make_viewer();
   for (std::size_t i = 0; i < room_.slices.size(); ++i) {
-    EXPECT_FALSE(viewer.complete());
-    viewer.add(room_.slices[i]);
-    viewer.add(room_.updates[i]);
+    viewer.write_finals(kNow_s, false);
+    EXPECT_FALSE(viewer.finished());
+    viewer.add(room_.slices[i], kNow_s);
+    viewer.add(room_.updates[i], kNow_s);
   }
-  EXPECT_TRUE(viewer.complete());
   EXPECT_FALSE(viewer.finished());
-  viewer.write_final();
+  viewer.write_finals(kNow_s, true);  // more may come, but not of this map
   EXPECT_TRUE(viewer.finished());
   EXPECT_TRUE(viewer.status().finished);
   EXPECT_EQ(10, viewer.status().slices_received);
   EXPECT_EQ(10, viewer.status().updates_applied);
   EXPECT_EQ(3, viewer.status().snapshots_written);
-  viewer.write_final();  // nothing new to show
+  viewer.write_finals(kLater_s, false);  // nothing new to show
+  viewer.close();
   EXPECT_EQ(3, viewer.status().snapshots_written);
+}
+
+TEST_F(ViewerTest, WaitsForWhatMayStillBeResentAndGoesOnWithoutTheRest) {
+  Viewer viewer = make_viewer();
+  for (std::size_t i = 0; i < room_.slices.size(); ++i) {
+    if (i != 3) viewer.add(room_.slices[i], kNow_s);
+    viewer.add(room_.updates[i], kNow_s);
+  }
+  viewer.write_finals(kNow_s, false);
+  EXPECT_FALSE(viewer.finished());
+  viewer.write_finals(kLater_s, true);
+  EXPECT_FALSE(viewer.finished());
+  viewer.write_finals(kLater_s, false);
+  EXPECT_TRUE(viewer.finished());
+  viewer.add(room_.slices[3], kLater_s);  // it came after all
+  viewer.write_finals(kLater_s, false);
+  EXPECT_TRUE(viewer.finished());
+  EXPECT_EQ(6, viewer.status().snapshots_written);
+  EXPECT_EQ(0, viewer.status().lag_slices);
 }
 
 TEST_F(ViewerTest, DrawsTheNewestSessionAndKeepsTheFinalPictureOfTheOneBefore) {
   Viewer viewer = make_viewer();
-  viewer.add(room_.slices[0]);
-  CloudSlice next = room_.slices[1];
-  next.session += 1;
-  viewer.add(next);
-  const std::string before = std::to_string(room_.slices[0].session);
-  EXPECT_TRUE(exists("final_" + before + ".png"));
-  EXPECT_TRUE(exists("segments_final_" + before + ".png"));
+  add_session(viewer, 1'000, 3, kNow_s);
+  add_session(viewer, 1'001, 1, kNow_s);
   EXPECT_EQ(1, viewer.status().slices_received);
+  EXPECT_EQ(1'001, viewer.status().map_session);
+  viewer.write_finals(kNow_s, false);
+  EXPECT_FALSE(exists("final_1000.png"));  // more of it may come
+  viewer.write_finals(kLater_s, false);
+  EXPECT_TRUE(exists("final_1000.png"));
+  EXPECT_TRUE(exists("segments_final_1000.png"));
+  EXPECT_FALSE(exists("final.png"));
+}
 
-  viewer.add(room_.slices[2]);  // left over from the session before
+TEST_F(ViewerTest, CompletesTheOlderSessionWithWhatComesLate) {
+  Viewer viewer = make_viewer();
+  add_session(viewer, 1'000, 3, kNow_s);
+  add_session(viewer, 1'001, 1, kNow_s);
+  viewer.write_finals(kLater_s, false);
+  const auto partial_bytes = fs::file_size(folder_ / "final_1000.png");
+  add_session(viewer, 1'000, room_.slices.size(), kLater_s);  // again, and the rest
+  EXPECT_EQ(1'001, viewer.status().map_session);
+  EXPECT_TRUE(forgotten_.empty());
+  viewer.write_finals(kLater_s, false);
+  EXPECT_NE(partial_bytes, fs::file_size(folder_ / "final_1000.png"));
+  EXPECT_EQ(std::set<std::int64_t>{1'000}, forgotten_);  // it is complete
+  viewer.add(room_.slices[0], kLater_s);
   EXPECT_EQ(1, viewer.status().slices_received);
 }
 
-TEST_F(ViewerTest, DrawsOnlyTheMapThatWasNamed) {
-  Viewer viewer = make_viewer("room");
-  CloudSlice other = room_.slices[0];
-  other.map_name = "cellar";
-  other.session += 1;
-  CameraPose pose = room_.poses[0];
-  pose.session = other.session;
-  viewer.add(room_.slices[0]);
-  viewer.add(other);
-  viewer.add(pose);
-  viewer.add(room_.slices[1]);
-  EXPECT_EQ(2, viewer.status().slices_received);
+TEST_F(ViewerTest, WritesTheFinalPicturesOfAFinishedSessionUnderItsNumberWhenAnotherFollows) {
+  Viewer viewer = make_viewer();
+  add_session(viewer, 1'000, room_.slices.size(), kNow_s);
+  viewer.write_finals(kNow_s, false);
+  EXPECT_TRUE(viewer.finished());
+  add_session(viewer, 1'001, 1, kNow_s);
+  viewer.write_finals(kNow_s, false);
+  EXPECT_FALSE(viewer.finished());
+  EXPECT_TRUE(exists("final_1000.png"));
+  viewer.close();
+  EXPECT_TRUE(exists("final.png"));
+}
+
+TEST_F(ViewerTest, KeepsTwoSessionsInWhateverOrderTheyAreHeard) {
+  Viewer viewer = make_viewer();
+  add_session(viewer, 1'001, 2, kNow_s);
+  add_session(viewer, 1'000, 3, kNow_s);  // beside it
+  EXPECT_EQ(1'001, viewer.status().map_session);
+  add_session(viewer, 999, 3, kNow_s);  // too old
+  add_session(viewer, 1'002, 4, kNow_s);
+  EXPECT_TRUE(exists("final_1000.png"));
+  EXPECT_EQ(1'002, viewer.status().map_session);
+  EXPECT_EQ(4, viewer.status().slices_received);
+  EXPECT_EQ((std::set<std::int64_t>{999, 1'000}), forgotten_);
+}
+
+TEST_F(ViewerTest, ShowsTheSessionThatHasSlices) {
+  Viewer viewer = make_viewer();
+  add_session(viewer, 1'000, 3, kNow_s);
+  SegmentUpdate ahead = room_.updates[0];
+  ahead.map_session = 5'000;
+  viewer.add(ahead, kNow_s);
+  EXPECT_EQ(1'000, viewer.status().map_session);
+  viewer.write_finals(kLater_s, false);
   EXPECT_TRUE(fs::is_empty(folder_.path()));
+}
+
+TEST_F(ViewerTest, BeginsNothingWithPosesButKeepsThemForTheirMap) {
+  Viewer viewer = make_viewer();
+  CameraPose other = room_.poses[0];
+  other.session += 7;
+  viewer.add(other, kNow_s);
+  for (const CameraPose& pose : room_.poses) viewer.add(pose, kNow_s);
+  EXPECT_EQ(0, viewer.status().map_session);
+  viewer.add(room_.slices[0], kNow_s);
+  viewer.draw_snapshot_now();
+  // From the first pose to the last, though they came before the slice.
+  const double seconds =
+      1e-6 * static_cast<double>(room_.poses.back().utime - room_.poses.front().utime);
+  ASSERT_EQ(1U, captions_.size());
+  EXPECT_EQ(0U, captions_[0].find(fmt::format("{:.1f} s", seconds))) << captions_[0];
 }
 
 TEST_F(ViewerTest, GoesOnWhenItsFolderIsGone) {
   Viewer viewer = make_viewer();
-  viewer.add(room_.slices[0]);
+  add_session(viewer, 1'000, room_.slices.size(), kNow_s);
   fs::remove_all(folder_.path());
   viewer.draw_snapshot_now();
   EXPECT_EQ(1, viewer.failures());
   EXPECT_EQ(0, viewer.status().snapshots_written);
   EXPECT_EQ(1U, captions_.size());  // still published
+  EXPECT_NE(std::string::npos, viewer.status().problem.find("snapshot_000009"))
+      << viewer.status().problem;
+
+  viewer.write_finals(kNow_s, false);
+  EXPECT_FALSE(viewer.finished());
+  EXPECT_NE("", viewer.status().problem);
   fs::create_directory(folder_.path());
+  viewer.write_finals(kNow_s + 3.0, false);
+  EXPECT_TRUE(viewer.finished());
+  EXPECT_EQ("", viewer.status().problem);
+  EXPECT_TRUE(exists("final.png"));
+  viewer.close();
+  EXPECT_EQ(1, viewer.failures());  // the snapshot is lost
+}
+
+TEST_F(ViewerTest, IsFinishedWithoutItsFinalPicturesAfterTryingLong) {
+  Viewer viewer = make_viewer();
+  add_session(viewer, 1'000, room_.slices.size(), kNow_s);
+  fs::remove_all(folder_.path());
+  for (double now_s = kNow_s; now_s < kNow_s + 29.0; now_s += 1.0) {
+    viewer.write_finals(now_s, false);
+    EXPECT_FALSE(viewer.finished()) << now_s;
+  }
+  viewer.write_finals(kNow_s + 31.0, false);
+  EXPECT_TRUE(viewer.finished());
   viewer.close();
   EXPECT_EQ(1, viewer.failures());
-  EXPECT_TRUE(exists("final.png"));
 }
 
 TEST_F(ViewerTest, RefusesAConfigurationOutOfItsBounds) {

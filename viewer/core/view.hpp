@@ -29,7 +29,8 @@ View parse_view(const std::string& text);
 /// Where the camera is and where it heads, without the shaking of the hand that holds it.
 class FollowedCamera {
  public:
-  /// Position and horizontal heading go through a low-pass filter in map time.
+  /// Position and horizontal heading go through a low-pass filter in map time. A pose that is not
+  /// newer than the last one is passed over.
   void update(const CameraPose& pose, const Eigen::Vector3d& up_W);
 
   bool has_pose() const { return utime_ > 0; }

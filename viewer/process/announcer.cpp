@@ -7,8 +7,21 @@
 
 namespace kintsugi::viewer {
 
+namespace {
+
+/// Pictures are not kept: nobody needs an old one.
+StreamPublisher::Config stream_config(const Bus& bus) {
+  StreamPublisher::Config config;
+  config.max_chunk_bytes = bus.max_message_bytes();
+  return config;
+}
+
+}  // namespace
+
 Announcer::Announcer(Bus& bus)
-    : bus_(bus), session_(new_session()), pictures_(bus, channels::kSnapshot, session_, {}) {}
+    : bus_(bus),
+      session_(new_session()),
+      pictures_(bus, channels::kSnapshot, session_, stream_config(bus)) {}
 
 void Announcer::publish_picture(const cv::Mat3b& picture, const std::string& caption) {
   constexpr int kJpegQuality = 85;

@@ -15,6 +15,8 @@ class Announcer {
  public:
   explicit Announcer(Bus& bus);
 
+  std::int64_t session() const { return session_; }
+
   /// As a JPEG, in chunks.
   void publish_picture(const cv::Mat3b& picture, const std::string& caption);
 

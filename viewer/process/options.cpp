@@ -46,7 +46,12 @@ std::optional<Options> parse_options(int argc, char** argv, int& exit_code) {
       ->configurable(false);
   app.add_option("--lcm-url", options.lcm_url, "LCM URL; empty: LCM's default");
   app.add_option("--log", log, "Read this LCM log as fast as possible instead of the bus");
-  app.add_option("--map-name", viewer.map_name, "Draw only the map with this name (default: any)");
+  app.add_option("--map-name", options.map_name,
+                 "Draw the map with this name (default: the first that is heard)");
+  app.add_option("--max-queue", options.max_queue_mb,
+                 "Most that is received ahead of drawing, MB; the rest is asked for again later")
+      ->check(CLI::Range(1.0, 1e6))
+      ->capture_default_str();
   app.add_option("--out", folder, "Folder for the pictures; created where it is missing")
       ->capture_default_str();
   app.add_option("--every", viewer.every_slices, "Slices between two snapshots")

@@ -12,8 +12,12 @@ namespace kintsugi::viewer {
 struct Options {
   std::string lcm_url;  ///< empty: LCM's default
   std::optional<std::filesystem::path> log;
+  std::string map_name;       ///< draw only the map with this name; empty: the first that is heard
+  double max_queue_mb = 256;  ///< received and not yet used
   bool exit_on_final = false;
   Viewer::Config viewer;
+
+  std::size_t max_queue_bytes() const { return static_cast<std::size_t>(1e6 * max_queue_mb); }
 };
 
 /// Reads flags and --config FILE. Nothing when there is nothing to run, because help or the

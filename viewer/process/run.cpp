@@ -3,6 +3,7 @@
 #include <bit>
 #include <chrono>
 #include <filesystem>
+#include <optional>
 #include <utility>
 
 #include <spdlog/spdlog.h>
@@ -10,9 +11,11 @@
 #include "lcmtypes/bus.hpp"
 #include "lcmtypes/bus_thread.hpp"
 #include "lcmtypes/log_reader.hpp"
+#include "lcmtypes/patient_clock.hpp"
 #include "lcmtypes/stop_signal.hpp"
 #include "viewer/process/announcer.hpp"
 #include "viewer/process/inbox.hpp"
+#include "viewer/process/receiver.hpp"
 
 namespace kintsugi::viewer {
 namespace {
@@ -24,39 +27,59 @@ void report_bad(std::int64_t count, const std::string& reason) {
   }
 }
 
-ViewerStatus status_of(const Viewer& viewer, const Receiver& receiver) {
-  ViewerStatus status = viewer.status();
-  status.chunks_missing = receiver.chunks_missing();
-  status.messages_bad = receiver.messages_bad();
-  return status;
+/// Uses what has been received, for a moment: drawing has its turn while more comes.
+void use_received(Inbox& inbox, Viewer& viewer, PatientClock& clock) {
+  constexpr double kMoment_s = 0.1;
+  const double start_s = clock.now_s();
+  auto message = inbox.take(std::chrono::milliseconds(50));
+  while (message) {
+    const double now_s = clock.now_s();
+    viewer.add(*std::move(message), now_s);
+    message = now_s - start_s < kMoment_s ? inbox.take(std::chrono::milliseconds(0)) : std::nullopt;
+  }
 }
 
 int run_on_bus(const Options& options) {
   Bus bus(options.lcm_url);
   if (const auto advice = receive_buffer_advice()) spdlog::warn("{}", *advice);
   Announcer announcer(bus);
-  Viewer viewer(options.viewer, [&](const cv::Mat3b& picture, const std::string& caption) {
-    announcer.publish_picture(picture, caption);
-  });
-  Inbox inbox;
-  Receiver receiver([&](Message message) { inbox.put(std::move(message)); }, report_bad);
+  Inbox inbox(options.max_queue_bytes());
+  Receiver receiver(
+      {.map_name = options.map_name,
+       .receiver = announcer.session(),
+       .max_request_bytes = bus.max_message_bytes(),
+       .has_room = [&inbox] { return inbox.has_room(); }},
+      [&](Message message) { inbox.put(std::move(message)); }, report_bad);
+  Viewer viewer(options.viewer,
+                {.on_picture =
+                     [&](const cv::Mat3b& picture, const std::string& caption) {
+                       announcer.publish_picture(picture, caption);
+                     },
+                 .on_forgotten = [&](std::int64_t session) { receiver.forget(session); }});
+  PatientClock clock;
   receiver.subscribe(bus);
-  BusThread bus_thread(bus);
+  BusThread bus_thread(bus, [&] { receiver.ask(bus, clock.now_s()); });
   spdlog::info("viewing {}, pictures in {}", bus.url(), options.viewer.folder.string());
 
+  const auto publish_status = [&] {
+    ViewerStatus status = viewer.status();
+    receiver.add_to(status);
+    status.queue_bytes += static_cast<std::int64_t>(inbox.bytes());
+    announcer.publish_status(std::move(status));
+  };
   while (!stop_requested() && !bus_thread.failed()) {
-    for (Message& message : inbox.take(std::chrono::milliseconds(50))) {
-      viewer.add(std::move(message));
-    }
+    use_received(inbox, viewer, clock);
     viewer.draw_if_due();
     if (take_write_request()) viewer.draw_snapshot_now();
-    if (viewer.complete()) viewer.write_final();
-    if (announcer.status_due()) announcer.publish_status(status_of(viewer, receiver));
+    if (inbox.is_empty()) viewer.write_finals(clock.now_s(), receiver.may_still_come());
+    if (announcer.status_due()) publish_status();
     if (options.exit_on_final && viewer.finished()) break;
   }
-  for (Message& message : inbox.take(std::chrono::milliseconds(0))) viewer.add(std::move(message));
+  while (auto message = inbox.take(std::chrono::milliseconds(0))) {
+    viewer.add(*std::move(message), clock.now_s());
+  }
   viewer.close();
-  announcer.publish_status(status_of(viewer, receiver));
+  publish_status();
   announcer.flush();
   bus_thread.stop();
   return viewer.failures() > 0 ? 1 : 0;
@@ -64,8 +87,12 @@ int run_on_bus(const Options& options) {
 
 int run_on_log(const Options& options) {
   LogReader log(*options.log);
-  Viewer viewer(options.viewer, [](const cv::Mat3b&, const std::string&) {});
-  Receiver receiver([&](Message message) { viewer.add(std::move(message)); }, report_bad);
+  Viewer viewer(options.viewer,
+                {.on_picture = [](const cv::Mat3b&, const std::string&) {}, .on_forgotten = {}});
+  constexpr double kNoTimePasses_s = 0.0;
+  Receiver receiver(
+      {.map_name = options.map_name, .has_room = {}},
+      [&](Message message) { viewer.add(std::move(message), kNoTimePasses_s); }, report_bad);
   spdlog::info("viewing {}, pictures in {}", options.log->string(), options.viewer.folder.string());
 
   while (const auto event = log.next()) {
@@ -75,8 +102,11 @@ int run_on_log(const Options& options) {
     if (stop_requested()) break;
   }
   viewer.close();
-  if (receiver.messages_bad() > 0) spdlog::warn("{} bad messages", receiver.messages_bad());
-  if (receiver.chunks_missing() > 0) spdlog::warn("{} chunks missing", receiver.chunks_missing());
+  ViewerStatus status = viewer.status();
+  receiver.add_to(status);
+  if (status.messages_bad > 0) spdlog::warn("{} bad messages", status.messages_bad);
+  if (status.chunks_missing > 0) spdlog::warn("{} chunks missing", status.chunks_missing);
+  if (!status.problem.empty()) spdlog::warn("{}", status.problem);
   if (log.damage()) spdlog::error("{}", *log.damage());
   return viewer.failures() > 0 || log.damage() ? 1 : 0;
 }

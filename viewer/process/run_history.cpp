@@ -5,9 +5,11 @@
 namespace kintsugi::viewer {
 namespace {
 
-/// Appends, or replaces the last value when it belongs to the same slice.
+/// Appends, or replaces the last value when it belongs to the same slice. A segmenter that was
+/// restarted counts up to where it was again: that is no new history.
 void append(Chart& chart, std::int64_t slice, double value) {
   const auto x = static_cast<double>(slice);
+  if (!chart.points.empty() && x < chart.points.back().x) return;
   if (!chart.points.empty() && chart.points.back().x == x) chart.points.pop_back();
   chart.points.emplace_back(x, value);
 }

@@ -1,7 +1,5 @@
 #include "viewer/process/viewer.hpp"
 
-#include <algorithm>
-#include <stdexcept>
 #include <utility>
 #include <variant>
 
@@ -9,18 +7,12 @@
 #include <spdlog/spdlog.h>
 
 #include "viewer/core/require.hpp"
-#include "viewer/output/picture_file.hpp"
 
 namespace kintsugi::viewer {
 namespace {
 
-std::string snapshot_name(std::int32_t slice_id) {
-  return fmt::format("snapshot_{:06}.png", slice_id);
-}
-
-double milliseconds(std::chrono::steady_clock::duration duration) {
-  return std::chrono::duration<double, std::milli>(duration).count();
-}
+constexpr double kFinalsRetry_s = 2.0;
+constexpr double kFinalsPatience_s = 30.0;  ///< trying longer keeps nobody from finishing
 
 }  // namespace
 
@@ -34,190 +26,198 @@ void Viewer::Config::validate() const {
           max_drawing_share, "in (0, 1]");
 }
 
-Viewer::Viewer(const Config& config, OnSnapshot on_snapshot)
+Viewer::Viewer(const Config& config, Outputs outputs)
     : config_((config.validate(), config)),
-      on_snapshot_(std::move(on_snapshot)),
-      renderer_(config.renderer) {
+      outputs_(std::move(outputs)),
+      renderer_(config.renderer),
+      folder_(config.folder) {
   if (config_.video) {
     const cv::Size size(config_.renderer.width_px, config_.renderer.height_px);
-    video_ = std::make_unique<VideoFile>(*config_.video, size, config_.video_frames_per_s);
+    video_ = std::make_unique<VideoRecorder>(*config_.video, size, config_.video_frames_per_s);
   }
 }
 
-void Viewer::add(Message message) {
-  std::visit([this](auto&& m) { use(std::forward<decltype(m)>(m)); }, std::move(message));
+void Viewer::add(Message message, double now_s) {
+  std::visit([&](auto&& m) { use(std::forward<decltype(m)>(m), now_s); }, std::move(message));
 }
 
-void Viewer::use(CloudSlice slice) {
-  if (!is_wanted(slice.map_name) || !enter_session(slice.session)) return;
-  scene_->add_slice(std::move(slice));
-  changed_since_final_ = true;
-  last_map_message_ = Clock::now();
+void Viewer::use(CloudSlice slice, double now_s) {
+  SessionScene* const scene = enter_session(slice.session, now_s);
+  if (scene == nullptr) return;
+  map_name_ = slice.map_name;
+  scene->use(std::move(slice), now_s);
 }
 
-void Viewer::use(const SegmentUpdate& update) {
-  if (!is_wanted(update.map_name) || !enter_session(update.map_session)) return;
-  scene_->apply_update(update);
-  history_.add_lag(*scene_);
-  changed_since_final_ = true;
-  last_map_message_ = Clock::now();
+void Viewer::use(const SegmentUpdate& update, double now_s) {
+  if (auto* const scene = enter_session(update.map_session, now_s)) scene->use(update, now_s);
 }
 
-void Viewer::use(const CameraPose& pose) {
-  const bool known = scene_ && scene_->map_session() == pose.session;
-  if (!known && (!is_wanted("") || !enter_session(pose.session))) return;
-  scene_->add_pose(pose);
-  followed_.update(pose, scene_->up().up_W());
+void Viewer::use(const CameraPose& pose, double /*now_s*/) { sessions_.use(pose); }
+
+void Viewer::use(const SegmenterStatus& status, double /*now_s*/) {
+  if (SessionScene* const scene = sessions_.find(status.map_session)) scene->use(status);
 }
 
-void Viewer::use(const SegmenterStatus& status) {
-  if (scene_ && status.map_session == scene_->map_session()) history_.add_slice_time(status);
+SessionScene* Viewer::enter_session(std::int64_t session, double now_s) {
+  SessionScene* const scene = sessions_.enter(session, now_s);
+  if (scene == nullptr && outputs_.on_forgotten) outputs_.on_forgotten(session);
+  if (sessions_.has_too_many()) forget_oldest();
+  return scene;
 }
 
-bool Viewer::is_wanted(const std::string& map_name) const {
-  return config_.map_name.empty() || map_name == config_.map_name;
-}
-
-/// False for what is left over from a session that has been replaced.
-bool Viewer::enter_session(std::int64_t session) {
-  if (scene_ && scene_->map_session() == session) return true;
-  if (past_sessions_.contains(session)) return false;
-  if (scene_) {
-    spdlog::info("map session {} follows {}", session, scene_->map_session());
-    if (scene_->counts().slices > 0) write_final_as(fmt::format("_{}", scene_->map_session()));
-    past_sessions_.insert(scene_->map_session());
-  }
-  scene_.emplace(session);
-  followed_ = {};
-  history_ = {};
-  last_frame_utime_.reset();
-  shown_in_snapshot_ = 0;
-  changed_since_final_ = false;
-  finished_ = false;
-  return true;
-}
-
-/// Slices with their segments, corrected ones again; without a segmenter, slices.
-std::int64_t Viewer::shown_slices() const {
-  const SceneCounts& counts = scene_->counts();
-  return counts.updates > 0 ? counts.labellings : counts.slices;
-}
-
-bool Viewer::snapshot_due() const {
-  return scene_ && shown_slices() >= shown_in_snapshot_ + config_.every_slices &&
-         scene_->newest_slice() != nullptr;
-}
-
-bool Viewer::frame_due() const {
-  if (!scene_ || !video_ || scene_->counts().slices == 0) return false;
-  const double elapsed_s =
-      1e-6 * static_cast<double>(scene_->utime() - last_frame_utime_.value_or(0));
-  return !last_frame_utime_ || elapsed_s >= config_.video_period_s;
+void Viewer::forget_oldest() {
+  const auto& [session, shown] = *sessions_.scenes().begin();
+  if (!write_final(sessions_.scenes().begin()->second)) ++failures_;
+  if (outputs_.on_forgotten) outputs_.on_forgotten(session);
+  sessions_.forget_oldest();
 }
 
 void Viewer::draw_if_due() {
-  const bool snapshot = snapshot_due();
-  const bool frame = frame_due();
+  SessionScene* const scene = sessions_.current_scene();
+  if (scene == nullptr) return;
+  const bool snapshot = scene->snapshot_is_due(config_.every_slices);
+  const bool frame = video_ && scene->frame_is_due(config_.video_period_s);
   if ((!snapshot && !frame) || Clock::now() < next_drawing_) return;
-  const cv::Mat3b figure = draw(config_.view);
-  if (frame) add_frame(figure);
-  if (snapshot) write_snapshot(figure);
+  const cv::Mat3b figure = draw(*scene);
+  if (frame) {
+    video_->add(figure);
+    scene->note_frame();
+  }
+  if (snapshot) write_snapshot(*scene, figure);
 }
 
 void Viewer::draw_snapshot_now() {
-  if (scene_ && scene_->newest_slice() != nullptr) write_snapshot(draw(config_.view));
+  SessionScene* const scene = sessions_.current_scene();
+  if (scene != nullptr && scene->scene().newest_slice() != nullptr) {
+    write_snapshot(*scene, draw(*scene));
+  }
 }
 
-cv::Mat3b Viewer::draw(const View& view) {
+cv::Mat3b Viewer::draw(SessionScene& shown) {
   const Clock::time_point start = Clock::now();
-  cv::Mat3b figure = renderer_.draw_figure(*scene_, scene_->heard_track(), followed_, view, caption(*scene_));
-  const Clock::time_point end = Clock::now();
-  render_ms_ = milliseconds(end - start);
-  history_.add_render_time(*scene_, render_ms_);
-  const double pause = 1.0 / config_.max_drawing_share - 1.0;
-  next_drawing_ = end + std::chrono::duration_cast<Clock::duration>(pause * (end - start));
+  const Scene& scene = shown.scene();
+  cv::Mat3b figure = renderer_.draw_figure(scene, scene.heard_track(), shown.followed(),
+                                           config_.view, caption(scene));
+  note_drawing_time(shown, start);
   return figure;
 }
 
-void Viewer::write_snapshot(const cv::Mat3b& figure) {
-  const std::string text = caption(*scene_);
-  save(snapshot_name(scene_->newest_slice()->id), figure);
-  on_snapshot_(figure, text);
-  shown_in_snapshot_ = shown_slices();
+void Viewer::note_drawing_time(SessionScene& shown, Clock::time_point start) {
+  const Clock::time_point end = Clock::now();
+  render_ms_ = std::chrono::duration<double, std::milli>(end - start).count();
+  shown.history().add_render_time(shown.scene(), render_ms_);
+  const double pause = 1.0 / config_.max_drawing_share - 1.0;
+  next_drawing_ = end + std::chrono::duration_cast<Clock::duration>(pause * (end - start));
+}
+
+void Viewer::write_snapshot(SessionScene& shown, const cv::Mat3b& figure) {
+  const std::string text = caption(shown.scene());
+  const std::int32_t slice_id = shown.scene().newest_slice()->id;
+  if (!folder_.save(fmt::format("snapshot_{:06}.png", slice_id), figure)) ++failures_;
+  outputs_.on_picture(figure, text);
+  shown.note_snapshot();
   spdlog::info("{}; drawn in {:.0f} ms", text, render_ms_);
 }
 
-void Viewer::add_frame(const cv::Mat3b& figure) {
-  video_->add(figure);
-  last_frame_utime_ = scene_->utime();
+std::string Viewer::final_suffix(const SessionScene& shown) const {
+  return is_current(shown) ? "" : fmt::format("_{}", shown.scene().map_session());
 }
 
-bool Viewer::complete() const {
-  if (!scene_ || !scene_->final_update_seen()) return false;
-  const std::chrono::duration<double> silence = Clock::now() - last_map_message_;
-  return scene_->lag_slices() == 0 || silence.count() >= kPatience_s;
+/// A session that another one follows may have ended without a final slice.
+bool Viewer::has_ended(const SessionScene& shown, double now_s, bool more_may_come) const {
+  if (shown.is_complete()) return true;
+  const bool may_have_ended = shown.scene().final_update_seen() || !is_current(shown);
+  return may_have_ended && shown.is_silent(now_s) && !more_may_come;
 }
 
-void Viewer::write_final() {
-  if (scene_ && changed_since_final_) write_final_as("");
-  finished_ = complete();
-}
-
-void Viewer::write_final_as(const std::string& suffix) {
-  const cv::Mat3b figure = draw(OverviewView{});
-  save("final" + suffix + ".png", figure);
-  save("map_final" + suffix + ".png",
-       renderer_.draw_map(*scene_, scene_->slice_track(), followed_, OverviewView{}, Coloring::kTrue));
-  save("segments_final" + suffix + ".png",
-       renderer_.draw_map(*scene_, scene_->slice_track(), followed_, OverviewView{}, Coloring::kSegments));
-  if (config_.plots) save("plots" + suffix + ".png", history_.draw({1000, 900}));
-  on_snapshot_(figure, caption(*scene_));
-  changed_since_final_ = false;
-  if (scene_->lag_slices() > 0) {
-    spdlog::warn("map session {}: {} slices lack their segments or are missing",
-                 scene_->map_session(), scene_->lag_slices());
+void Viewer::write_finals(double now_s, bool more_may_come) {
+  bool all_written = true;
+  bool has_current_ended = false;
+  for (auto& [session, shown] : sessions_.scenes()) {
+    if (!has_ended(shown, now_s, more_may_come)) continue;
+    has_current_ended |= is_current(shown);
+    if (!shown.final_is_due(final_suffix(shown))) continue;
+    all_written = now_s >= next_finals_s_ && write_final(shown) && all_written;
   }
-  spdlog::info("final pictures of map session {}: {}", scene_->map_session(), caption(*scene_));
+  note_finals(now_s, all_written, has_current_ended);
+  const SessionScene* const replaced = sessions_.replaced();
+  if (replaced != nullptr && all_written && replaced->is_complete()) forget_oldest();
+}
+
+void Viewer::note_finals(double now_s, bool all_written, bool has_current_ended) {
+  if (all_written) {
+    finals_failing_since_s_.reset();
+  } else if (now_s >= next_finals_s_) {
+    next_finals_s_ = now_s + kFinalsRetry_s;
+    if (!finals_failing_since_s_) finals_failing_since_s_ = now_s;
+  }
+  const bool tried_enough =
+      finals_failing_since_s_ && now_s - *finals_failing_since_s_ >= kFinalsPatience_s;
+  finished_ = has_current_ended && (all_written || tried_enough);
+}
+
+/// False when not all of them could be written: they are due again.
+bool Viewer::write_final(SessionScene& shown) {
+  const std::string suffix = final_suffix(shown);
+  if (!shown.final_is_due(suffix)) return true;
+  shown.prepare_final();
+  const Scene& scene = shown.scene();
+  const std::string text = final_caption(scene);
+  const Clock::time_point start = Clock::now();
+  const CameraTrack track = scene.slice_track();
+  const cv::Mat3b figure =
+      renderer_.draw_figure(scene, track, shown.followed(), OverviewView{}, text);
+  note_drawing_time(shown, start);
+  const auto map_in = [&](Coloring coloring) {
+    return renderer_.draw_map(scene, track, shown.followed(), OverviewView{}, coloring);
+  };
+  bool is_written = folder_.save("final" + suffix + ".png", figure);
+  is_written &= folder_.save("map_final" + suffix + ".png", map_in(Coloring::kTrue));
+  is_written &= folder_.save("segments_final" + suffix + ".png", map_in(Coloring::kSegments));
+  if (config_.plots) {
+    is_written &= folder_.save("plots" + suffix + ".png", shown.history().draw({1000, 900}));
+  }
+  if (!is_written) return false;
+  outputs_.on_picture(figure, text);
+  shown.note_final(suffix);
+  if (scene.lag_slices() > 0) {
+    spdlog::warn("map session {}: {} slices lack their segments or are missing",
+                 scene.map_session(), scene.lag_slices());
+  }
+  spdlog::info("final pictures of map session {}: {}", scene.map_session(), text);
+  return true;
 }
 
 void Viewer::close() {
-  write_final();
-  if (!video_) return;
-  if (attempt([this] { video_->finish(); }) && video_->frames() > 0) {
-    spdlog::info("{} frames in {}", video_->frames(), video_->path().string());
+  for (auto& [session, shown] : sessions_.scenes()) {
+    if (!write_final(shown)) ++failures_;
   }
-  video_.reset();
-}
-
-void Viewer::save(const std::string& name, const cv::Mat3b& image) {
-  if (attempt([&] { write_png(config_.folder / name, image); })) ++snapshots_written_;
-}
-
-template <class Action>
-bool Viewer::attempt(Action&& action) {
-  try {
-    action();
-    return true;
-  } catch (const std::exception& error) {
-    ++failures_;
-    spdlog::error("{}", error.what());
-    return false;
+  if (const SessionScene* const shown = sessions_.current_scene()) {
+    finished_ = finished_ || shown->is_complete();
   }
+  if (video_ && !video_->finish()) ++failures_;
 }
 
 ViewerStatus Viewer::status() const {
   ViewerStatus status;
   status.finished = finished_;
-  status.snapshots_written = snapshots_written_;
+  status.snapshots_written = folder_.written();
   status.render_ms = render_ms_;
-  if (!scene_) return status;
-  const SceneCounts& counts = scene_->counts();
-  status.slices_received = counts.slices;
-  status.updates_applied = counts.updates;
-  status.lag_slices = scene_->lag_slices();
-  status.points = counts.points;
-  status.segments = counts.segments;
-  status.memory_bytes = scene_->memory_bytes();
+  status.problem = folder_.problem();
+  if (status.problem.empty() && video_) status.problem = video_->problem();
+  for (const auto& [session, shown] : sessions_.scenes()) {
+    status.memory_bytes += shown.scene().memory_bytes();
+  }
+  const SessionScene* const shown = sessions_.current_scene();
+  if (shown == nullptr) return status;
+  const Scene& scene = shown->scene();
+  status.map_session = scene.map_session();
+  status.map_name = map_name_;
+  status.slices_received = scene.counts().slices;
+  status.updates_applied = scene.counts().updates;
+  status.lag_slices = scene.lag_slices();
+  status.points = scene.counts().points;
+  status.segments = scene.counts().segments;
   return status;
 }
 

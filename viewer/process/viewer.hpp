@@ -6,29 +6,31 @@
 #include <functional>
 #include <memory>
 #include <optional>
-#include <set>
 #include <string>
 
 #include "viewer/core/renderer.hpp"
-#include "viewer/output/video_file.hpp"
-#include "viewer/process/receiver.hpp"
-#include "viewer/process/run_history.hpp"
+#include "viewer/process/map_sessions.hpp"
+#include "viewer/process/message.hpp"
+#include "viewer/process/picture_folder.hpp"
+#include "viewer/process/video_recorder.hpp"
 
 namespace kintsugi::viewer {
 
-/// Keeps the scene of the newest map session and writes its pictures. One thread.
+/// Keeps the scene of the newest session of one map and writes its pictures. One thread.
 ///
-/// A message of a map session not seen before starts a new scene; the old one's final pictures are
-/// kept under its session number. Two mappers that run at the same time are told apart by
-/// Config::map_name; camera poses carry no name, so then they start no scene. A file that cannot be
-/// written is reported and counted, and the viewer goes on.
+/// A session with a larger number is newer: its scene begins beside the one before, and is drawn
+/// from its first slice on. The one before is kept for what still comes of it; its final pictures
+/// are written under its session number when it is complete, or nothing new came for some seconds.
+/// Of sessions earlier than those two nothing is wanted any more.
+///
+/// A file that cannot be written is reported, and the viewer goes on; final pictures are tried
+/// again until they are written. Times `now_s` are those of a PatientClock.
 class Viewer {
  public:
   struct Config {
     Renderer::Config renderer;
     View view = FollowView{};
     std::filesystem::path folder = ".";  ///< of the pictures; must exist
-    std::string map_name;                ///< draw only the map with this name; empty: any
     int every_slices = 10;               ///< a snapshot each time so many more slices are shown
     std::optional<std::filesystem::path> video;
     double video_period_s = 0.1;  ///< map time between two frames
@@ -39,71 +41,70 @@ class Viewer {
     /// Throws std::invalid_argument naming the field, its value and the bound.
     void validate() const;
   };
-  using OnSnapshot = std::function<void(const cv::Mat3b& picture, const std::string& caption)>;
+  struct Outputs {
+    std::function<void(const cv::Mat3b& picture, const std::string& caption)> on_picture;
+    /// Nothing more is wanted of this map session. May be empty.
+    std::function<void(std::int64_t map_session)> on_forgotten;
+  };
 
   /// Throws what Config::validate() and VideoFile throw.
-  Viewer(const Config& config, OnSnapshot on_snapshot);
+  Viewer(const Config& config, Outputs outputs);
 
-  void add(Message message);
+  void add(Message message, double now_s);
 
   /// Draws a snapshot and a frame of the video if they are due, and time for drawing is left.
   void draw_if_due();
   void draw_snapshot_now();
 
-  /// The final update has been applied, and every slice it counts is here; or has not come for
-  /// kPatience_s.
-  bool complete() const;
+  /// Writes the final pictures of every session that has ended: its final update is here and every
+  /// slice that it counts; or nothing new came for some seconds, and nothing will come: nothing is
+  /// known to be missing that may still be resent (`more_may_come`).
+  void write_finals(double now_s, bool more_may_come);
+  /// The newest session has ended and its final pictures are written, or were tried long enough.
   bool finished() const { return finished_; }
 
-  /// Writes the final pictures of the scene, unless they show it already.
-  void write_final();
-  /// Writes the final pictures and closes the video. Call once, at the end.
+  /// Writes all final pictures that are due and closes the video. Call once, at the end.
   void close();
 
   /// All but what the receiver knows.
   ViewerStatus status() const;
-  std::int64_t failures() const { return failures_; }  ///< files that could not be written
+  /// Pictures, final pictures of a session or videos that are not there and should be.
+  std::int64_t failures() const { return failures_; }
 
  private:
   using Clock = std::chrono::steady_clock;
-  static constexpr double kPatience_s = 5.0;
 
-  void use(CloudSlice slice);
-  void use(const SegmentUpdate& update);
-  void use(const CameraPose& pose);
-  void use(const SegmenterStatus& status);
-  bool is_wanted(const std::string& map_name) const;
-  bool enter_session(std::int64_t session);
-  void write_final_as(const std::string& suffix);
+  void use(CloudSlice slice, double now_s);
+  void use(const SegmentUpdate& update, double now_s);
+  void use(const CameraPose& pose, double now_s);
+  void use(const SegmenterStatus& status, double now_s);
+  SessionScene* enter_session(std::int64_t session, double now_s);
+  void forget_oldest();
 
-  std::int64_t shown_slices() const;
-  bool snapshot_due() const;
-  bool frame_due() const;
-  cv::Mat3b draw(const View& view);
-  void write_snapshot(const cv::Mat3b& figure);
-  void add_frame(const cv::Mat3b& figure);
-  void save(const std::string& name, const cv::Mat3b& image);
-  template <class Action>
-  bool attempt(Action&& action);
+  bool is_current(const SessionScene& shown) const { return &shown == sessions_.current_scene(); }
+  std::string final_suffix(const SessionScene& shown) const;
+  bool has_ended(const SessionScene& shown, double now_s, bool more_may_come) const;
+  void note_finals(double now_s, bool all_written, bool has_current_ended);
+  bool write_final(SessionScene& shown);
+
+  cv::Mat3b draw(SessionScene& shown);
+  void write_snapshot(SessionScene& shown, const cv::Mat3b& figure);
+  void note_drawing_time(SessionScene& shown, Clock::time_point start);
 
   Config config_;
-  OnSnapshot on_snapshot_;
+  Outputs outputs_;
   Renderer renderer_;
-  std::unique_ptr<VideoFile> video_;
-  std::optional<std::int64_t> last_frame_utime_;
+  PictureFolder folder_;
+  std::unique_ptr<VideoRecorder> video_;
 
-  std::optional<Scene> scene_;
-  FollowedCamera followed_;
-  RunHistory history_;
-  std::set<std::int64_t> past_sessions_;
-  std::int64_t shown_in_snapshot_ = 0;
-  bool changed_since_final_ = false;
+  std::string map_name_;
+  MapSessions sessions_;
+
   bool finished_ = false;
-  Clock::time_point last_map_message_ = Clock::now();
-
+  std::optional<double> finals_failing_since_s_;
+  double next_finals_s_ = 0.0;
   Clock::time_point next_drawing_ = Clock::now();
   double render_ms_ = 0.0;
-  std::int64_t snapshots_written_ = 0;
   std::int64_t failures_ = 0;
 };
 

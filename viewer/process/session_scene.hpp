@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "viewer/core/scene.hpp"
+#include "viewer/core/view.hpp"
+#include "viewer/process/run_history.hpp"
+
+namespace kintsugi::viewer {
+
+/// The scene of one map session, and what has been drawn of it. Times `now_s` are those of a
+/// PatientClock.
+class SessionScene {
+ public:
+  SessionScene(std::int64_t map_session, double now_s) : scene_(map_session), last_news_s_(now_s) {}
+
+  void use(CloudSlice slice, double now_s);
+  void use(const SegmentUpdate& update, double now_s);
+  void use(const CameraPose& pose);
+  void use(const SegmenterStatus& status) { history_.add_slice_time(status); }
+
+  const Scene& scene() const { return scene_; }
+  const FollowedCamera& followed() const { return followed_; }
+  RunHistory& history() { return history_; }
+  bool is_empty() const { return scene_.counts().slices == 0; }
+
+  /// The segmenter has said that its map is complete, and all of it is here.
+  bool is_complete() const { return scene_.final_update_seen() && scene_.lag_slices() == 0; }
+  /// Nothing new has come for kPatience_s.
+  bool is_silent(double now_s) const { return now_s - last_news_s_ >= kPatience_s; }
+
+  /// A snapshot is due each time so many slices more are shown: those with their segments,
+  /// corrected ones again; without a segmenter, all.
+  bool snapshot_is_due(int every_slices) const;
+  void note_snapshot() { in_snapshot_ = scene_.counts(); }
+
+  bool frame_is_due(double period_s) const;
+  void note_frame() { last_frame_utime_ = scene_.utime(); }
+
+  /// Final pictures whose names end in `suffix` do not show the scene as it is yet.
+  bool final_is_due(const std::string& suffix) const {
+    return !is_empty() && final_suffix_ != suffix;
+  }
+  /// Before final pictures are drawn: labels of a segmenter that was replaced are not among them.
+  void prepare_final() { scene_.discard_old_labels(); }
+  void note_final(const std::string& suffix) { final_suffix_ = suffix; }
+
+ private:
+  static constexpr double kPatience_s = 5.0;
+
+  void note_news(double now_s);
+
+  Scene scene_;
+  FollowedCamera followed_;
+  RunHistory history_;
+  double last_news_s_;
+  SceneCounts in_snapshot_;  ///< of the last one
+  std::optional<std::int64_t> last_frame_utime_;
+  std::optional<std::string> final_suffix_;  ///< of the final pictures that show the scene as it is
+};
+
+}  // namespace kintsugi::viewer
