@@ -34,6 +34,7 @@ std::vector<SequenceRange> ResendRequests::poll(const SequenceSet& seen, std::in
   const std::int64_t lowest = seen.lowest_missing(begin);
   if (lowest >= end) {
     asked_.reset();
+    has_progress_ = false;
     has_given_up_ = false;
   }
   if (lowest >= overdue) return {};
