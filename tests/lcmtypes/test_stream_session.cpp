@@ -1,0 +1,81 @@
+#include <gtest/gtest.h>
+
+#include "lcmtypes/stream_session.hpp"
+
+namespace kintsugi {
+namespace {
+
+Heartbeat beat(std::int64_t first, std::int64_t next, std::int64_t state = 0) {
+  Heartbeat heartbeat;
+  heartbeat.first_sequence = first;
+  heartbeat.next_sequence = next;
+  heartbeat.state_sequence = state;
+  return heartbeat;
+}
+
+StreamSession a_session() { return StreamSession(ResendRequests::Config{}); }
+
+TEST(StreamSession, BelievesASecondHeartbeatThatTakesSomethingBack) {
+  StreamSession session = a_session();
+  session.hear(beat(0, 10));
+  session.hear(beat(0, 8));  // late
+  EXPECT_EQ(session.next_sequence(), 10);
+  session.hear(beat(0, 12));
+  EXPECT_EQ(session.next_sequence(), 12);
+  session.hear(beat(0, std::int64_t{1} << 48));  // false
+  session.hear(beat(0, 13));
+  session.hear(beat(0, 13));
+  EXPECT_EQ(session.next_sequence(), 13);
+}
+
+TEST(StreamSession, AFalseChunkIsForgottenToo) {
+  StreamSession session = a_session();
+  session.hear(beat(0, 10));
+  session.note(std::int64_t{1} << 47);
+  session.keep(std::int64_t{1} << 47, 100);
+  session.hear(beat(0, 10));
+  session.hear(beat(0, 10));
+  EXPECT_EQ(session.count_missing(), 10);
+  for (std::int64_t sequence = 0; sequence < 10; ++sequence) session.keep(sequence, 100);
+  EXPECT_TRUE(session.is_complete());
+}
+
+TEST(StreamSession, MissesNothingBelowAState) {
+  StreamSession session = a_session();
+  session.hear(beat(0, 10));
+  session.keep(9, 100);
+  EXPECT_EQ(session.count_missing(), 9);
+  session.hear(beat(0, 10, 9));
+  EXPECT_TRUE(session.is_complete());
+  EXPECT_TRUE(session.has(3));
+}
+
+TEST(StreamSession, AlwaysTakesWhatIsMissingLowestIfThereIsAnyRoom) {
+  StreamSession session = a_session();
+  session.hear(beat(0, 10'000));
+  for (std::int64_t sequence = 1; sequence < 100; sequence += 2) session.keep(sequence, 100);
+  constexpr std::size_t kMaxGaps = 50;
+  EXPECT_TRUE(session.takes(0, StreamRoom::kPlenty, kMaxGaps));
+  EXPECT_TRUE(session.takes(100, StreamRoom::kPlenty, kMaxGaps));   // opens no gap
+  EXPECT_FALSE(session.takes(200, StreamRoom::kPlenty, kMaxGaps));  // would open one too many
+  EXPECT_TRUE(session.takes(200, StreamRoom::kPlenty, kMaxGaps + 1));
+  EXPECT_TRUE(session.takes(0, StreamRoom::kOnlyNext, kMaxGaps));
+  EXPECT_FALSE(session.takes(1'000, StreamRoom::kOnlyNext, 1'000));
+  EXPECT_FALSE(session.takes(0, StreamRoom::kNone, kMaxGaps));
+}
+
+TEST(StreamSession, AsksInVainForWhatIsLostWithoutGivingUpTheRest) {
+  StreamSession session = a_session();
+  session.hear(beat(5, 1'000));
+  std::int64_t next = 5;
+  for (double now_s = 0.0; now_s < 8.0; now_s += 0.02) {
+    const auto ranges = session.poll(StreamRoom::kPlenty, 4'000'000, 100, now_s);
+    session.hear(beat(5, 1'000));
+    if (!ranges.empty() && ranges.back().last >= next) session.keep(next++, 60'000);
+  }
+  EXPECT_EQ(session.count_given_up(), 5);
+  EXPECT_FALSE(session.has_given_up());
+}
+
+}  // namespace
+}  // namespace kintsugi
