@@ -1,4 +1,8 @@
+#include <algorithm>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <random>
 #include <set>
 #include <string>
 #include <vector>
@@ -30,6 +34,11 @@ class ViewerTest : public ::testing::Test {
              .on_forgotten = [this](std::int64_t session) { forgotten_.insert(session); }}};
   }
   bool exists(const std::string& name) const { return fs::exists(folder_ / name); }
+
+  std::string read(const std::string& name) const {
+    std::ifstream file(folder_ / name, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
 
   /// The first `count` slices of the room, with their updates, as another session.
   void add_session(Viewer& viewer, std::int64_t session, std::size_t count, double now_s) const {
@@ -90,6 +99,40 @@ TEST_F(ViewerTest, DrawsOneSnapshotOfAMapThatWasThereBefore) {
   }
   EXPECT_EQ(2U, captions_.size());
   EXPECT_EQ(10, viewer.status().updates_applied);
+}
+
+TEST_F(ViewerTest, DrawsTheSameFinalPicturesFromWhateverCameInWhateverOrder) {
+  Viewer there = make_viewer();
+  for (const CameraPose& pose : room_.poses) there.add(pose, kNow_s);
+  for (std::size_t i = 0; i < room_.slices.size(); ++i) {
+    there.add(room_.slices[i], kNow_s);
+    there.add(room_.updates[i], kNow_s);
+    there.draw_if_due();
+  }
+  there.close();
+  const std::vector<std::string> names{"final.png", "map_final.png", "segments_final.png"};
+  std::vector<std::string> expected;
+  for (const std::string& name : names) expected.push_back(read(name));
+
+  std::mt19937 random(1);
+  for (int trial = 0; trial < 5; ++trial) {
+    for (const std::string& name : names) fs::remove(folder_ / name);
+    std::vector<Message> messages(room_.slices.begin(), room_.slices.end());
+    for (SegmentUpdate update : room_.updates) {  // described
+      update.sequence += 50;
+      update.utime = 0;
+      update.num_segments = room_.updates.back().num_segments;
+      messages.emplace_back(std::move(update));
+    }
+    if (trial % 2 == 1) messages.emplace_back(room_.poses[room_.poses.size() / 2]);
+    std::ranges::shuffle(messages, random);
+    Viewer late = make_viewer();
+    for (const Message& message : messages) late.add(message, kNow_s);
+    late.close();
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      EXPECT_TRUE(expected[i] == read(names[i])) << names[i] << ", trial " << trial;
+    }
+  }
 }
 
 TEST_F(ViewerTest, DrawsCorrectedSlicesAgain) {

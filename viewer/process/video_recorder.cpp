@@ -8,7 +8,7 @@
 namespace kintsugi::viewer {
 namespace {
 
-/// A frame as it is before compression, and FFmpeg's buffers and the index with plenty to spare.
+/// A frame as it is before compression; FFmpeg's buffer, 256 kB, and the index with room to spare.
 std::int64_t reserve_for(cv::Size size) {
   constexpr std::int64_t kBuffersAndIndex = 1 << 20;
   return 3 * std::int64_t{size.width} * size.height + kBuffersAndIndex;

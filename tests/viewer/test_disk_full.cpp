@@ -1,0 +1,154 @@
+// kintsugi-viewer while its disk is full and when it has room again. The disk is a tmpfs of a few
+// megabytes that only this test sees.
+
+#include <chrono>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <gtest/gtest.h>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/videoio.hpp>
+#include <sched.h>
+#include <sys/mount.h>
+
+#include "lcmtypes/channels.hpp"
+#include "lcmtypes/message_subscriber.hpp"
+#include "tests/support/private_bus.hpp"
+#include "tests/support/temporary_folder.hpp"
+#include "tests/viewer/recorded_room.hpp"
+#include "tests/viewer/viewer_program.hpp"
+#include "viewer/process/video_recorder.hpp"
+
+namespace kintsugi::viewer {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::TemporaryFolder;
+
+/// Files in this folder are on a small disk of their own.
+class SmallDisk : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (const auto why_not = testing::enter_private_bus()) GTEST_SKIP() << *why_not;
+    const bool is_mounted = unshare(CLONE_NEWNS) == 0 &&
+                            mount(nullptr, "/", nullptr, MS_REC | MS_PRIVATE, nullptr) == 0 &&
+                            mount("tmpfs", folder_.path().c_str(), "tmpfs", 0, "size=6000000") == 0;
+    if (!is_mounted) GTEST_SKIP() << "cannot mount a tmpfs here: " << std::strerror(errno);
+    is_mounted_ = true;
+    bus_ = std::make_unique<Bus>(testing::kPrivateBusUrl);
+    subscribe<ViewerStatus>(*bus_, channels::kViewerStatus,
+                            [this](const ViewerStatus& status) { status_ = status; });
+  }
+  void TearDown() override {
+    if (is_mounted_) umount2(folder_.path().c_str(), MNT_DETACH);
+  }
+
+  void fill_disk(std::uintmax_t bytes_left = 0) const {
+    std::ofstream file(folder_ / "filler", std::ios::binary | std::ios::app);
+    const std::string block(4096, 'x');
+    while (fs::space(folder_.path()).available > bytes_left &&
+           file.write(block.data(), 4096).flush()) {
+    }
+  }
+  void empty_disk() const { fs::remove(folder_ / "filler"); }
+
+  template <class Condition>
+  bool wait_until(Condition&& done, RoomOnBus* room = nullptr) {
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(30);
+    while (!done() && std::chrono::steady_clock::now() < deadline) {
+      bus_->handle(std::chrono::milliseconds(20));
+      if (room != nullptr) room->serve();
+    }
+    return done();
+  }
+
+  const TemporaryFolder folder_;
+  bool is_mounted_ = false;
+  std::unique_ptr<Bus> bus_;
+  std::optional<ViewerStatus> status_;
+};
+
+TEST_F(SmallDisk, KeepsTheViewerFromNothingButItsFilesAndGetsThemWhenThereIsRoom) {
+  const SyntheticMap map = make_room(5.0, 0.05);  // 20 slices
+  RoomOnBus room(*bus_, map);
+  Program program({"--lcm-url", testing::kPrivateBusUrl, "--out", folder_ / "out", "--size",
+                   "640x360", "--every", "5", "--video", folder_ / "room.mp4", "--exit-on-final"});
+  ASSERT_TRUE(wait_until([&] { return status_.has_value(); }));
+  room.publish(5);
+  ASSERT_TRUE(wait_until([&] { return status_->snapshots_written == 1; }, &room));
+  EXPECT_EQ("", status_->problem);
+
+  fill_disk();
+  room.publish(5);
+  ASSERT_TRUE(wait_until(
+      [&] { return status_->updates_applied == 10 && !status_->problem.empty(); }, &room));
+  EXPECT_NE(std::string::npos, status_->problem.find("No space left")) << status_->problem;
+  EXPECT_EQ(1, status_->snapshots_written);
+
+  empty_disk();
+  room.publish(5);
+  ASSERT_TRUE(wait_until([&] { return status_->snapshots_written == 2; }, &room));
+  EXPECT_EQ("", status_->problem);
+
+  fill_disk();
+  room.publish(5);  // the final pictures cannot be written; the viewer waits
+  ASSERT_TRUE(wait_until(
+      [&] { return status_->updates_applied == 20 && !status_->problem.empty(); }, &room));
+  EXPECT_FALSE(status_->finished);
+  empty_disk();
+  ASSERT_TRUE(wait_until([&] { return program.has_ended(); }, &room));
+  EXPECT_EQ(1, program.wait());  // a snapshot is missing
+
+  int num_pictures = 0;
+  for (const auto& entry : fs::directory_iterator(folder_ / "out")) {
+    EXPECT_EQ(".png", entry.path().extension());  // nothing half-written
+    EXPECT_EQ(cv::Size(640, 360), cv::imread(entry.path().string()).size()) << entry.path();
+    ++num_pictures;
+  }
+  EXPECT_GE(num_pictures, 5);
+  EXPECT_TRUE(cv::VideoCapture((folder_ / "room.mp4").string()).isOpened());
+}
+
+TEST_F(SmallDisk, LeavesFramesOutOfAVideoThatPlaysBack) {
+  constexpr int kFrames = 40;
+  VideoRecorder video(folder_ / "a.mp4", {320, 240}, 10.0);
+  cv::Mat3b noise(240, 320);
+  for (int i = 0; i < kFrames; ++i) {
+    cv::randu(noise, 0, 256);
+    video.add(noise);
+  }
+  EXPECT_EQ(0, video.frames_left_out());
+  fill_disk(1'000'000);
+  for (int i = 0; i < kFrames; ++i) video.add(noise);
+  EXPECT_EQ(kFrames, video.frames_left_out());
+  EXPECT_NE(std::string::npos, video.problem().find("a.mp4")) << video.problem();
+  empty_disk();
+  for (int i = 0; i < kFrames; ++i) video.add(noise);
+  EXPECT_EQ("", video.problem());
+  fill_disk(400'000);  // FFmpeg holds 256 kB back, and the index is small
+  EXPECT_TRUE(video.finish());
+
+  cv::VideoCapture played((folder_ / "a.mp4").string());
+  int frames = 0;
+  for (cv::Mat frame; played.read(frame);) ++frames;
+  EXPECT_EQ(2 * kFrames, frames);
+}
+
+TEST_F(SmallDisk, SaysThatAVideoIsLostAndLeavesNothing) {
+  auto video = std::make_unique<VideoRecorder>(folder_ / "a.mp4", cv::Size(320, 240), 10.0);
+  video->add(cv::Mat3b(240, 320));
+  fill_disk();  // what FFmpeg holds back cannot be written any more
+  EXPECT_FALSE(video->finish());
+  EXPECT_NE(std::string::npos, video->problem().find("is the disk full?")) << video->problem();
+  EXPECT_FALSE(fs::exists(folder_ / "a.mp4"));
+  video.reset();
+  empty_disk();
+  EXPECT_TRUE(fs::is_empty(folder_.path()));
+}
+
+}  // namespace
+}  // namespace kintsugi::viewer
