@@ -99,6 +99,7 @@ class StreamSubscriber {
   /// The sessions with something missing.
   std::vector<StreamGap> gaps() const;
   /// Nothing that is known to exist of the session is missing; false when nothing is known of it.
+  /// Of its newest message the last chunks may be still to come.
   bool is_complete(std::int64_t session) const;
   /// Something of the session is missing, and all of it has been given up for now.
   bool has_given_up(std::int64_t session) const;

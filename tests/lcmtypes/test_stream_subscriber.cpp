@@ -1,65 +1,21 @@
+#include <algorithm>
 #include <random>
 #include <utility>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "lcmtypes/channels.hpp"
-#include "lcmtypes/stream_publisher.hpp"
 #include "lcmtypes/stream_subscriber.hpp"
-#include "tests/support/example_messages.hpp"
 #include "tests/support/message_equality.hpp"
+#include "tests/support/stream_recording.hpp"
 
 namespace kintsugi {
 namespace {
 
-using namespace testing;  // NOLINT: the examples
+using namespace testing;  // NOLINT: the examples and recordings
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
-
-constexpr std::size_t kChunkBytes = 4'000;
-
-/// Everything a publisher transmits, in order.
-struct Recording {
-  std::vector<Bytes> chunks;
-  std::vector<Heartbeat> heartbeats;
-
-  StreamPublisher::Transmit transmit() {
-    return [this](const std::string& channel, ByteView message) {
-      if (channel == channels::kHeartbeat) {
-        heartbeats.push_back(decode<Heartbeat>(message));
-      } else {
-        chunks.emplace_back(message.begin(), message.end());
-      }
-    };
-  }
-};
-
-/// Fast enough that no test waits.
-StreamPublisher::Config fast() {
-  StreamPublisher::Config config;
-  config.rate_bytes_per_s = 1e12;
-  config.max_chunk_bytes = kChunkBytes;
-  return config;
-}
-
-std::vector<Bytes> chunks_of(const std::vector<CloudSlice>& slices) {
-  Recording recording;
-  StreamPublisher publisher(recording.transmit(), channels::kCloudSlice, 42, fast());
-  for (const CloudSlice& slice : slices) publisher.publish(slice);
-  publisher.flush();
-  return recording.chunks;
-}
-
-/// Slices 0 .. count - 1.
-std::vector<CloudSlice> example_slices(int count, int num_points) {
-  std::vector<CloudSlice> slices(static_cast<std::size_t>(count));
-  for (int id = 0; id < count; ++id) {
-    slices[static_cast<std::size_t>(id)] = example_slice(num_points, id);
-  }
-  return slices;
-}
 
 struct Receiver {
   std::vector<CloudSlice> slices;
@@ -76,106 +32,6 @@ struct Receiver {
     for (const Bytes& chunk : chunks) receive(chunk);
   }
 };
-
-TEST(StreamPublisher, NumbersChunksWithoutGapsAndHeartbeatsTheNext) {
-  Recording recording;
-  {
-    StreamPublisher publisher(recording.transmit(), channels::kCloudSlice, 42, fast());
-    publisher.publish(example_slice(1'000, 0));
-    publisher.publish(example_slice(0, 1));
-    publisher.publish(example_slice(300, 2));
-    publisher.flush();
-    EXPECT_EQ(publisher.chunks_published(), static_cast<std::int64_t>(recording.chunks.size()));
-    EXPECT_EQ(publisher.queued_bytes(), 0U);
-  }
-  ASSERT_GT(recording.chunks.size(), 10U);
-  for (std::size_t i = 0; i < recording.chunks.size(); ++i) {
-    EXPECT_EQ(decode_chunk<CloudSlice>(recording.chunks[i]).sequence, static_cast<std::int64_t>(i));
-    EXPECT_LE(recording.chunks[i].size(), kChunkBytes);
-  }
-  ASSERT_FALSE(recording.heartbeats.empty());
-  EXPECT_EQ(recording.heartbeats.back().next_sequence,
-            static_cast<std::int64_t>(recording.chunks.size()));
-  EXPECT_EQ(recording.heartbeats.back().session, 42);
-  EXPECT_EQ(recording.heartbeats.back().channel, channels::kCloudSlice);
-}
-
-TEST(StreamPublisher, SendsTheSameBytesForTheSameMessagesHoweverPaced) {
-  const std::vector<CloudSlice> slices = {example_slice(700, 0), example_slice(20, 1)};
-  StreamPublisher::Config slow = fast();
-  slow.rate_bytes_per_s = 500'000.0;
-  slow.burst_bytes = 1'000;
-  Recording recording;
-  StreamPublisher publisher(recording.transmit(), channels::kCloudSlice, 42, slow);
-  for (const CloudSlice& slice : slices) publisher.publish(slice);
-  publisher.flush();
-  EXPECT_EQ(recording.chunks, chunks_of(slices));
-}
-
-TEST(StreamPublisher, SendsWhatIsQueuedBeforeItGoesAway) {
-  Recording recording;
-  {
-    StreamPublisher publisher(recording.transmit(), channels::kCloudSlice, 42, fast());
-    publisher.publish(example_slice(1'000, 0));
-  }
-  EXPECT_EQ(recording.chunks, chunks_of({example_slice(1'000, 0)}));
-  EXPECT_EQ(recording.heartbeats.back().next_sequence,
-            static_cast<std::int64_t>(recording.chunks.size()));
-}
-
-TEST(StreamPublisher, StoresEachChunkBeforeItIsSent) {
-  RecentChunks store(10'000'000);
-  Recording recording;
-  const auto transmit = recording.transmit();
-  StreamPublisher publisher(
-      [&](const std::string& channel, ByteView message) {
-        transmit(channel, message);
-        EXPECT_GE(store.next_sequence(), static_cast<std::int64_t>(recording.chunks.size()));
-      },
-      channels::kCloudSlice, 42, fast(), &store);
-  publisher.publish(example_slice(1'000, 0));
-  publisher.flush();
-  for (std::size_t i = 0; i < recording.chunks.size(); ++i) {
-    EXPECT_EQ(store.find(static_cast<std::int64_t>(i)), recording.chunks[i]);
-  }
-  EXPECT_EQ(recording.heartbeats.back().first_sequence, 0);
-}
-
-TEST(StreamPublisher, RefusesBadMessagesAtTheCall) {
-  Recording recording;
-  StreamPublisher publisher(recording.transmit(), channels::kCloudSlice, 42, fast());
-  CloudSlice bad = example_slice(10);
-  bad.resolution_m = -1.0F;
-  EXPECT_THROW(publisher.publish(bad), std::invalid_argument);
-  CloudSlice other = example_slice(10);
-  other.session = 41;
-  EXPECT_THROW(publisher.publish(other), std::invalid_argument);
-  publisher.flush();
-  EXPECT_THAT(recording.chunks, IsEmpty());
-}
-
-TEST(StreamPublisher, ThrowsAtFlushAndPublishWhatSendingThrew) {
-  StreamPublisher publisher(
-      [](const std::string& channel, ByteView) {
-        if (channel == channels::kCloudSlice) throw std::runtime_error("the network is down");
-      },
-      channels::kCloudSlice, 42, fast());
-  publisher.publish(example_slice(10));
-  EXPECT_THROW(publisher.flush(), std::runtime_error);
-  EXPECT_THROW(publisher.publish(example_slice(10)), std::runtime_error);
-}
-
-TEST(StreamPublisher, ValidatesItsConfiguration) {
-  Recording recording;
-  for (auto* change : {+[](StreamPublisher::Config& c) { c.rate_bytes_per_s = 0.0; },
-                       +[](StreamPublisher::Config& c) { c.burst_bytes = 0; },
-                       +[](StreamPublisher::Config& c) { c.max_chunk_bytes = 100; },
-                       +[](StreamPublisher::Config& c) { c.heartbeat_period = {}; }}) {
-    StreamPublisher::Config config;
-    change(config);
-    EXPECT_THROW(StreamPublisher(recording.transmit(), "X", 1, config), std::invalid_argument);
-  }
-}
 
 TEST(StreamSubscriber, PutsShuffledAndDuplicatedChunksTogether) {
   const std::vector<CloudSlice> slices = {example_slice(2'000, 0), example_slice(0, 1),
@@ -274,6 +130,92 @@ TEST(StreamSubscriber, CountsAndDropsBadMessages) {
   EXPECT_EQ(receiver.stream.counts().messages_bad, 3);
   receiver.receive(one);
   EXPECT_THAT(receiver.slices, SizeIs(1));
+}
+
+TEST(StreamSubscriber, RecoversFromAFalseChunkAmongTrueOnes) {
+  Receiver receiver;
+  CloudSlice other = example_slice(500, 0);
+  other.utime += 1;
+  const auto true_chunks = chunks_of({example_slice(500, 0)});
+  receiver.receive(chunks_of({other})[1]);
+  for (int round = 0; round < 2; ++round) receiver.receive(true_chunks);  // sent, and sent again
+  ASSERT_THAT(receiver.slices, SizeIs(1));
+  EXPECT_TRUE(receiver.slices[0] == example_slice(500, 0));
+  EXPECT_EQ(receiver.stream.counts().messages_bad, 1);
+  EXPECT_EQ(receiver.stream.counts().chunks_missing, 0);
+}
+
+TEST(StreamSubscriber, ForgetsASessionForGood) {
+  Receiver receiver;
+  const auto chunks = chunks_of({example_slice(500, 0), example_slice(500, 1)});
+  receiver.receive(chunks[1]);
+  EXPECT_FALSE(receiver.stream.is_complete(42));
+  receiver.stream.forget(42);
+  receiver.receive(chunks);
+  receiver.stream.handle(channels::kHeartbeat,
+                         encode(Heartbeat{1, 42, "CLOUD_SLICE", 0, 99, 0, ""}));
+  EXPECT_THAT(receiver.slices, IsEmpty());
+  EXPECT_EQ(receiver.stream.counts().chunks_duplicate, static_cast<std::int64_t>(chunks.size()));
+  EXPECT_EQ(receiver.stream.counts().chunks_missing, 0);
+  EXPECT_EQ(receiver.stream.pending_bytes(), 0U);
+  EXPECT_THAT(receiver.stream.poll(1.0), IsEmpty());
+}
+
+TEST(StreamSubscriber, IgnoresTheSessionsOfOtherMaps) {
+  StreamSubscriber<CloudSlice>::Config config;
+  config.wanted = [](const CloudSlice& header) { return header.map_name == "kitchen"; };
+  config.wanted_map_name = "kitchen";
+  Receiver receiver(config);
+  const auto beat = [&](std::int64_t session, const std::string& map_name) {
+    receiver.stream.handle(channels::kHeartbeat,
+                           encode(Heartbeat{1, session, "CLOUD_SLICE", 0, 50, 0, map_name}));
+  };
+  beat(42, "office");
+  EXPECT_EQ(receiver.stream.counts().chunks_missing, 0);
+  beat(42, "");  // may be any map's
+  EXPECT_EQ(receiver.stream.counts().chunks_missing, 50);
+  receiver.receive(chunks_of({example_slice(500, 0)})[0]);  // of the office
+  EXPECT_EQ(receiver.stream.counts().chunks_unwanted, 1);
+  EXPECT_EQ(receiver.stream.counts().chunks_missing, 0);
+  beat(42, "");
+  EXPECT_EQ(receiver.stream.counts().chunks_missing, 0);
+  beat(43, "kitchen");
+  EXPECT_EQ(receiver.stream.counts().chunks_missing, 50);
+}
+
+TEST(StreamSubscriber, CutsItsRequestsToTheSizeOfADatagram) {
+  StreamSubscriber<CloudSlice>::Config config;
+  config.receiver = 5;
+  Receiver receiver(config);
+  const std::vector<Bytes> chunks = chunks_of(example_slices(1'000, 1));
+  for (std::size_t i = 1; i < chunks.size(); i += 2) receiver.receive(chunks[i]);
+  receiver.stream.poll(1.0);
+  const auto requests = receiver.stream.poll(2.0);
+  std::vector<SequenceRange> ranges;
+  for (const ResendRequest& request : requests) {
+    EXPECT_LE(encode(request).size(), config.max_request_bytes);
+    EXPECT_EQ(request.session, 42);
+    EXPECT_EQ(request.receiver, 5);
+    ranges.insert(ranges.end(), request.ranges.begin(), request.ranges.end());
+  }
+  EXPECT_GT(requests.size(), 2U);
+  EXPECT_EQ(ranges, receiver.stream.gaps()[0].ranges);
+  EXPECT_EQ(receiver.stream.counts().requests_sent, static_cast<std::int64_t>(requests.size()));
+}
+
+TEST(StreamSubscriber, MadeUpSessionsDoNotDriveOutATrueOne) {
+  StreamSubscriber<CloudSlice>::Config config;
+  config.max_sessions = 8;
+  Receiver receiver(config);
+  const std::vector<Bytes> chunks = chunks_of(example_slices(4, 300));
+  receiver.receive(chunks);
+  for (std::int64_t session = 1'000; session < 3'000; ++session) {
+    receiver.stream.handle(channels::kHeartbeat,
+                           encode(Heartbeat{1, session, "CLOUD_SLICE", 0, 50, 0, ""}));
+  }
+  receiver.receive(chunks);
+  EXPECT_THAT(receiver.slices, SizeIs(4));  // none twice
+  EXPECT_LE(receiver.stream.gaps().size(), 7U);
 }
 
 TEST(StreamSubscriber, TakesOnlyWhatIsMissingLowestBeyondItsMemoryBound) {
