@@ -83,7 +83,7 @@ choose_scene() {
 
 now_s() { printf '%s' "$EPOCHREALTIME"; }
 since_s() { awk -v a="$1" -v b="$EPOCHREALTIME" 'BEGIN { printf "%.1f", b - a }'; }
-calculate() { awk "BEGIN { printf \"%.${2:-2}f\", $1 }"; }
+calculate() { awk "BEGIN { printf \"%.${2:-2}f\", ($1) }"; }
 
 # run_to_end NAME COMMAND...: scripts/trio with options, into the folder NAME; NAME.txt has what it said, NAME/seconds
 # how long it took. Fails as it fails.

@@ -5,10 +5,10 @@ run_files=(mapper.lcm 'mapper.*.lcm' segmenter.map run.lcm run.lcm.partial 'segm
   'map_final*.png' 'segments_final*.png' 'final_*.png' 'snapshot_*.png' run.mp4 trajectory.txt status.csv
   mapper.log segmenter.log viewer.log logger.log trio.options)
 
-# lock_folder: for as long as the script or a process of its run lives.
+# lock_folder: for as long as the script or a process of its run lives; those of one that was killed end soon.
 lock_folder() {
   exec {lock_fd}>>"$out/.lock"
-  flock --nonblock "$lock_fd" && return
+  flock --timeout 3 "$lock_fd" && return
   say "another scripts/trio is at work in $out; give this one a folder of its own with --out"
   exit 1
 }

@@ -44,16 +44,19 @@ trio_note_cpu() {
   done
 }
 
-# trio_stop SIGNAL SECONDS NAME...: asks the named processes to stop and waits; kills what does not, and fails then.
+# trio_stop SIGNAL SECONDS NAME...: asks the named processes to stop, again each second, for one that has finished its
+# work stays to be asked by others until it is told twice. Kills what does not stop, and fails then.
 trio_stop() {
-  local signal="$1" seconds="$2" name deadline killed=0
+  local signal="$1" seconds="$2" name i killed=0
   shift 2
-  for name in "$@"; do
-    trio_alive "$name" && kill -s "$signal" "${trio_pid[$name]}" 2>/dev/null
+  for ((i = 0; i < 10 * seconds; ++i)); do
+    trio_any_alive "$@" || return 0
+    for name in "$@"; do
+      ((i % 10 == 0)) && trio_alive "$name" && kill -s "$signal" "${trio_pid[$name]}" 2>/dev/null
+    done
+    sleep 0.1 || true
   done
-  deadline=$((SECONDS + seconds))
   for name in "$@"; do
-    while trio_alive "$name" && ((SECONDS < deadline)); do sleep 0.1; done
     trio_alive "$name" || continue
     say "$name did not stop within $seconds s; killing it"
     kill -KILL "${trio_pid[$name]}" 2>/dev/null || true
@@ -61,6 +64,7 @@ trio_stop() {
   done
   ((!killed))
 }
+trio_any_alive() { local name; for name in "$@"; do trio_alive "$name" && return; done; return 1; }
 
 # known PROGRAM OPTION...: those of the options that the program has.
 known() {
@@ -122,7 +126,7 @@ trio_watch() {
 # trio_show_progress SECONDS: until all have finished, or nothing moved for so long.
 trio_show_progress() {
   trio_stop TERM 2 progress
-  setsid "$KINTSUGI_BIN/kintsugi-status" --until-finished --viewer --timeout "$1" --log "$out/status.csv" &
+  setpriv --pdeathsig TERM setsid "$KINTSUGI_BIN/kintsugi-status" --until-finished --viewer --timeout "$1" --log "$out/status.csv" &
   trio_pid[progress]=$!
 }
 

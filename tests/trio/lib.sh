@@ -49,3 +49,14 @@ vertices() { head -c 2000 "$1" | grep -a -m1 -oP 'element vertex \K\d+'; }
 expect_file() { [[ -s "$1" ]] || fail "$1 is missing or empty; there is: $(ls .)"; }
 expect_same() { cmp "$1" "$2" || fail "$1 and $2 differ"; }
 expect_no_partial_files() { compgen -G "$1/*.partial*" && fail "half-written files are left" || true; }
+
+# hold_rows ROW...: rows of scripts/faults, at the size for tests. Skipped where one is not permitted.
+hold_rows() {
+  local code=0
+  "$root/scripts/faults" --quick --out "$work/faults" "$@" 2>&1 || code=$?
+  ((code == 77)) && exit 77
+  ((code == 0)) || {
+    tail -n 30 "$work"/faults/*/faulty/*.log >&2 2>/dev/null || true
+    fail "scripts/faults --quick $*"
+  }
+}
