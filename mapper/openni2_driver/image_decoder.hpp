@@ -1,5 +1,7 @@
 #pragma once
 // Compressed images to pixels, refusing what a decoder would let pass: cut-off files, other types.
+// PNG and JPEG only. What an image says of its size is compared with what is expected, and with its
+// bytes, before memory is taken for it.
 
 #include <cstdint>
 #include <filesystem>
@@ -17,7 +19,7 @@ namespace kintsugi::mapper {
 cv::Mat_<std::uint16_t> decode_depth(std::span<const std::uint8_t> bytes, cv::Size expected,
                                      const std::string& what);
 
-/// An 8-bit image of one, three or four channels in any format OpenCV reads, red first.
+/// An 8-bit image of one, three or four channels (PNG or JPEG), red first.
 /// @throws std::runtime_error as above.
 cv::Mat_<cv::Vec3b> decode_color(std::span<const std::uint8_t> bytes, cv::Size expected,
                                  const std::string& what);

@@ -1,0 +1,22 @@
+#pragma once
+// What a compressed image says of itself, read without decoding it.
+
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include <opencv2/core.hpp>
+
+namespace kintsugi::mapper {
+
+struct ImageHeader {
+  enum class Format { kPng, kJpeg };
+  Format format = Format::kPng;
+  cv::Size size;
+  int bits_per_pixel = 0;  ///< of all channels
+};
+
+/// Nothing when `bytes` are neither PNG nor JPEG, or end before they have told.
+std::optional<ImageHeader> read_image_header(std::span<const std::uint8_t> bytes);
+
+}  // namespace kintsugi::mapper
