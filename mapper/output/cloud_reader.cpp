@@ -1,11 +1,14 @@
 #include "mapper/output/cloud_reader.hpp"
 
 #include <cerrno>
+#include <charconv>
 #include <cstring>
 #include <fstream>
 #include <map>
+#include <optional>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "lcmtypes/channels.hpp"
@@ -21,6 +24,13 @@ constexpr std::size_t kRecordBytes = 31;
   throw std::runtime_error(path.string() + ": " + what);
 }
 
+std::optional<std::int64_t> parse_count(std::string_view text) {
+  std::int64_t count = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), count);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return count;
+}
+
 /// Checks the header line by line. @return the number of points
 std::int64_t read_header(std::istream& in, const std::filesystem::path& path) {
   std::int64_t count = -1;
@@ -33,7 +43,7 @@ std::int64_t read_header(std::istream& in, const std::filesystem::path& path) {
     std::string line;
     std::getline(in, line);
     if (expected == kElement && line.rfind(kElement, 0) == 0) {
-      count = std::atoll(line.c_str() + kElement.size());
+      count = parse_count(std::string_view(line).substr(kElement.size())).value_or(-1);
     } else if (line != expected) {
       fail(path, "has " + line.substr(0, 60) + " in its header, expected " + expected);
     }
@@ -58,6 +68,7 @@ std::vector<CloudPoint> read_ply(const std::filesystem::path& path) {
   if (!in) fail(path, std::strerror(errno));
   const std::int64_t count = read_header(in, path);
   const auto body = static_cast<std::int64_t>(in.tellg());
+  if (body < 0) fail(path, "ends with its header");  // without the end of the last line
   const auto size = static_cast<std::int64_t>(std::filesystem::file_size(path)) - body;
   if (count < 0 || size / static_cast<std::int64_t>(kRecordBytes) != count ||
       size % static_cast<std::int64_t>(kRecordBytes) != 0) {

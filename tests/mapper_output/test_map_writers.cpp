@@ -12,6 +12,7 @@
 
 #include "mapper/output/cloud_reader.hpp"
 #include "mapper/output/map_writers.hpp"
+#include "tests/support/allocation_limit.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace kintsugi::mapper {
@@ -161,6 +162,38 @@ TEST(CloudReader, SaysWhatIsWrongWithAFile) {
     std::ofstream(path, std::ios::binary) << whole.substr(0, size);
     EXPECT_THROW(read_cloud(path), std::runtime_error) << size;
   }
+}
+
+TEST(CloudReader, TakesNoMemoryForPointsThatCannotBeThere) {
+  const kintsugi::testing::TemporaryFolder folder;
+  const auto path = folder.path() / "map.ply";
+  CloudWriter writer(path);
+  writer.append({example_point(1), example_point(2)});
+  writer.commit();
+  const std::string whole = read_file(path);
+  const std::size_t count = whole.find("vertex ") + 7;
+  const std::size_t end = whole.find('\n', count);
+  for (const char* claim : {"2000000000", "99999999999999999999", "-1", "2x", ""}) {
+    std::ofstream(path, std::ios::binary) << std::string(whole).replace(count, end - count, claim);
+    const auto refuse = [&] { EXPECT_THROW(read_cloud(path), std::runtime_error) << claim; };
+    EXPECT_LT(kintsugi::testing::allocated_by(refuse), 32'768U) << claim;  // the stream's buffer
+  }
+}
+
+TEST(CloudReader, RefusesAHeaderWithoutAnEnd) {
+  const kintsugi::testing::TemporaryFolder folder;
+  const auto path = folder.path() / "map.ply";
+  CloudWriter writer(path);
+  writer.commit();
+  std::string header = read_file(path);
+  header.pop_back();
+  // A claim that the length of the file, taken for that of the points, would bear out.
+  const std::string claim = std::to_string((header.size() + 1) / 31);
+  const std::size_t count = header.find("vertex ") + 7;
+  header.replace(count, header.find('\n', count) - count, claim);
+  std::ofstream(path, std::ios::binary) << header;
+  EXPECT_THAT([&] { read_cloud(path); },
+              ThrowsMessage<std::runtime_error>(HasSubstr("ends with its header")));
 }
 
 }  // namespace
