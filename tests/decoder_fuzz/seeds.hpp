@@ -1,0 +1,28 @@
+#pragma once
+// What the fuzzers begin with: small valid inputs, made by our own writers, so never out of date.
+
+#include <filesystem>
+#include <map>
+#include <string>
+
+#include "lcmtypes/codec.hpp"
+
+namespace kintsugi::fuzzing {
+
+/// Inputs by name.
+using Seeds = std::map<std::string, Bytes>;
+
+/// What several targets read.
+Seeds message_seeds();  ///< one LCM message of each type
+Seeds log_seeds();      ///< logs of chunked messages and heartbeats
+Seeds request_seeds();
+Seeds stored_session_seeds();
+Seeds rgbd_frame_seeds();
+Seeds image_seeds();
+Seeds cloud_file_seeds();
+Seeds ply_seeds();
+Seeds saved_map_seeds();
+Seeds oni_seeds();
+Seeds text_seeds(const std::string& target);
+
+}  // namespace kintsugi::fuzzing
