@@ -9,6 +9,24 @@
 #include "lcmtypes/channels.hpp"
 
 namespace kintsugi::mapper {
+namespace {
+
+StoredSession read_options(ByteView data) {
+  try {
+    const auto json = nlohmann::json::parse(data.begin(), data.end());
+    const auto& number = json.at("session");
+    if (!number.is_number_integer()) throw std::runtime_error("session is no whole number");
+    StoredSession session;
+    session.session = number.get<std::int64_t>();
+    session.options = json.at("options").get<MappingOptions>();
+    return session;
+  } catch (const std::exception& error) {
+    throw std::runtime_error(std::string("its ") + kOptionsChannel +
+                             " cannot be read: " + error.what());
+  }
+}
+
+}  // namespace
 
 Bytes encode_options(std::int64_t session, const MappingOptions& options) {
   const std::string text = nlohmann::json{{"session", session}, {"options", options}}.dump();
@@ -39,10 +57,7 @@ std::optional<StoredChunk> StoredSessionReader::read(const LogEvent& event) {
 }
 
 void StoredSessionReader::begin_session(const LogEvent& event) {
-  const auto json = nlohmann::json::parse(event.data.begin(), event.data.end());
-  StoredSession session;
-  session.session = json.at("session").get<std::int64_t>();
-  session.options = json.at("options").get<MappingOptions>();
+  StoredSession session = read_options(event.data);
   session.last_event_utime = event.utime;
   const auto same = [&](const StoredSession& other) { return other.session == session.session; };
   if (std::ranges::any_of(sessions_, same)) {
