@@ -1,0 +1,92 @@
+// A viewer that comes late, in memory: everything the mapper's log and the segmenter's full state
+// hold of a furnished room of so many million points, from encoded chunks to the scene and to the
+// final pictures. No bus and no pacing: what the viewer itself costs.
+
+#include <fstream>
+#include <string>
+
+#include <benchmark/benchmark.h>
+
+#include "lcmtypes/channels.hpp"
+#include "lcmtypes/stream_publisher.hpp"
+#include "tests/support/temporary_folder.hpp"
+#include "tests/viewer/synthetic_room.hpp"
+#include "viewer/process/receiver.hpp"
+#include "viewer/process/viewer.hpp"
+
+namespace kintsugi::viewer {
+namespace {
+
+struct Sent {
+  std::string channel;
+  Bytes message;
+};
+
+/// Everything as the two streams carry it: the labels before the points, which is the harder order.
+std::vector<Sent> encode_room(std::int64_t million_points) {
+  constexpr double kResolution_m = 0.0088;
+  constexpr double kPointsPerMetre = 18.0 / (kResolution_m * kResolution_m);
+  SyntheticMap room =
+      make_room(1e6 * static_cast<double>(million_points) / kPointsPerMetre, kResolution_m);
+  std::vector<Sent> sent;
+  const auto keep = [&](const std::string& channel, ByteView message) {
+    sent.push_back({channel, Bytes(message.begin(), message.end())});
+  };
+  StreamPublisher::Config config;
+  config.rate_bytes_per_s = 1e12;
+  {
+    StreamPublisher updates(keep, channels::kSegmentUpdate, room.updates[0].session, config);
+    updates.publish_state(std::move(room.updates));
+    updates.flush();
+  }
+  StreamPublisher slices(keep, channels::kCloudSlice, room.slices[0].session, config);
+  for (CloudSlice& slice : room.slices) slices.publish(std::move(slice));
+  slices.flush();
+  return sent;
+}
+
+/// A line of /proc/self/status, MB.
+double status_mb(const std::string& name) {
+  std::ifstream file("/proc/self/status");
+  for (std::string line; std::getline(file, line);) {
+    if (line.starts_with(name + ":")) return std::stod(line.substr(name.size() + 1)) / 1024.0;
+  }
+  return 0.0;
+}
+
+void join_late(benchmark::State& state) {
+  const std::vector<Sent> sent = encode_room(state.range(0));
+  double sent_mb = 0.0;
+  for (const Sent& one : sent) sent_mb += 1e-6 * static_cast<double>(one.message.size());
+  const bool with_pictures = state.range(1) == 1;
+  const testing::TemporaryFolder folder;
+  for (auto _ : state) {
+    std::ofstream("/proc/self/clear_refs") << 5;  // the peak starts anew
+    const double before_mb = status_mb("VmRSS");
+    Viewer::Config config;
+    config.folder = folder.path();
+    Viewer viewer(config,
+                  {.on_picture = [](const cv::Mat3b&, const std::string&) {}, .on_forgotten = {}});
+    Receiver receiver(
+        {.map_name = "", .has_room = {}},
+        [&](Message message) { viewer.add(std::move(message), 0.0); },
+        [&](std::int64_t, const std::string& why) { state.SkipWithError(why.c_str()); });
+    for (const Sent& one : sent) receiver.handle(one.channel, one.message);
+    if (with_pictures) viewer.write_finals(0.0, false);
+    state.counters["peak_MB"] = status_mb("VmHWM") - before_mb;
+    state.counters["points"] = static_cast<double>(viewer.status().points);
+    state.counters["lag"] = static_cast<double>(viewer.status().lag_slices);
+  }
+  state.counters["sent_MB"] = sent_mb;
+}
+
+BENCHMARK(join_late)
+    ->ArgNames({"million_points", "pictures"})
+    ->Args({1, 0})
+    ->Args({4, 0})
+    ->Args({4, 1})
+    ->UseRealTime()
+    ->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace kintsugi::viewer
