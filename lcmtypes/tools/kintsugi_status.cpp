@@ -27,6 +27,7 @@ constexpr int kInterrupted = 130;  // as shells have it
 
 struct Options {
   std::string url;
+  std::string map_name;
   bool once = false;
   bool until_finished = false;
   bool viewer = false;
@@ -87,7 +88,7 @@ double idle_s(const Progress& progress, std::int64_t start_us) {
 
 int watch(const Options& options) {
   Bus bus(options.url);
-  Progress progress;
+  Progress progress(options.map_name);
   std::optional<StatusLog> log;
   if (!options.log_file.empty()) log.emplace(options.log_file);
   subscribe_statuses(bus, progress, log);
@@ -144,6 +145,8 @@ int main(int argc, char** argv) {
   kintsugi::Options options;
   CLI::App app("Shows the progress of mapper, segmenter and viewer, one line a second.");
   app.add_option("--lcm-url", options.url, "Bus; default: LCM_DEFAULT_URL, or this host's");
+  app.add_option("--map-name", options.map_name,
+                 "Watch the map with this name (default: the first that is heard)");
   auto* once = app.add_flag("--once", options.once, "Print one line and exit");
   app.add_flag("--until-finished", options.until_finished,
                "Exit 0 when mapper and segmenter have finished, 2 without progress")

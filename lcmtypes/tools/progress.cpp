@@ -1,7 +1,10 @@
 #include "lcmtypes/tools/progress.hpp"
 
+#include <algorithm>
 #include <cmath>
-#include <cstdio>
+
+#include "lcmtypes/tools/status_text.hpp"
+#include "lcmtypes/tools/text_format.hpp"
 
 namespace kintsugi {
 namespace {
@@ -9,47 +12,52 @@ namespace {
 // Statuses come about once a second; a process that misses five has a problem.
 constexpr double kSilence_s = 5.0;
 
-template <class... Values>
-std::string format(const char* pattern, Values... values) {
-  char text[256];
-  std::snprintf(text, sizeof(text), pattern, values...);
-  return text;
+constexpr std::size_t kMaxMaps = 16;  // that are told apart
+
+/// The named process and how often it has been started again.
+std::string restarts_text(const char* process, int restarts) {
+  if (restarts == 0) return {};
+  if (restarts == 1) return format(" | %s restarted", process);
+  return format(" | %s restarted %d times", process, restarts);
 }
 
-std::string count(std::int64_t value) {
-  const auto real = static_cast<double>(value);
-  if (value < 10'000) return std::to_string(value);
-  if (value < 1'000'000) return format("%.0fk", real / 1e3);
-  return format("%.2fM", real / 1e6);
+std::string problem_text(const char* process, const std::string& problem) {
+  return problem.empty() ? std::string()
+                         : std::string(" | PROBLEM of the ") + process + ": " + problem;
 }
 
-const char* name(TrackingState state) {
-  switch (state) {
-    case TrackingState::kStarting:
-      return "starting";
-    case TrackingState::kTracking:
-      return "tracking";
-    case TrackingState::kLost:
-      return "LOST";
-    case TrackingState::kGiven:
-      return "given poses";
-  }
-  return "?";
+/// A later run of a process has a larger session number.
+template <class Status>
+bool is_later_run(const std::optional<Status>& before, const Status& status) {
+  return before && status.session > before->session;
 }
 
 }  // namespace
 
+bool Progress::is_watched(const std::string& map_name) {
+  if (!map_name_) map_name_ = map_name;
+  if (map_name == *map_name_) return true;
+  if (other_maps_.size() < kMaxMaps) other_maps_.insert(map_name);
+  return false;
+}
+
 void Progress::update(const MapperStatus& status, std::int64_t now_us) {
+  if (!is_watched(status.map_name)) return;
+  if (is_later_run(mapper_, status)) ++mapper_restarts_;
   mapper_ = status;
   note_progress(now_us);
 }
 
 void Progress::update(const SegmenterStatus& status, std::int64_t now_us) {
+  if (is_of_other_map(status.map_name)) return;
+  if (is_later_run(segmenter_, status)) ++segmenter_restarts_;
   segmenter_ = status;
   note_progress(now_us);
 }
 
 void Progress::update(const ViewerStatus& status, std::int64_t now_us) {
+  if (is_of_other_map(status.map_name)) return;
+  if (is_later_run(viewer_, status)) ++viewer_restarts_;
   viewer_ = status;
   note_progress(now_us);
 }
@@ -77,6 +85,8 @@ std::string Progress::unfinished(bool with_viewer) const {
     add("viewer", "not heard of");
   } else if (with_viewer && !viewer_->finished) {
     add("viewer", "not finished");
+  } else if (with_viewer && mapper_ && viewer_->map_session != mapper_->session) {
+    add("viewer", "finished another map");
   }
   return names;
 }
@@ -121,8 +131,12 @@ std::optional<double> Progress::time_left_s() const {
 
 std::string Progress::line(std::int64_t now_us) const {
   if (!heard_anything()) return "waiting: nothing heard on the bus yet";
-  std::string text = mapper_text() + " | " + segmenter_text();
-  if (viewer_) text += " | " + viewer_text();
+  std::string text = (mapper_ ? text_of(*mapper_) : "no mapper") + " | " +
+                     (segmenter_ ? text_of(*segmenter_) : "no segmenter");
+  if (viewer_) text += " | " + text_of(*viewer_);
+  text += restarts_text("mapper", mapper_restarts_) +
+          restarts_text("segmenter", segmenter_restarts_) +
+          restarts_text("viewer", viewer_restarts_) + problems_text();
   const double silence_s = static_cast<double>(now_us - last_heard_us_) / 1e6;
   if (silence_s > kSilence_s) return text + format(" | silent for %.0f s", silence_s);
   if (finished(viewer_.has_value())) return text + " | finished";
@@ -133,41 +147,15 @@ std::string Progress::line(std::int64_t now_us) const {
   return text;
 }
 
-std::string Progress::mapper_text() const {
-  if (!mapper_) return "no mapper";
-  const MapperStatus& m = *mapper_;
-  std::string text = "frame " + std::to_string(m.frames_read);
-  if (m.frames_total > 0) {
-    text +=
-        format("/%lld (%.0f %%)", static_cast<long long>(m.frames_total),
-               100.0 * static_cast<double>(m.frames_read) / static_cast<double>(m.frames_total));
+std::string Progress::problems_text() const {
+  std::string text;
+  if (!other_maps_.empty()) {
+    text += " | another map: " + *other_maps_.begin();
+    if (other_maps_.size() > 1) text += " and more";
   }
-  text +=
-      m.finished ? std::string(" mapped") : format(" %s %.1f Hz", name(m.state), m.frame_rate_hz);
-  if (!m.finished && !m.loss_reason.empty()) text += " (" + m.loss_reason + ")";
-  if (m.frames_lost > 0) text += ", " + count(m.frames_lost) + " lost";
-  if (m.frames_dropped > 0) text += ", " + count(m.frames_dropped) + " dropped";
-  return text + " | " + count(m.slices_published) + " slices " + count(m.points_published) +
-         " points";
-}
-
-std::string Progress::segmenter_text() const {
-  if (!segmenter_) return "no segmenter";
-  const SegmenterStatus& s = *segmenter_;
-  std::string text = count(s.slices_segmented) + " segmented, ";
-  if (s.slices_corrected > 0) text += count(s.slices_corrected) + " corrected, ";
-  text += count(s.segments) + " segments, lag " + count(s.lag_slices) +
-          format(", %.0f ms/slice", s.slice_mean_ms);
-  if (s.slices_missing > 0) text += ", " + count(s.slices_missing) + " slices MISSING";
-  if (s.chunks_missing > 0) text += ", " + count(s.chunks_missing) + " chunks MISSING";
-  if (s.messages_bad > 0) text += ", " + count(s.messages_bad) + " bad messages";
-  return text;
-}
-
-std::string Progress::viewer_text() const {
-  const ViewerStatus& v = *viewer_;
-  std::string text = count(v.snapshots_written) + " pictures, lag " + count(v.lag_slices);
-  if (v.chunks_missing > 0) text += ", " + count(v.chunks_missing) + " chunks MISSING";
+  if (mapper_) text += problem_text("mapper", mapper_->store_problem);
+  if (segmenter_) text += problem_text("segmenter", segmenter_->problem);
+  if (viewer_) text += problem_text("viewer", viewer_->problem);
   return text;
 }
 

@@ -3,15 +3,22 @@
 
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <string>
 
 #include "lcmtypes/messages.hpp"
 
 namespace kintsugi {
 
-/// The newest status of each process. Times `now_us` are the caller's, microseconds.
+/// The newest status of each process that works on one map. Times `now_us` are the caller's,
+/// microseconds.
 class Progress {
  public:
+  /// `map_name` empty: the map that a mapper is heard of first.
+  explicit Progress(const std::string& map_name = "") {
+    if (!map_name.empty()) map_name_ = map_name;
+  }
+
   void update(const MapperStatus& status, std::int64_t now_us);
   void update(const SegmenterStatus& status, std::int64_t now_us);
   void update(const ViewerStatus& status, std::int64_t now_us);
@@ -30,7 +37,8 @@ class Progress {
   /// Seconds until all is mapped and segmented, at the present rates; nothing when not known.
   std::optional<double> time_left_s() const;
 
-  /// One line for a person: frames, state, slices, segments, lag, rates, losses, time left.
+  /// One line for a person: frames, state, slices, store, segments, lag, rates, losses, restarts,
+  /// problems, time left.
   std::string line(std::int64_t now_us) const;
 
  private:
@@ -38,13 +46,21 @@ class Progress {
   std::int64_t work_done() const;
   void note_progress(std::int64_t now_us);
 
-  std::string mapper_text() const;
-  std::string segmenter_text() const;
-  std::string viewer_text() const;
+  bool is_watched(const std::string& map_name);
+  /// A segmenter or viewer that has not heard of a map yet is of any.
+  bool is_of_other_map(const std::string& map_name) const {
+    return map_name_ && !map_name.empty() && map_name != *map_name_;
+  }
+  std::string problems_text() const;
 
+  std::optional<std::string> map_name_;
+  std::set<std::string> other_maps_;
   std::optional<MapperStatus> mapper_;
   std::optional<SegmenterStatus> segmenter_;
   std::optional<ViewerStatus> viewer_;
+  int mapper_restarts_ = 0;  // as new sessions
+  int segmenter_restarts_ = 0;
+  int viewer_restarts_ = 0;
   std::int64_t work_done_ = -1;
   std::int64_t last_heard_us_ = 0;
   std::optional<std::int64_t> last_progress_us_;

@@ -61,12 +61,64 @@ TEST(Progress, NamesLosses) {
   progress.update(lost, 0);
   SegmenterStatus missing = segmenter(0, false);
   missing.slices_missing = 3;
-  missing.chunks_missing = 5;
+  missing.chunks_missing = 9;
+  missing.chunks_given_up = 5;
   missing.messages_bad = 2;
   progress.update(missing, 0);
-  EXPECT_THAT(progress.line(0), AllOf(HasSubstr("LOST"), HasSubstr("(too few inliers)"),
-                                      HasSubstr("7 lost"), HasSubstr("3 slices MISSING"),
-                                      HasSubstr("5 chunks MISSING"), HasSubstr("2 bad messages")));
+  EXPECT_THAT(progress.line(0),
+              AllOf(HasSubstr("LOST"), HasSubstr("(too few inliers)"), HasSubstr("7 lost"),
+                    HasSubstr("3 slices MISSING"), HasSubstr("4 chunks asked for"),
+                    HasSubstr("5 chunks MISSING"), HasSubstr("2 bad messages")));
+}
+
+TEST(Progress, TellsOfStoreRestartsAndProblems) {
+  Progress progress;
+  MapperStatus stored = mapper(250, false);
+  stored.store_bytes = 12'000'000;
+  stored.chunks_resent = 17;
+  progress.update(stored, 0);
+  EXPECT_THAT(progress.line(0), AllOf(HasSubstr("store 12 MB, 17 resent"),
+                                      Not(HasSubstr("PROBLEM")), Not(HasSubstr("restarted"))));
+  stored.store_waiting_bytes = 3'000'000;
+  stored.store_lost_chunks = 2;
+  stored.store_problem = "cannot write 'a.lcm': No space left on device";
+  progress.update(stored, 0);
+  EXPECT_THAT(progress.line(0), AllOf(HasSubstr("store 12 MB (3 MB NOT ON DISK), 2 chunks LOST"),
+                                      HasSubstr("PROBLEM of the mapper: cannot write 'a.lcm'")));
+  SegmenterStatus again = segmenter(3, false);
+  progress.update(again, 0);
+  again.session += 5;
+  again.queue_bytes = 45'000'000;
+  progress.update(again, 0);
+  again.session += 5;
+  again.maps = 2;
+  again.states_sent = 1;
+  progress.update(again, 0);
+  EXPECT_THAT(progress.line(0),
+              AllOf(HasSubstr("segmenter restarted 2 times"), HasSubstr("45 MB waiting"),
+                    HasSubstr("2 maps"), HasSubstr("1 full states sent"),
+                    Not(HasSubstr("mapper restarted"))));
+}
+
+TEST(Progress, WatchesTheMapHeardFirstOrTheOneThatIsNamed) {
+  MapperStatus cellar = mapper(7, false);
+  cellar.map_name = "cellar";
+  MapperStatus room = mapper(250, false);
+  room.map_name = "room";
+  SegmenterStatus of_cellar = segmenter(3, false);
+  of_cellar.map_name = "cellar";
+
+  Progress first;
+  Progress named("cellar");
+  for (Progress* progress : {&first, &named}) {
+    progress->update(room, 0);
+    progress->update(cellar, 0);
+    progress->update(of_cellar, 0);
+  }
+  EXPECT_THAT(first.line(0), AllOf(HasSubstr("frame 250"), HasSubstr("another map: cellar"),
+                                   HasSubstr("no segmenter")));
+  EXPECT_THAT(named.line(0), AllOf(HasSubstr("frame 7"), HasSubstr("another map: room"),
+                                   HasSubstr("11 segmented")));
 }
 
 TEST(Progress, TimeLeftComesFromTheSlowerOfTheTwo) {
@@ -94,6 +146,9 @@ TEST(Progress, IsFinishedWhenAllHaveSaidSoForTheSameMap) {
   progress.update(viewer, 0);
   EXPECT_EQ(progress.unfinished(true), "viewer not finished");
   viewer.finished = true;
+  progress.update(viewer, 0);
+  EXPECT_EQ(progress.unfinished(true), "viewer finished another map");
+  viewer.map_session = 42;
   progress.update(viewer, 0);
   EXPECT_TRUE(progress.finished(true));
   EXPECT_THAT(progress.line(0), HasSubstr("finished"));
