@@ -1,5 +1,7 @@
 #include "lcmtypes/bus.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstdlib>
 #include <fstream>
@@ -20,6 +22,8 @@ constexpr int kReceiveBufferBytes = 4'194'304;
 constexpr char kGroup[] = "239.255.76.67";
 constexpr char kReceiveBufferLimit[] = "/proc/sys/net/core/rmem_max";
 
+bool is_datagrams(const std::string& url) { return url.starts_with("udpm://"); }
+
 /// LCM prints pages about a missing route and then fails without a reason; this asks first.
 /// Connecting a datagram socket sends nothing, and fails just when there is no route.
 bool has_multicast_route() {
@@ -38,15 +42,23 @@ bool has_multicast_route() {
 /// The URL to open for what the caller asked for.
 std::string complete_url(const std::string& asked) {
   std::string url = asked.empty() ? default_bus_url() : asked;
-  if (url.rfind("udpm://", 0) != 0 || url.find("recv_buf_size=") != std::string::npos) return url;
+  if (!is_datagrams(url) || url.find("recv_buf_size=") != std::string::npos) return url;
   const char separator = url.find('?') == std::string::npos ? '?' : '&';
   return url + separator + "recv_buf_size=" + std::to_string(kReceiveBufferBytes);
+}
+
+/// The network may take the next datagram: a cable is out, an interface is down, a queue is full,
+/// a firewall drops some.
+bool passes_over(int error) {
+  constexpr std::array kPassing = {ENETDOWN, ENETUNREACH, EHOSTDOWN, EHOSTUNREACH,
+                                   ENOBUFS,  EAGAIN,      EPERM,     ECONNREFUSED};
+  return std::find(kPassing.begin(), kPassing.end(), error) != kPassing.end();
 }
 
 /// True when multicast goes further than this host: ttl > 0; LCM's default is 0.
 bool leaves_host(const std::string& url) {
   const std::size_t option = url.find("ttl=");
-  return url.starts_with("udpm://") && option != std::string::npos &&
+  return is_datagrams(url) && option != std::string::npos &&
          std::atoi(url.c_str() + option + 4) > 0;
 }
 
@@ -90,7 +102,7 @@ std::optional<std::string> receive_buffer_advice() {
 }
 
 Bus::Bus(const std::string& url) : url_(complete_url(url)), lcm_(nullptr, lcm_destroy) {
-  if (url_.starts_with("udpm://") && !has_multicast_route()) {
+  if (is_datagrams(url_) && !has_multicast_route()) {
     throw std::runtime_error("cannot open the bus " + url_ +
                              ": no route for 224.0.0.0/4. One command cures it: "
                              "ip route add 224.0.0.0/4 dev lo");
@@ -106,7 +118,11 @@ Bus::~Bus() = default;
 
 void Bus::publish(const std::string& channel, ByteView message) {
   const auto size = static_cast<unsigned>(message.size());
-  if (lcm_publish(lcm_.get(), channel.c_str(), message.data(), size) != 0) {
+  errno = 0;
+  if (lcm_publish(lcm_.get(), channel.c_str(), message.data(), size) == 0) return;
+  if (is_datagrams(url_) && passes_over(errno)) {
+    ++messages_refused_;
+  } else {
     throw std::runtime_error("cannot publish " + std::to_string(message.size()) + " bytes on " +
                              channel + " of the bus " + url_);
   }

@@ -1,6 +1,7 @@
 #pragma once
 // One LCM instance: opened with a clear error, callbacks that may throw.
 
+#include <atomic>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
@@ -43,7 +44,9 @@ class Bus {
   Bus(const Bus&) = delete;
   Bus& operator=(const Bus&) = delete;
 
-  /// Sends one LCM message. Throws std::runtime_error when it cannot be sent.
+  /// Sends one LCM message. What the network does not take at the moment is lost, as what it drops
+  /// on the way, and counted: streams send it again. Throws std::runtime_error when it cannot be
+  /// sent for another reason.
   void publish(const std::string& channel, ByteView message);
 
   template <SmallMessage Message>
@@ -60,6 +63,7 @@ class Bus {
   bool handle(std::chrono::milliseconds timeout);
 
   const std::string& url() const { return url_; }
+  std::int64_t messages_refused() const { return messages_refused_; }  ///< by the network
 
   /// The largest message that arrives well: one datagram where the bus stays on this host (or is a
   /// file), one Ethernet frame where it leaves it (ttl > 0). What a StreamPublisher takes as
@@ -73,6 +77,7 @@ class Bus {
   std::unique_ptr<_lcm_t, void (*)(_lcm_t*)> lcm_;
   std::vector<std::unique_ptr<Subscriber>> subscribers_;
   std::exception_ptr failure_;
+  std::atomic<std::int64_t> messages_refused_{0};
 };
 
 }  // namespace kintsugi

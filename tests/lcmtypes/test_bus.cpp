@@ -1,6 +1,7 @@
 // Over a real bus, in a network namespace of the test's own. Each test is a process of its own
 // under ctest; the namespace is entered once when they share one.
 
+#include <atomic>
 #include <thread>
 
 #include <gmock/gmock.h>
@@ -113,6 +114,52 @@ TEST_F(PrivateBus, ThrowsInTheReceivingThreadWhatAHandlerThrew) {
   }
   EXPECT_THROW(thread.stop(), std::logic_error);
   EXPECT_NO_THROW(thread.stop());
+}
+
+TEST_F(PrivateBus, SaysHowLargeAMessageMayBe) {
+  EXPECT_EQ(Bus(kPrivateBusUrl).max_message_bytes(), kDefaultMaxChunkBytes);
+  EXPECT_EQ(Bus("udpm://239.255.76.67:7667").max_message_bytes(), kDefaultMaxChunkBytes);
+  EXPECT_EQ(Bus("udpm://239.255.76.67:7667?ttl=1").max_message_bytes(), kMinMaxChunkBytes);
+  EXPECT_EQ(Bus("udpm://239.255.76.67:7667?recv_buf_size=9&ttl=12").max_message_bytes(),
+            kMinMaxChunkBytes);
+  EXPECT_EQ(Bus("file:///dev/null?mode=w").max_message_bytes(), kDefaultMaxChunkBytes);
+}
+
+TEST_F(PrivateBus, TicksBetweenMessagesAndWithoutAny) {
+  Bus bus(kPrivateBusUrl);
+  std::atomic<int> ticks = 0;
+  bus.subscribe("X", [&](ByteView) { bus.publish("X", Bytes{1}); });  // never a pause
+  BusThread thread(bus, [&] { ++ticks; });
+  const auto has_ticked = [&](int number) {
+    for (int wait = 0; wait < 200 && ticks < number; ++wait) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    }
+    return ticks >= number;
+  };
+  EXPECT_TRUE(has_ticked(3));
+  bus.publish("X", Bytes{1});
+  EXPECT_TRUE(has_ticked(ticks + 3));
+  thread.stop();
+
+  BusThread failing(bus, [] { throw std::logic_error("from the tick"); });
+  for (int wait = 0; wait < 200 && !failing.failed(); ++wait) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+  EXPECT_THROW(failing.stop(), std::logic_error);
+}
+
+TEST_F(PrivateBus, YCountsWhatANetworkThatIsDownDoesNotTake) {
+  // In a namespace within, whose loopback goes down while the bus is open.
+  if (enter_private_bus()) GTEST_SKIP() << "no further network namespace here";
+  Bus bus(kPrivateBusUrl);
+  bus.publish("X", Bytes{1});
+  EXPECT_EQ(bus.messages_refused(), 0);
+  ASSERT_TRUE(take_loopback_down());
+  EXPECT_NO_THROW(bus.publish("X", Bytes{1}));
+  EXPECT_EQ(bus.messages_refused(), 1);
+  ASSERT_TRUE(route_multicast_to_loopback());
+  EXPECT_NO_THROW(bus.publish("X", Bytes{1}));
+  EXPECT_EQ(bus.messages_refused(), 1);
 }
 
 TEST_F(PrivateBus, ZKeepsNoRouteForLast) {

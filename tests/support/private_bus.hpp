@@ -61,6 +61,17 @@ inline bool route_multicast_to_loopback() {
   return done;
 }
 
+/// ip link set lo down: from now on nothing can be sent.
+inline bool take_loopback_down() {
+  const int socket = ::socket(AF_INET, SOCK_DGRAM, 0);
+  char loopback[] = "lo";
+  ifreq interface {};
+  std::strcpy(interface.ifr_name, loopback);
+  const bool done = ioctl(socket, SIOCSIFFLAGS, &interface) == 0;
+  close(socket);
+  return done;
+}
+
 /// Call before the process has a second thread. Returns why it is not permitted here, if so:
 ///   if (const auto why_not = enter_private_bus()) GTEST_SKIP() << *why_not;
 inline std::optional<std::string> enter_private_bus() {
