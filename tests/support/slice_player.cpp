@@ -1,0 +1,224 @@
+// slice_player: stands in for a mapper. Publishes a generated map of any size, as slices of one
+// session, through the mapper's own stream and store, and answers who misses something.
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <exception>
+#include <fstream>
+#include <stdexcept>
+#include <string>
+#include <thread>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "lcmtypes/bus.hpp"
+#include "lcmtypes/bus_thread.hpp"
+#include "lcmtypes/channels.hpp"
+#include "lcmtypes/sent_store.hpp"
+#include "lcmtypes/stop_signal.hpp"
+#include "lcmtypes/stream_publisher.hpp"
+#include "tests/support/played_map.hpp"
+
+namespace kintsugi::testing {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using Seconds = std::chrono::duration<double>;
+
+constexpr std::size_t kMaxQueuedBytes = 32U << 20U;  // as a mapper has it
+
+struct Options {
+  std::string url;
+  PlayedMap::Config map;
+  double speed = 1.0;
+  double seconds = 0.0;
+  double linger_s = 2.0;
+  double rate_MB_per_s = 10.0;
+  std::string report;
+};
+
+void add_flags(CLI::App& app, Options& options) {
+  app.add_option("--lcm-url", options.url, "The bus; empty: LCM's default");
+  app.add_option("--points", options.map.num_points, "Size of the map")->capture_default_str();
+  app.add_option("--slice-points", options.map.slice_points, "Size of a slice, at least")
+      ->capture_default_str();
+  app.add_option("--rooms", options.map.num_rooms, "How many the map goes through")
+      ->capture_default_str();
+  app.add_option("--seed", options.map.seed, "Decides the map")->capture_default_str();
+  app.add_option("--session", options.map.session, "Number of the session")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_option("--map-name", options.map.map_name, "Name of the map")->capture_default_str();
+  app.add_option("--speed", options.speed,
+                 "Times the normal rate, which is 0.8 slices a second; 0: as fast as can be sent")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  app.add_option("--seconds", options.seconds,
+                 "Goes on for so long: when all but the final slice is published, the slices come "
+                 "again, corrected")
+      ->capture_default_str();
+  app.add_option("--linger", options.linger_s,
+                 "Stays to answer until nobody has asked for so many seconds; negative: until it "
+                 "is told to stop")
+      ->capture_default_str();
+  app.add_option("--rate", options.rate_MB_per_s, "Of the stream at most, MB a second")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_option("--report", options.report, "Writes at the end what it did (JSON)");
+}
+
+class SlicePlayer {
+ public:
+  explicit SlicePlayer(const Options& options)
+      : options_(options),
+        map_(options.map),
+        bus_(options.url),
+        stream_(bus_, channels::kCloudSlice, options.map.session, stream_config(options, bus_),
+                &store_) {
+    stream_.subscribe(bus_);
+  }
+
+  void run() {
+    const BusThread answering(bus_);
+    start_ = Clock::now();
+    play();
+    finished_ = true;
+    stream_.flush();
+    linger();
+    publish_status();
+    report();
+  }
+
+ private:
+  static StreamPublisher::Config stream_config(const Options& options, const Bus& bus) {
+    StreamPublisher::Config config;
+    config.rate_bytes_per_s = 1e6 * options.rate_MB_per_s;
+    config.max_chunk_bytes = bus.max_message_bytes();
+    config.map_name = options.map.map_name;
+    return config;
+  }
+
+  double elapsed_s() const { return Seconds(Clock::now() - start_).count(); }
+
+  void play() {
+    const std::int32_t last = map_.num_slices() - 1;
+    for (std::int32_t id = 0; id < last; ++id) publish(id, 0);
+    for (std::int32_t revision = 1; elapsed_s() < options_.seconds; ++revision) {
+      for (std::int32_t id = 0; id < last && elapsed_s() < options_.seconds; ++id) {
+        if (stop_requested()) break;
+        publish(id, revision);
+      }
+      if (stop_requested() || last == 0) break;
+    }
+    publish(last, 0);
+  }
+
+  /// When its time has come. Who is told to stop publishes the rest of the map without one.
+  void publish(std::int32_t id, std::int32_t revision) {
+    if (options_.speed > 0.0) {
+      const double due_s = static_cast<double>(slices_) / (options_.speed * kNormalSlicesPerSecond);
+      while (elapsed_s() < due_s && !stop_requested()) rest();
+    }
+    while (stream_.queued_bytes() > kMaxQueuedBytes) rest();
+    CloudSlice slice = map_.slice(id, revision);
+    points_ += static_cast<std::int64_t>(slice.points_W.size());
+    ++slices_;
+    most_queued_bytes_ = std::max(most_queued_bytes_, stream_.queued_bytes());
+    stream_.publish(std::move(slice));
+    publish_status_when_due();
+  }
+
+  void linger() {
+    lingering_ = true;
+    const auto asked_lately = [this] {
+      return options_.linger_s < 0.0 || stream_.time_since_request_s() < options_.linger_s;
+    };
+    const Clock::time_point begin = Clock::now();
+    while (!stop_requested() &&
+           (asked_lately() || Seconds(Clock::now() - begin).count() < options_.linger_s)) {
+      rest();
+    }
+  }
+
+  void rest() {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    publish_status_when_due();
+  }
+
+  void publish_status_when_due() {
+    if (Clock::now() < next_status_) return;
+    next_status_ = Clock::now() + std::chrono::milliseconds(250);
+    publish_status();
+  }
+
+  void publish_status() {
+    const StreamPublisherCounts counts = stream_.counts();
+    MapperStatus status;
+    status.utime = wall_clock_us();
+    status.session = options_.map.session;
+    status.map_name = options_.map.map_name;
+    status.device = "slice_player";
+    status.state = TrackingState::kGiven;
+    status.finished = finished_;
+    status.lingering = lingering_;
+    status.slices_published = slices_;
+    status.points_published = points_;
+    status.chunks_published = stream_.chunks_published();
+    status.chunks_resent = counts.chunks_resent;
+    status.requests_received = counts.requests_received;
+    status.queue_bytes = static_cast<std::int64_t>(stream_.queued_bytes());
+    bus_.publish(channels::kMapperStatus, status);
+  }
+
+  void report() const {
+    const StreamPublisherCounts counts = stream_.counts();
+    const nlohmann::json done = {{"slices", slices_},
+                                 {"points", points_},
+                                 {"chunks", counts.chunks_sent},
+                                 {"bytes", counts.bytes_sent},
+                                 {"chunks_resent", counts.chunks_resent},
+                                 {"bytes_resent", counts.bytes_resent},
+                                 {"requests_received", counts.requests_received},
+                                 {"requests_bad", counts.requests_bad},
+                                 {"most_queued_bytes", most_queued_bytes_},
+                                 {"seconds", elapsed_s()}};
+    std::puts(done.dump(2).c_str());
+    if (options_.report.empty()) return;
+    if (!(std::ofstream(options_.report) << done.dump(2) << '\n')) {
+      throw std::runtime_error("cannot write " + options_.report);
+    }
+  }
+
+  const Options options_;
+  const PlayedMap map_;
+  Bus bus_;
+  RecentChunks store_{4'000'000'000U};
+  StreamPublisher stream_;
+  Clock::time_point start_;
+  Clock::time_point next_status_;
+  std::int64_t slices_ = 0;  // published, corrections too
+  std::int64_t points_ = 0;
+  std::size_t most_queued_bytes_ = 0;
+  bool finished_ = false;
+  bool lingering_ = false;
+};
+
+}  // namespace
+}  // namespace kintsugi::testing
+
+int main(int argc, char** argv) {
+  CLI::App app("Publishes a generated map as a mapper does, and answers who misses something.");
+  kintsugi::testing::Options options;
+  kintsugi::testing::add_flags(app, options);
+  CLI11_PARSE(app, argc, argv);
+  kintsugi::install_stop_signals();
+  try {
+    kintsugi::testing::SlicePlayer(options).run();
+    return 0;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "slice_player: %s\n", error.what());
+    return 1;
+  }
+}
