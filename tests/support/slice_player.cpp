@@ -16,9 +16,11 @@
 #include "lcmtypes/bus.hpp"
 #include "lcmtypes/bus_thread.hpp"
 #include "lcmtypes/channels.hpp"
-#include "lcmtypes/sent_store.hpp"
 #include "lcmtypes/stop_signal.hpp"
 #include "lcmtypes/stream_publisher.hpp"
+#include "mapper/process/run_statistics.hpp"
+#include "mapper/process/session_log.hpp"
+#include "mapper/process/stored_stream.hpp"
 #include "tests/support/played_map.hpp"
 
 namespace kintsugi::testing {
@@ -36,6 +38,7 @@ struct Options {
   double seconds = 0.0;
   double linger_s = 2.0;
   double rate_MB_per_s = 10.0;
+  std::string store;
   std::string report;
 };
 
@@ -66,6 +69,7 @@ void add_flags(CLI::App& app, Options& options) {
   app.add_option("--rate", options.rate_MB_per_s, "Of the stream at most, MB a second")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
+  app.add_option("--store", options.store, "The log of the session; empty: a temporary file");
   app.add_option("--report", options.report, "Writes at the end what it did (JSON)");
 }
 
@@ -75,8 +79,10 @@ class SlicePlayer {
       : options_(options),
         map_(options.map),
         bus_(options.url),
+        log_(log_config(options)),
         stream_(bus_, channels::kCloudSlice, options.map.session, stream_config(options, bus_),
-                &store_) {
+                &log_.stream(channels::kCloudSlice, options.map.session)) {
+    log_.begin_session(options.map.session, {{"device", "slice_player"}});
     stream_.subscribe(bus_);
   }
 
@@ -92,6 +98,12 @@ class SlicePlayer {
   }
 
  private:
+  static mapper::SessionLog::Config log_config(const Options& options) {
+    mapper::SessionLog::Config config;
+    config.path = options.store;
+    return config;
+  }
+
   static StreamPublisher::Config stream_config(const Options& options, const Bus& bus) {
     StreamPublisher::Config config;
     config.rate_bytes_per_s = 1e6 * options.rate_MB_per_s;
@@ -144,6 +156,7 @@ class SlicePlayer {
 
   void rest() {
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    log_.retry();
     publish_status_when_due();
   }
 
@@ -155,6 +168,7 @@ class SlicePlayer {
 
   void publish_status() {
     const StreamPublisherCounts counts = stream_.counts();
+    const mapper::SessionLog::Report store = log_.report();
     MapperStatus status;
     status.utime = wall_clock_us();
     status.session = options_.map.session;
@@ -168,7 +182,12 @@ class SlicePlayer {
     status.chunks_published = stream_.chunks_published();
     status.chunks_resent = counts.chunks_resent;
     status.requests_received = counts.requests_received;
+    status.memory_bytes = mapper::resident_memory_bytes();
     status.queue_bytes = static_cast<std::int64_t>(stream_.queued_bytes());
+    status.store_bytes = store.size_bytes;
+    status.store_waiting_bytes = store.waiting_bytes;
+    status.store_lost_chunks = store.lost_chunks;
+    status.store_problem = store.problem;
     bus_.publish(channels::kMapperStatus, status);
   }
 
@@ -194,7 +213,7 @@ class SlicePlayer {
   const Options options_;
   const PlayedMap map_;
   Bus bus_;
-  RecentChunks store_{4'000'000'000U};
+  mapper::SessionLog log_;
   StreamPublisher stream_;
   Clock::time_point start_;
   Clock::time_point next_status_;

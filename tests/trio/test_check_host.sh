@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # scripts/check_host finds what is wrong with a machine, and the commands that it prints cure it.
-source "$(dirname "${BASH_SOURCE[0]}")/two_hosts.sh"
+source "$(dirname "${BASH_SOURCE[0]}")/../../scripts/lib/two_hosts.sh"
 two_hosts_alone "$@"
 source "$(dirname "${BASH_SOURCE[0]}")/lib.sh"
 two_hosts_begin

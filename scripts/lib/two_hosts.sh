@@ -4,6 +4,7 @@
 #   two_hosts_alone "$@"        first of all: the script again, in a network of its own; ends with 77 where none is allowed
 #   two_hosts_begin             the hosts `mapper` and `desk`, with addresses and multicast routes
 #   on_host NAME COMMAND...     runs a command there, with the bus of both
+#   mapper_host, desk_host      arrays, what to put before a command that shall run there: a process in the background
 #   drop_frames PERCENT         from now on each host loses so many of the frames that come over the cable
 #   frames_dropped NAME         how many that were
 #   ip_count NAME COUNTER       of /proc/net/snmp: FragCreates, ReasmReqds, OutRequests...
@@ -31,6 +32,8 @@ two_hosts_begin() {
     while [[ "$(readlink "/proc/$!/ns/net")" == "$(readlink /proc/self/ns/net)" ]]; do sleep 0.01; done
   done
   ip link add cable netns "${two_hosts_pid[mapper]}" type veth peer name cable netns "${two_hosts_pid[desk]}"
+  mapper_host=(nsenter --net="/proc/${two_hosts_pid[mapper]}/ns/net" env LCM_DEFAULT_URL="$two_hosts_url")
+  desk_host=(nsenter --net="/proc/${two_hosts_pid[desk]}/ns/net" env LCM_DEFAULT_URL="$two_hosts_url")
   for name in mapper desk; do
     on_host "$name" bash -ec "
       ip link set lo up

@@ -1,0 +1,72 @@
+# Sourced by rows whose mapper is slice_player: it publishes a generated map of any size through the mapper's own
+# stream and store.
+
+player="${KINTSUGI_TEST_BIN:-$kintsugi_root/build/release/tests}/slice_player"
+played=()                # what it is told
+viewer_ends=(--exit-on-final)
+mapper_at=() others_at=() # what is put before the commands of the mapper, and of the others: another host, another bus
+
+# The same map in all rows but those of late joiners; the small one is for tests.
+choose_played() {
+  [[ -x "$player" ]] || skip_row "slice_player is not built (scripts/build)"
+  played=(--session=7 --points=1000000 --speed=0)
+  if_quick && played=(--session=7 --points=60000 --slice-points=2000 --speed=0)
+  return 0
+}
+
+# start_played PROCESS...: mapper, segmenter, viewer, or log: every number of the statuses into $out/status.csv.
+start_played() {
+  local name
+  mkdir -p "$out"
+  for name in "$@"; do
+    case "$name" in
+      mapper) trio_start mapper "${mapper_at[@]}" "$player" --linger=-1 --report="$out/player.json" "${played[@]}" ;;
+      segmenter) trio_start segmenter "${others_at[@]}" "$KINTSUGI_BIN/kintsugi-segmenter" --out="$out" --linger=-1 ;;
+      viewer) trio_start viewer "${others_at[@]}" "$KINTSUGI_BIN/kintsugi-viewer" --out="$out" "${viewer_ends[@]}" \
+        --every=1000000 ;;
+      log) trio_start log "${others_at[@]}" "$KINTSUGI_BIN/kintsugi-status" --log "$out/status.csv" ;;
+    esac
+  done
+}
+
+# finish_played SECONDS: until the viewer has drawn the whole map, so long at most; then ends all.
+finish_played() {
+  local deadline=$((SECONDS + $1)) name code
+  while trio_alive viewer && trio_alive segmenter && trio_alive mapper && ((SECONDS < deadline)); do sleep 0.1; done
+  must "the viewer has not drawn the whole map within $1 s, or the others ended before it" not_alive viewer
+  for name in viewer segmenter mapper log; do
+    trio_stop TERM 60 "$name" || failures+=("$name did not stop")
+    code=0
+    wait "${trio_pid[$name]}" 2>/dev/null || code=$?
+    ((code == 0 || code == 143)) || [[ "$name" == log ]] || failures+=("$name ended with code $code, see $out/$name.log")
+  done
+  read_figures "$out"
+}
+not_alive() { ! trio_alive "$1"; }
+
+# played_run RUN: from the start to the end, all three there from the start.
+played_run() {
+  local since="$EPOCHREALTIME"
+  out="$PWD/$1"
+  start_played log segmenter viewer mapper
+  finish_played 300
+  figure[seconds]="$(since_s "$since")"
+}
+
+# played_reference: the folder $reference with the run that nothing befell. Rows that play the same share one.
+played_reference() {
+  local key
+  key="$(printf '%s\n' "${played[@]}" | cksum | cut -d' ' -f1)"
+  reference="$runs/played-$key"
+  if [[ ! -e "$reference/seconds" ]]; then
+    cd "$runs"
+    played_run "played-$key"
+    cd - >/dev/null
+    ((!${#failures[@]})) || return 0
+    echo "${figure[seconds]}" >"$reference/seconds"
+  fi
+  figure[reference_s]="$(<"$reference/seconds")"
+}
+
+# json_number FILE NAME: of a report.
+json_number() { grep -m1 -oP "\"$2\": \K[0-9.]+" "$1" || echo 0; }
