@@ -1,0 +1,64 @@
+# A publisher of random bytes and of mutated valid messages on every channel, 1,000 a second.
+
+fault_row hostile "random and mutated messages on every channel, 1,000 a second for 60 s" hostile_row
+
+hostile_row() {
+  local seconds=60 allowed_mb=32
+  choose_played
+  # So that the map is published for as long.
+  played=(--session=7 --points=1400000 --speed=3)
+  if_quick && { seconds=3; played=(--session=7 --points=60000 --slice-points=2000 --speed=4); }
+  played_reference
+  out="$PWD/faulty" viewer_ends=()
+  start_played log segmenter viewer
+  "$KINTSUGI_BIN/kintsugi-status" --until-ready segmenter,viewer --timeout 20 >/dev/null || failures+=("not ready")
+  start_played mapper
+  trio_start hostile "${player%/*}/hostile_publisher" --seconds="$seconds" --seed="$seed" --listen=1 --report=hostile.json
+  wait "${trio_pid[hostile]}" || failures+=("hostile_publisher failed")
+  must "the map was not drawn" wait_for viewer finished 120
+  sleep 1 # for the last statuses
+  figure[lost]="$(datagrams_lost)"
+  trio_stop TERM 60 viewer
+  finish_played 10
+  counted segmenter "$(sent CLOUD_SLICE HEARTBEAT RESEND_REQUEST)"
+  # Of its two streams each counts a bad heartbeat.
+  counted viewer "$(sent CLOUD_SLICE SEGMENT_UPDATE CAMERA_POSE SEGMENTER_STATUS HEARTBEAT HEARTBEAT)"
+  no_growth segmenter "$allowed_mb"
+  no_growth viewer "$allowed_mb"
+  same_map
+}
+
+# wait_for PROCESS FIELD SECONDS: until a status said that it is so.
+wait_for() {
+  local deadline=$((SECONDS + $3))
+  until grep -q ",$1,$2,1" "$out/status.csv"; do
+    ((SECONDS < deadline)) || return 1
+    sleep 0.2
+  done
+}
+
+# sent CHANNEL...: how many hostile messages were sent there.
+sent() {
+  local channel sum=0
+  for channel in "$@"; do sum=$((sum + $(json_number hostile.json "$channel"))); done
+  echo "$sum"
+}
+
+# datagrams_lost: by the sockets on the bus, for want of room in their receive buffers.
+datagrams_lost() { awk '$2 ~ /:1DF3$/ { sum += $NF } END { print sum + 0 }' /proc/net/udp; }
+
+# counted PROCESS SENT: it counted each as bad that reached it.
+counted() {
+  local bad
+  bad="$(status_last faulty "$1" messages_bad)"
+  note "$1: $bad of $2 counted as bad"
+  must "$1 counted $bad bad messages of $2" test "$bad" -le "$2" -a "$bad" -ge "$(($2 - figure[lost]))"
+}
+
+# no_growth PROCESS MB: it took no more memory than in the run without.
+no_growth() {
+  local growth
+  growth="$(calculate "1e-6 * ($(status_most faulty "$1" memory_bytes) - $(status_most "$reference" "$1" memory_bytes))" 0)"
+  note "$1: $growth MB more than without"
+  must "$1 took $growth MB more than without" test "$growth" -le "$2"
+}

@@ -1,0 +1,45 @@
+# Three times the normal rate of slices, for long. KINTSUGI_SOAK_S: how many seconds.
+
+fault_row soak "three times the normal rate of slices for ${KINTSUGI_SOAK_S:-1800} s" soak_row
+
+# The map grows to its full size in the first third; then its slices come again, corrected, at the same rate.
+soak_row() {
+  local seconds="${KINTSUGI_SOAK_S:-1800}" process since="$EPOCHREALTIME"
+  if_quick && seconds=8
+  choose_played
+  played=(--session=7 "--points=$((seconds * 8000))" --speed=3 "--seconds=$seconds")
+  if_quick && played=(--session=7 --points=60000 --slice-points=1500 --speed=12 "--seconds=$seconds")
+  out="$PWD/faulty"
+  start_played log segmenter viewer mapper
+  sleep "$seconds"
+  finish_played 120
+  figure[seconds]="$(since_s "$since")"
+  for process in mapper segmenter viewer; do
+    memory_over_time "$process" "$seconds"
+    must "$process grew after the map had ceased to" is_flat "$process" "$seconds"
+  done
+  must "$(status_last faulty segmenter lag_slices) slices wait in the end" \
+    test "$(status_last faulty segmenter lag_slices)" -eq 0
+  must "slices are missing" test "$(status_last faulty segmenter slices_missing)" -eq 0
+}
+
+# memory_at PROCESS SHARE SECONDS: MB, the most in the tenth of the time that ends there.
+memory_at() {
+  awk -F, -v process="$1" -v share="$2" -v seconds="$3" '
+    NR == 2 { start = $1 }
+    { t = 1e-6 * ($1 - start) }
+    $2 == process && $3 == "memory_bytes" && t <= share * seconds && t > (share - 0.1) * seconds && $4 > most { most = $4 }
+    END { printf "%.0f", 1e-6 * most }' faulty/status.csv
+}
+memory_over_time() {
+  local share line=""
+  for share in 0.1 0.2 0.3 0.4 0.5 0.6 0.7 0.8 0.9 1.0; do line+=" $(memory_at "$1" "$share" "$2")"; done
+  note "$1, MB in each tenth:$line"
+}
+
+# From the middle to the end by a twentieth and 16 MB at most: what an allocator keeps comes and goes.
+is_flat() {
+  local middle end
+  middle="$(memory_at "$1" 0.6 "$2")" end="$(memory_at "$1" 1.0 "$2")"
+  test "$end" -le "$((middle + middle / 20 + 16))"
+}
