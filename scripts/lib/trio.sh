@@ -96,14 +96,14 @@ trio_end_record() {
   mv "$1.partial" "$1"
 }
 
-# trio_watch LEADER NAME... viewer: shows the progress until the viewer has drawn the whole map and ended by itself; then
-# ends the others, the leader last, for they are asked for what is missing until then. One that a signal killed is
-# started again; an error that one reports itself ends the run.
+# trio_watch LEADER NAME...: shows the progress until the last named, the viewer where there is one, has all it needs and
+# has ended by itself; then ends the others, the leader last, for they are asked for what is missing until then. One that
+# a signal killed is started again; an error that one reports itself ends the run.
 trio_watch() {
-  local name leader="$1" asked=0
+  local name leader="$1" last="${!#}" asked=0
   trio_failed=0
   trio_show_progress 60
-  while [[ -n "${trio_pid[viewer]:-}" ]]; do
+  while [[ -n "${trio_pid[$last]:-}" ]]; do
     sleep 0.2 || true
     trio_note_cpu "$@"
     for name in "$@"; do
@@ -115,7 +115,7 @@ trio_watch() {
       trio_alive "$leader" && kill -s TERM "${trio_pid[$leader]}"
     fi
     if ((stop_requested > 1)) || trio_stands_still "$leader"; then
-      trio_stop TERM 60 viewer || trio_failed=1
+      trio_stop TERM 60 "$last" || trio_failed=1
     fi
   done
   trio_close "$@"
