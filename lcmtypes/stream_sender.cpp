@@ -59,11 +59,13 @@ void StreamSender::push(Job job) {
 void StreamSender::request(const ResendRequest& request, double now_s) {
   ++counts_.requests_received;
   const std::int64_t first = first_sequence();
-  const bool is_lost =
-      std::any_of(request.ranges.begin(), request.ranges.end(), [&](const SequenceRange& range) {
-        return range.first < first && range.last >= state_sequence_;
-      });
-  if (is_lost && config_.on_state_wanted) config_.on_state_wanted();
+  const auto is_lost = [&](const SequenceRange& range) {  // one in [state_sequence_, first)
+    return std::max(range.first, state_sequence_) < std::min(range.last + 1, first);
+  };
+  if (config_.on_state_wanted &&
+      std::any_of(request.ranges.begin(), request.ranges.end(), is_lost)) {
+    config_.on_state_wanted();
+  }
   resends_.want(request.ranges, std::max(first, state_sequence_), next_sequence(), now_s);
 }
 

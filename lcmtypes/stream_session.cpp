@@ -62,12 +62,14 @@ std::vector<SequenceRange> StreamSession::poll(StreamRoom room, std::int64_t max
   ResendRequests::Limits limits{max_ranges, max_bytes / chunk_bytes, next_};
   if (room == StreamRoom::kOnlyNext) limits.end = seen_.lowest_missing(state_) + kNextChunks;
   const bool heard = std::exchange(heard_, false);
-  auto ranges = lost_requests_.poll(seen_, state_, resendable(), limits, heard, now_s);
-  limits.max_ranges -= ranges.size();
-  if (limits.max_ranges == 0) return ranges;
-  const auto more = requests_.poll(seen_, resendable(), next_, limits, heard, now_s);
-  ranges.insert(ranges.end(), more.begin(), more.end());
-  return ranges;
+  auto lost = lost_requests_.poll(seen_, state_, resendable(), limits, heard, now_s);
+  if (seen_.lowest_missing(state_) < resendable() && !lost_requests_.has_given_up()) {
+    requests_.pause(now_s);  // the full state that is asked for will supersede the rest too
+    return lost;
+  }
+  const auto ranges = requests_.poll(seen_, resendable(), next_, limits, heard, now_s);
+  lost.insert(lost.end(), ranges.begin(), ranges.end());
+  return lost;
 }
 
 std::vector<SequenceRange> StreamSession::missing(std::size_t max_ranges) const {

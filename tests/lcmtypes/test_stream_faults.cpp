@@ -249,7 +249,7 @@ TEST(StreamFaults, AStoreThatForgetsLeavesAGapThatIsGivenUpAndNothingElse) {
   ASSERT_EQ(gaps.size(), 1U);
   EXPECT_LT(gaps[0].ranges.back().last, gaps[0].first_sequence);
   EXPECT_TRUE(receiver.subscriber.has_given_up(42));
-  EXPECT_GE(receiver.times_received.size(), 420U);
+  for (int id = 100; id < 500; ++id) EXPECT_EQ(receiver.times_received[id], 1) << id;
 }
 
 TEST(StreamFaults, NobodyIsAskedForLongWhenNobodyAnswers) {

@@ -177,6 +177,8 @@ TEST(StreamSender, AStateSupersedesWhatWentBefore) {
   sending.run_until(1.2);
   sending.ask({{0, 4}});
   EXPECT_EQ(states_wanted, 0);
+  sending.ask({{8, kMaxSequence}});
+  EXPECT_EQ(states_wanted, 0);
   sending.ask({{6, 6}});  // gone from the store, and of the state
   EXPECT_EQ(states_wanted, 1);
 }

@@ -1,3 +1,5 @@
+#include <vector>
+
 #include <gtest/gtest.h>
 
 #include "lcmtypes/stream_session.hpp"
@@ -64,17 +66,39 @@ TEST(StreamSession, AlwaysTakesWhatIsMissingLowestIfThereIsAnyRoom) {
   EXPECT_FALSE(session.takes(0, StreamRoom::kNone, kMaxGaps));
 }
 
-TEST(StreamSession, AsksInVainForWhatIsLostWithoutGivingUpTheRest) {
-  StreamSession session = a_session();
-  session.hear(beat(5, 1'000));
-  std::int64_t next = 5;
-  for (double now_s = 0.0; now_s < 8.0; now_s += 0.02) {
-    const auto ranges = session.poll(StreamRoom::kPlenty, 4'000'000, 100, now_s);
+/// Polls for `duration_s`; the sender is heard and answers what it can: from number 5 on.
+std::vector<double> times_of_asking_for_the_rest(StreamSession& session, double duration_s) {
+  std::vector<double> times_s;
+  for (double now_s = 0.0; now_s < duration_s; now_s += 0.02) {
     session.hear(beat(5, 1'000));
-    if (!ranges.empty() && ranges.back().last >= next) session.keep(next++, 60'000);
+    for (const auto& range : session.poll(StreamRoom::kPlenty, 4'000'000, 100, now_s)) {
+      for (std::int64_t i = range.first; i <= range.last; ++i) {
+        if (i < 5) continue;
+        session.keep(i, 60'000);
+        times_s.push_back(now_s);
+      }
+    }
   }
+  return times_s;
+}
+
+TEST(StreamSession, GivesUpWhatIsLostAndThenAsksForTheRest) {
+  StreamSession session = a_session();
+  const auto times_s = times_of_asking_for_the_rest(session, 10.0);
+  EXPECT_EQ(times_s.size(), 995U);
+  EXPECT_GE(times_s.front(), 5.0);  // a full state might have come
   EXPECT_EQ(session.count_given_up(), 5);
-  EXPECT_FALSE(session.has_given_up());
+  EXPECT_TRUE(session.has_given_up());
+}
+
+TEST(StreamSession, AsksForNothingThatAFullStateSupersedes) {
+  StreamSession session = a_session();
+  EXPECT_TRUE(times_of_asking_for_the_rest(session, 2.0).empty());
+  session.hear(beat(5, 1'000, 999));
+  session.poll(StreamRoom::kPlenty, 4'000'000, 100, 2.0);
+  const auto ranges = session.poll(StreamRoom::kPlenty, 4'000'000, 100, 2.1);
+  ASSERT_EQ(ranges.size(), 1U);
+  EXPECT_EQ(ranges[0], (SequenceRange{999, 999}));
 }
 
 }  // namespace
