@@ -48,7 +48,11 @@ struct CloudSlice {
   std::int64_t utime = 0;    ///< device time of the frame at which it left, microseconds
   std::int64_t session = 0;  ///< one run of one mapper; > 0
   std::string map_name;      ///< tells mappers on one bus apart
-  std::int32_t id = 0;       ///< >= 0
+  /// Place in the stream: number of its first chunk, and how many it has. Known to receivers, not
+  /// to be set; num_chunks 0: it came by no stream.
+  std::int64_t sequence = 0;
+  std::int32_t num_chunks = 0;
+  std::int32_t id = 0;  ///< >= 0
   std::int32_t revision = 0;
   SliceKind kind = SliceKind::kFinal;
   float resolution_m = 0.0F;  ///< voxel size, > 0

@@ -50,6 +50,14 @@ void StreamSession::keep(std::int64_t sequence, std::size_t bytes) {
   requests_.arrived(sequence);
 }
 
+void StreamSession::restore(const std::vector<SequenceRange>& ranges) {
+  for (const SequenceRange range : ranges) {
+    seen_.insert(range);
+    next_ = std::max(next_, range.last + 1);
+    chunks_kept_ += range.last - range.first + 1;
+  }
+}
+
 std::vector<SequenceRange> StreamSession::poll(StreamRoom room, std::int64_t max_bytes,
                                                std::size_t max_ranges, double now_s) {
   if (room == StreamRoom::kNone) {

@@ -36,6 +36,8 @@ class StreamSession {
   /// There is room for the chunk: for what is missing lowest always, unless there is none at all.
   bool takes(std::int64_t sequence, StreamRoom room, std::size_t max_gaps) const;
   void keep(std::int64_t sequence, std::size_t bytes);
+  /// Chunks that an earlier run of this receiver has kept.
+  void restore(const std::vector<SequenceRange>& ranges);
   void drop(std::int64_t sequence) { seen_.erase(sequence); }
 
   /// What to ask for now; `max_bytes` is an estimate of what comes of it.

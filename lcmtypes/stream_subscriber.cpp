@@ -130,6 +130,13 @@ void StreamSubscriber<Message>::add(const Heartbeat& heartbeat) {
 }
 
 template <BulkMessage Message>
+void StreamSubscriber<Message>::restore(std::int64_t session,
+                                        const std::vector<SequenceRange>& ranges) {
+  const std::lock_guard lock(mutex_);
+  if (Session* const found = sessions_.heard_of(session)) found->numbers.restore(ranges);
+}
+
+template <BulkMessage Message>
 void StreamSubscriber<Message>::forget(std::int64_t session) {
   const std::lock_guard lock(mutex_);
   sessions_.end(session);

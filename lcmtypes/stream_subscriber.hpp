@@ -104,6 +104,10 @@ class StreamSubscriber {
   /// Something of the session is missing, and all of it has been given up for now.
   bool has_given_up(std::int64_t session) const;
 
+  /// What an earlier run of this receiver has of the session: it is not missing, and does not come
+  /// again.
+  void restore(std::int64_t session, const std::vector<SequenceRange>& ranges);
+
   /// Nothing more of the session is wanted: its memory is freed, what comes of it counts as
   /// duplicate.
   void forget(std::int64_t session);

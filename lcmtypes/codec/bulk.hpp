@@ -224,6 +224,7 @@ Message join(const std::vector<Chunk<Message>>& chunks) {
     }
     Message message = front.header;
     if constexpr (requires { message.sequence; }) message.sequence = front.sequence;
+    if constexpr (requires { message.num_chunks; }) message.num_chunks = front.count;
     std::size_t i = 0;
     const std::uint8_t* from = payload.data();
     Traits::for_each_vector(message, [&](auto& records) {
