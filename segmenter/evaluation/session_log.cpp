@@ -30,18 +30,18 @@ struct LoggedSession {
     const auto verdict = order.offer(std::move(slice), {});
     num_slices += verdict == SliceSequencer::Verdict::kTaken;
     num_corrections += verdict == SliceSequencer::Verdict::kCorrected;
-    take(false);
+    take(Outlook::kSilent);
   }
 
   /// Gives up what is missing.
   void end() {
-    do take(true);
-    while (order.give_up_gap({}, true));
+    do take(Outlook::kEnded);
+    while (order.give_up_gap({}, Outlook::kEnded));
   }
 
  private:
-  void take(bool stream_has_ended) {
-    while (auto step = order.pop({}, stream_has_ended)) steps.push_back(*std::move(step));
+  void take(Outlook outlook) {
+    while (auto step = order.pop({}, outlook)) steps.push_back(*std::move(step));
   }
 };
 

@@ -15,9 +15,10 @@ namespace {
 
 // The file: Start, Header; the mode and the name of the map as text; then for all slices one after
 // another SliceHeader, the indices of rejected points (int32), accepted points (CloudPoint), their
-// segment ids (uint32); thetas (double); the checksum. A change of any of this is a new version.
+// segment ids (uint32); thetas (double); the chunks that are in the map (SequenceRange); the
+// checksum. A change of any of this is a new version.
 constexpr std::array<char, 8> kMagic = {'K', 'S', 'E', 'G', 'M', 'A', 'P', '\n'};
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;
 
 struct Start {
   std::array<char, 8> magic = kMagic;
@@ -41,6 +42,8 @@ struct Header {
   std::uint32_t num_rejected = 0;
   std::uint32_t num_points = 0;
   std::uint32_t num_thetas = 0;
+  std::uint32_t num_chunk_ranges = 0;
+  std::uint32_t reserved = 0;
 };
 
 struct SliceHeader {
@@ -49,7 +52,7 @@ struct SliceHeader {
   std::int32_t num_points = 0;
   std::uint32_t num_rejected = 0;
 };
-static_assert(sizeof(Start) == 16 && sizeof(Header) == 88 && sizeof(SliceHeader) == 16,
+static_assert(sizeof(Start) == 16 && sizeof(Header) == 96 && sizeof(SliceHeader) == 16,
               "no padding, which would be written with whatever is in it");
 
 Header header_of(const SegmentMapState& state) {
@@ -72,6 +75,7 @@ Header header_of(const SegmentMapState& state) {
   }
   header.num_points = static_cast<std::uint32_t>(state.points_W.size());
   header.num_thetas = static_cast<std::uint32_t>(state.thetas.size());
+  header.num_chunk_ranges = static_cast<std::uint32_t>(state.chunks.size());
   return header;
 }
 
@@ -80,7 +84,7 @@ std::uint64_t num_bytes_after(const Header& header) {
   return std::uint64_t{header.num_mode_bytes} + header.num_name_bytes +
          header.num_slices * sizeof(SliceHeader) + header.num_rejected * sizeof(std::int32_t) +
          header.num_points * kPointBytes + header.num_thetas * sizeof(double) +
-         sizeof(std::uint32_t);
+         header.num_chunk_ranges * sizeof(SequenceRange) + sizeof(std::uint32_t);
 }
 
 /// Everything that can be told from the first bytes and the size of the file.
@@ -172,6 +176,7 @@ void write_map_state(const SegmentMapState& state, const std::filesystem::path& 
     out.write_all(std::span(state.segment_ids).subspan(slice.first, slice.count));
   }
   out.write_all(std::span(state.thetas));
+  out.write_all(std::span(state.chunks));
   out.write_checksum();
   file.commit();
 }
@@ -193,6 +198,7 @@ SegmentMapState read_map_state(const std::filesystem::path& path) {
   state.segment_ids.reserve(header.num_points);
   for (std::uint32_t i = 0; i < header.num_slices; ++i) read_slice(file, state);
   state.thetas = file.read_all<double>(header.num_thetas);
+  state.chunks = file.read_all<SequenceRange>(header.num_chunk_ranges);
   if (file.left() != sizeof(std::uint32_t)) {
     file.fail("expected the checksum here: the slices have not the points the header tells");
   }

@@ -68,6 +68,9 @@ void SegmentMap::store(const CloudSlice& slice) {
   if (slice.kind == SliceKind::kFinal) {
     final_slice_id_ = slice.id;
   }
+  if (slice.num_chunks > 0) {
+    chunks_.insert({slice.sequence, slice.sequence + slice.num_chunks - 1});
+  }
 }
 
 std::vector<SegmentUpdate> SegmentMap::describe() const {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "lcmtypes/messages.hpp"
+#include "lcmtypes/sequence_set.hpp"
 #include "segmenter/core/engine.hpp"
 #include "segmenter/core/point_cloud.hpp"
 #include "segmenter/core/segment_ids.hpp"
@@ -76,6 +77,8 @@ class SegmentMap {
   [[nodiscard]] std::int64_t session() const { return session_; }
   [[nodiscard]] std::int64_t map_session() const { return map_session_; }
   [[nodiscard]] const std::string& map_name() const { return map_name_; }
+  /// Chunks of the slice stream that are in the map.
+  [[nodiscard]] const SequenceSet& chunks() const { return chunks_; }
 
  private:
   void check(const CloudSlice& slice) const;
@@ -92,6 +95,7 @@ class SegmentMap {
   SegmentStatisticsTable statistics_;
   std::set<std::int32_t> slice_ids_;
   std::int32_t final_slice_id_ = -1;  // -1: not seen
+  SequenceSet chunks_;                // of the slice stream that are in the map
 };
 
 }  // namespace kintsugi::segmenter

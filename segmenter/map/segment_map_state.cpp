@@ -7,6 +7,7 @@
 #include <span>
 #include <stdexcept>
 
+#include "lcmtypes/codec.hpp"
 #include "segmenter/map/segment_map.hpp"
 
 namespace kintsugi::segmenter {
@@ -24,6 +25,20 @@ std::vector<CloudPoint> as_received(const SliceRecord& slice,
     points_W[static_cast<std::size_t>(slice.index_of(k))] = accepted_W[k];
   }
   return points_W;
+}
+
+SequenceSet set_of(const std::vector<SequenceRange>& chunks) {
+  SequenceSet set;
+  std::int64_t end = 0;
+  for (const SequenceRange range : chunks) {
+    if (range.first < end || range.last < range.first || range.last >= kMaxSequence) {
+      throw std::invalid_argument("chunks " + std::to_string(range.first) + " to " +
+                                  std::to_string(range.last) + " are no range above those before");
+    }
+    set.insert(range);
+    end = range.last + 1;
+  }
+  return set;
 }
 
 void check_counts(const SegmentMapState& state) {
@@ -113,7 +128,8 @@ SegmentMap::SegmentMap(const SegmentMapState& state)
       map_name_(state.map_name),
       engine_(make_engine(config_.mode, cloud_, config_.engine)),
       statistics_(static_cast<float>(config_.engine.resolution_m)),
-      final_slice_id_(state.final_slice_id) {
+      final_slice_id_(state.final_slice_id),
+      chunks_(set_of(state.chunks)) {
   check_counts(state);
   restore_cloud(state, cloud_);
   for (const SliceRecord& slice : state.slices) slice_ids_.insert(slice.slice_id);
@@ -143,6 +159,7 @@ SegmentMapState SegmentMap::state() const {
   state.map_name = map_name_;
   state.final_slice_id = final_slice_id_;
   state.next_id = ids_.next_id();
+  state.chunks = chunks_.ranges();
   state.points_W.reserve(cloud_.num_live());
   state.segment_ids.reserve(cloud_.num_live());
   for (SliceRecord slice : cloud_.slices()) {

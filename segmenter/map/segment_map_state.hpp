@@ -30,6 +30,9 @@ struct SegmentMapState {
   std::int32_t final_slice_id = -1;  ///< -1: not seen
   std::uint32_t next_id = 1;         ///< the segment id to be given next
 
+  /// Chunks of the slice stream that are in the map, ascending: they need not be sent again.
+  std::vector<SequenceRange> chunks;
+
   std::vector<SliceRecord> slices;         ///< in order of arrival; `first` is a place in points_W
   std::vector<CloudPoint> points_W;        ///< accepted points, slice after slice
   std::vector<std::uint32_t> segment_ids;  ///< of each of points_W

@@ -36,19 +36,21 @@ SliceSequencer::Verdict SliceSequencer::offer(CloudSlice slice, Clock::time_poin
   }
   end_id_ = std::max(end_id_, std::int64_t{slice.id} + 1);
   if (slice.id <= next_id_) {
+    waiting_bytes_ += bytes_of(slice);
     make_ready(std::move(slice));
     take_turns();
     last_progress_ = now;
     return Verdict::kTaken;
   }
   const auto [place, is_new] = waiting_.try_emplace(slice.id);
+  waiting_bytes_ += is_new ? sizeof(CloudSlice) : 0;
   if (!is_new && slice.revision <= place->second.revision) {
     return Verdict::kDuplicate;
   }
   if (waiting_.size() == 1) {
     last_progress_ = now;
   }
-  place->second = std::move(slice);
+  put(place->second, std::move(slice));
   return is_new ? Verdict::kTaken : Verdict::kReplaced;
 }
 
@@ -66,12 +68,20 @@ SliceSequencer::Verdict SliceSequencer::correct(CloudSlice slice, Clock::time_po
   auto& slices = ready_.back().slices;
   const auto place = std::ranges::lower_bound(slices, slice.id, {}, &CloudSlice::id);
   if (place != slices.end() && place->id == slice.id) {
-    *place = std::move(slice);
+    put(*place, std::move(slice));
   } else {
+    waiting_bytes_ += bytes_of(slice);
     slices.insert(place, std::move(slice));
     ++num_ready_;
   }
   return Verdict::kCorrected;
+}
+
+// In the place of one that waits.
+void SliceSequencer::put(CloudSlice& place, CloudSlice slice) {
+  waiting_bytes_ += bytes_of(slice);
+  waiting_bytes_ -= bytes_of(place);
+  place = std::move(slice);
 }
 
 void SliceSequencer::make_ready(CloudSlice slice) {
@@ -88,13 +98,16 @@ void SliceSequencer::take_turns() {
   }
 }
 
-std::optional<SliceGroup> SliceSequencer::pop(Clock::time_point now, bool stream_has_ended) {
-  if (ready_.empty() || (!stream_has_ended && may_grow(now))) {
+std::optional<SliceGroup> SliceSequencer::pop(Clock::time_point now, Outlook outlook) {
+  if (ready_.empty() || (outlook != Outlook::kEnded && may_grow(now))) {
     return std::nullopt;
   }
   SliceGroup run = std::move(ready_.front());
   ready_.pop_front();
   num_ready_ -= std::ssize(run.slices);
+  for (const CloudSlice& slice : run.slices) {
+    waiting_bytes_ -= bytes_of(slice);
+  }
   if (!run.is_correction) {
     last_progress_ = now;
   }
@@ -108,11 +121,11 @@ bool SliceSequencer::may_grow(Clock::time_point now) const {
          now - first_correction_ < config_.gap_timeout;
 }
 
-std::optional<SliceGap> SliceSequencer::give_up_gap(Clock::time_point now, bool stream_has_ended) {
-  if (waiting_.empty() || !ready_.empty()) {
+std::optional<SliceGap> SliceSequencer::give_up_gap(Clock::time_point now, Outlook outlook) {
+  if (waiting_.empty() || !ready_.empty() || outlook == Outlook::kLive) {
     return std::nullopt;
   }
-  if (!stream_has_ended && now - last_progress_ < config_.gap_timeout) {
+  if (outlook == Outlook::kSilent && now - last_progress_ < config_.gap_timeout) {
     return std::nullopt;
   }
   const SliceGap gap{static_cast<std::int32_t>(next_id_), waiting_.begin()->first - 1};

@@ -2,6 +2,7 @@
 // The canonical order of slices: persistent ids, and the mode `voting`, depend on it.
 
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <map>
@@ -26,11 +27,24 @@ struct SliceGroup {
   bool is_correction = false;
 };
 
+/// What may still come of a stream.
+enum class Outlook {
+  kLive,    ///< what is missing is being sent again: wait for it
+  kSilent,  ///< nobody sends it: wait for SliceSequencer::Config::gap_timeout
+  kEnded,   ///< nothing comes any more
+};
+
+/// Memory of a slice.
+inline std::size_t bytes_of(const CloudSlice& slice) {
+  return sizeof(slice) + slice.points_W.size() * sizeof(CloudPoint);
+}
+
 /// Hands on the slices of one session in the order of their ids, from 0.
 ///
-/// A slice waits while an earlier one is missing. When nothing has come forward for
-/// `gap_timeout`, or the stream has ended, the missing ones are given up: what waits is handed on
-/// up to the next gap. A slice given up that comes after all is handed on at once.
+/// A slice waits while an earlier one is missing. When nothing has come forward for `gap_timeout`
+/// and nobody sends what is missing, or the stream has ended, the missing ones are given up: what
+/// waits is handed on up to the next gap. A slice given up that comes after all is handed on at
+/// once.
 ///
 /// A higher revision of a slice that still waits for an earlier one takes its place. Of a slice
 /// whose turn has come it is a correction: it goes behind what is ready, and all corrections that
@@ -47,7 +61,7 @@ class SliceSequencer {
   using Clock = std::chrono::steady_clock;
 
   struct Config {
-    /// Resends of a live stream take well under a second each; a restart of the mapper more.
+    /// Resends of a live stream are waited for; a restart of the mapper takes a few seconds.
     std::chrono::milliseconds gap_timeout{10'000};  ///< > 0
     /// Longer than a paced stream needs for a large slice, 3 MB at 10 MB/s.
     std::chrono::milliseconds correction_quiet{500};  ///< > 0
@@ -72,7 +86,7 @@ class SliceSequencer {
   Verdict offer(CloudSlice slice, Clock::time_point now);
 
   /// The next run that is complete, when there is one.
-  std::optional<SliceGroup> pop(Clock::time_point now, bool stream_has_ended);
+  std::optional<SliceGroup> pop(Clock::time_point now, Outlook outlook);
 
   /// The slice that pop() will give next if nothing else comes; nullptr when there is none, or when
   /// corrections come first.
@@ -82,10 +96,13 @@ class SliceSequencer {
   }
 
   /// Gives up the first gap when it is time to; returns it. Then pop() again.
-  std::optional<SliceGap> give_up_gap(Clock::time_point now, bool stream_has_ended);
+  std::optional<SliceGap> give_up_gap(Clock::time_point now, Outlook outlook);
 
   /// Slices, and corrections of them, that came and were not handed on.
   [[nodiscard]] std::int64_t num_waiting() const;
+
+  /// Of these, bytes.
+  [[nodiscard]] std::size_t waiting_bytes() const { return waiting_bytes_; }
 
   /// Ids below the largest seen that have not come.
   [[nodiscard]] std::int64_t num_missing() const;
@@ -94,6 +111,7 @@ class SliceSequencer {
   [[nodiscard]] std::int64_t num_given_up() const;
 
  private:
+  void put(CloudSlice& place, CloudSlice slice);
   void make_ready(CloudSlice slice);
   Verdict correct(CloudSlice slice, Clock::time_point now);
   void take_turns();
@@ -103,6 +121,7 @@ class SliceSequencer {
   std::map<std::int32_t, CloudSlice> waiting_;  // for an earlier one, by id
   std::deque<SliceGroup> ready_;                // their turn has come
   std::int64_t num_ready_ = 0;                  // slices in ready_
+  std::size_t waiting_bytes_ = 0;               // of waiting_ and ready_
   Revisions known_;                             // of slices whose turn has come
   std::int64_t next_id_ = 0;                    // the one to wait for
   std::int64_t end_id_ = 0;                     // one past the largest seen

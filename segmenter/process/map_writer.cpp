@@ -1,5 +1,6 @@
 #include "segmenter/process/map_writer.hpp"
 
+#include <bit>
 #include <exception>
 
 #include <spdlog/spdlog.h>
@@ -9,6 +10,8 @@
 
 namespace kintsugi::segmenter {
 namespace {
+
+constexpr char kSaved[] = "";  // the name of what is saved: no stem is empty
 
 void write_files(const MapSnapshot& map, const std::filesystem::path& folder,
                  const std::string& stem) {
@@ -29,70 +32,80 @@ void save_state(const SegmentMapState& state, const std::filesystem::path& file)
 }  // namespace
 
 void MapWriter::write(const SegmentMap& map, const std::string& stem) {
-  if (const Snapshot snapshot = copy(map)) {
-    put_files(snapshot, stem);
-  }
+  put_files(std::make_shared<const MapSnapshot>(take_snapshot(map)), stem);
 }
 
 void MapWriter::save(const SegmentMap& map) {
-  if (config_.save_file.empty()) {
-    return;
-  }
-  if (const Snapshot snapshot = copy(map)) {
-    put_saved(snapshot);
+  if (!config_.save_file.empty()) {
+    put_saved(std::make_shared<const MapSnapshot>(take_snapshot(map)));
   }
 }
 
 void MapWriter::write_and_save(const SegmentMap& map, const std::string& stem) {
-  if (const Snapshot snapshot = copy(map)) {
-    put_files(snapshot, stem);
-    put_saved(snapshot);
-  }
-}
-
-// Null when there is no memory for it.
-MapWriter::Snapshot MapWriter::copy(const SegmentMap& map) {
-  Snapshot snapshot;
-  try_to("the map is not copied",
-         [&] { snapshot = std::make_shared<const MapSnapshot>(take_snapshot(map)); });
-  return snapshot;
+  const auto snapshot = std::make_shared<const MapSnapshot>(take_snapshot(map));
+  put_files(snapshot, stem);
+  put_saved(snapshot);
 }
 
 void MapWriter::put_files(const Snapshot& map, const std::string& stem) {
-  writer_.put(stem, [this, map, stem] {
-    try_to("the map is not written as " + stem, [&] { write_files(*map, config_.folder, stem); });
-  });
+  put(stem, [this, map, stem] { write_files(*map, config_.folder, stem); });
 }
 
 void MapWriter::put_saved(const Snapshot& map) {
-  if (config_.save_file.empty()) {
-    return;
+  if (!config_.save_file.empty()) {
+    put(kSaved, [this, map] { save_state(map->state, config_.save_file); });
   }
-  writer_.put("", [this, map] {  // no stem is empty
-    try_to("the map is not saved", [&] { save_state(map->state, config_.save_file); });
-  });
 }
 
-template <class Action>
-void MapWriter::try_to(const std::string& what, const Action& action) {
-  std::string problem;
+void MapWriter::put(const std::string& name, Action action) {
+  std::int64_t number = 0;
+  {
+    const std::lock_guard lock(mutex_);
+    number = ++newest_[name];
+  }
+  writer_.put(name,
+              [this, name, number, action = std::move(action)] { attempt(name, number, action); });
+}
+
+void MapWriter::attempt(const std::string& name, std::int64_t number, const Action& action) {
+  std::string why;
   try {
     action();
-  } catch (const std::exception& error) {  // the map goes on, and is written again later
-    problem = what + ": " + error.what();
-    spdlog::error("{}", problem);
+  } catch (const std::exception& error) {  // the map goes on
+    why = std::string("the map is not written: ") + error.what();
   }
   const std::lock_guard lock(mutex_);
-  if (problem.empty()) {
-    problems_.erase(what);
-  } else {
-    problems_[what] = problem;
+  if (!why.empty()) {
+    // Of a disk that stays full the 1st, 2nd, 4th, 8th ... failure is told.
+    if (std::has_single_bit(static_cast<std::uint64_t>(++num_failures_))) {
+      spdlog::error("{}", why);
+    }
+    const bool is_newest = newest_[name] == number;
+    failures_[name] = {is_newest ? action : Action{}, why};
+    return;
+  }
+  failures_.erase(name);
+  if (failures_.empty()) {
+    num_failures_ = 0;
+  }
+}
+
+void MapWriter::try_again() {
+  std::map<std::string, Action> actions;
+  {
+    const std::lock_guard lock(mutex_);
+    for (auto& [name, failure] : failures_) {
+      if (failure.action) actions[name] = std::exchange(failure.action, {});
+    }
+  }
+  for (auto& [name, action] : actions) {
+    put(name, std::move(action));
   }
 }
 
 std::string MapWriter::problem() const {
   const std::lock_guard lock(mutex_);
-  return problems_.empty() ? "" : problems_.begin()->second;
+  return failures_.empty() ? "" : failures_.begin()->second.why;
 }
 
 }  // namespace kintsugi::segmenter

@@ -1,7 +1,9 @@
 #pragma once
 // The files of the maps, written while the work goes on.
 
+#include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -14,8 +16,8 @@
 namespace kintsugi::segmenter {
 
 /// Copies maps and writes the copies in a thread of its own. When a file cannot be written, what
-/// was there stays, and this tells so until it is written after all. For one thread, but for what
-/// is said of problem().
+/// was there stays; the copy is kept, and this tells so, until it is written after all or a newer
+/// one is. For one thread, but for problem().
 class MapWriter {
  public:
   struct Config {
@@ -32,25 +34,34 @@ class MapWriter {
   /// Both, of one copy.
   void write_and_save(const SegmentMap& map, const std::string& stem);
 
+  /// Tries again what could not be written.
+  void try_again();
+
   /// Waits until everything handed in is written, or has failed.
   void wait() { writer_.wait(); }
 
-  /// What could not be written when that was tried last; empty: nothing. From any thread.
+  /// What is not written, and why; empty: nothing. From any thread.
   [[nodiscard]] std::string problem() const;
 
  private:
   using Snapshot = std::shared_ptr<const MapSnapshot>;
+  using Action = std::function<void()>;
+  struct Failure {
+    Action action;
+    std::string why;
+  };
 
-  [[nodiscard]] Snapshot copy(const SegmentMap& map);
   void put_files(const Snapshot& map, const std::string& stem);
   void put_saved(const Snapshot& map);
-  template <class Action>
-  void try_to(const std::string& what, const Action& action);
+  void put(const std::string& name, Action action);
+  void attempt(const std::string& name, std::int64_t number, const Action& action);
 
   Config config_;
-  mutable std::mutex mutex_;                     // guards the next
-  std::map<std::string, std::string> problems_;  // by what could not be done
-  BackgroundWriter writer_;                      // last: its jobs use the rest
+  mutable std::mutex mutex_;                    // guards what follows
+  std::map<std::string, std::int64_t> newest_;  // number of the newest action, by its name
+  std::map<std::string, Failure> failures_;     // likewise
+  std::int64_t num_failures_ = 0;               // since the last success
+  BackgroundWriter writer_;                     // last: its jobs use the rest
 };
 
 }  // namespace kintsugi::segmenter

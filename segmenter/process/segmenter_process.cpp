@@ -1,6 +1,6 @@
 #include "segmenter/process/segmenter_process.hpp"
 
-#include <optional>
+#include <algorithm>
 #include <stdexcept>
 #include <thread>
 #include <utility>
@@ -9,6 +9,7 @@
 
 #include "lcmtypes/channels.hpp"
 #include "lcmtypes/stop_signal.hpp"
+#include "segmenter/process/map_stem.hpp"
 #include "segmenter/process/process_status.hpp"
 #include "segmenter/process/resumed_map.hpp"
 
@@ -18,31 +19,51 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr milliseconds kPollPeriod{50};
+constexpr double kLingerAfterStop_s = 2.0;
+constexpr char kDefaultMapName[] = "map";  // of a mapper that is not given another
+
+void require_positive(const char* field, std::int64_t value) {
+  if (value <= 0) {
+    throw std::invalid_argument(std::string(field) + " is " + std::to_string(value) +
+                                ", must be > 0");
+  }
+}
 
 }  // namespace
 
 void SegmenterProcess::Config::validate() const {
-  processor.validate();
-  publisher.validate();
-  if (status_period.count() <= 0) {
-    throw std::invalid_argument("status_period is " + std::to_string(status_period.count()) +
-                                " ms, must be > 0");
-  }
+  maps.validate();
+  updates.validate();
+  require_positive("max_queue_bytes", static_cast<std::int64_t>(max_queue_bytes));
+  require_positive("status_period [ms]", status_period.count());
+  require_positive("rewrite_period [ms]", rewrite_period.count());
 }
 
 SegmenterProcess::SegmenterProcess(const Config& config)
     : config_((config.validate(), config)),
       session_(new_session()),
       bus_(config.log.empty() || config.publish ? std::make_unique<Bus>(config.lcm_url) : nullptr),
-      updates_(config.publish ? bus_.get() : nullptr, session_, config.publisher),
-      receiver_(queue_),
+      updates_(config.publish ? bus_.get() : nullptr, session_, config.updates),
+      queue_(config.max_queue_bytes),
+      receiver_({session_, config.maps.map_name}, queue_),
       writer_(config.files),
-      processor_(config.processor, session_,
-                 {[this](SegmentUpdate update) { updates_.publish(std::move(update)); },
-                  [this](const SegmentMap& map, SliceProcessor::Save why) { write(map, why); },
-                  [](const std::string& text) { spdlog::warn("{}", text); }}) {}
+      maps_(config.maps, session_, slice_stream(),
+            {[this](SegmentUpdate update) { updates_.publish(std::move(update)); },
+             [this](const SegmentMap& map, SessionMaps::Save why) { write(map, why); },
+             [](const std::string& text) { spdlog::warn("{}", text); }}) {}
 
 SegmenterProcess::~SegmenterProcess() = default;
+
+// Nobody sends what is missing in a log; but what comes late in it may lie anywhere.
+SliceStream SegmenterProcess::slice_stream() {
+  const bool is_live = config_.log.empty();
+  const auto is_coming = [this](std::int64_t session) { return receiver_.is_coming(session); };
+  return {[=](std::int64_t session) {
+            return is_live && is_coming(session) ? Outlook::kLive : Outlook::kSilent;
+          },
+          [=](std::int64_t session) { return is_live && !is_coming(session); },
+          [this](std::int64_t session) { receiver_.forget(session); }};
+}
 
 int SegmenterProcess::run() {
   receive();
@@ -50,14 +71,17 @@ int SegmenterProcess::run() {
   watch();
   worker.join();
   receiver_.stop();
+  writer_.wait();
+  if (!failure_) {
+    updates_.flush();
+    linger();
+  }
   if (bus_thread_) {
     bus_thread_->stop();
   }
-  writer_.wait();
   if (failure_) {
     std::rethrow_exception(failure_);
   }
-  updates_.flush();
   publish_status();
   return exit_status();
 }
@@ -65,11 +89,15 @@ int SegmenterProcess::run() {
 void SegmenterProcess::receive() {
   if (!config_.log.empty()) {
     receiver_.read(config_.log);
-    return;
+  } else {
+    receiver_.subscribe(*bus_);
+    spdlog::info("listening on {}", bus_->url());
   }
-  receiver_.subscribe(*bus_);
-  bus_thread_ = std::make_unique<BusThread>(*bus_);
-  spdlog::info("listening on {}", bus_->url());
+  if (bus_) {
+    updates_.subscribe(*bus_);
+    bus_thread_ =
+        std::make_unique<BusThread>(*bus_, [this] { receiver_.ask(*bus_, clock_.now_s()); });
+  }
 }
 
 // What the main thread does while the others work.
@@ -92,61 +120,129 @@ bool SegmenterProcess::has_ended() const {
   return is_final || (bus_thread_ && bus_thread_->failed());
 }
 
+// Everything is published; some may not have it yet.
+void SegmenterProcess::linger() {
+  if (!config_.publish) {
+    return;
+  }
+  const bool has_limit = config_.linger_s >= 0.0 || stop_requested();
+  const double limit_s = config_.linger_s >= 0.0 ? config_.linger_s : kLingerAfterStop_s;
+  rearm_stop_signals();
+  lingering_ = true;
+  const double begin_s = clock_.now_s();
+  Clock::time_point next_status{};
+  while (!stop_requested() && !bus_thread_->failed()) {
+    const double quiet_s = std::min(clock_.now_s() - begin_s, updates_.time_since_request_s());
+    if (has_limit && quiet_s >= limit_s) {
+      break;
+    }
+    answer();
+    save_what_is_due();
+    if (now() >= next_status) {
+      publish_status();
+      next_status = now() + config_.status_period;
+    }
+    std::this_thread::sleep_for(kPollPeriod);
+  }
+  writer_.wait();
+}
+
 void SegmenterProcess::work() {
   try {
     work_until_end();
   } catch (...) {
     failure_ = std::current_exception();  // read when working_ is false
-    processor_.save();
+    maps_.save();
   }
   working_ = false;
 }
 
 void SegmenterProcess::work_until_end() {
-  if (!config_.resume_file.empty()) {  // what is received meanwhile waits in the queue
-    processor_.resume(resume_map(config_.resume_file, config_.processor.map, session_));
-    offer_all({});
-  }
+  resume();
   bool is_behind = false;
   while (!ending_ && (is_behind || !queue_.is_exhausted())) {
     offer_all(queue_.take(is_behind ? milliseconds(0) : kPollPeriod));
-    is_behind = processor_.step(SliceProcessor::Clock::now());
-    if (take_write_request()) {
-      processor_.save(!writer_.problem().empty());
-    }
+    is_behind = maps_.step(now());
+    offer_all({});
+    queue_.set_waiting(counts_.waiting_bytes, !is_behind);
+    answer();
+    save_what_is_due();
   }
   offer_all(queue_.take(milliseconds(0)));
-  if (stop_requested() && counts().lag > 0) {
+  if (stop_requested() && counts_.lag > 0) {
     spdlog::info("segmenting what was received, {} slices behind; a second signal leaves it out",
-                 counts().lag);
-    processor_.save();  // now: what follows may take long
+                 counts_.lag);
+    maps_.save();  // now: what follows may take long
   }
-  processor_.finish(SliceProcessor::Clock::now());
+  maps_.finish(now());
   offer_all({});
-  writer_.wait();  // what is being written may fail
-  processor_.save(!writer_.problem().empty());
+  queue_.set_waiting(counts_.waiting_bytes, false);
+  maps_.save();
+  writer_.wait();
+  writer_.try_again();
+}
+
+// What is received meanwhile waits in the queue.
+void SegmenterProcess::resume() {
+  if (!config_.resume_file.empty()) {
+    auto map = resume_map(config_.resume_file, config_.maps.map, session_);
+    receiver_.restore(*map);
+    maps_.resume(std::move(map));
+    updates_.publish_state(maps_.describe(), clock_.now_s());
+    offer_all({});
+  }
 }
 
 void SegmenterProcess::offer_all(std::vector<CloudSlice> slices) {
   for (CloudSlice& slice : slices) {
-    processor_.offer(std::move(slice), SliceProcessor::Clock::now());
+    maps_.offer(std::move(slice), now());
   }
   const std::lock_guard lock(mutex_);
-  counts_ = processor_.counts();
+  counts_ = maps_.counts();
 }
 
-void SegmenterProcess::write(const SegmentMap& map, SliceProcessor::Save why) {
-  switch (why) {
-    case SliceProcessor::Save::kCurrent:
-      return writer_.write_and_save(map, "segments");
-    case SliceProcessor::Save::kBroken:
-      return writer_.write(map, "segments");
-    case SliceProcessor::Save::kSessionEnded:
-      return writer_.write(map, "segments_" + std::to_string(map.map_session()));
+// Who came late gets everything.
+void SegmenterProcess::answer() {
+  if (updates_.take_state_request(clock_.now_s())) {
+    updates_.publish_state(maps_.describe(), clock_.now_s());
   }
 }
 
-SliceProcessor::Counts SegmenterProcess::counts() const {
+void SegmenterProcess::save_what_is_due() {
+  if (take_write_request()) {
+    maps_.save(!writer_.problem().empty());
+  }
+  if (writer_.problem().empty()) {
+    next_rewrite_ = now() + config_.rewrite_period;
+  } else if (now() >= next_rewrite_) {
+    writer_.try_again();
+    next_rewrite_ = now() + config_.rewrite_period;
+  }
+}
+
+// One map is saved to go on with; the others are made again from what their mappers have sent.
+void SegmenterProcess::write(const SegmentMap& map, SessionMaps::Save why) {
+  const std::string& name = config_.maps.map_name;
+  const std::string stem = map_stem(map.map_name(), name.empty() ? kDefaultMapName : name);
+  const bool is_main = stem == map_stem("", "");
+  switch (why) {
+    case SessionMaps::Save::kCurrent:
+      return is_main ? writer_.write_and_save(map, stem) : writer_.write(map, stem);
+    case SessionMaps::Save::kToGoOn:
+      return is_main ? writer_.save(map) : void();
+    case SessionMaps::Save::kBroken:
+      return writer_.write(map, stem);
+    case SessionMaps::Save::kSessionEnded:
+      return writer_.write(map, session_stem(stem, map.map_session()));
+  }
+}
+
+SessionMaps::Clock::time_point SegmenterProcess::now() {
+  return Clock::time_point(
+      std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(clock_.now_s())));
+}
+
+SessionMaps::Counts SegmenterProcess::counts() const {
   const std::lock_guard lock(mutex_);
   return counts_;
 }
@@ -155,18 +251,30 @@ bool SegmenterProcess::nothing_is_queued() const {
   return queue_.size() == 0 && updates_.is_idle();
 }
 
+std::string SegmenterProcess::problem() const {
+  for (const std::string& problem : {writer_.problem(), updates_.problem(), status_problem_}) {
+    if (!problem.empty()) {
+      return problem;
+    }
+  }
+  return "";
+}
+
 void SegmenterProcess::publish_status() {
   if (!config_.publish) {
     return;
   }
-  SliceProcessor::Counts counts = this->counts();
+  SessionMaps::Counts counts = this->counts();
   const std::int64_t num_queued = queue_.size();
-  counts.received += num_queued;
+  counts.newest.received += num_queued;
   counts.lag += num_queued;
-  SegmenterStatus status = make_status(counts, receiver_.counts());
+  SegmenterStatus status = make_status(counts, receiver_.counts(), updates_.counts());
   status.session = session_;
-  status.mode = config_.processor.map.mode;
+  status.mode = config_.maps.map.mode;
   status.finished = counts.complete && nothing_is_queued();
+  status.lingering = lingering_;
+  status.queue_bytes = static_cast<std::int64_t>(queue_.bytes());
+  status.problem = problem();
   try {
     bus_->publish(channels::kSegmenterStatus, status);
   } catch (const std::exception& error) {  // nobody watches: the map is made all the same
@@ -179,11 +287,12 @@ void SegmenterProcess::publish_status() {
 
 // Tells what was done, and everything that is wrong with it.
 int SegmenterProcess::exit_status() const {
-  const SliceProcessor::Counts counts = this->counts();
-  if (counts.segmented > 0) {
+  const SessionMaps::Counts counts = this->counts();
+  const SliceProcessor::Counts& map = counts.newest;
+  if (map.segmented > 0) {
     spdlog::info("session {}: {} slices and {} corrections, {:.1f} ms each, {:.1f} ms at most",
-                 counts.map_session, counts.segmented, counts.corrected, counts.slice_mean_ms,
-                 counts.slice_max_ms);
+                 map.map_session, map.segmented, map.corrected, map.slice_mean_ms,
+                 map.slice_max_ms);
   } else if (!config_.log.empty()) {
     spdlog::error("{}: holds no slice that could be read on {}", config_.log.string(),
                   channels::kCloudSlice);
@@ -193,12 +302,11 @@ int SegmenterProcess::exit_status() const {
   }
   if (receiver_.problem()) {
     spdlog::error("{}", *receiver_.problem());
-  } else if (!config_.log.empty() && counts.segmented > 0 && !counts.ended) {
+  } else if (!config_.log.empty() && map.segmented > 0 && !counts.ended) {
     spdlog::warn("{}: read to its end, or stopped, before the final slice", config_.log.string());
   }
-  const bool is_good = counts.missing == 0 && !receiver_.problem() && writer_.problem().empty() &&
-                       updates_.problem().empty() && status_problem_.empty() &&
-                       (config_.log.empty() || counts.segmented > 0);
+  const bool is_good = counts.missing == 0 && !receiver_.problem() && problem().empty() &&
+                       (config_.log.empty() || map.segmented > 0);
   return is_good ? 0 : 1;
 }
 

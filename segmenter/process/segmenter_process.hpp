@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <cstddef>
 #include <exception>
 #include <filesystem>
 #include <memory>
@@ -11,8 +12,9 @@
 
 #include "lcmtypes/bus.hpp"
 #include "lcmtypes/bus_thread.hpp"
+#include "lcmtypes/patient_clock.hpp"
 #include "segmenter/process/map_writer.hpp"
-#include "segmenter/process/slice_processor.hpp"
+#include "segmenter/process/session_maps.hpp"
 #include "segmenter/process/slice_queue.hpp"
 #include "segmenter/process/slice_receiver.hpp"
 #include "segmenter/process/update_publisher.hpp"
@@ -20,25 +22,32 @@
 namespace kintsugi::segmenter {
 
 /// Threads that do not wait for each other, each in one stage of a slice's way:
-///   receiving   decodes and joins chunks, from the bus or from a log as fast as it can be read
+///   receiving   decodes and joins chunks and asks for missing ones; from a log: as fast as there
+///               is room for
 ///   working     drops duplicates, puts slices in order, runs the engine, which looks for the
-///               neighbours of the next slice meanwhile
-///   publishing  (the publisher's) encodes updates and sends them at its pace
-///   writing     (the writer's) puts copies of the map into files
-/// Between two stages lies a queue without a bound: a slice is never dropped, however far behind
-/// the engine is. run() itself publishes the status, the lag in it, and watches for the end.
+///               neighbours of the next slice meanwhile; says everything to who comes late
+///   publishing  (the publisher's) encodes updates and sends them at its pace, and what was lost
+///   writing     (the writer's) puts copies of the maps into files
+/// Between two stages lies a queue with a bound: slices beyond it are refused, and asked for again
+/// when there is room. run() itself publishes the status, the lag in it, and watches for the end.
 class SegmenterProcess {
  public:
   struct Config {
-    SliceProcessor::Config processor;
+    SessionMaps::Config maps;
     std::string lcm_url;        ///< empty: the default bus
     std::filesystem::path log;  ///< read slices from this log; empty: from the bus
     bool publish = true;        ///< updates and status on the bus
+    std::size_t max_queue_bytes = std::size_t{1} << 30U;  ///< received and not segmented; > 0
+    UpdatePublisher::Config updates;
     MapWriter::Config files;
     std::filesystem::path resume_file;  ///< go on with the map kept here; empty: begin anew
     bool exit_on_final = false;         ///< end when the final slice is segmented and published
+    /// After the end stay until nobody has asked for anything for so long, or a stop signal comes;
+    /// < 0: until one comes, or for 2 s when one has brought the end. Only when publishing.
+    double linger_s = 2.0;
     std::chrono::milliseconds status_period{250};  ///< > 0
-    StreamPublisher::Config publisher;
+    /// What could not be written is written again after so long, and whenever files are due; > 0.
+    std::chrono::milliseconds rewrite_period{10'000};
 
     /// Throws std::invalid_argument naming field, value and bound.
     void validate() const;
@@ -50,42 +59,54 @@ class SegmenterProcess {
   ~SegmenterProcess();
 
   /// Works until the end of the log, the final slice (Config::exit_on_final) or a stop signal;
-  /// then writes the map. Returns the exit status: 0, or 1 when a file could not be written, an
-  /// update not be sent, the log is damaged, or slices are missing at the end. Throws what makes
-  /// going on impossible, after it has tried to write the map.
+  /// writes the maps, and lingers. Returns the exit status: 0, or 1 when a file is not written, an
+  /// update was not sent, the log is damaged, or slices are missing at the end. Throws what makes
+  /// going on impossible, after it has tried to write the maps.
   int run();
 
  private:
+  using Clock = SessionMaps::Clock;
+
   // The thread of run().
   void receive();
   void watch();
+  void linger();
   void publish_status();
   [[nodiscard]] bool has_ended() const;
   [[nodiscard]] bool nothing_is_queued() const;
+  [[nodiscard]] std::string problem() const;
   [[nodiscard]] int exit_status() const;
 
-  // The working thread.
+  // The working thread, and when it has ended that of run().
   void work();
   void work_until_end();
+  void resume();
   void offer_all(std::vector<CloudSlice> slices);
-  void write(const SegmentMap& map, SliceProcessor::Save why);
+  void answer();
+  void save_what_is_due();
+  void write(const SegmentMap& map, SessionMaps::Save why);
+  [[nodiscard]] Clock::time_point now();
+  [[nodiscard]] SliceStream slice_stream();
 
-  [[nodiscard]] SliceProcessor::Counts counts() const;
+  [[nodiscard]] SessionMaps::Counts counts() const;
 
   Config config_;
   std::int64_t session_;
+  PatientClock clock_;
   std::unique_ptr<Bus> bus_;  // null: neither heard nor published
   UpdatePublisher updates_;
   SliceQueue queue_;
   SliceReceiver receiver_;
   MapWriter writer_;
-  SliceProcessor processor_;  // of the working thread
+  SessionMaps maps_;  // of the working thread
 
   mutable std::mutex mutex_;  // guards what the working thread tells the others
-  SliceProcessor::Counts counts_;
+  SessionMaps::Counts counts_;
 
   std::exception_ptr failure_;  // of the working thread; read when it has ended
   std::string status_problem_;  // of the thread of run()
+  Clock::time_point next_rewrite_{};
+  bool lingering_ = false;
   std::atomic<bool> ending_{false};
   std::atomic<bool> working_{true};
   std::unique_ptr<BusThread> bus_thread_;  // last: it uses the rest

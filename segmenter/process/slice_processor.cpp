@@ -7,118 +7,67 @@
 namespace kintsugi::segmenter {
 namespace {
 
-std::string name_of(const CloudSlice& slice) {
-  return "slice " + std::to_string(slice.id) + " of session " + std::to_string(slice.session);
+void require_not_negative(const char* field, int value) {
+  if (value < 0) {
+    throw std::invalid_argument(std::string(field) + " is " + std::to_string(value) +
+                                ", must be >= 0");
+  }
+}
+
+SliceSequencer::Revisions revisions_in(const SegmentMap& map) {
+  SliceSequencer::Revisions revisions;
+  for (const SliceRecord& slice : map.cloud().slices()) {
+    revisions[slice.slice_id] = slice.revision;
+  }
+  return revisions;
 }
 
 }  // namespace
 
 void SliceProcessor::Config::validate() const {
-  map.validate();
   order.validate();
-  if (write_every < 0) {
-    throw std::invalid_argument("write_every is " + std::to_string(write_every) + ", must be >= 0");
-  }
+  require_not_negative("write_every", write_every);
+  require_not_negative("save_every", save_every);
 }
 
-SliceProcessor::SliceProcessor(const Config& config, std::int64_t session, Outputs outputs)
-    : config_(config), session_(session), outputs_(std::move(outputs)) {
-  config_.validate();
-}
-
-void SliceProcessor::offer(CloudSlice slice, Clock::time_point now) {
-  if (!is_wanted(slice)) {
-    return;
-  }
-  if (map_ && slice.session != map_->map_session()) {
-    end_session(now);
-  }
-  if (!map_) {
-    begin_session(slice);
-  }
-  if (static_cast<double>(slice.resolution_m) != map_->config().engine.resolution_m) {
-    drop(slice, "its resolution differs from the map's");
-    return;
-  }
-  if (sequencer_->offer(std::move(slice), now) == SliceSequencer::Verdict::kTaken) {
-    ++counts_.received;
-  }
-  counts_.lag = sequencer_->num_waiting() + sequencer_->num_missing();
-}
-
-bool SliceProcessor::is_wanted(const CloudSlice& slice) {
-  if (!config_.map_name.empty() && slice.map_name != config_.map_name) {
-    return false;
-  }
-  if (ended_sessions_.contains(slice.session)) {
-    drop(slice, "its session has ended; two mappers at a time need --map-name");
-    return false;
-  }
-  return true;
-}
-
-void SliceProcessor::drop(const CloudSlice& slice, const std::string& why) {
-  ++counts_.dropped;
-  outputs_.warn(name_of(slice) + " is dropped: " + why);
-}
-
-void SliceProcessor::begin_session(const CloudSlice& first) {
-  map_ = std::make_unique<SegmentMap>(config_.map, session_, first);
-  sequencer_.emplace(config_.order);
-  const std::int64_t dropped = counts_.dropped;
-  counts_ = {};
-  counts_.dropped = dropped;
-  counts_.map_session = first.session;
-  counts_.map_name = first.map_name;
-  is_saved_ = true;
-  num_since_save_ = 0;
-  num_timed_ = 0;
-  total_ms_ = 0.0;
-}
-
-void SliceProcessor::resume(std::unique_ptr<SegmentMap> map) {
-  map_ = std::move(map);
-  SliceSequencer::Revisions done;
-  for (const SliceRecord& slice : map_->cloud().slices()) {
-    done[slice.slice_id] = slice.revision;
-  }
+SliceProcessor::SliceProcessor(const Config& config, std::unique_ptr<SegmentMap> map,
+                               Outputs outputs)
+    : config_((config.validate(), config)),
+      outputs_(std::move(outputs)),
+      map_(std::move(map)),
+      sequencer_(config.order, revisions_in(*map_)) {
   counts_.map_session = map_->map_session();
   counts_.map_name = map_->map_name();
-  counts_.received = counts_.segmented = std::ssize(done);
-  sequencer_.emplace(config_.order, std::move(done));
+  counts_.received = counts_.segmented = std::ssize(map_->cloud().slices());
   count_map();
-  for (SegmentUpdate& update : map_->describe()) {
-    outputs_.publish(std::move(update));
+}
+
+std::optional<std::string> SliceProcessor::offer(CloudSlice slice, Clock::time_point now) {
+  if (slice.map_name != map_->map_name()) {
+    return "its map is '" + slice.map_name + "', its session's map '" + map_->map_name() + "'";
   }
+  if (static_cast<double>(slice.resolution_m) != map_->config().engine.resolution_m) {
+    return "its resolution differs from the map's";
+  }
+  if (sequencer_.offer(std::move(slice), now) == SliceSequencer::Verdict::kTaken) {
+    ++counts_.received;
+  }
+  counts_.lag = sequencer_.num_waiting() + sequencer_.num_missing();
+  return std::nullopt;
 }
-
-void SliceProcessor::end_session(Clock::time_point now) {
-  finish(now);
-  outputs_.warn("session " + std::to_string(map_->map_session()) +
-                " has ended: a slice of another one came");
-  outputs_.save(*map_, Save::kSessionEnded);
-  ended_sessions_.insert(map_->map_session());
-  sequencer_.reset();
-  map_.reset();
-}
-
-bool SliceProcessor::step(Clock::time_point now) { return step(now, false); }
 
 void SliceProcessor::finish(Clock::time_point now) {
-  while (step(now, true)) {
+  while (step(now, Outlook::kEnded)) {
   }
 }
 
-bool SliceProcessor::step(Clock::time_point now, bool stream_has_ended) {
-  if (!map_) {
-    return false;
-  }
-  const std::vector<CloudSlice> slices = take_ready(now, stream_has_ended);
+bool SliceProcessor::step(Clock::time_point now, Outlook outlook) {
+  const std::vector<CloudSlice> slices = take_ready(now, outlook);
   if (!slices.empty()) {
     segment(slices);
     return true;
   }
-  const auto gap = sequencer_->give_up_gap(now, stream_has_ended);
+  const auto gap = sequencer_.give_up_gap(now, outlook);
   if (gap) {
     outputs_.warn("slices " + std::to_string(gap->first) + " to " + std::to_string(gap->last) +
                   " of session " + std::to_string(map_->map_session()) +
@@ -128,11 +77,11 @@ bool SliceProcessor::step(Clock::time_point now, bool stream_has_ended) {
 }
 
 // The next run; with Config::coalesce all there are, the newest revision of each slice.
-std::vector<CloudSlice> SliceProcessor::take_ready(Clock::time_point now, bool stream_has_ended) {
-  const bool all = config_.coalesce && config_.map.mode == "batch";
+std::vector<CloudSlice> SliceProcessor::take_ready(Clock::time_point now, Outlook outlook) {
+  const bool all = config_.coalesce && map_->config().mode == "batch";
   std::vector<CloudSlice> slices;
   while (all || slices.empty()) {
-    auto run = sequencer_->pop(now, stream_has_ended);
+    auto run = sequencer_.pop(now, outlook);
     if (!run) {
       break;
     }
@@ -153,23 +102,31 @@ void SliceProcessor::segment(const std::vector<CloudSlice>& slices) {
   const auto num_new = std::ranges::count_if(slices, [this](const CloudSlice& slice) {
     return map_->cloud().find_slice(slice.id) == nullptr;
   });
-  const auto start = Clock::now();
+  const auto start = std::chrono::steady_clock::now();
   is_saved_ = false;
   is_broken_ = true;  // should this throw
-  if (const CloudSlice* const next = sequencer_->upcoming()) {
+  if (const CloudSlice* const next = sequencer_.upcoming()) {
     map_->look_ahead(*next);
   }
   std::vector<SegmentUpdate> updates = map_->add(slices);
   is_broken_ = false;
-  const std::chrono::duration<double, std::milli> run = Clock::now() - start;
+  const std::chrono::duration<double, std::milli> run = std::chrono::steady_clock::now() - start;
   count_run(num_new, num_slices - num_new, run.count());
   for (SegmentUpdate& update : updates) {
     outputs_.publish(std::move(update));
   }
+  save_when_due(num_slices);
+}
+
+void SliceProcessor::save_when_due(std::int64_t num_slices) {
+  num_since_write_ += num_slices;
   num_since_save_ += num_slices;
-  const bool is_due = config_.write_every > 0 && num_since_save_ >= config_.write_every;
-  if (is_due || counts_.complete) {
+  const auto is_due = [](int every, std::int64_t since) { return every > 0 && since >= every; };
+  if (counts_.complete || is_due(config_.write_every, num_since_write_)) {
     save();
+  } else if (is_due(config_.save_every, num_since_save_)) {
+    num_since_save_ = 0;
+    outputs_.save(*map_, Save::kToGoOn);
   }
 }
 
@@ -185,19 +142,19 @@ void SliceProcessor::count_run(std::int64_t num_new, std::int64_t num_corrected,
 }
 
 void SliceProcessor::count_map() {
-  counts_.lag = sequencer_->num_waiting() + sequencer_->num_missing();
-  counts_.missing = sequencer_->num_given_up();
+  counts_.lag = sequencer_.num_waiting() + sequencer_.num_missing();
+  counts_.missing = sequencer_.num_given_up();
   counts_.points = map_->cloud().num_live();
   counts_.rejected = map_->cloud().num_rejected();
   counts_.segments = map_->segment_ids().num_segments();
   counts_.complete = map_->is_complete();
-  counts_.ended = map_->has_final_slice() && sequencer_->num_waiting() == 0;
+  counts_.ended = map_->has_final_slice() && sequencer_.num_waiting() == 0;
 }
 
 void SliceProcessor::save(bool again) {
-  if (map_ && (again || !is_saved_)) {
+  if (again || !is_saved_) {
     is_saved_ = true;
-    num_since_save_ = 0;
+    num_since_write_ = num_since_save_ = 0;
     outputs_.save(*map_, is_broken_ ? Save::kBroken : Save::kCurrent);
   }
 }

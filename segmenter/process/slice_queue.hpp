@@ -3,21 +3,29 @@
 
 #include <chrono>
 #include <condition_variable>
+#include <cstddef>
+#include <cstdint>
 #include <mutex>
 #include <utility>
 #include <vector>
 
-#include "lcmtypes/messages.hpp"
+#include "lcmtypes/stream_session.hpp"
+#include "segmenter/map/slice_sequencer.hpp"
 
 namespace kintsugi::segmenter {
 
-/// Slices in order of arrival. It has no bound: a slice is never dropped, however far behind the
-/// segmenter is. Safe for any number of threads.
+/// Slices in order of arrival, with an account of everything that was received and is not
+/// segmented. push() never refuses: whoever receives looks at room() first. Safe for any number of
+/// threads.
 class SliceQueue {
  public:
+  /// @param max_bytes of slices in the queue and of those that were taken and wait
+  explicit SliceQueue(std::size_t max_bytes) : max_bytes_(max_bytes) {}
+
   void push(CloudSlice slice) {
     {
       const std::lock_guard lock(mutex_);
+      queued_bytes_ += bytes_of(slice);
       slices_.push_back(std::move(slice));
     }
     changed_.notify_all();
@@ -32,16 +40,50 @@ class SliceQueue {
     changed_.notify_all();
   }
 
-  /// Takes everything there is; waits for it up to `timeout`, or until the queue is closed.
+  /// Takes everything there is; waits for it up to `timeout`, or until the queue is closed. What
+  /// is taken waits from now on.
   std::vector<CloudSlice> take(std::chrono::milliseconds timeout) {
     std::unique_lock lock(mutex_);
     changed_.wait_for(lock, timeout, [this] { return closed_ || !slices_.empty(); });
+    waiting_bytes_ += std::exchange(queued_bytes_, 0);
     return std::exchange(slices_, {});
+  }
+
+  /// Says how much of what was taken still waits to be segmented, and whether it waits for a slice
+  /// that is missing.
+  void set_waiting(std::size_t bytes, bool is_for_missing) {
+    {
+      const std::lock_guard lock(mutex_);
+      waiting_bytes_ = bytes;
+      waits_for_missing_ = is_for_missing;
+    }
+    changed_.notify_all();
+  }
+
+  /// When full, none; but what is missing is taken all the same when nothing goes on without it.
+  [[nodiscard]] StreamRoom room() const {
+    const std::lock_guard lock(mutex_);
+    if (!is_full()) {
+      return StreamRoom::kPlenty;
+    }
+    return waits_for_missing_ && slices_.empty() ? StreamRoom::kOnlyNext : StreamRoom::kNone;
+  }
+
+  /// Waits up to `timeout`; true when there is plenty.
+  bool wait_for_room(std::chrono::milliseconds timeout) {
+    std::unique_lock lock(mutex_);
+    return changed_.wait_for(lock, timeout, [this] { return !is_full(); });
   }
 
   [[nodiscard]] std::int64_t size() const {
     const std::lock_guard lock(mutex_);
     return static_cast<std::int64_t>(slices_.size());
+  }
+
+  /// Received and not segmented.
+  [[nodiscard]] std::size_t bytes() const {
+    const std::lock_guard lock(mutex_);
+    return queued_bytes_ + waiting_bytes_;
   }
 
   /// Closed, and everything taken.
@@ -51,9 +93,15 @@ class SliceQueue {
   }
 
  private:
+  [[nodiscard]] bool is_full() const { return queued_bytes_ + waiting_bytes_ >= max_bytes_; }
+
+  const std::size_t max_bytes_;
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   std::vector<CloudSlice> slices_;
+  std::size_t queued_bytes_ = 0;   // in slices_
+  std::size_t waiting_bytes_ = 0;  // taken, and not segmented
+  bool waits_for_missing_ = false;
   bool closed_ = false;
 };
 

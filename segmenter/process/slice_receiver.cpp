@@ -1,6 +1,8 @@
 #include "segmenter/process/slice_receiver.hpp"
 
+#include <algorithm>
 #include <bit>
+#include <chrono>
 #include <exception>
 #include <memory>
 #include <utility>
@@ -12,20 +14,35 @@
 
 namespace kintsugi::segmenter {
 
-SliceReceiver::SliceReceiver(SliceQueue& queue)
+SliceReceiver::SliceReceiver(const Config& config, SliceQueue& queue)
     : queue_(queue),
       subscriber_(
           channels::kCloudSlice, [this](CloudSlice slice) { queue_.push(std::move(slice)); },
-          [this](const DecodeError& reason) { bad(reason); }) {}
+          [this](const DecodeError& reason) { bad(reason); },
+          [&] {
+            StreamSubscriber<CloudSlice>::Config stream;
+            stream.receiver = config.session;
+            stream.room = [this] { return stopping_ ? StreamRoom::kNone : queue_.room(); };
+            stream.wanted_map_name = config.map_name;
+            if (!config.map_name.empty()) {
+              stream.wanted = [name = config.map_name](const CloudSlice& header) {
+                return header.map_name == name;
+              };
+            }
+            return stream;
+          }()) {}
 
 SliceReceiver::~SliceReceiver() { stop(); }
 
 void SliceReceiver::subscribe(Bus& bus) { subscriber_.subscribe(bus); }
 
+void SliceReceiver::ask(Bus& bus, double now_s) { subscriber_.ask(bus, now_s); }
+
 void SliceReceiver::read(const std::filesystem::path& log) {
   reader_ = std::thread([this, reader = std::make_shared<LogReader>(log)] {
     try {
       while (!stopping_) {
+        if (!queue_.wait_for_room(std::chrono::milliseconds(50))) continue;
         const auto event = reader->next();
         if (!event) break;
         subscriber_.handle(event->channel, event->data);
@@ -41,6 +58,15 @@ void SliceReceiver::read(const std::filesystem::path& log) {
 void SliceReceiver::stop() {
   stopping_ = true;
   if (reader_.joinable()) reader_.join();
+}
+
+bool SliceReceiver::is_coming(std::int64_t map_session) const {
+  if (subscriber_.has_given_up(map_session) || subscriber_.is_complete(map_session)) {
+    return false;
+  }
+  return std::ranges::any_of(subscriber_.gaps(), [&](const StreamGap& gap) {
+    return gap.session == map_session;
+  });  // else nobody has heard of it
 }
 
 // The 1st, 2nd, 4th, 8th ...: a publisher of garbage does not fill the log.

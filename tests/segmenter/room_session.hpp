@@ -40,7 +40,7 @@ class RoomRow {
         slice.id = static_cast<std::int32_t>(slices.size()) - 1;
         slice.utime = 1000 + slice.id;
         slice.session = session;
-        slice.map_name = "rooms";
+        slice.map_name = "map";
         slice.kind = SliceKind::kShiftPlusX;
         slice.resolution_m = static_cast<float>(resolution_m_);
       }

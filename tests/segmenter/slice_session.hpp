@@ -24,7 +24,7 @@ inline std::vector<CloudSlice> wavy_session(int num_slices, int points_per_slice
     CloudSlice& slice = slices.emplace_back();
     slice.utime = 1000 + i;
     slice.session = session;
-    slice.map_name = "office";
+    slice.map_name = "map";
     slice.id = i;
     slice.kind = i + 1 == num_slices ? SliceKind::kFinal : SliceKind::kShiftPlusX;
     slice.resolution_m = 0.01F;

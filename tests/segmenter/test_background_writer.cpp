@@ -61,7 +61,8 @@ TEST(BackgroundWriter, SlicesAreSegmentedWhileAFileIsWritten) {
   int num_updates = 0;
   SliceProcessor::Config config;
   config.write_every = 1;
-  SliceProcessor processor(config, 1,
+  const auto slices = testing::wavy_session(20, 50);
+  SliceProcessor processor(config, std::make_unique<SegmentMap>(SegmentMapConfig{}, 1, slices[0]),
                            {[&](const SegmentUpdate&) { ++num_updates; },
                             [&](const SegmentMap& map, SliceProcessor::Save) {
                               writer.put("map", [&, size = map.cloud().slices().size()] {
@@ -70,9 +71,9 @@ TEST(BackgroundWriter, SlicesAreSegmentedWhileAFileIsWritten) {
                               });
                             },
                             [](const std::string&) {}});
-  for (const CloudSlice& slice : testing::wavy_session(20, 50)) {
+  for (const CloudSlice& slice : slices) {
     processor.offer(slice, {});
-    while (processor.step({})) {
+    while (processor.step({}, Outlook::kSilent)) {
     }
   }
   EXPECT_EQ(num_updates, 20);  // and no file is written yet

@@ -46,10 +46,14 @@ class Revisions : public ::testing::Test {
   }
 
   SliceProcessor make(const std::string& mode) {
-    SliceProcessor::Config config;
-    config.map.mode = mode;
-    return {config,
-            99,
+    SegmentMapConfig config;
+    config.mode = mode;
+    return make(std::make_unique<SegmentMap>(config, 99, slices_[0]));
+  }
+
+  SliceProcessor make(std::unique_ptr<SegmentMap> map) {
+    return {{},
+            std::move(map),
             {[this](const SegmentUpdate& update) {
                mirror_.apply(update);
                ++num_updates_;
@@ -58,18 +62,27 @@ class Revisions : public ::testing::Test {
              [](const std::string& text) { ADD_FAILURE() << text; }}};
   }
 
+  /// As a process does that tells everything first.
+  SliceProcessor go_on_with(std::unique_ptr<SegmentMap> map) {
+    for (const SegmentUpdate& update : map->describe()) {
+      mirror_.apply(update);
+      ++num_updates_;
+    }
+    return make(std::move(map));
+  }
+
   /// Offers the slices that are new and segments them.
   void run(SliceProcessor& processor, const std::vector<CloudSlice>& slices) {
     for (const CloudSlice& slice : slices) {
       processor.offer(slice, now_);
     }
     now_ += seconds(1);  // more than a pause in corrections
-    while (processor.step(now_)) {
+    while (processor.step(now_, Outlook::kSilent)) {
     }
     EXPECT_EQ(processor.counts().lag, 0);
     EXPECT_TRUE(processor.counts().complete);
-    EXPECT_EQ(mirror_.labels(), testing::labels_of(*processor.map()));
-    EXPECT_EQ(mirror_.statistics(), processor.map()->statistics().all());
+    EXPECT_EQ(mirror_.labels(), testing::labels_of(processor.map()));
+    EXPECT_EQ(mirror_.statistics(), processor.map().statistics().all());
     EXPECT_EQ(mirror_.num_segments(), processor.counts().segments);
   }
 
@@ -94,7 +107,7 @@ TEST_F(Revisions, MovingAThirdOfTheMapAndBackGivesWhatBatchGivesEachTime) {
     mirror_ = {};
     SliceProcessor processor = make(mode);
     run(processor, slices_);
-    const Labels original = testing::labels_of(*processor.map());
+    const Labels original = testing::labels_of(processor.map());
     EXPECT_GT(processor.counts().segments, 100);
     EXPECT_TRUE(testing::same_partition(original, batch_labels(slices_))) << mode;
 
@@ -103,13 +116,13 @@ TEST_F(Revisions, MovingAThirdOfTheMapAndBackGivesWhatBatchGivesEachTime) {
     const auto num_moved = std::ssize(slices_) * 2 / 3 - std::ssize(slices_) / 3;
     EXPECT_EQ(num_updates_, num_moved);
     EXPECT_EQ(processor.counts().corrected, num_moved);
-    const Labels after = testing::labels_of(*processor.map());
+    const Labels after = testing::labels_of(processor.map());
     EXPECT_TRUE(testing::same_partition(after, batch_labels(moved_))) << mode;
     EXPECT_FALSE(testing::same_partition(after, original)) << "the motion changes nothing";
 
     run(processor, back_);
-    EXPECT_TRUE(testing::same_partition(testing::labels_of(*processor.map()), original)) << mode;
-    EXPECT_EQ(processor.map()->cloud().num_live(), processor.counts().points);
+    EXPECT_TRUE(testing::same_partition(testing::labels_of(processor.map()), original)) << mode;
+    EXPECT_EQ(processor.map().cloud().num_live(), processor.counts().points);
     EXPECT_EQ(processor.counts().received, std::ssize(slices_));
   }
 }
@@ -129,11 +142,11 @@ TEST_F(Revisions, CorrectionsOfOneGoAreOneRun) {
   run(processor, slices_);
   for (const CloudSlice& slice : moved_) {
     processor.offer(slice, now_);
-    EXPECT_FALSE(processor.step(now_));
+    EXPECT_FALSE(processor.step(now_, Outlook::kSilent));
   }
   now_ += seconds(1);
-  EXPECT_TRUE(processor.step(now_));
-  EXPECT_FALSE(processor.step(now_));
+  EXPECT_TRUE(processor.step(now_, Outlook::kSilent));
+  EXPECT_FALSE(processor.step(now_, Outlook::kSilent));
 }
 
 TEST_F(Revisions, FinalMapIsTheSameInAnyOrderOfArrivalWithDuplicates) {
@@ -143,7 +156,7 @@ TEST_F(Revisions, FinalMapIsTheSameInAnyOrderOfArrivalWithDuplicates) {
     SliceProcessor in_order = make(mode);
     mirror_ = {};
     run(in_order, back_);
-    const Labels expected = testing::labels_of(*in_order.map());
+    const Labels expected = testing::labels_of(in_order.map());
     for (int round = 0; round < 2; ++round) {
       std::ranges::shuffle(all, random);
       SliceProcessor shuffled = make(mode);
@@ -151,13 +164,13 @@ TEST_F(Revisions, FinalMapIsTheSameInAnyOrderOfArrivalWithDuplicates) {
       for (const CloudSlice& slice : all) {
         shuffled.offer(slice, now_);
         if (random() % 4 == 0) {
-          while (shuffled.step(now_)) {
+          while (shuffled.step(now_, Outlook::kSilent)) {
           }
         }
       }
       run(shuffled, {});
-      EXPECT_TRUE(testing::same_partition(testing::labels_of(*shuffled.map()), expected)) << mode;
-      for (const SliceRecord& slice : shuffled.map()->cloud().slices()) {
+      EXPECT_TRUE(testing::same_partition(testing::labels_of(shuffled.map()), expected)) << mode;
+      for (const SliceRecord& slice : shuffled.map().cloud().slices()) {
         EXPECT_EQ(slice.revision, back_[static_cast<std::size_t>(slice.slice_id)].revision);
       }
     }
@@ -175,12 +188,11 @@ TEST_F(Revisions, FinalMapIsTheSameWhenASegmenterStopsAnywhereAndAnotherHearsEve
       const std::size_t num_heard = 1 + random() % all.size();
       for (std::size_t i = 0; i < num_heard; ++i) {
         first.offer(all[i], now_);
-        while (first.step(now_)) {
+        while (first.step(now_, Outlook::kSilent)) {
         }
       }
       mirror_ = {};
-      SliceProcessor second = make(mode);
-      second.resume(std::make_unique<SegmentMap>(first.map()->state()));
+      SliceProcessor second = go_on_with(std::make_unique<SegmentMap>(first.map().state()));
       std::ranges::shuffle(all, random);
       run(second, all);
       EXPECT_TRUE(testing::same_partition(mirror_.labels(), expected)) << mode;
@@ -198,11 +210,11 @@ TEST_F(Revisions, IdsDependOnTheOrderOfArrivalAndNotOnTiming) {
   mirror_ = {};
   for (const CloudSlice& slice : all) {
     at_once.offer(slice, now_);
-    while (at_once.step(now_)) {
+    while (at_once.step(now_, Outlook::kSilent)) {
     }
   }
   run(at_once, {});
-  EXPECT_EQ(testing::labels_of(*late.map()), testing::labels_of(*at_once.map()));
+  EXPECT_EQ(testing::labels_of(late.map()), testing::labels_of(at_once.map()));
 }
 
 TEST_F(Revisions, ANewSegmenterGoesOnWithTheMapOfAnEarlierOne) {
@@ -216,10 +228,9 @@ TEST_F(Revisions, ANewSegmenterGoesOnWithTheMapOfAnEarlierOne) {
       }
       mirror_ = {};
       num_updates_ = 0;
-      SliceProcessor processor = make(mode);
-      processor.resume(std::move(map));
+      SliceProcessor processor = go_on_with(std::move(map));
       EXPECT_EQ(num_updates_, static_cast<int>(num_done));
-      EXPECT_EQ(mirror_.labels(), testing::labels_of(*processor.map()));
+      EXPECT_EQ(mirror_.labels(), testing::labels_of(processor.map()));
       EXPECT_EQ(processor.counts().segmented, static_cast<std::int64_t>(num_done));
       run(processor, slices_);
       EXPECT_TRUE(testing::same_partition(mirror_.labels(), batch_labels(slices_)));

@@ -115,7 +115,7 @@ TEST_P(SavedMap, KeepsWhatItIs) {
   const auto loaded = load_map(folder / "map");
   EXPECT_EQ(loaded->session(), 99);
   EXPECT_EQ(loaded->map_session(), 5);
-  EXPECT_EQ(loaded->map_name(), "office");
+  EXPECT_EQ(loaded->map_name(), "map");
   EXPECT_EQ(loaded->config().mode, GetParam());
   EXPECT_EQ(loaded->config().engine.threshold, 0.002);
   EXPECT_EQ(loaded->config().engine.beta, 0.5);
@@ -198,8 +198,8 @@ TEST_F(SavedMapFile, ReasonsSayWhatWasExpected) {
   EXPECT_THAT(reason("ply\nformat ascii 1.0\nand so on"),
               AllOf(HasSubstr("no saved segment map"), HasSubstr("KSEGMAP")));
   std::string newer = bytes_;
-  newer[8] = 2;
-  EXPECT_THAT(reason(newer), AllOf(HasSubstr("version 2"), HasSubstr("expected 1")));
+  newer[8] = 3;
+  EXPECT_THAT(reason(newer), AllOf(HasSubstr("version 3"), HasSubstr("expected 2")));
   EXPECT_THAT(reason(bytes_.substr(0, bytes_.size() - 3)), HasSubstr("cut off"));
   std::string damaged = bytes_;
   damaged[200] ^= 1;

@@ -49,18 +49,18 @@ TEST(SegmenterStreams, MapIsTheSameHoweverTheChunksArrive) {
     for (const auto& [channel, message] : messages) {
       subscriber.handle(channel, message);
     }
-    SliceProcessor::Config config;
-    config.map.mode = "voting";
+    SegmentMapConfig config;
+    config.mode = "voting";
     SliceProcessor processor(
-        config, 1,
+        {}, std::make_unique<SegmentMap>(config, 1, received.front()),
         {[](const SegmentUpdate&) {}, [](const SegmentMap&, SliceProcessor::Save) {},
          [](const std::string&) {}});
     for (CloudSlice& slice : received) {
-      processor.offer(std::move(slice), {});
+      EXPECT_FALSE(processor.offer(std::move(slice), {}));
     }
     processor.finish({});
     EXPECT_TRUE(processor.counts().complete);
-    return testing::labels_of(*processor.map());
+    return testing::labels_of(processor.map());
   };
   const auto expected = labels_after();
   for (int round = 0; round < 5; ++round) {
@@ -71,18 +71,24 @@ TEST(SegmenterStreams, MapIsTheSameHoweverTheChunksArrive) {
 }
 
 TEST(SegmenterStatus, TellsWhatIsMissingAndWhatWasDropped) {
-  SliceProcessor::Counts counts;
-  counts.missing = 3;
-  counts.dropped = 2;
-  counts.lag = 5;
-  StreamCounts stream;
-  stream.chunks_missing = 7;
-  stream.messages_bad = 1;
-  const kintsugi::SegmenterStatus status = make_status(counts, stream);
+  SessionMaps::Counts maps;
+  maps.maps = 2;
+  maps.missing = 3;
+  maps.dropped = 2;
+  maps.lag = 5;
+  StreamCounts slices;
+  slices.chunks_missing = 7;
+  slices.messages_bad = 1;
+  UpdatePublisher::Counts updates;
+  updates.stream.requests_bad = 4;
+  updates.states = 9;
+  const kintsugi::SegmenterStatus status = make_status(maps, slices, updates);
+  EXPECT_EQ(status.maps, 2);
   EXPECT_EQ(status.slices_missing, 3);
   EXPECT_EQ(status.lag_slices, 5);
   EXPECT_EQ(status.chunks_missing, 7);
-  EXPECT_EQ(status.messages_bad, 3);
+  EXPECT_EQ(status.messages_bad, 7);
+  EXPECT_EQ(status.states_sent, 9);
 }
 
 testing::Labels labels_in(const std::filesystem::path& ply) {
@@ -343,7 +349,8 @@ SegmenterProcess::Config on_the_bus(const TemporaryFolder& folder, const std::st
   config.lcm_url = kPrivateBusUrl;
   config.files.folder = folder.path();
   config.exit_on_final = true;
-  config.processor.map.mode = mode;
+  config.maps.map.mode = mode;
+  config.linger_s = 0.0;
   return config;
 }
 
@@ -370,7 +377,7 @@ TEST_F(SegmenterOnTheBus, SegmentsEverySliceOfABurstHoweverSlowEngineAndFilesAre
   const TemporaryFolder folder;
   const auto slices = wavy_session(50, 300);
   SegmenterProcess::Config config = on_the_bus(folder, "batch");  // all of the map for each slice
-  config.processor.write_every = 1;
+  config.maps.processor.write_every = 1;
   Listener listener(config);
   StreamPublisher publisher(listener.bus(), channels::kCloudSlice, slices[0].session, {});
   for (const CloudSlice& slice : slices) {

@@ -23,14 +23,15 @@ class SliceProcessorTest : public ::testing::Test {
  protected:
   SliceProcessor make(const std::string& mode, bool coalesce = false) {
     SliceProcessor::Config config;
-    config.map.mode = mode;
     config.coalesce = coalesce;
-    return make(config);
+    return make(config, mode);
   }
 
-  SliceProcessor make(const SliceProcessor::Config& config) {
+  SliceProcessor make(const SliceProcessor::Config& config, const std::string& mode = "exact") {
+    SegmentMapConfig map_config;
+    map_config.mode = mode;
     return {config,
-            99,
+            std::make_unique<SegmentMap>(map_config, 99, wavy_session(1, 1)[0]),
             {[this](SegmentUpdate update) { updates_.push_back(std::move(update)); },
              [this](const SegmentMap& map, SliceProcessor::Save why) {
                saves_.push_back({map.map_session(), map.cloud().num_live(), why});
@@ -39,7 +40,7 @@ class SliceProcessorTest : public ::testing::Test {
   }
 
   void run(SliceProcessor& processor) {
-    while (processor.step(now_)) {
+    while (processor.step(now_, Outlook::kSilent)) {
     }
   }
 
@@ -67,7 +68,7 @@ TEST_F(SliceProcessorTest, PublishesUpdatesThatReplayToTheMap) {
       for (; num_mirrored < updates_.size(); ++num_mirrored) {
         mirror.apply(updates_[num_mirrored]);
       }
-      EXPECT_EQ(mirror.labels(), testing::labels_of(*processor.map())) << mode << slice.id;
+      EXPECT_EQ(mirror.labels(), testing::labels_of(processor.map())) << mode << slice.id;
       EXPECT_EQ(mirror.num_segments(), updates_.back().num_segments) << mode << slice.id;
     }
     ASSERT_EQ(updates_.size(), 6U);
@@ -77,7 +78,7 @@ TEST_F(SliceProcessorTest, PublishesUpdatesThatReplayToTheMap) {
       EXPECT_EQ(updates_[i].map_session, 5);
       EXPECT_EQ(updates_[i].is_final, i == 5);
     }
-    EXPECT_EQ(mirror.statistics(), processor.map()->statistics().all());
+    EXPECT_EQ(mirror.statistics(), processor.map().statistics().all());
     EXPECT_TRUE(processor.counts().complete);
     EXPECT_EQ(processor.counts().lag, 0);
   }
@@ -100,8 +101,8 @@ TEST_F(SliceProcessorTest, MapDoesNotDependOnTheOrderOfArrival) {
         shuffled.offer(slice, now_);  // a duplicate changes nothing
         run(shuffled);
       }
-      EXPECT_EQ(testing::labels_of(*shuffled.map()), testing::labels_of(*in_order.map()));
-      EXPECT_EQ(shuffled.map()->statistics().all(), in_order.map()->statistics().all());
+      EXPECT_EQ(testing::labels_of(shuffled.map()), testing::labels_of(in_order.map()));
+      EXPECT_EQ(shuffled.map().statistics().all(), in_order.map().statistics().all());
     }
   }
   EXPECT_THAT(warnings_, ::testing::IsEmpty());
@@ -114,8 +115,8 @@ TEST_F(SliceProcessorTest, CoalescingSegmentsWaitingSlicesInOneRunWithOneUpdateE
     one_run.offer(slice, now_);
   }
   EXPECT_EQ(one_run.counts().lag, 5);
-  EXPECT_TRUE(one_run.step(now_));
-  EXPECT_FALSE(one_run.step(now_));
+  EXPECT_TRUE(one_run.step(now_, Outlook::kSilent));
+  EXPECT_FALSE(one_run.step(now_, Outlook::kSilent));
   ASSERT_EQ(updates_.size(), 5U);
   LabelMirror mirror;
   for (const SegmentUpdate& update : updates_) {
@@ -124,7 +125,7 @@ TEST_F(SliceProcessorTest, CoalescingSegmentsWaitingSlicesInOneRunWithOneUpdateE
     EXPECT_EQ(update.num_slices, update.slice_id + 1);
     EXPECT_EQ(update.num_points, 200 * (update.slice_id + 1));
   }
-  EXPECT_EQ(mirror.labels(), testing::labels_of(*one_run.map()));
+  EXPECT_EQ(mirror.labels(), testing::labels_of(one_run.map()));
 
   SliceProcessor each = make("batch");
   for (const CloudSlice& slice : slices) {
@@ -132,7 +133,7 @@ TEST_F(SliceProcessorTest, CoalescingSegmentsWaitingSlicesInOneRunWithOneUpdateE
     run(each);
   }
   EXPECT_TRUE(
-      testing::same_partition(testing::labels_of(*one_run.map()), testing::labels_of(*each.map())));
+      testing::same_partition(testing::labels_of(one_run.map()), testing::labels_of(each.map())));
 }
 
 TEST_F(SliceProcessorTest, GoesOnWithoutAMissingSliceAfterTheTimeout) {
@@ -160,55 +161,31 @@ TEST_F(SliceProcessorTest, GoesOnWithoutAMissingSliceAfterTheTimeout) {
   EXPECT_EQ(processor.counts().missing, 0);
 }
 
-TEST_F(SliceProcessorTest, BeginsANewMapForANewSession) {
-  const auto old_session = wavy_session(3, 100, 5);
-  const auto new_session = wavy_session(3, 150, 6);
+TEST_F(SliceProcessorTest, RefusesOtherResolutionsAndOtherMapsAndSaysWhy) {
+  auto slices = wavy_session(3, 50);
   SliceProcessor processor = make("batch");
-  processor.offer(old_session[0], now_);
-  processor.offer(old_session[2], now_);  // 1 is missing when the new mapper starts
-  processor.offer(new_session[0], now_);
-  EXPECT_EQ(updates_.size(), 2U);
-  ASSERT_EQ(saves_.size(), 1U);
-  EXPECT_EQ(saves_[0].session, 5);
-  EXPECT_EQ(saves_[0].num_points, 200U);
-  EXPECT_EQ(saves_[0].why, SliceProcessor::Save::kSessionEnded);
-
-  processor.offer(old_session[1], now_);  // too late
-  processor.offer(new_session[1], now_);
-  processor.offer(new_session[2], now_);
-  run(processor);
-  EXPECT_EQ(processor.counts().map_session, 6);
-  EXPECT_EQ(processor.counts().dropped, 1);
-  EXPECT_EQ(processor.map()->cloud().size(), 450U);
-  EXPECT_TRUE(processor.counts().complete);
-  EXPECT_EQ(saves_.back().session, 6);
-  EXPECT_EQ(saves_.back().why, SliceProcessor::Save::kCurrent);
-  for (const SegmentUpdate& update : updates_) {
-    EXPECT_EQ(update.labels.size(), update.map_session == 5 ? 100U : 150U);
-  }
-}
-
-TEST_F(SliceProcessorTest, FollowsOnlyTheMapItIsToldTo) {
-  SliceProcessor::Config config;
-  config.map_name = "office";
-  SliceProcessor processor = make(config);
-  auto slices = wavy_session(1, 50);
-  slices[0].map_name = "kitchen";
-  processor.offer(slices[0], now_);
-  EXPECT_EQ(processor.map(), nullptr);
-  slices[0].map_name = "office";
-  processor.offer(slices[0], now_);
-  EXPECT_NE(processor.map(), nullptr);
-}
-
-TEST_F(SliceProcessorTest, DropsOtherResolutionsAndSaysSo) {
-  auto slices = wavy_session(2, 50);
-  SliceProcessor processor = make("batch");
-  processor.offer(slices[0], now_);
+  EXPECT_EQ(processor.offer(slices[0], now_), std::nullopt);
   slices[1].resolution_m = 0.02F;
+  EXPECT_THAT(*processor.offer(slices[1], now_), HasSubstr("resolution"));
+  slices[2].map_name = "kitchen";
+  EXPECT_THAT(*processor.offer(slices[2], now_), HasSubstr("'kitchen'"));
+  EXPECT_EQ(processor.counts().received, 1);
+}
+
+TEST_F(SliceProcessorTest, WaitsForAMissingSliceAsLongAsItIsBeingSentAgain) {
+  const auto slices = wavy_session(3, 100);
+  SliceProcessor processor = make("batch");
+  processor.offer(slices[0], now_);
+  processor.offer(slices[2], now_);
+  now_ += seconds(1000);
+  EXPECT_TRUE(processor.step(now_, Outlook::kLive));
+  EXPECT_FALSE(processor.step(now_, Outlook::kLive));
+  EXPECT_EQ(processor.counts().missing, 0);
+  EXPECT_EQ(processor.waiting_bytes(), bytes_of(slices[2]));
   processor.offer(slices[1], now_);
-  EXPECT_EQ(processor.counts().dropped, 1);
-  EXPECT_THAT(warnings_, ElementsAre(HasSubstr("slice 1 of session 5 is dropped: its resolution")));
+  run(processor);
+  EXPECT_TRUE(processor.counts().complete);
+  EXPECT_EQ(processor.waiting_bytes(), 0U);
 }
 
 TEST_F(SliceProcessorTest, CoalescingTakesTheNewestRevisionOfEachSlice) {
@@ -224,7 +201,7 @@ TEST_F(SliceProcessorTest, CoalescingTakesTheNewestRevisionOfEachSlice) {
   }
   processor.finish(now_);
   ASSERT_EQ(updates_.size(), 4U);
-  EXPECT_EQ(processor.map()->cloud().find_slice(1)->revision, 2);
+  EXPECT_EQ(processor.map().cloud().find_slice(1)->revision, 2);
   EXPECT_EQ(processor.counts().points, 99 + 98 + 99);
   EXPECT_EQ(processor.counts().segmented, 3);
   EXPECT_EQ(processor.counts().corrected, 1);
@@ -293,7 +270,6 @@ TEST_F(SliceProcessorTest, SavesWhenAskedAndWhenDue) {
 
 TEST_F(SliceProcessorTest, SavesAgainWhenTold) {
   SliceProcessor processor = make("batch");
-  processor.save(true);  // there is nothing
   processor.offer(wavy_session(1, 50)[0], now_);
   run(processor);
   EXPECT_EQ(saves_.size(), 1U);  // it is complete
@@ -303,15 +279,30 @@ TEST_F(SliceProcessorTest, SavesAgainWhenTold) {
   EXPECT_EQ(saves_.size(), 2U);
 }
 
+TEST_F(SliceProcessorTest, SavesToGoOnMoreOftenThanToLookAt) {
+  SliceProcessor::Config config;
+  config.write_every = 4;
+  config.save_every = 2;
+  SliceProcessor processor = make(config);
+  const auto slices = wavy_session(9, 50);
+  for (int i = 0; i < 8; ++i) {
+    processor.offer(slices[i], now_);
+    run(processor);
+  }
+  std::vector<SliceProcessor::Save> why;
+  for (const Saved& save : saves_) {
+    why.push_back(save.why);
+  }
+  using Save = SliceProcessor::Save;
+  EXPECT_THAT(why, ElementsAre(Save::kToGoOn, Save::kCurrent, Save::kToGoOn, Save::kCurrent));
+}
+
 TEST_F(SliceProcessorTest, RefusesABadConfig) {
   SliceProcessor::Config config;
-  config.map.mode = "exhaustive";
-  EXPECT_THROW(make(config), std::invalid_argument);
-  config = {};
   config.write_every = -1;
   EXPECT_THROW(make(config), std::invalid_argument);
   config = {};
-  config.map.engine.threshold = 0.0;
+  config.save_every = -1;
   EXPECT_THROW(make(config), std::invalid_argument);
 }
 

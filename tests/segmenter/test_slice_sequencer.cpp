@@ -29,9 +29,9 @@ class SliceSequencerTest : public ::testing::Test {
   }
 
   // Ids of each run.
-  std::vector<std::vector<std::int32_t>> pop_runs(bool stream_has_ended = false) {
+  std::vector<std::vector<std::int32_t>> pop_runs(Outlook outlook = Outlook::kSilent) {
     std::vector<std::vector<std::int32_t>> runs;
-    while (const auto run = sequencer_.pop(now_, stream_has_ended)) {
+    while (const auto run = sequencer_.pop(now_, outlook)) {
       EXPECT_TRUE(run->is_correction || run->slices.size() == 1);
       auto& ids = runs.emplace_back();
       for (const CloudSlice& slice : run->slices) {
@@ -70,11 +70,11 @@ TEST_F(SliceSequencerTest, TellsWhatComesNext) {
   sequencer_.offer(slice(0), now_);
   ASSERT_NE(sequencer_.upcoming(), nullptr);
   EXPECT_EQ(sequencer_.upcoming()->id, 0);
-  sequencer_.pop(now_, false);
+  sequencer_.pop(now_, Outlook::kSilent);
   ASSERT_NE(sequencer_.upcoming(), nullptr);
   EXPECT_EQ(sequencer_.upcoming()->id, 1);
   sequencer_.offer(slice(0, 1), now_);
-  sequencer_.pop(now_, false);
+  sequencer_.pop(now_, Outlook::kSilent);
   EXPECT_EQ(sequencer_.upcoming(), nullptr);  // the correction comes first
 }
 
@@ -85,9 +85,9 @@ TEST_F(SliceSequencerTest, WaitsForAMissingSliceUntilTheTimeout) {
   EXPECT_EQ(sequencer_.num_waiting(), 1);
   EXPECT_EQ(sequencer_.num_missing(), 2);
   now_ += seconds(9);
-  EXPECT_FALSE(sequencer_.give_up_gap(now_, false));
+  EXPECT_FALSE(sequencer_.give_up_gap(now_, Outlook::kSilent));
   now_ += seconds(1);
-  EXPECT_EQ(sequencer_.give_up_gap(now_, false), (SliceGap{1, 2}));
+  EXPECT_EQ(sequencer_.give_up_gap(now_, Outlook::kSilent), (SliceGap{1, 2}));
   EXPECT_EQ(pop_all(), Ids{3});
   EXPECT_EQ(sequencer_.num_given_up(), 2);
 }
@@ -97,7 +97,7 @@ TEST_F(SliceSequencerTest, StartsTheTimeoutWhenSomethingBeginsToWait) {
   EXPECT_EQ(pop_all(), Ids{0});
   now_ += seconds(100);  // the camera stood still
   sequencer_.offer(slice(2), now_);
-  EXPECT_FALSE(sequencer_.give_up_gap(now_, false));
+  EXPECT_FALSE(sequencer_.give_up_gap(now_, Outlook::kSilent));
   sequencer_.offer(slice(1), now_);
   EXPECT_EQ(pop_all(), (Ids{1, 2}));
 }
@@ -105,16 +105,16 @@ TEST_F(SliceSequencerTest, StartsTheTimeoutWhenSomethingBeginsToWait) {
 TEST_F(SliceSequencerTest, GivesUpGapsAtOnceWhenTheStreamHasEnded) {
   sequencer_.offer(slice(2), now_);
   sequencer_.offer(slice(4), now_);
-  EXPECT_EQ(sequencer_.give_up_gap(now_, true), (SliceGap{0, 1}));
+  EXPECT_EQ(sequencer_.give_up_gap(now_, Outlook::kEnded), (SliceGap{0, 1}));
   EXPECT_EQ(pop_all(), Ids{2});
-  EXPECT_EQ(sequencer_.give_up_gap(now_, true), (SliceGap{3, 3}));
+  EXPECT_EQ(sequencer_.give_up_gap(now_, Outlook::kEnded), (SliceGap{3, 3}));
   EXPECT_EQ(pop_all(), Ids{4});
-  EXPECT_FALSE(sequencer_.give_up_gap(now_, true));
+  EXPECT_FALSE(sequencer_.give_up_gap(now_, Outlook::kEnded));
 }
 
 TEST_F(SliceSequencerTest, HandsOnASliceThatWasGivenUpWhenItComesAfterAll) {
   sequencer_.offer(slice(1), now_);
-  sequencer_.give_up_gap(now_, true);
+  sequencer_.give_up_gap(now_, Outlook::kEnded);
   EXPECT_EQ(pop_all(), Ids{1});
   EXPECT_EQ(sequencer_.num_given_up(), 1);
   EXPECT_EQ(sequencer_.offer(slice(0), now_), Verdict::kTaken);
@@ -129,13 +129,13 @@ TEST_F(SliceSequencerTest, TellsDuplicatesFromRevisions) {
   EXPECT_EQ(sequencer_.offer(slice(1, 5), now_), Verdict::kReplaced);
   EXPECT_EQ(sequencer_.offer(slice(1, 4), now_), Verdict::kDuplicate);
   sequencer_.offer(slice(0), now_);
-  ASSERT_EQ(sequencer_.pop(now_, false)->slices[0].id, 0);
-  EXPECT_EQ(sequencer_.pop(now_, false)->slices[0].revision, 5);
+  ASSERT_EQ(sequencer_.pop(now_, Outlook::kSilent)->slices[0].id, 0);
+  EXPECT_EQ(sequencer_.pop(now_, Outlook::kSilent)->slices[0].revision, 5);
   EXPECT_EQ(sequencer_.offer(slice(1, 5), now_), Verdict::kDuplicate);
   EXPECT_EQ(sequencer_.offer(slice(1, 7), now_), Verdict::kCorrected);
   EXPECT_EQ(sequencer_.offer(slice(1, 6), now_), Verdict::kDuplicate);
   EXPECT_EQ(sequencer_.num_waiting(), 1);
-  const auto correction = sequencer_.pop(now_, true);
+  const auto correction = sequencer_.pop(now_, Outlook::kEnded);
   ASSERT_TRUE(correction && correction->is_correction);
   EXPECT_EQ(correction->slices[0].revision, 7);
 }
@@ -147,13 +147,13 @@ TEST_F(SliceSequencerTest, GathersCorrectionsIntoOneRunUntilTheyPause) {
   EXPECT_EQ(pop_runs(), (Runs{{0}, {1}, {2}, {3}}));
   for (const std::int32_t id : {2, 0, 3}) {
     sequencer_.offer(slice(id, 1), now_);
-    EXPECT_FALSE(sequencer_.pop(now_, false));
+    EXPECT_FALSE(sequencer_.pop(now_, Outlook::kSilent));
     now_ += std::chrono::milliseconds(900);
   }
   sequencer_.offer(slice(0, 2), now_);  // the newest stands for the slice
   EXPECT_EQ(sequencer_.num_waiting(), 3);
   now_ += seconds(1);
-  const auto run = sequencer_.pop(now_, false);
+  const auto run = sequencer_.pop(now_, Outlook::kSilent);
   ASSERT_EQ(run->slices.size(), 3U);
   EXPECT_EQ(run->slices[0].id, 0);
   EXPECT_EQ(run->slices[0].revision, 2);
@@ -168,10 +168,10 @@ TEST_F(SliceSequencerTest, DoesNotWaitForeverForCorrectionsToPause) {
   std::int32_t revision = 0;
   for (int tenth = 0; tenth < 100; ++tenth) {
     sequencer_.offer(slice(0, ++revision), now_);
-    EXPECT_FALSE(sequencer_.pop(now_, false));
+    EXPECT_FALSE(sequencer_.pop(now_, Outlook::kSilent));
     now_ += std::chrono::milliseconds(100);
   }
-  EXPECT_EQ(sequencer_.pop(now_, false)->slices[0].revision, 100);
+  EXPECT_EQ(sequencer_.pop(now_, Outlook::kSilent)->slices[0].revision, 100);
 }
 
 TEST_F(SliceSequencerTest, PutsCorrectionsBehindWhatIsReadyAndBeforeWhatComesLater) {
@@ -185,7 +185,7 @@ TEST_F(SliceSequencerTest, PutsCorrectionsBehindWhatIsReadyAndBeforeWhatComesLat
   sequencer_.offer(slice(3, 1), now_);
   EXPECT_EQ(pop_runs(), (Runs{{0}, {1}, {0, 1}, {2}, {3}}));
   EXPECT_EQ(sequencer_.num_waiting(), 1);
-  EXPECT_EQ(pop_runs(true), Runs{{3}});
+  EXPECT_EQ(pop_runs(Outlook::kEnded), Runs{{3}});
 }
 
 TEST_F(SliceSequencerTest, RunsDependOnTheOrderOfArrivalAndNotOnWhenTheyAreFetched) {
@@ -207,7 +207,7 @@ TEST_F(SliceSequencerTest, RunsDependOnTheOrderOfArrivalAndNotOnWhenTheyAreFetch
           std::ranges::move(pop_runs(), std::back_inserter(runs));
         }
       }
-      std::ranges::move(pop_runs(true), std::back_inserter(runs));
+      std::ranges::move(pop_runs(Outlook::kEnded), std::back_inserter(runs));
       EXPECT_EQ(sequencer_.num_waiting(), 0);
       EXPECT_EQ(sequencer_.num_missing(), 0);
       return runs;
@@ -234,9 +234,9 @@ TEST_F(SliceSequencerTest, GoesOnWhereAnEarlierSegmenterStopped) {
 TEST_F(SliceSequencerTest, SurvivesTheLargestId) {
   sequencer_.offer(slice(2147483647), now_);
   EXPECT_EQ(sequencer_.num_missing(), 2147483647);
-  EXPECT_EQ(sequencer_.give_up_gap(now_, true), (SliceGap{0, 2147483646}));
+  EXPECT_EQ(sequencer_.give_up_gap(now_, Outlook::kEnded), (SliceGap{0, 2147483646}));
   EXPECT_EQ(pop_all(), Ids{2147483647});
-  EXPECT_FALSE(sequencer_.give_up_gap(now_, true));
+  EXPECT_FALSE(sequencer_.give_up_gap(now_, Outlook::kEnded));
 }
 
 TEST(SliceSequencerConfig, RefusesATimeThatIsNotPositive) {
