@@ -1,18 +1,16 @@
 // The whole process: from a log, and over a real bus in a network namespace of the test's own.
 
 #include <fstream>
-#include <thread>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <lcm/lcm-cpp.hpp>
 
 #include "lcmtypes/channels.hpp"
-#include "lcmtypes/message_subscriber.hpp"
-#include "lcmtypes/stop_signal.hpp"
 #include "segmenter/io/ply_reader.hpp"
 #include "segmenter/process/process_status.hpp"
 #include "segmenter/process/segmenter_process.hpp"
+#include "tests/segmenter/listener.hpp"
 #include "tests/segmenter/program.hpp"
 #include "tests/segmenter/room_session.hpp"
 #include "tests/segmenter/session_log.hpp"
@@ -23,12 +21,13 @@
 namespace kintsugi::segmenter {
 namespace {
 
-using kintsugi::testing::kPrivateBusUrl;
 using kintsugi::testing::TemporaryFolder;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
-using testing::LabelMirror;
+using testing::labels_in;
+using testing::Listener;
 using ::testing::Not;
+using testing::on_the_bus;
 using testing::wavy_session;
 using testing::write_log;
 
@@ -89,15 +88,6 @@ TEST(SegmenterStatus, TellsWhatIsMissingAndWhatWasDropped) {
   EXPECT_EQ(status.chunks_missing, 7);
   EXPECT_EQ(status.messages_bad, 7);
   EXPECT_EQ(status.states_sent, 9);
-}
-
-testing::Labels labels_in(const std::filesystem::path& ply) {
-  const PlyCloud cloud = read_ply(ply);
-  testing::Labels labels;
-  for (std::size_t i = 0; i < cloud.points_W.size(); ++i) {
-    labels[cloud.slice_ids[i]].push_back(cloud.segment_ids[i]);
-  }
-  return labels;
 }
 
 class SegmenterProgram : public ::testing::Test {
@@ -288,72 +278,6 @@ class SegmenterOnTheBus : public ::testing::Test {
   }
 };
 
-// A segmenter on the bus, and everything a listener hears of it.
-class Listener {
- public:
-  explicit Listener(const SegmenterProcess::Config& config)
-      : process_(config),
-        bus_(kPrivateBusUrl),
-        updates_(channels::kSegmentUpdate, [this](SegmentUpdate update) {
-          mirror.apply(update);
-          last = std::move(update);
-        }) {
-    updates_.subscribe(bus_);
-    subscribe<SegmenterStatus>(bus_, channels::kSegmenterStatus,
-                               [this](const SegmenterStatus& s) { status = s; });
-    segmenter_ = std::thread([this] { exit_code_ = process_.run(); });
-    // The first status tells that the segmenter listens.
-    EXPECT_TRUE(hears([&] { return status.has_value(); }));
-  }
-  ~Listener() {
-    if (segmenter_.joinable()) {
-      request_stop();
-      segmenter_.join();
-    }
-  }
-
-  Bus& bus() { return bus_; }
-
-  template <class Condition>
-  bool hears(const Condition& condition) {
-    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
-    while (!condition() && std::chrono::steady_clock::now() < deadline) {
-      bus_.handle(std::chrono::milliseconds(100));
-    }
-    return condition();
-  }
-
-  int hear_the_end() {
-    if (!hears([&] { return last && last->is_final && status && status->finished; })) {
-      ADD_FAILURE() << "the segmenter does not end";
-      request_stop();
-    }
-    segmenter_.join();
-    return exit_code_;
-  }
-
-  LabelMirror mirror;
-  std::optional<SegmentUpdate> last;
-  std::optional<SegmenterStatus> status;
-
- private:
-  SegmenterProcess process_;
-  Bus bus_;
-  StreamSubscriber<SegmentUpdate> updates_;
-  int exit_code_ = -1;
-  std::thread segmenter_;
-};
-
-SegmenterProcess::Config on_the_bus(const TemporaryFolder& folder, const std::string& mode) {
-  SegmenterProcess::Config config;
-  config.lcm_url = kPrivateBusUrl;
-  config.files.folder = folder.path();
-  config.exit_on_final = true;
-  config.maps.map.mode = mode;
-  config.linger_s = 0.0;
-  return config;
-}
-
 TEST_F(SegmenterOnTheBus, PublishesUpdatesAndStatusUntilTheFinalSlice) {
   const TemporaryFolder folder;
   const auto slices = wavy_session(6, 300);
@@ -368,9 +292,9 @@ TEST_F(SegmenterOnTheBus, PublishesUpdatesAndStatusUntilTheFinalSlice) {
   EXPECT_EQ(status->lag_slices, 0);
   EXPECT_EQ(status->points, 1800);
   EXPECT_EQ(status->mode, "voting");
-  EXPECT_EQ(status->segments, listener.mirror.num_segments());
+  EXPECT_EQ(status->segments, listener.mirror().num_segments());
   EXPECT_GT(status->memory_bytes, 0);
-  EXPECT_EQ(labels_in(folder / "segments.ply"), listener.mirror.labels());
+  EXPECT_EQ(labels_in(folder / "segments.ply"), listener.mirror().labels());
 }
 
 TEST_F(SegmenterOnTheBus, SegmentsEverySliceOfABurstHoweverSlowEngineAndFilesAre) {
@@ -387,7 +311,7 @@ TEST_F(SegmenterOnTheBus, SegmentsEverySliceOfABurstHoweverSlowEngineAndFilesAre
   EXPECT_EQ(listener.status->slices_segmented, 50);
   EXPECT_EQ(listener.status->lag_slices, 0);
   EXPECT_EQ(listener.status->chunks_missing, 0);
-  EXPECT_EQ(labels_in(folder / "segments.ply"), listener.mirror.labels());
+  EXPECT_EQ(labels_in(folder / "segments.ply"), listener.mirror().labels());
 }
 
 TEST_F(SegmenterOnTheBus, FollowsCorrections) {
@@ -417,12 +341,12 @@ TEST_F(SegmenterOnTheBus, FollowsCorrections) {
   publish({slices.back()});
   EXPECT_EQ(listener.hear_the_end(), 0);
 
-  EXPECT_EQ(labels_in(folder / "segments.ply"), listener.mirror.labels());
+  EXPECT_EQ(labels_in(folder / "segments.ply"), listener.mirror().labels());
   SegmentMapConfig config;
   config.mode = "batch";
   SegmentMap batch(config, 1, slices[0]);
   batch.add(slices);
-  EXPECT_TRUE(testing::same_partition(listener.mirror.labels(), testing::labels_of(batch)));
+  EXPECT_TRUE(testing::same_partition(listener.mirror().labels(), testing::labels_of(batch)));
 }
 
 }  // namespace
