@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "segmenter/io/ply_reader.hpp"
+#include "tests/support/allocation_limit.hpp"
 
 namespace kintsugi::segmenter {
 namespace {
@@ -227,6 +228,19 @@ TEST(PlyReader, RefusesEveryTruncation) {
     ASSERT_NO_THROW(parse_ply(whole, "whole"));
     for (std::size_t length = 0; length < whole.size(); ++length) {
       EXPECT_THROW(parse_ply(whole.substr(0, length), "cut"), std::runtime_error) << length;
+    }
+  }
+}
+
+TEST(PlyReader, TakesNoMemoryForPointsThatCannotBeThere) {
+  for (const char* format : {"ascii", "binary_little_endian", "binary_big_endian"}) {
+    for (const char* list : {"", "property list uint double v\n"}) {
+      const std::string bytes = std::string("ply\nformat ") + format +
+                                " 1.0\nelement vertex 2000000000\n" + kXyz + list + "end_header\n";
+      const auto refuse = [&] {
+        EXPECT_THAT(error_of(bytes), HasSubstr("claims 2000000000 rows"));
+      };
+      EXPECT_LT(kintsugi::testing::allocated_by(refuse), 16'384U) << format;  // header and reason
     }
   }
 }

@@ -9,6 +9,7 @@
 #include "mapper/source/frame_source.hpp"
 #include "mapper/source/oni_file.hpp"
 #include "tests/source/oni_recording.hpp"
+#include "tests/support/allocation_limit.hpp"
 
 namespace kintsugi::mapper {
 namespace {
@@ -16,11 +17,11 @@ namespace {
 namespace fs = std::filesystem;
 using test::error_of;
 using test::kNumFrames;
-using testing::AllOf;
-using testing::HasSubstr;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
 using Kind = OniFile::Node::Kind;
 
-class RecordedOni : public testing::Test {
+class RecordedOni : public ::testing::Test {
  protected:
   void SetUp() override {
     test::record_oni(folder_, file_);
@@ -83,7 +84,7 @@ TEST_F(RecordedOni, GivesDepthAloneUnlessItIsTakenForRegistered) {
   const auto frame = open_frame_source(config)->next();
   ASSERT_TRUE(frame);
   EXPECT_TRUE(frame->color_rgb.empty());
-  EXPECT_THAT(warnings, testing::ElementsAre(HasSubstr("--assume-registered")));
+  EXPECT_THAT(warnings, ::testing::ElementsAre(HasSubstr("--assume-registered")));
 }
 
 TEST_F(RecordedOni, IsScannedByItsRecords) {
@@ -158,6 +159,19 @@ TEST_F(RecordedOni, WithAByteOfItsHeadersChangedIsScannedOrRefused) {
     }
     bytes_[i] = right;
   }
+}
+
+TEST(OniFile, TakesNoMemoryForARecordThatCannotBeThere) {
+  const test::RecordingFolder folder;
+  const fs::path file = folder.path() / "bad.oni";
+  std::string bytes("NI10\x01\0\x01\0\0\0\0\0\0\0\0\0\0\0\0\0\x02\0\0\0", 24);
+  bytes += std::string("NIR\0\x0D\0\0\0\x01\0\0\0", 12);  // a stream is announced
+  bytes += std::string("\0\0\x09\0\xff\xff\xff\x7f", 8);  // in 576 kB, with 2 GB behind
+  test::write_text(file, bytes + std::string(8, '\0'));
+  const auto refuse = [&] {
+    EXPECT_THAT(error_of<std::runtime_error>([&] { scan_oni_file(file); }), HasSubstr("cut off"));
+  };
+  EXPECT_LT(kintsugi::testing::allocated_by(refuse), 32'768U);  // the stream's buffer, the reason
 }
 
 TEST(OniFile, SaysWhatIsWrong) {
