@@ -256,6 +256,22 @@ TEST_F(ViewerOnBus, DrawsTheSameFinalPicturesWheneverItWasStartedAndWhoeverWasRe
   }
 }
 
+TEST_F(ViewerOnBus, RefusesWhatComesWhileItDrawsAndAsksForItLater) {
+  const SyntheticMap room = make_room(kLength_m, 0.02);  // 9 MB of points
+  RoomOnBus trio(*bus_, room);
+  Program program(arguments({"--exit-on-final", "--max-queue", "1", "--every", "1",
+                             "--drawing-share", "1", "--supersampling", "4"}));
+  ASSERT_TRUE(wait_until([&] { return status_.has_value(); }));
+  trio.publish(20);
+  ASSERT_TRUE(wait_until([&] { return program.has_ended(); }, &trio));
+  EXPECT_EQ(0, program.wait());
+  ASSERT_TRUE(wait_until([&] { return status_->finished; }));
+  EXPECT_GT(status_->chunks_refused, 0);
+  EXPECT_GT(status_->requests_sent, 0);
+  EXPECT_EQ(20, status_->slices_received);
+  EXPECT_EQ(0, status_->lag_slices);
+}
+
 TEST_F(ViewerOnBus, DrawsTheMapItHeardFirstAndNamesTheOther) {
   const SyntheticMap room = make_room(kLength_m, kResolution_m);
   SyntheticMap cellar = make_room(2.5, kResolution_m);

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <random>
@@ -179,6 +180,29 @@ TEST(Scene, IgnoresAndCountsRunsOutsideTheirSlice) {
         0);
   EXPECT_EQ(Labels({1, 1, 1}), labels_of(scene, 0));
   EXPECT_EQ(6, scene.counts().ignored_runs);
+}
+
+TEST(Scene, SurvivesUpdatesThatNameAbsurdSlices) {
+  constexpr std::int32_t kMax = std::numeric_limits<std::int32_t>::max();
+  constexpr std::int32_t kMin = std::numeric_limits<std::int32_t>::min();
+  Scene scene(kMapSession);
+  scene.add_slice(slice_of(0, 3));
+  std::int64_t sequence = 0;
+  for (const std::int32_t id : {kMin, -1, 0, 1, kMax}) {
+    for (const std::int32_t revision : {kMin, -1, 0, 1, kMax}) {
+      SegmentUpdate update = update_of(
+          id, {1, 1, 1},
+          {{id, kMin, kMax, 7, revision}, {id, kMax, kMax, 7, revision}, {id, 1, 1, 7, revision}});
+      update.slice_revision = revision;
+      update.num_slices = id;
+      update.num_segments = std::numeric_limits<std::int64_t>::max();
+      apply(scene, update, sequence++);
+    }
+  }
+  EXPECT_EQ(Labels({1, 7, 1}), labels_of(scene, 0));
+  for (const std::int32_t id : {kMin, -1, 1, kMax}) scene.add_slice(slice_of(id, 1, kMax));
+  EXPECT_EQ(1, scene.counts().labelled_slices);  // the labels were three, the points one
+  EXPECT_GE(scene.lag_slices(), 4);
 }
 
 TEST(Scene, KeepsRunsForSlicesThatHaveNotCome) {

@@ -3,6 +3,7 @@
 #include <compare>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <optional>
 #include <vector>
@@ -52,7 +53,8 @@ class PendingUpdates {
   template <class Function>
   void take_up_to(SliceKey key, Function&& function) {
     const auto end = entries_.upper_bound(key);
-    for (auto it = entries_.lower_bound({key.id, 0}); it != end; it = entries_.erase(it)) {
+    for (auto it = entries_.lower_bound({key.id, std::numeric_limits<std::int32_t>::min()});
+         it != end; it = entries_.erase(it)) {
       bytes_ -= bytes_of(it->second);
       function(it->first, it->second);
     }

@@ -22,6 +22,8 @@ class Receiver {
     std::int64_t receiver = 0;              ///< number of this process, said in its requests
     std::size_t max_request_bytes = 1'400;  ///< of one request: what the bus takes
     std::function<bool()> has_room;         ///< for slices and updates; empty: always
+    /// Of incomplete messages on each stream, bytes; a larger message is taken alone.
+    std::size_t max_pending_bytes = std::size_t{1} << 28U;
   };
   using OnMessage = std::function<void(Message)>;
   using OnBad = std::function<void(std::int64_t count, const std::string& reason)>;

@@ -48,7 +48,8 @@ int run_on_bus(const Options& options) {
       {.map_name = options.map_name,
        .receiver = announcer.session(),
        .max_request_bytes = bus.max_message_bytes(),
-       .has_room = [&inbox] { return inbox.has_room(); }},
+       .has_room = [&inbox] { return inbox.has_room(); },
+       .max_pending_bytes = options.max_queue_bytes()},
       [&](Message message) { inbox.put(std::move(message)); }, report_bad);
   Viewer viewer(options.viewer,
                 {.on_picture =

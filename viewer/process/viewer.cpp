@@ -168,6 +168,7 @@ bool Viewer::write_final(SessionScene& shown) {
   const cv::Mat3b figure =
       renderer_.draw_figure(scene, track, shown.followed(), OverviewView{}, text);
   note_drawing_time(shown, start);
+  if (!finals_failing_since_s_) outputs_.on_picture(figure, text);
   const auto map_in = [&](Coloring coloring) {
     return renderer_.draw_map(scene, track, shown.followed(), OverviewView{}, coloring);
   };
@@ -178,7 +179,6 @@ bool Viewer::write_final(SessionScene& shown) {
     is_written &= folder_.save("plots" + suffix + ".png", shown.history().draw({1000, 900}));
   }
   if (!is_written) return false;
-  outputs_.on_picture(figure, text);
   shown.note_final(suffix);
   if (scene.lag_slices() > 0) {
     spdlog::warn("map session {}: {} slices lack their segments or are missing",
