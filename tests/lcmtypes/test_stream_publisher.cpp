@@ -152,7 +152,8 @@ TEST(StreamPublisher, GoesOnWithTheSessionOfItsStore) {
   both.insert(both.end(), second.chunks.begin(), second.chunks.end());
   EXPECT_EQ(both, chunks_of(slices));
 
-  StreamPublisher third(Recording().transmit(), channels::kCloudSlice, 42, fast(), &store);
+  Recording none;
+  StreamPublisher third(none.transmit(), channels::kCloudSlice, 42, fast(), &store);
   third.publish(slices[1]);
   EXPECT_THROW(third.flush(), std::runtime_error);
   EXPECT_THROW(third.publish(slices[0]), std::runtime_error);

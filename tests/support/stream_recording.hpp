@@ -1,6 +1,7 @@
 #pragma once
 // What a publisher sends, recorded instead of sent.
 
+#include <chrono>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -30,10 +31,12 @@ struct Recording {
   }
 };
 
-/// Fast enough that no test waits.
+/// Fast enough that no test waits, and no heartbeats but the first and those of flush(): what is
+/// recorded can be read after it.
 inline StreamPublisher::Config fast() {
   StreamPublisher::Config config;
   config.rate_bytes_per_s = 1e12;
+  config.heartbeat_period = std::chrono::hours(1);
   config.max_chunk_bytes = kChunkBytes;
   return config;
 }
