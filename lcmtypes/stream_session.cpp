@@ -44,8 +44,8 @@ bool StreamSession::takes(std::int64_t sequence, StreamRoom room, std::size_t ma
 
 void StreamSession::keep(std::int64_t sequence, std::size_t bytes) {
   seen_.insert(sequence);
-  ++chunks_kept_;
-  bytes_kept_ += static_cast<std::int64_t>(bytes);
+  ++chunks_came_;
+  bytes_came_ += static_cast<std::int64_t>(bytes);
   lost_requests_.arrived(sequence);
   requests_.arrived(sequence);
 }
@@ -54,7 +54,7 @@ void StreamSession::restore(const std::vector<SequenceRange>& ranges) {
   for (const SequenceRange range : ranges) {
     seen_.insert(range);
     next_ = std::max(next_, range.last + 1);
-    chunks_kept_ += range.last - range.first + 1;
+    chunks_restored_ += range.last - range.first + 1;
   }
 }
 
@@ -66,7 +66,7 @@ std::vector<SequenceRange> StreamSession::poll(StreamRoom room, std::int64_t max
     return {};
   }
   const std::int64_t chunk_bytes =
-      chunks_kept_ > 0 ? std::max<std::int64_t>(1, bytes_kept_ / chunks_kept_) : kUsualChunkBytes;
+      chunks_came_ > 0 ? std::max<std::int64_t>(1, bytes_came_ / chunks_came_) : kUsualChunkBytes;
   ResendRequests::Limits limits{max_ranges, max_bytes / chunk_bytes, next_};
   if (room == StreamRoom::kOnlyNext) limits.end = seen_.lowest_missing(state_) + kNextChunks;
   const bool heard = std::exchange(heard_, false);

@@ -54,7 +54,7 @@ class StreamSession {
   std::int64_t state_sequence() const { return state_; }
   std::int64_t first_sequence() const { return first_; }
   std::int64_t next_sequence() const { return next_; }
-  std::int64_t chunks_kept() const { return chunks_kept_; }
+  std::int64_t chunks_kept() const { return chunks_came_ + chunks_restored_; }
 
  private:
   std::int64_t resendable() const;
@@ -65,8 +65,9 @@ class StreamSession {
   std::int64_t next_ = 0;   // one past the newest that exists
   bool doubts_ = false;     // the last heartbeat took something back
   bool heard_ = false;      // since the last poll
-  std::int64_t chunks_kept_ = 0;
-  std::int64_t bytes_kept_ = 0;
+  std::int64_t chunks_came_ = 0;
+  std::int64_t bytes_came_ = 0;
+  std::int64_t chunks_restored_ = 0;
   ResendRequests lost_requests_;  // for [state_, first_), which only a new full state can replace
   ResendRequests requests_;       // for [first_, next_)
 };

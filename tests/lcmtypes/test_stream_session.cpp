@@ -66,6 +66,21 @@ TEST(StreamSession, AlwaysTakesWhatIsMissingLowestIfThereIsAnyRoom) {
   EXPECT_FALSE(session.takes(0, StreamRoom::kNone, kMaxGaps));
 }
 
+TEST(StreamSession, MissesNothingThatAnEarlierRunHas) {
+  StreamSession session = a_session();
+  session.restore({{0, 499}, {600, 699}});
+  EXPECT_EQ(session.next_sequence(), 700);
+  EXPECT_EQ(session.chunks_kept(), 600);
+  EXPECT_TRUE(session.has(499));
+  session.hear(beat(0, 1'000));
+  // One chunk more tells how large they are; what the earlier run had says nothing of that.
+  session.keep(999, 60'000);
+  session.poll(StreamRoom::kPlenty, 600'000, 100, 0.0);
+  const auto ranges = session.poll(StreamRoom::kPlenty, 600'000, 100, 0.1);
+  ASSERT_EQ(ranges.size(), 1U);
+  EXPECT_EQ(ranges[0], (SequenceRange{500, 509}));
+}
+
 /// Polls for `duration_s`; the sender is heard and answers what it can: from number 5 on.
 std::vector<double> times_of_asking_for_the_rest(StreamSession& session, double duration_s) {
   std::vector<double> times_s;
