@@ -77,7 +77,7 @@ double StreamSender::step(double now_s) {
     compare_with_store();
   } else {
     if (!prepared_) prepare();
-    if (!prepared_) return next_heartbeat_s_ - now_s;
+    if (!prepared_) return resends_.empty() ? next_heartbeat_s_ - now_s : 0.0;
     const double wait_s = bucket_.delay_s(static_cast<double>(prepared_->chunk.size()), now_s);
     if (wait_s > 0.0) return std::min(std::max(wait_s, min_wait_s_), next_heartbeat_s_ - now_s);
     send_prepared(now_s);
@@ -105,7 +105,8 @@ void StreamSender::compare_with_store() {
   finish_chunk();
 }
 
-/// Decides what goes next, and keeps a new chunk before it goes.
+/// Decides what goes next, and keeps a new chunk before it goes. Nothing, too, when what was asked
+/// for is no longer kept.
 void StreamSender::prepare() {
   if (const auto sequence = resends_.next(!jobs_.empty())) {
     auto chunk = store_->find(*sequence);

@@ -1,5 +1,6 @@
 // What a publisher does, step by step, without its thread.
 
+#include <optional>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -98,6 +99,22 @@ TEST(StreamSender, ResendsFromItsStoreOnly) {
   without.run_until(2.0);
   EXPECT_THAT(without.sequences, IsEmpty());
   EXPECT_EQ(without.heartbeats.back().first_sequence, 10);
+}
+
+TEST(StreamSender, PassesOverWhatItsStoreHasLost) {
+  struct Holed : RecentChunks {
+    using RecentChunks::RecentChunks;
+    std::optional<Bytes> find(std::int64_t sequence) const override {
+      return sequence < 90 ? std::nullopt : RecentChunks::find(sequence);
+    }
+  } store(1'000'000);
+  Sending sending(&store);
+  sending.push(100);
+  sending.run_until(1.0);
+  sending.sequences.clear();
+  sending.ask({{0, 92}});
+  sending.run_until(1.01);  // at once, without a wait for each hole
+  EXPECT_THAT(sending.sequences, ElementsAre(90, 91, 92));
 }
 
 TEST(StreamSender, PacesNewChunksAndResendsTogether) {
