@@ -2,12 +2,12 @@
 // One sender and several receivers of a stream on a network in memory, in a time of its own:
 // minutes of loss, delay, stalls and crashes in milliseconds, the same on every run.
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <map>
 #include <memory>
 #include <optional>
-#include <queue>
 #include <random>
 #include <string>
 #include <utility>
@@ -17,45 +17,9 @@
 #include "lcmtypes/patient_clock.hpp"
 #include "lcmtypes/stream_sender.hpp"
 #include "lcmtypes/stream_subscriber.hpp"
+#include "tests/support/simulation.hpp"
 
 namespace kintsugi::testing {
-
-/// Calls functions at their times, in order.
-class Simulation {
- public:
-  double now_s() const { return now_s_; }
-
-  void at(double time_s, std::function<void()> what) {
-    events_.push({std::max(time_s, now_s_), num_events_++, std::move(what)});
-  }
-  void after(double seconds, std::function<void()> what) { at(now_s_ + seconds, std::move(what)); }
-
-  /// Until nothing is left to do before `time_s`, or `done` (may be empty).
-  void run_until(double time_s, const std::function<bool()>& done = {}) {
-    while (!events_.empty() && events_.top().time_s <= time_s && !(done && done())) {
-      Event event = events_.top();
-      events_.pop();
-      now_s_ = event.time_s;
-      event.what();
-    }
-    if (!done || !done()) now_s_ = time_s;
-  }
-
- private:
-  struct Event {
-    double time_s = 0.0;
-    std::int64_t order = 0;
-    std::function<void()> what;
-
-    bool operator<(const Event& other) const {  // the first is the greatest
-      return std::pair(other.time_s, other.order) < std::pair(time_s, order);
-    }
-  };
-
-  std::priority_queue<Event> events_;
-  std::int64_t num_events_ = 0;
-  double now_s_ = 0.0;
-};
 
 /// What happens to a datagram, each with a probability of its own.
 struct Link {
@@ -66,7 +30,7 @@ struct Link {
   double delay_s = 0.001;
 };
 
-/// A process that receives the stream. `Message` is CloudSlice: what is tested knows no type.
+/// A process that receives the stream.
 class SimulatedReceiver {
  public:
   using Subscriber = StreamSubscriber<CloudSlice>;
