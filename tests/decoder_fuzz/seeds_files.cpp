@@ -99,12 +99,11 @@ Seeds ply_seeds() {
       "\nelement vertex 2\nproperty double x\nproperty float y\nproperty float z\n"
       "property uchar red\nproperty uchar green\nproperty uchar blue\n"
       "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
-  const std::string big_endian(2 * 19 + 13, '\0');
   return {{"labelled", bytes_of(contents(path))},
           {"ascii", bytes_of("ply\nformat ascii 1.0" + vertices +
                              "0 1e-3 +2 1 2 255\n-1 nan inf 0 0 0\n3 0 1 1\n")},
           {"big_endian", bytes_of("ply\nformat binary_big_endian 1.0" + vertices +
-                                  big_endian.substr(0, 38) + "\x01" + big_endian.substr(0, 4))}};
+                                  std::string(38, '\0') + "\x01" + std::string(4, '\0'))}};
 }
 
 Seeds saved_map_seeds() {

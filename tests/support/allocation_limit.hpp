@@ -21,9 +21,13 @@ std::size_t allocated_by(const Function& function) {
 
 // Not inlined: the compiler would see free() beside its own idea of operator new, and warn.
 // NOLINTBEGIN: this is the allocator
-[[gnu::noinline]] void* operator new(std::size_t size) {
+// All that come in pairs with one operator delete, or the address sanitizer would see a mismatch.
+[[gnu::noinline]] void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
   kintsugi::testing::g_allocated_bytes += size;
-  if (void* memory = std::malloc(size)) return memory;
+  return std::malloc(size);
+}
+[[gnu::noinline]] void* operator new(std::size_t size) {
+  if (void* memory = operator new(size, std::nothrow)) return memory;
   throw std::bad_alloc();
 }
 [[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
