@@ -115,8 +115,11 @@ std::size_t MapPublisher::queued_bytes() const {
 }
 
 bool MapPublisher::has_room() const {
-  return slice_stream_->queued_bytes() <= config_.max_queued_bytes &&
-         (!frame_stream_ || frame_stream_->queued_bytes() <= config_.max_queued_bytes);
+  const double max_bytes = config_.max_queue_s * config_.stream.rate_bytes_per_s;
+  const auto has_room = [max_bytes](const Stream& stream) {
+    return !stream || static_cast<double>(stream->queued_bytes()) <= max_bytes;
+  };
+  return has_room(slice_stream_) && has_room(frame_stream_);
 }
 
 MapPublisher::Config publisher_config(const Options& options, std::int64_t session) {

@@ -29,9 +29,9 @@ class MapPublisher {
     std::string map_name;
     std::int64_t session = 0;
     bool publish_frames = false;
-    int jpeg_quality = 90;                      ///< of published frames
-    StreamPublisher::Config stream;             ///< chunks are as large as the bus takes them
-    std::size_t max_queued_bytes = 32U << 20U;  ///< per stream; no room above this
+    int jpeg_quality = 90;           ///< of published frames
+    StreamPublisher::Config stream;  ///< chunks are as large as the bus takes them
+    double max_queue_s = 3.2;        ///< per stream, at its rate; no room above this
   };
 
   /// @throws std::runtime_error when the bus cannot be opened, with the cure

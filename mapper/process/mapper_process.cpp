@@ -1,6 +1,7 @@
 #include "mapper/process/mapper_process.hpp"
 
 #include <chrono>
+#include <memory>
 #include <stdexcept>
 #include <thread>
 #include <utility>
@@ -10,7 +11,9 @@
 #include "lcmtypes/atomic_file.hpp"
 #include "lcmtypes/stop_signal.hpp"
 #include "mapper/process/linger.hpp"
+#include "mapper/process/paced_source.hpp"
 #include "mapper/process/state_text.hpp"
+#include "mapper/source/lcm_source.hpp"
 
 namespace kintsugi::mapper {
 namespace {
@@ -27,12 +30,22 @@ void log_notice(const SourceNotice& notice) {
   spdlog::log(is_good ? spdlog::level::info : spdlog::level::warn, "{}", notice.text);
 }
 
-SourceConfig source_config(const Options& options, const Resumption& resumption) {
+/// A recording gives every frame, and is paced here: its frames are the same at any speed.
+SourceConfig source_config(const Options& options) {
   SourceConfig config = options.source;
-  if (resumption.continues()) config.replay = true;  // what was dropped is known
+  if (!config.device.starts_with(kLcmScheme)) config.replay = true;
   config.stop_requested = [] { return stop_requested(); };
   config.notify = log_notice;
   return config;
+}
+
+std::unique_ptr<FrameSource> session_source(std::unique_ptr<FrameSource> source,
+                                            const Options& options, Resumption& resumption) {
+  const bool is_paced = source->frames_total() >= 0 && !options.source.replay;
+  source = resumption.attach(std::move(source));
+  if (!is_paced) return source;
+  return std::make_unique<PacedSource>(std::move(source), resumption.last_mapped_utime(),
+                                       stop_requested);
 }
 
 MapperPipeline::Config pipeline_config(const Options& options, MapFiles& map_files) {
@@ -50,8 +63,8 @@ bool is_located(TrackingState state) {
 MapperProcess::MapperProcess(const Options& options, SessionLog& log, Resumption& resumption)
     : options_(options),
       resumption_(resumption),
-      reader_(source_config(options, resumption),
-              [&](auto source) { return resumption.attach(std::move(source)); }),
+      reader_(source_config(options),
+              [&](auto source) { return session_source(std::move(source), options, resumption); }),
       map_files_(options.cloud_file, options.mesh_file),
       pipeline_(pipeline_config(options, map_files_)),
       publisher_(publisher_config(options, resumption.session()), log) {

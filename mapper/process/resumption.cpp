@@ -38,6 +38,7 @@ Resumption::Resumption(SessionLog& log, const Options& options)
 void Resumption::begin_new_session() {
   session_ = wanted_session_ != 0 ? wanted_session_ : new_session();
   continued_.reset();
+  last_mapped_utime_ = -1;
   log_.begin_session(session_, options_);
 }
 
@@ -63,7 +64,7 @@ std::unique_ptr<FrameSource> Resumption::attach(std::unique_ptr<FrameSource> sou
 }
 
 bool Resumption::has_caught_up(std::int64_t last_utime) const {
-  return !continued_ || last_utime >= last_mapped_utime_;
+  return last_utime >= last_mapped_utime_;
 }
 
 }  // namespace kintsugi::mapper

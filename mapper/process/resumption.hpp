@@ -28,9 +28,10 @@ class Resumption {
   /// The last session of the log, when all of it has been published.
   const StoredSession* ended_session() const;
 
-  bool continues() const { return continued_.has_value(); }
+  /// Of the frames that were mapped before the session was interrupted; -1: none.
+  std::int64_t last_mapped_utime() const { return last_mapped_utime_; }
   /// This frame was mapped before the session was interrupted.
-  bool was_mapped(std::int64_t utime) const { return continued_ && utime <= last_mapped_utime_; }
+  bool was_mapped(std::int64_t utime) const { return utime <= last_mapped_utime_; }
   /// Everything has been made again that was there, when the last mapped frame is this one.
   bool has_caught_up(std::int64_t last_utime) const;
 
