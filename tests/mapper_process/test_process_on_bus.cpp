@@ -1,124 +1,21 @@
 // The built program on a bus of the test's own: what it publishes and leaves behind.
 
 #include <algorithm>
-#include <chrono>
-#include <filesystem>
 #include <fstream>
-#include <mutex>
-#include <thread>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <signal.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
-#include "lcmtypes/bus_thread.hpp"
-#include "lcmtypes/channels.hpp"
-#include "lcmtypes/message_subscriber.hpp"
-#include "lcmtypes/stream_subscriber.hpp"
 #include "lcmtypes/trajectory.hpp"
+#include "tests/mapper_process/mapper_program.hpp"
 #include "tests/support/private_bus.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace kintsugi::mapper {
 namespace {
 
-using kintsugi::testing::kPrivateBusUrl;
-
-class MapperProgram {
- public:
-  explicit MapperProgram(std::vector<std::string> flags) {
-    const auto here = std::filesystem::read_symlink("/proc/self/exe").parent_path();
-    flags.insert(flags.begin(), here.parent_path() / "bin" / "kintsugi-mapper");
-    flags.insert(flags.end(), {"--lcm-url", kPrivateBusUrl});
-    std::vector<char*> argv;
-    argv.reserve(flags.size() + 1);
-    for (std::string& flag : flags) argv.push_back(flag.data());
-    argv.push_back(nullptr);
-    if (posix_spawn(&pid_, argv[0], nullptr, nullptr, argv.data(), environ) != 0) pid_ = -1;
-  }
-  ~MapperProgram() {
-    if (pid_ > 0) {
-      kill(pid_, SIGKILL);
-      waitpid(pid_, nullptr, 0);
-    }
-  }
-  MapperProgram(const MapperProgram&) = delete;
-  MapperProgram& operator=(const MapperProgram&) = delete;
-
-  void interrupt() const { kill(pid_, SIGINT); }
-
-  /// Its exit code; -1 if a signal ended it.
-  int wait() {
-    int status = 0;
-    waitpid(pid_, &status, 0);
-    pid_ = -1;
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  }
-
- private:
-  pid_t pid_ = -1;
-};
-
-/// Everything the mapper says, kept.
-class Listener {
- public:
-  Listener() : bus_(kPrivateBusUrl) {
-    kintsugi::subscribe<CameraPose>(bus_, channels::kCameraPose,
-                                    [this](const CameraPose& pose) { keep(poses_, pose); });
-    kintsugi::subscribe<MapperStatus>(
-        bus_, channels::kMapperStatus,
-        [this](const MapperStatus& status) { keep(statuses_, status); });
-    slices_in_.subscribe(bus_);
-    frames_in_.subscribe(bus_);
-    thread_.emplace(bus_);
-  }
-
-  std::vector<CameraPose> poses() const { return copy(poses_); }
-  std::vector<MapperStatus> statuses() const { return copy(statuses_); }
-  std::vector<CloudSlice> slices() const { return copy(slices_); }
-  std::vector<RgbdFrameMessage> frames() const { return copy(frames_); }
-
-  bool heard_the_end() const {
-    const auto statuses = this->statuses();
-    return !statuses.empty() && statuses.back().finished;
-  }
-
-  /// Waits, long enough for a machine that has other things to do.
-  template <typename Condition>
-  static bool wait_until(const Condition& condition) {
-    for (int i = 0; i < 600 && !condition(); ++i) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(100));
-    }
-    return condition();
-  }
-
- private:
-  template <typename Message>
-  void keep(std::vector<Message>& messages, Message message) {
-    const std::scoped_lock lock(mutex_);
-    messages.push_back(std::move(message));
-  }
-  template <typename Message>
-  std::vector<Message> copy(const std::vector<Message>& messages) const {
-    const std::scoped_lock lock(mutex_);
-    return messages;
-  }
-
-  mutable std::mutex mutex_;
-  std::vector<CameraPose> poses_;
-  std::vector<MapperStatus> statuses_;
-  std::vector<CloudSlice> slices_;
-  std::vector<RgbdFrameMessage> frames_;
-  Bus bus_;
-  StreamSubscriber<CloudSlice> slices_in_{
-      channels::kCloudSlice, [this](CloudSlice slice) { keep(slices_, std::move(slice)); }};
-  StreamSubscriber<RgbdFrameMessage> frames_in_{
-      channels::kRgbdFrame, [this](RgbdFrameMessage frame) { keep(frames_, std::move(frame)); }};
-  std::optional<BusThread> thread_;
-};
+using testing::Listener;
+using testing::MapperProgram;
 
 void expect_complete(const std::vector<CloudSlice>& slices, std::int64_t session) {
   ASSERT_FALSE(slices.empty());
