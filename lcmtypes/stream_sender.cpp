@@ -77,7 +77,10 @@ double StreamSender::step(double now_s) {
     compare_with_store();
   } else {
     if (!prepared_) prepare();
-    if (!prepared_) return resends_.empty() ? next_heartbeat_s_ - now_s : 0.0;
+    if (!prepared_) {
+      const bool is_idle = jobs_.empty() && resends_.empty();
+      return is_idle ? next_heartbeat_s_ - now_s : 0.0;
+    }
     const double wait_s = bucket_.delay_s(static_cast<double>(prepared_->chunk.size()), now_s);
     if (wait_s > 0.0) return std::min(std::max(wait_s, min_wait_s_), next_heartbeat_s_ - now_s);
     send_prepared(now_s);

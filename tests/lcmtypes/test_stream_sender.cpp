@@ -115,6 +115,12 @@ TEST(StreamSender, PassesOverWhatItsStoreHasLost) {
   sending.ask({{0, 92}});
   sending.run_until(1.01);  // at once, without a wait for each hole
   EXPECT_THAT(sending.sequences, ElementsAre(90, 91, 92));
+
+  sending.sequences.clear();
+  sending.ask({{0, 7}});
+  sending.push(80);
+  sending.run_until(1.02);
+  EXPECT_EQ(sending.sequences.size(), 80U);
 }
 
 TEST(StreamSender, PacesNewChunksAndResendsTogether) {
