@@ -45,7 +45,7 @@ SegmenterProcess::SegmenterProcess(const Config& config)
       bus_(config.log.empty() || config.publish ? std::make_unique<Bus>(config.lcm_url) : nullptr),
       updates_(config.publish ? bus_.get() : nullptr, session_, config.updates),
       queue_(config.max_queue_bytes),
-      receiver_({session_, config.maps.map_name}, queue_),
+      receiver_({session_, config.maps.map_name, config.max_queue_bytes}, queue_),
       writer_(config.files),
       maps_(config.maps, session_, slice_stream(),
             {[this](SegmentUpdate update) { updates_.publish(std::move(update)); },
@@ -273,7 +273,7 @@ void SegmenterProcess::publish_status() {
   status.mode = config_.maps.map.mode;
   status.finished = counts.complete && nothing_is_queued();
   status.lingering = lingering_;
-  status.queue_bytes = static_cast<std::int64_t>(queue_.bytes());
+  status.queue_bytes = static_cast<std::int64_t>(queue_.bytes() + receiver_.pending_bytes());
   status.problem = problem();
   try {
     bus_->publish(channels::kSegmenterStatus, status);

@@ -37,7 +37,8 @@ class SegmenterProcess {
     std::string lcm_url;        ///< empty: the default bus
     std::filesystem::path log;  ///< read slices from this log; empty: from the bus
     bool publish = true;        ///< updates and status on the bus
-    std::size_t max_queue_bytes = std::size_t{1} << 30U;  ///< received and not segmented; > 0
+    /// Slices received and not segmented, and as much again of incomplete ones; > 0.
+    std::size_t max_queue_bytes = std::size_t{1} << 30U;
     UpdatePublisher::Config updates;
     MapWriter::Config files;
     std::filesystem::path resume_file;  ///< go on with the map kept here; empty: begin anew

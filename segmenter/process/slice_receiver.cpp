@@ -22,6 +22,7 @@ SliceReceiver::SliceReceiver(const Config& config, SliceQueue& queue)
           [&] {
             StreamSubscriber<CloudSlice>::Config stream;
             stream.receiver = config.session;
+            stream.max_pending_bytes = config.max_pending_bytes;
             stream.room = [this] { return stopping_ ? StreamRoom::kNone : queue_.room(); };
             stream.wanted_map_name = config.map_name;
             if (!config.map_name.empty()) {

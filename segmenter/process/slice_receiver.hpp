@@ -2,6 +2,7 @@
 // From the bus, or a log, to whole slices.
 
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -21,8 +22,9 @@ namespace kintsugi::segmenter {
 class SliceReceiver {
  public:
   struct Config {
-    std::int64_t session = 0;  ///< of this segmenter: who asks
-    std::string map_name;      ///< only slices of this map; empty: all
+    std::int64_t session = 0;                               ///< of this segmenter: who asks
+    std::string map_name;                                   ///< only slices of this map; empty: all
+    std::size_t max_pending_bytes = std::size_t{1} << 30U;  ///< of incomplete slices
   };
 
   /// `queue` must outlive this.
@@ -53,6 +55,7 @@ class SliceReceiver {
   }
   void forget(std::int64_t map_session) { subscriber_.forget(map_session); }
   [[nodiscard]] StreamCounts counts() const { return subscriber_.counts(); }
+  [[nodiscard]] std::size_t pending_bytes() const { return subscriber_.pending_bytes(); }
 
   /// Why the log could not be read to its end; nothing when it could.
   [[nodiscard]] const std::optional<std::string>& problem() const { return problem_; }
