@@ -1,0 +1,121 @@
+// What it costs to tell, keep and go on with a whole map: a listener that comes late, --save-every
+// and --resume. Prints a Markdown table.
+//
+//   bench_whole_map --points 4000000
+
+#include <algorithm>
+#include <chrono>
+#include <exception>
+#include <filesystem>
+#include <iostream>
+#include <optional>
+#include <string>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "lcmtypes/stream_publisher.hpp"
+#include "segmenter/io/saved_map.hpp"
+#include "segmenter/map/map_snapshot.hpp"
+#include "tests/bench/map_generator.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace kintsugi::segmenter::bench {
+namespace {
+
+template <class Action>
+double time_ms(const Action& action) {
+  const auto start = std::chrono::steady_clock::now();
+  action();
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
+      .count();
+}
+
+/// The best of five: what the machine does besides is left out.
+template <class Action>
+double best_ms(const Action& action) {
+  double best = time_ms(action);
+  for (int i = 0; i < 4; ++i) best = std::min(best, time_ms(action));
+  return best;
+}
+
+void row(const std::string& what, double ms, double bytes) {
+  std::cout << fmt::format("| {} | {:.1f} | {:.2f} |\n", what, ms, bytes * 1e-6);
+}
+
+double segment(const Slices& slices, std::optional<SegmentMap>& map) {
+  double slowest_ms = 0.0;
+  CloudSlice slice;
+  slice.session = 1;
+  slice.resolution_m = 0.01F;
+  for (std::size_t i = 0; i < slices.size(); ++i) {
+    slice.id = static_cast<std::int32_t>(i);
+    slice.kind = i + 1 == slices.size() ? SliceKind::kFinal : SliceKind::kShiftPlusX;
+    slice.points_W = slices[i];
+    if (!map) map.emplace(SegmentMapConfig{}, 1, slice);
+    slowest_ms = std::max(slowest_ms, time_ms([&] { map->add({&slice, 1}); }));
+  }
+  return slowest_ms;
+}
+
+/// On a bus where nothing is lost, at the default rate.
+double send_ms(const std::vector<SegmentUpdate>& state, std::int64_t& bytes) {
+  StreamPublisher publisher(
+      [&](const std::string&, ByteView message) {
+        bytes += static_cast<std::int64_t>(message.size());
+      },
+      "SEGMENT_UPDATE", 1, {});
+  return time_ms([&] {
+    publisher.publish_state(state);
+    publisher.flush();
+  });
+}
+
+void run(const MapConfig& config) {
+  const Slices slices = generate_map(config);
+  std::optional<SegmentMap> map;
+  const double slowest_ms = segment(slices, map);
+  const double num_points = map->cloud().num_live();
+  std::cout << fmt::format(
+      "{} points, {} slices, {} segments; the slowest slice took {:.1f} ms\n\n",
+      map->cloud().num_live(), slices.size(), map->segment_ids().num_segments(), slowest_ms);
+  std::cout << "| what | ms | MB |\n|---|---|---|\n";
+  std::vector<SegmentUpdate> state;
+  const double describe_ms = best_ms([&] { state = map->describe(); });
+  std::int64_t bytes = 0;
+  const double sending_ms = send_ms(state, bytes);
+  row("the full state put together (holds the engine)", describe_ms, static_cast<double>(bytes));
+  row("sent at 10 MB/s", sending_ms, static_cast<double>(bytes));
+
+  std::optional<MapSnapshot> snapshot;
+  const double copy_ms = best_ms([&] {
+    snapshot.reset();
+    snapshot = take_snapshot(*map);
+  });
+  row("a copy to be saved (holds the engine)", copy_ms, num_points * 36);
+  const kintsugi::testing::TemporaryFolder folder;
+  const auto file = folder / "map.kseg";
+  const double write_ms = time_ms([&] { write_map_state(snapshot->state, file); });
+  row("the copy written (in the background)", write_ms,
+      static_cast<double>(std::filesystem::file_size(file)));
+  snapshot.reset();
+  map.reset();
+  row("read, and gone on with", time_ms([&] { load_map(file); }), num_points * 36);
+}
+
+}  // namespace
+}  // namespace kintsugi::segmenter::bench
+
+int main(int argc, char** argv) {
+  using namespace kintsugi::segmenter::bench;
+  MapConfig config;
+  CLI::App app("What it costs to tell and to keep a whole map");
+  app.add_option("--points", config.num_points, "of the generated map")->capture_default_str();
+  CLI11_PARSE(app, argc, argv);
+  try {
+    run(config);
+  } catch (const std::exception& error) {
+    std::cerr << "bench_whole_map: " << error.what() << '\n';
+    return 1;
+  }
+}
