@@ -32,6 +32,7 @@ struct Options {
   bool until_finished = false;
   bool viewer = false;
   std::vector<std::string> until_ready;
+  bool lingering = false;
   std::string log_file;
   double timeout_s = 60.0;
 };
@@ -115,12 +116,20 @@ int watch(const Options& options) {
   return options.once || options.until_finished ? kInterrupted : 0;
 }
 
+template <class Status>
+bool is_lingering(const Status& status) {
+  if constexpr (requires { status.lingering; }) return status.lingering;
+  return true;
+}
+
 /// Until each of the named processes has said something.
 int wait_until_ready(const Options& options) {
   Bus bus(options.url);
   std::vector<std::string> silent = options.until_ready;
-  const auto heard = [&silent](const char* name) {
-    return [&silent, name](const auto& /*status*/) { std::erase(silent, name); };
+  const auto heard = [&silent, &options](const char* name) {
+    return [&silent, &options, name](const auto& status) {
+      if (!options.lingering || is_lingering(status)) std::erase(silent, name);
+    };
   };
   subscribe<MapperStatus>(bus, channels::kMapperStatus, heard("mapper"));
   subscribe<SegmenterStatus>(bus, channels::kSegmenterStatus, heard("segmenter"));
@@ -157,6 +166,8 @@ int main(int argc, char** argv) {
       ->delimiter(',')
       ->check(CLI::IsMember({"mapper", "segmenter", "viewer"}));
   app.add_option("--log", options.log_file, "Every number in every status into this file, CSV");
+  app.add_flag("--lingering", options.lingering,
+               "With --until-ready: and has nothing left to publish");
   app.add_option("--timeout", options.timeout_s,
                  "Seconds without progress until giving up; 0: never")
       ->check(CLI::NonNegativeNumber)

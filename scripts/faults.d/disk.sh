@@ -42,7 +42,7 @@ problems_are_said() {
 # A snapshot and a saved map with each slice, so that all three writers meet the full disk.
 disk_scene() {
   choose_scene
-  scene+=(--every 1 --segmenter '--save-every=1')
+  scene+=(--every 1 --segmenter '--write-every=1')
 }
 
 disk_full_row() {

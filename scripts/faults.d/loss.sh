@@ -4,30 +4,32 @@ for percent in 0 1 5 10; do
   fault_row "loss-$percent" "$percent % of datagrams dropped on loopback, stock receive buffer" loss_row "$percent"
 done
 
-# drop_datagrams PERCENT: of those on the bus, from now on; lost_datagrams counts them. Every receiver misses the same.
+# drop_datagrams PERCENT: of those on the bus, from now on; sent_and_lost_datagrams counts them. Every receiver misses the same.
 drop_datagrams() {
   command -v nft >/dev/null || skip_row "nftables is not installed"
   nft -f - <<NFT || skip_row "nftables are not permitted"
 table ip kintsugi {
   chain lossy {
     type filter hook prerouting priority -450;
+    ip daddr 239.255.76.67 counter
     ip daddr 239.255.76.67 numgen random mod 100 < $1 counter drop
   }
 }
 NFT
 }
-lost_datagrams() { nft list table ip kintsugi | grep -oP 'counter packets \K\d+' || echo 0; }
+sent_and_lost_datagrams() { nft list table ip kintsugi | grep -oP 'counter packets \K\d+' | xargs; }
 
 loss_row() {
-  local percent="$1" ttl=0
+  local percent="$1" ttl=0 sent
   # Chunks of one MTU, so that a small map is enough of them for some to be lost.
   if_quick && ttl=1
   export LCM_DEFAULT_URL="udpm://239.255.76.67:7667?ttl=$ttl&recv_buf_size=212992"
   choose_scene
   reference
-  ((percent)) && drop_datagrams "$percent"
+  drop_datagrams "$percent"
   faulty
-  ((percent)) && figure[lost]="$(lost_datagrams)" || figure[lost]=0
+  read -r sent figure[lost] < <(sent_and_lost_datagrams)
+  note "of $sent datagrams"
   same_map
   ((percent == 0)) || must "nothing was dropped" test "${figure[lost]}" -gt 0
 }

@@ -156,13 +156,13 @@ status_most() {
   awk -F, -v p="$2" -v f="$3" '$2 == p && $3 == f && $4 > v { v = $4 } END { print v + 0 }' "$1/status.csv"
 }
 
-# read_figures RUN: what its statuses tell.
+# read_figures RUN: what trio and its statuses tell.
 read_figures() {
   local process
-  [[ -s "$1/status.csv" ]] || return 0
   for process in mapper segmenter viewer; do
-    figure[${process}_mb]="$(calculate "1e-6 * $(status_most "$1" "$process" memory_bytes)" 0)"
+    figure[${process}_mb]="$(sed -nE "s/^ *memory at most:.* $process ([0-9]+) MB.*/\1/p" "$1.txt")"
   done
+  [[ -s "$1/status.csv" ]] || return 0
   figure[lag_slices]="$(status_most "$1" segmenter lag_slices)"
   figure[requested]=$(($(status_most "$1" segmenter requests_sent) + $(status_most "$1" viewer requests_sent)))
   figure[resent]=$(($(status_most "$1" mapper chunks_resent) + $(status_most "$1" segmenter chunks_resent)))

@@ -8,6 +8,7 @@ declare -A trio_command=()  # name -> command line, quoted
 declare -A trio_since=()    # name -> when it was started, s since the script was
 declare -A trio_quick=()    # name -> how many of its starts in a row were soon followed by its death
 declare -A trio_cpu_s=()    # name -> CPU time, s, when last looked at (not of those it replaced)
+declare -A trio_peak_mb=()  # name -> the most memory it held, MB (also of those it replaced)
 stop_requested=0            # how often a person asked to stop: counted by the script's trap
 
 say() { printf '%s: %s\n' "$(basename "$0")" "$*" >&2; }
@@ -35,43 +36,33 @@ trio_start() {
 
 trio_alive() { [[ -n "${trio_pid[$1]:-}" ]] && kill -0 "${trio_pid[$1]}" 2>/dev/null; }
 
-# trio_note_cpu NAME...: looks at the CPU time of those that run.
-trio_note_cpu() {
-  local name line
+# trio_note_use NAME...: looks at the CPU time and memory of those that run.
+trio_note_use() {
+  local name line peak_mb
   for name in "$@"; do
     line="$(cat "/proc/${trio_pid[$name]:-none}/stat" 2>/dev/null)" || continue
     trio_cpu_s[$name]="$(awk -v hz="$(getconf CLK_TCK)" '{ printf "%.2f", ($12 + $13) / hz }' <<<"${line##*) }")"
+    peak_mb="$(awk '/^VmHWM/ { printf "%d", $2 / 1000 }' "/proc/${trio_pid[$name]}/status" 2>/dev/null)"
+    ((${peak_mb:-0} <= ${trio_peak_mb[$name]:-0})) || trio_peak_mb[$name]="$peak_mb"
   done
 }
 
-# trio_stop SIGNAL SECONDS NAME...: asks the named processes to stop, again each second, for one that has finished its
-# work stays to be asked by others until it is told twice. Kills what does not stop, and fails then.
+# trio_stop SIGNAL SECONDS NAME...: asks the named processes to stop and waits; kills what does not, and fails then.
 trio_stop() {
-  local signal="$1" seconds="$2" name i killed=0
+  local signal="$1" seconds="$2" name deadline killed=0
   shift 2
-  for ((i = 0; i < 10 * seconds; ++i)); do
-    trio_any_alive "$@" || return 0
-    for name in "$@"; do
-      ((i % 10 == 0)) && trio_alive "$name" && kill -s "$signal" "${trio_pid[$name]}" 2>/dev/null
-    done
-    sleep 0.1 || true
-  done
   for name in "$@"; do
+    trio_alive "$name" && kill -s "$signal" "${trio_pid[$name]}" 2>/dev/null
+  done
+  deadline=$((SECONDS + seconds))
+  for name in "$@"; do
+    while trio_alive "$name" && ((SECONDS < deadline)); do sleep 0.1 || true; done
     trio_alive "$name" || continue
     say "$name did not stop within $seconds s; killing it"
     kill -KILL "${trio_pid[$name]}" 2>/dev/null || true
     killed=1
   done
   ((!killed))
-}
-trio_any_alive() { local name; for name in "$@"; do trio_alive "$name" && return; done; return 1; }
-
-# known PROGRAM OPTION...: those of the options that the program has.
-known() {
-  local option help
-  help="$("$KINTSUGI_BIN/$1" --help)"
-  for option in "${@:2}"; do grep -q -- "${option%%=*}\b" <<<"$help" && printf '%s\n' "$option"; done
-  return 0
 }
 
 # last_words NAME: the end of its log, for a person who asks why.
@@ -105,7 +96,7 @@ trio_watch() {
   trio_show_progress 60
   while [[ -n "${trio_pid[$last]:-}" ]]; do
     sleep 0.2 || true
-    trio_note_cpu "$@"
+    trio_note_use "$@"
     for name in "$@"; do
       [[ -z "${trio_pid[$name]:-}" ]] || trio_alive "$name" || trio_ended "$name"
     done
@@ -155,6 +146,7 @@ trio_ended() {
     trio_restart "$name"
   else
     trio_failed=1
+    ((stop_requested)) || stop_requested=1
     say "$name ended with an error (exit code $code):"
     last_words "$name"
     trio_show_progress 5 # the others may still finish what there is, but need not
@@ -174,6 +166,7 @@ trio_close() {
   local name
   for name in "${@:2}" "$1"; do
     while [[ -n "${trio_pid[$name]:-}" ]]; do
+      [[ "$name" != mapper ]] || trio_let_mapper_finish
       trio_stop TERM 60 "$name" || { trio_failed=1; break; }
       trio_ended "$name"
       trio_alive "$name" && "$KINTSUGI_BIN/kintsugi-status" --until-finished --timeout 60 >/dev/null
@@ -181,13 +174,23 @@ trio_close() {
   done
 }
 
+# trio_let_mapper_finish: until it stays only to send again what others miss: one that still maps is told to stop, and
+# would leave the rest of its map out if it were told twice.
+trio_let_mapper_finish() {
+  local lingers=("$KINTSUGI_BIN/kintsugi-status" --until-ready mapper --lingering)
+  "${lingers[@]}" --timeout 2 >/dev/null 2>&1 && return
+  ((stop_requested)) || kill -s TERM "${trio_pid[mapper]}"
+  "${lingers[@]}" --timeout 60 >/dev/null 2>&1 || true
+}
+
 # trio_summary: what the run took and wrote.
 trio_summary() {
-  local file name cpu=""
+  local file name cpu="" memory=""
   for name in mapper segmenter viewer; do
     [[ -n "${trio_cpu_s[$name]:-}" ]] && cpu+="${cpu:+,} $name ${trio_cpu_s[$name]} s"
+    [[ -n "${trio_peak_mb[$name]:-}" ]] && memory+="${memory:+,} $name ${trio_peak_mb[$name]} MB"
   done
-  printf '  CPU:%s\n' "$cpu"
+  printf '  CPU:%s\n  memory at most:%s\n' "$cpu" "$memory"
   say "written:"
   while IFS='|' read -r file what; do
     [[ -e "$out/$file" ]] && printf '  %-28s %s\n' "$out/$file" "$what"
