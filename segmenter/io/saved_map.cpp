@@ -113,6 +113,9 @@ Header read_header(RecordReader& file) {
     file.fail(std::to_string(file.left()) + " bytes follow, expected " + std::to_string(expected) +
               " for what the header tells: the file is cut off or damaged");
   }
+  if (header.reserved != 0) {
+    file.fail("reserved is " + std::to_string(header.reserved) + ", expected 0");
+  }
   return header;
 }
 

@@ -201,6 +201,9 @@ TEST_F(SavedMapFile, ReasonsSayWhatWasExpected) {
   newer[8] = 3;
   EXPECT_THAT(reason(newer), AllOf(HasSubstr("version 3"), HasSubstr("expected 2")));
   EXPECT_THAT(reason(bytes_.substr(0, bytes_.size() - 3)), HasSubstr("cut off"));
+  std::string unknown = bytes_;
+  unknown[108] = 1;  // the last number of the header
+  EXPECT_THAT(reason(unknown), HasSubstr("reserved is 1, expected 0"));
   std::string damaged = bytes_;
   damaged[200] ^= 1;
   EXPECT_THAT(reason(damaged), HasSubstr("checksum"));
@@ -211,14 +214,14 @@ TEST_F(SavedMapFile, ReasonsSayWhatWasExpected) {
 }
 
 TEST_F(SavedMapFile, ClaimsAreHeldAgainstItsSizeBeforeMemoryIsTaken) {
-  // Each count of the header, which ends at byte 104, claims two billion.
-  for (std::size_t at = 80; at < 104; at += 4) {
+  // Each count of the header, which ends at byte 112, claims two billion.
+  for (std::size_t at = 80; at < 108; at += 4) {
     std::string hostile = bytes_;
     const std::uint32_t count = 2'000'000'000;
     std::memcpy(hostile.data() + at, &count, sizeof(count));
     write(path_, hostile);
     EXPECT_LT(allocated_by([&] { EXPECT_THROW(load_map(path_), std::runtime_error); }), 100'000U);
-    write(path_, hostile.substr(0, 104));
+    write(path_, hostile.substr(0, 112));
     EXPECT_LT(allocated_by([&] { EXPECT_THROW(load_map(path_), std::runtime_error); }), 100'000U);
   }
 }
