@@ -9,19 +9,27 @@
 namespace kintsugi {
 namespace {
 
+/// As CSV has it: between double quotes, of which each inside is doubled.
+std::string quoted(const std::string& text) {
+  std::string result = "\"";
+  for (const char letter : text) result += letter == '"' ? "\"\"" : std::string(1, letter);
+  return result + '"';
+}
+
 /// A field of a status by its name on the bus.
-struct Number {
-  template <class Value>
-  Number(const char* its_name, Value value) : name(its_name), text(std::to_string(value)) {}
+struct Field {
+  template <class Number>
+  Field(const char* its_name, Number value) : name(its_name), text(std::to_string(value)) {}
+  Field(const char* its_name, const std::string& value) : name(its_name), text(quoted(value)) {}
 
   const char* name;
   std::string text;
 };
 
 void write(std::ostream& out, std::int64_t utime, const char* process,
-           std::initializer_list<Number> numbers) {
-  for (const Number& number : numbers) {
-    out << utime << ',' << process << ',' << number.name << ',' << number.text << '\n';
+           std::initializer_list<Field> fields) {
+  for (const Field& field : fields) {
+    out << utime << ',' << process << ',' << field.name << ',' << field.text << '\n';
   }
   out.flush();
 }
@@ -57,6 +65,7 @@ void StatusLog::append(const MapperStatus& status) {
          {"store_bytes", status.store_bytes},
          {"store_waiting_bytes", status.store_waiting_bytes},
          {"store_lost_chunks", status.store_lost_chunks},
+         {"store_problem", status.store_problem},
          {"blocks", status.blocks},
          {"memory_bytes", status.memory_bytes},
          {"volume_bytes", status.volume_bytes},
@@ -104,6 +113,7 @@ void StatusLog::append(const SegmenterStatus& status) {
          {"state_bytes", status.state_bytes},
          {"messages_bad", status.messages_bad},
          {"memory_bytes", status.memory_bytes},
+         {"problem", status.problem},
          {"slice_ms", status.slice_ms},
          {"slice_mean_ms", status.slice_mean_ms},
          {"slice_max_ms", status.slice_max_ms}});
@@ -127,6 +137,7 @@ void StatusLog::append(const ViewerStatus& status) {
          {"requests_sent", status.requests_sent},
          {"messages_bad", status.messages_bad},
          {"memory_bytes", status.memory_bytes},
+         {"problem", status.problem},
          {"render_ms", status.render_ms}});
 }
 

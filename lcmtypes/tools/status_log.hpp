@@ -9,8 +9,8 @@
 
 namespace kintsugi {
 
-/// A CSV file `utime_us,process,field,value`: a line for each number in each status, with the name
-/// it has on the bus; yes and no are 1 and 0.
+/// A CSV file `utime_us,process,field,value`: a line for each number in each status, and for what
+/// is a problem, with the name it has on the bus; yes and no are 1 and 0.
 class StatusLog {
  public:
   /// Goes on with the file when it is there. Throws std::runtime_error when it cannot be written.

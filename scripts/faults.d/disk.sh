@@ -1,6 +1,6 @@
 # The disk that everything is written to is full: the mapper's log, the segmenter's saved map, the viewer's snapshots.
 
-fault_row disk-full "disk full in the middle of a run, for 5 s" disk_full_row
+fault_row disk-full "disk full in the middle of a run, until all three have said so" disk_full_row
 fault_row disk-full-end "disk full from the middle of a run on; then space, and scripts/trio --resume" disk_full_end_row
 
 # small_disk: the folder `faulty` becomes a disk of its own. What is on it is copied to `kept` by keep_disk.
@@ -30,19 +30,26 @@ watch_statuses() {
 }
 unwatch_statuses() { kill "$watcher" && wait "$watcher" || true; }
 
-# said_problem PROCESS FIELD PATTERN: that its status named such a problem.
-said_problem() { grep -qE "^[0-9]+,$1,$2,.*$3" statuses.csv; }
+# said_problem PROCESS FIELD: that its status named the full disk.
+said_problem() { grep -qE "^[0-9]+,$1,$2,.*No space" statuses.csv; }
 
+# problems_are_said [SECONDS]: by all three, or will be in so long.
 problems_are_said() {
-  must "the mapper does not say that its log cannot be written" said_problem mapper store_problem 'No space'
-  must "the segmenter does not say that its map cannot be saved" said_problem segmenter problem 'No space'
-  must "the viewer does not say that its pictures cannot be written" said_problem viewer problem 'No space'
+  local i
+  for ((i = 0; i < 10 * ${1:-0}; ++i)); do
+    said_problem mapper store_problem && said_problem segmenter problem && said_problem viewer problem && return
+    sleep 0.1
+  done
+  must "the mapper does not say that its log cannot be written" said_problem mapper store_problem
+  must "the segmenter does not say that its map cannot be saved" said_problem segmenter problem
+  must "the viewer does not say that its pictures cannot be written" said_problem viewer problem
 }
 
 # A snapshot and a saved map with each slice, so that all three writers meet the full disk.
 disk_scene() {
+  local snapshot_every=1
   choose_scene
-  scene+=(--every 1 --segmenter '--write-every=1')
+  scene+=(--segmenter '--write-every=1')
 }
 
 disk_full_row() {
@@ -54,12 +61,11 @@ disk_full_row() {
   pid_of mapper >/dev/null
   sleep "$(calculate "0.3 * ${figure[reference_s]}")"
   fill_disk
-  sleep 5
+  problems_are_said 60
   free_disk
-  faulty_wait
+  faulty_wait 1 # a snapshot is missing for good
   unwatch_statuses
   keep_disk
-  problems_are_said
   same_map
 }
 

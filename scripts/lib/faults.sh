@@ -71,9 +71,10 @@ run_row() {
 
 # What the trio maps in most rows: the session is fixed, for the map names it; every frame is mapped, so that two runs
 # give the same slices. The small one is for tests.
-scene=(--replay --every 1000000 --no-log)
+scene=(--replay --no-log)
 if_quick() { ((quick)); }
 choose_scene() {
+  scene+=(--every "${snapshot_every:-1000000}")
   if if_quick; then
     scene+=(--device 'synthetic://office?frames=120' --resolution 0.02 --volume-size 3.2 --mapper '--session=7 --shift=8')
   else
@@ -111,7 +112,7 @@ reference() {
 }
 
 # faulty_start [OPTION...]: the run that something shall befall, in the background, in the folder `faulty`.
-# faulty_wait: until its end. faulty: both. end_faulty: whatever still runs of it.
+# faulty_wait [CODE]: until its end, with this exit code, 0 unless given. faulty: both. end_faulty: whatever still runs of it.
 faulty_start() {
   faulty_since="$EPOCHREALTIME"
   "$kintsugi_root/scripts/trio" --out faulty "${scene[@]}" "$@" >faulty.txt 2>&1 &
@@ -122,7 +123,7 @@ faulty_wait() {
   wait "$faulty_pid" || code=$?
   faulty_pid=""
   figure[seconds]="$(since_s "$faulty_since")"
-  ((code == 0)) || { failures+=("trio ended with exit code $code, see $PWD/faulty.txt"); tail -n 20 faulty.txt >&2; }
+  ((code == ${1:-0})) || { failures+=("trio ended with exit code $code, see $PWD/faulty.txt"); tail -n 20 faulty.txt >&2; }
   read_figures faulty
 }
 # faulty_fails: waits for its end, which has to be one with an error.

@@ -103,7 +103,7 @@ trio_watch() {
     if ((stop_requested && !asked)); then
       asked=1
       say "stopping; what the map holds is published, segmented, drawn and written (Ctrl-C again: stop at once)"
-      trio_alive "$leader" && kill -s TERM "${trio_pid[$leader]}"
+      trio_alive "$leader" && ! trio_mapper_lingers && kill -s TERM "${trio_pid[$leader]}"
     fi
     if ((stop_requested > 1)) || trio_stands_still "$leader"; then
       trio_stop TERM 60 "$last" || trio_failed=1
@@ -113,6 +113,9 @@ trio_watch() {
   trio_stop TERM 2 progress
   return "$trio_failed"
 }
+
+# trio_mapper_lingers: it has said that all is published, and stays only to send again what others miss.
+trio_mapper_lingers() { [[ "$(grep ',mapper,lingering,' "$out/status.csv" 2>/dev/null | tail -n 1)" == *,1 ]]; }
 
 # trio_show_progress SECONDS: until all have finished, or nothing moved for so long.
 trio_show_progress() {
@@ -125,8 +128,9 @@ trio_show_progress() {
 # is silent may come back.
 trio_stands_still() {
   local code=0
-  trio_alive progress && return 1
-  [[ -n "${trio_pid[progress]:-}" ]] && { wait "${trio_pid[progress]}" || code=$?; }
+  [[ -n "${trio_pid[progress]:-}" ]] && ! trio_alive progress || return 1
+  wait "${trio_pid[progress]}" || code=$?
+  unset "trio_pid[progress]"
   ((code == 0)) && return 1
   trio_alive "$1" && ! grep -q ',mapper,finished,1' "$out/status.csv" || return 0
   trio_show_progress 60
@@ -178,6 +182,7 @@ trio_close() {
 # would leave the rest of its map out if it were told twice.
 trio_let_mapper_finish() {
   local lingers=("$KINTSUGI_BIN/kintsugi-status" --until-ready mapper --lingering)
+  trio_alive mapper || return 0
   "${lingers[@]}" --timeout 2 >/dev/null 2>&1 && return
   ((stop_requested)) || kill -s TERM "${trio_pid[mapper]}"
   "${lingers[@]}" --timeout 60 >/dev/null 2>&1 || true

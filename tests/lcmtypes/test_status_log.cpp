@@ -34,6 +34,7 @@ TEST(StatusLog, HasALineForEachNumber) {
   SegmenterStatus segmenter;
   segmenter.utime = 6;
   segmenter.lag_slices = 3;
+  segmenter.problem = "\"map\", full";
   log.append(segmenter);
   StatusLog(file).append(ViewerStatus{});  // one that goes on with the file
 
@@ -44,6 +45,7 @@ TEST(StatusLog, HasALineForEachNumber) {
   EXPECT_THAT(lines, Contains("5,mapper,finished,1"));
   EXPECT_THAT(lines, Contains("5,mapper,frame_p50_ms,12.500000"));
   EXPECT_THAT(lines, Contains("6,segmenter,lag_slices,3"));
+  EXPECT_THAT(lines, Contains("6,segmenter,problem,\"\"\"map\"\", full\""));
   EXPECT_THAT(lines, Contains("0,viewer,memory_bytes,0"));
 }
 
