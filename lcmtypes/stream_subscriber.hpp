@@ -49,7 +49,7 @@ struct StreamSubscriberConfig {
   std::size_t max_request_bytes = 1'400;  ///< of one request, which should fit one datagram
   /// Asked for at a time, about. So others are answered soon too, and little is sent in vain when
   /// this receiver goes away.
-  std::int64_t max_asked_bytes = 4'000'000;
+  std::int64_t max_asked_bytes = 2'000'000;
   std::int64_t receiver = 0;  ///< number of this process, said in its requests
 
   /// How much the caller can take now; called for every chunk, without a lock. Empty: kPlenty.
