@@ -1,11 +1,11 @@
 #pragma once
 
-#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <map>
 #include <optional>
+#include <tuple>
 #include <vector>
 
 #include "lcmtypes/messages.hpp"
@@ -17,7 +17,9 @@ struct SliceKey {
   std::int32_t id = 0;
   std::int32_t revision = 0;
 
-  auto operator<=>(const SliceKey&) const = default;
+  bool operator<(const SliceKey& other) const {
+    return std::tie(id, revision) < std::tie(other.id, other.revision);
+  }
 };
 
 /// What updates said about revisions of slices that are not here yet. Bounded by bytes whatever the
