@@ -9,8 +9,8 @@ disorder_row() {
   choose_played
   played_reference
   out="$PWD"
-  trio_start link "$link" --from "$LCM_DEFAULT_URL" --to "$far" --duplicate 0.2 --reorder 0.2 --held 0.02 --seed "$seed" \
-    --report link.json
+  trio_start link "$link" --from "$LCM_DEFAULT_URL" --to "$far" --duplicate 0.2 --reorder 0.2 \
+    --held 0.02 --seed "$seed" --report link.json
   others_at=(env LCM_DEFAULT_URL="$far")
   played_run faulty
   trio_stop TERM 10 link

@@ -3,23 +3,25 @@
 fault_row hostile "random and mutated messages on every channel, 1,000 a second for 60 s" hostile_row
 
 hostile_row() {
-  local seconds=60 allowed_mb=32
+  local seconds=60 allowed_mb=32 since
   choose_played
   # So that the map is published for as long.
   played=(--session=7 --points=1400000 --speed=3)
   if_quick && { seconds=3; played=(--session=7 --points=60000 --slice-points=2000 --speed=4); }
   played_reference
-  out="$PWD/faulty" viewer_ends=()
+  out="$PWD/faulty" viewer_ends=() since="$EPOCHREALTIME"
   start_played log segmenter viewer
   "$KINTSUGI_BIN/kintsugi-status" --until-ready segmenter,viewer --timeout 20 >/dev/null || failures+=("not ready")
   start_played mapper
-  trio_start hostile "${player%/*}/hostile_publisher" --seconds="$seconds" --seed="$seed" --listen=1 --report=hostile.json
+  trio_start hostile "${player%/*}/hostile_publisher" --seconds="$seconds" --seed="$seed" --listen=1 \
+    --report=hostile.json
   wait "${trio_pid[hostile]}" || failures+=("hostile_publisher failed")
   must "the map was not drawn" wait_for viewer finished 120
   sleep 1 # for the last statuses
   figure[lost]="$(datagrams_lost)"
   trio_stop TERM 60 viewer
   finish_played 10
+  figure[seconds]="$(since_s "$since")"
   counted segmenter "$(sent CLOUD_SLICE HEARTBEAT RESEND_REQUEST)"
   # Of its two streams each counts a bad heartbeat.
   counted viewer "$(sent CLOUD_SLICE SEGMENT_UPDATE CAMERA_POSE SEGMENTER_STATUS HEARTBEAT HEARTBEAT)"
@@ -57,8 +59,9 @@ counted() {
 
 # no_growth PROCESS MB: it took no more memory than in the run without.
 no_growth() {
-  local growth
-  growth="$(calculate "1e-6 * ($(status_most faulty "$1" memory_bytes) - $(status_most "$reference" "$1" memory_bytes))" 0)"
+  local before growth
+  before="$(status_most "$reference" "$1" memory_bytes)"
+  growth="$(calculate "1e-6 * ($(status_most faulty "$1" memory_bytes) - $before)" 0)"
   note "$1: $growth MB more than without"
   must "$1 took $growth MB more than without" test "$growth" -le "$2"
 }

@@ -30,7 +30,8 @@ memory_at() {
   awk -F, -v process="$1" -v share="$2" -v seconds="$3" '
     !start && $2 == "mapper" && $3 == "points_published" && $4 > 0 { start = $1 }
     { t = start ? 1e-6 * ($1 - start) : -1 }
-    $2 == process && $3 == "memory_bytes" && t >= 0 && t <= share * seconds && t > (share - 0.1) * seconds && $4 > most { most = $4 }
+    t <= (share - 0.1) * seconds || t > share * seconds { next }
+    $2 == process && $3 == "memory_bytes" && $4 > most { most = $4 }
     END { printf "%.0f", 1e-6 * most }' faulty/status.csv
 }
 memory_over_time() {

@@ -66,7 +66,7 @@ check_route() {
   fi
   [[ -n "$interface" ]] || interface="$([[ -n "$device" && "$device" != lo ]] && echo "$device" || likely_interface)"
   [[ "$device" == "$interface" ]] && fine "route: multicast goes by $interface" ||
-    unfit "route: multicast goes ${device:+by $device}${device:-nowhere}" \
+    unfit "route: multicast goes ${device:+by }${device:-nowhere}" \
       "sudo ip route replace 224.0.0.0/4 dev $interface"
 }
 
@@ -99,10 +99,10 @@ check_peer() {
   elif [[ "$device" == "$interface" ]]; then
     fine "peer: $peer is on the network of $interface"
   elif [[ "$strict" == 1 ]]; then
-    unfit "peer: the way to $peer goes ${device:+by $device}${device:-nowhere}, so what it says on $interface is dropped" \
+    unfit "peer: the way to $peer goes by $device, so what it says on $interface is dropped" \
       "sudo sysctl -w net.ipv4.conf.all.rp_filter=2 net.ipv4.conf.$interface.rp_filter=2"
   else
-    note "peer: the way to $peer goes ${device:+by $device}${device:-nowhere}, not by $interface"
+    note "peer: the way to $peer goes ${device:+by }${device:-nowhere}, not by $interface"
   fi
 }
 

@@ -38,7 +38,8 @@ finish_played() {
     trio_stop TERM 60 "$name" || failures+=("$name did not stop")
     code=0
     wait "${trio_pid[$name]}" 2>/dev/null || code=$?
-    ((code == 0 || code == 143)) || [[ "$name" == log ]] || failures+=("$name ended with code $code, see $out/$name.log")
+    ((code == 0 || code == 143)) || [[ "$name" == log ]] ||
+      failures+=("$name ended with code $code, see $out/$name.log")
   done
   read_figures "$out"
 }

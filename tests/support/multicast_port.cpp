@@ -88,7 +88,7 @@ std::optional<std::uint32_t> losses_told(msghdr& header) {
 
 }  // namespace
 
-MulticastPort::MulticastPort(const std::string& url) {
+MulticastPort::MulticastPort(const std::string& url) : buffer_(kMaxDatagramBytes) {
   const Url parsed = parse(url);
   receiver_ = listen_to(parsed.group);
   sender_ = speak_to(parsed.group, parsed.ttl);
@@ -103,9 +103,8 @@ MulticastPort::~MulticastPort() {
 
 std::optional<Bytes> MulticastPort::receive() {
   while (true) {
-    Bytes datagram(kMaxDatagramBytes);
     sockaddr_in sender{};
-    iovec place{datagram.data(), datagram.size()};
+    iovec place{buffer_.data(), buffer_.size()};
     alignas(cmsghdr) std::array<char, CMSG_SPACE(sizeof(std::uint32_t))> beside{};
     msghdr header{};
     header.msg_name = &sender;
@@ -121,8 +120,7 @@ std::optional<Bytes> MulticastPort::receive() {
     if (const auto losses = losses_told(header)) lost_ = *losses;
     if (sender.sin_port == own_.sin_port && sender.sin_addr.s_addr == own_.sin_addr.s_addr)
       continue;
-    datagram.resize(static_cast<std::size_t>(size));
-    return datagram;
+    return Bytes(buffer_.begin(), buffer_.begin() + size);
   }
 }
 

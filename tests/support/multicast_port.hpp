@@ -34,6 +34,7 @@ class MulticastPort {
   std::int64_t lost() const { return lost_; }
 
  private:
+  Bytes buffer_;  // holds the largest datagram
   int receiver_ = -1;
   int sender_ = -1;
   sockaddr_in own_{};  // where what it sends comes from

@@ -41,14 +41,14 @@ expect_cured "${several[@]}"
 
 on_host desk ip route replace 224.0.0.0/4 dev lo
 check desk --several --interface cable
-expect_unfit 'route: multicast goes by lo'
+expect_unfit 'route: multicast goes by lo$'
 expect_cured desk --several --interface cable
 
 # The peer's packets come by the cable, but the way back goes elsewhere.
 on_host desk bash -c 'ip link add other type veth peer name end && ip link set other up && ip link set end up && ip route add 10.77.0.1/32 dev other &&
   echo 1 >/proc/sys/net/ipv4/conf/cable/rp_filter'
 check "${several[@]}"
-expect_unfit 'peer: the way to 10.77.0.1 goes by other'
+expect_unfit 'peer: the way to 10.77.0.1 goes by other,'
 expect_cured "${several[@]}"
 on_host desk bash -c 'ip route del 10.77.0.1/32; ip route add 10.9.0.0/16 via 10.77.0.1'
 check desk --several --peer 10.9.0.7
