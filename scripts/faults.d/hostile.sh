@@ -10,13 +10,12 @@ hostile_row() {
   if_quick && { seconds=3; played=(--session=7 --points=60000 --slice-points=2000 --speed=4); }
   played_reference
   out="$PWD/faulty" viewer_ends=() since="$EPOCHREALTIME"
-  start_played log segmenter viewer
-  "$KINTSUGI_BIN/kintsugi-status" --until-ready segmenter,viewer --timeout 20 >/dev/null || failures+=("not ready")
-  start_played mapper
+  start_played log segmenter viewer mapper
+  must "nothing was published" wait_for_points 1 # so all three listen
   trio_start hostile "${player%/*}/hostile_publisher" --seconds="$seconds" --seed="$seed" --listen=1 \
     --report=hostile.json
   wait "${trio_pid[hostile]}" || failures+=("hostile_publisher failed")
-  must "the map was not drawn" wait_for viewer finished 120
+  must "the map was not drawn" status_says viewer finished 120
   sleep 1 # for the last statuses
   figure[lost]="$(datagrams_lost)"
   trio_stop TERM 60 viewer
@@ -25,13 +24,14 @@ hostile_row() {
   counted segmenter "$(sent CLOUD_SLICE HEARTBEAT RESEND_REQUEST)"
   # Of its two streams each counts a bad heartbeat.
   counted viewer "$(sent CLOUD_SLICE SEGMENT_UPDATE CAMERA_POSE SEGMENTER_STATUS HEARTBEAT HEARTBEAT)"
+  counts_match mapper "$(json_number faulty/player.json requests_bad)" "$(sent RESEND_REQUEST)"
   no_growth segmenter "$allowed_mb"
   no_growth viewer "$allowed_mb"
   same_map
 }
 
-# wait_for PROCESS FIELD SECONDS: until a status said that it is so.
-wait_for() {
+# status_says PROCESS FIELD SECONDS: until a status said that it is so.
+status_says() {
   local deadline=$((SECONDS + $3))
   until grep -q ",$1,$2,1" "$out/status.csv"; do
     ((SECONDS < deadline)) || return 1
@@ -49,12 +49,11 @@ sent() {
 # datagrams_lost: by the sockets on the bus, for want of room in their receive buffers.
 datagrams_lost() { awk '$2 ~ /:1DF3$/ { sum += $NF } END { print sum + 0 }' /proc/net/udp; }
 
-# counted PROCESS SENT: it counted each as bad that reached it.
-counted() {
-  local bad
-  bad="$(status_last faulty "$1" messages_bad)"
-  note "$1: $bad of $2 counted as bad"
-  must "$1 counted $bad bad messages of $2" test "$bad" -le "$2" -a "$bad" -ge "$(($2 - figure[lost]))"
+# counted PROCESS SENT: its status counts each as bad that reached it.
+counted() { counts_match "$1" "$(status_last faulty "$1" messages_bad)" "$2"; }
+counts_match() {
+  note "$1: $2 of $3 counted as bad"
+  must "$1 counted $2 bad messages of $3" test "$2" -le "$3" -a "$2" -ge "$(($3 - figure[lost]))"
 }
 
 # no_growth PROCESS MB: it took no more memory than in the run without.
