@@ -100,10 +100,11 @@ trio_watch() {
     for name in "$@"; do
       [[ -z "${trio_pid[$name]:-}" ]] || trio_alive "$name" || trio_ended "$name"
     done
+    [[ -n "${trio_pid[$last]:-}" ]] || break
     if ((stop_requested && !asked)); then
       asked=1
       say "stopping; what the map holds is published, segmented, drawn and written (Ctrl-C again: stop at once)"
-      trio_alive "$leader" && ! trio_mapper_lingers && kill -s TERM "${trio_pid[$leader]}"
+      trio_alive progress && ! trio_mapper_lingers && trio_tell_to_stop "$leader"
     fi
     if ((stop_requested > 1)) || trio_stands_still "$leader"; then
       trio_stop TERM 60 "$last" || trio_failed=1
@@ -112,6 +113,13 @@ trio_watch() {
   trio_close "$@"
   trio_stop TERM 2 progress
   return "$trio_failed"
+}
+
+# trio_tell_to_stop NAME: once; told twice it would leave out what it has not published yet.
+trio_tell_to_stop() {
+  trio_alive "$1" && [[ "${trio_told:-}" != "${trio_pid[$1]}" ]] || return 0
+  trio_told="${trio_pid[$1]}"
+  kill -s TERM "$trio_told" 2>/dev/null || true
 }
 
 # trio_mapper_lingers: it has said that all is published, and stays only to send again what others miss.
@@ -178,13 +186,12 @@ trio_close() {
   done
 }
 
-# trio_let_mapper_finish: until it stays only to send again what others miss: one that still maps is told to stop, and
-# would leave the rest of its map out if it were told twice.
+# trio_let_mapper_finish: until it stays only to send again what others miss; one that still maps is told to stop.
 trio_let_mapper_finish() {
   local lingers=("$KINTSUGI_BIN/kintsugi-status" --until-ready mapper --lingering)
   trio_alive mapper || return 0
   "${lingers[@]}" --timeout 2 >/dev/null 2>&1 && return
-  ((stop_requested)) || kill -s TERM "${trio_pid[mapper]}"
+  trio_tell_to_stop mapper
   "${lingers[@]}" --timeout 60 >/dev/null 2>&1 || true
 }
 
