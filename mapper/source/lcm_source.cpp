@@ -7,15 +7,12 @@
 #include <stdexcept>
 #include <utility>
 
-#include <opencv2/core.hpp>
-
 #include "lcmtypes/bus.hpp"
 #include "lcmtypes/bus_thread.hpp"
 #include "lcmtypes/stream_subscriber.hpp"
 #include "mapper/core/stopwatch.hpp"
 #include "mapper/openni2_driver/calibration.hpp"
-#include "mapper/openni2_driver/image_decoder.hpp"
-#include "mapper/source/frame_converter.hpp"
+#include "mapper/source/rgbd_frame_decoder.hpp"
 
 namespace kintsugi::mapper {
 namespace {
@@ -73,16 +70,12 @@ struct LcmSource::Receiver {
   std::optional<BusThread> thread;  ///< last: stops before the rest goes
 };
 
-struct LcmSource::Conversion {
-  Intrinsics intrinsics;
-  double depth_units_per_m;
-  FrameConverter converter;
-};
-
 LcmSource::LcmSource(const SourceConfig& config) : config_(config) {
+  std::optional<Intrinsics> calibration;
   if (!config.calibration_file.empty()) {
-    calibration_ = read_calibration(config.calibration_file).intrinsics;
+    calibration = read_calibration(config.calibration_file).intrinsics;
   }
+  decoder_ = std::make_unique<RgbdFrameDecoder>(config.max_range_m, calibration);
   receiver_ = std::make_unique<Receiver>(channel_of(config.device), config);
 }
 
@@ -130,27 +123,12 @@ std::optional<RgbdFrame> LcmSource::convert(const RgbdFrameMessage& message) {
   const bool next_in_session = message.session == session_ && message.utime > last_utime_;
   try {
     if (!next_in_session) throw std::runtime_error("another session, or out of order");
-    const Intrinsics& intrinsics = calibration_.value_or(message.intrinsics);
-    const cv::Size size(intrinsics.width, intrinsics.height);
-    RawFrame raw{.utime = message.utime,
-                 .frame_index = message.frame_index,
-                 .depth_raw = decode_depth(message.depth_png, size, "depth of a message"),
-                 .color_rgb = {}};
-    if (!message.color_jpeg.empty()) {
-      raw.color_rgb = decode_color(message.color_jpeg, size, "colour of a message");
-    }
-    const double units_per_m = message.depth_units_per_m;
-    if (!conversion_ || conversion_->intrinsics != intrinsics ||
-        conversion_->depth_units_per_m != units_per_m) {
-      conversion_ = std::make_unique<Conversion>(Conversion{
-          intrinsics, units_per_m, FrameConverter(intrinsics, units_per_m, config_.max_range_m)});
-    }
     const Stopwatch stopwatch;
-    RgbdFrame frame = conversion_->converter.convert(raw);
+    RgbdFrame frame = decoder_->decode(message);
     counts_.convert_ms += stopwatch.elapsed_ms();
     last_utime_ = message.utime;
     ++counts_.frames_delivered;
-    if (raw.color_rgb.empty()) ++counts_.depth_unpaired;
+    if (frame.color_rgb.empty()) ++counts_.depth_unpaired;
     return frame;
   } catch (const std::exception&) {
     ++counts_.frames_bad;

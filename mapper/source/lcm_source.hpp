@@ -11,6 +11,8 @@
 
 namespace kintsugi::mapper {
 
+class RgbdFrameDecoder;
+
 inline constexpr std::string_view kLcmScheme = "lcm://";
 
 /// Frames from RGBD_FRAME messages on a bus (`lcm://CHANNEL`): from a mapper that publishes what it
@@ -43,9 +45,7 @@ class LcmSource : public FrameSource {
   void end(bool well, const std::string& reason);
 
   SourceConfig config_;
-  std::optional<Intrinsics> calibration_;  ///< replaces that of the messages
-  struct Conversion;
-  std::unique_ptr<Conversion> conversion_;  ///< of the last message, kept while it fits
+  std::unique_ptr<RgbdFrameDecoder> decoder_;
   std::unique_ptr<Receiver> receiver_;
   std::int64_t session_ = 0;
   std::int64_t last_utime_ = -1;
