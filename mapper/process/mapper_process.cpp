@@ -9,6 +9,7 @@
 #include <spdlog/spdlog.h>
 
 #include "lcmtypes/atomic_file.hpp"
+#include "lcmtypes/channels.hpp"
 #include "lcmtypes/stop_signal.hpp"
 #include "mapper/process/linger.hpp"
 #include "mapper/process/paced_source.hpp"
@@ -69,6 +70,11 @@ MapperProcess::MapperProcess(const Options& options, SessionLog& log, Resumption
       pipeline_(pipeline_config(options, map_files_)),
       publisher_(publisher_config(options, resumption.session()), log) {
   if (!options.timings_file.empty()) frame_log_.emplace(options.timings_file);
+  if (options.store_frames) {
+    const std::int64_t session = resumption.session();
+    frame_store_.emplace(log.stream(channels::kRgbdFrame, session), session,
+                         resumption.last_stored_utime());
+  }
 }
 
 void MapperProcess::run() {
@@ -100,6 +106,7 @@ void MapperProcess::map_frames() {
 void MapperProcess::map_frame(const TimedFrame& read) {
   const RgbdFrame& frame = read.frame;
   Stopwatch stopwatch;
+  if (frame_store_) frame_store_->add(frame);
   FrameResult result = pipeline_.process(frame);
   const TrackingResult& tracking = result.tracking;
   log_change_of_state(result, frame);

@@ -13,6 +13,7 @@
 #include "mapper/process/options.hpp"
 #include "mapper/process/resumption.hpp"
 #include "mapper/process/run_statistics.hpp"
+#include "mapper/process/stored_frames.hpp"
 
 namespace kintsugi::mapper {
 
@@ -53,6 +54,7 @@ class MapperProcess {
   MapPublisher publisher_;
   RunStatistics statistics_;
   std::optional<FrameLog> frame_log_;
+  std::optional<FrameStore> frame_store_;
   Trajectory path_;  ///< of the frames that were located
   TrackingState last_state_ = TrackingState::kStarting;
   double cpu_ms_ = 0.0;         ///< of the process, at the last frame

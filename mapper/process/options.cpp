@@ -88,6 +88,8 @@ void add_store_flags(CLI::App& app, Options& options) {
                  "log of a run that was interrupted, whose last session goes on");
   app.add_option("--store-file-size", options.store_file_size_mb,
                  "then the log goes on in FILE.1.lcm and so on, MB");
+  app.add_flag("--store-frames", options.store_frames,
+               "the log keeps the frames too, without loss: so a camera's session can be resumed");
   app.add_option("--linger", options.linger_s,
                  "at the end, stay until nobody has asked for anything for so long, s; -1: until a "
                  "signal");

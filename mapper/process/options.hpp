@@ -30,8 +30,9 @@ struct Options {
   std::string store_file;    ///< LCM log of what is published; empty: one without a name
   std::string resume_file;   ///< log to continue, instead of store_file; empty: begin anew
   double store_file_size_mb = 1000.0;  ///< then another file begins
-  double linger_s = 2.0;  ///< stay until nobody has asked for so long; < 0: until a signal
-  int threads = 0;        ///< for the parallel stages; 0: one per core
+  bool store_frames = false;  ///< raw frames too, so that a live camera's session can be resumed
+  double linger_s = 2.0;      ///< stay until nobody has asked for so long; < 0: until a signal
+  int threads = 0;            ///< for the parallel stages; 0: one per core
 
   /// @throws std::invalid_argument naming the field, its value and its bound
   void validate() const;

@@ -21,7 +21,8 @@ class Resumption {
   Resumption(SessionLog& log, const Options& options);
 
   /// The source for the session: one that begins with the frames which the session had mapped. A
-  /// live camera cannot give them again: then a new session begins, which is said.
+  /// live camera cannot give them again; unless the log has them, a new session begins, which is
+  /// said.
   std::unique_ptr<FrameSource> attach(std::unique_ptr<FrameSource> source);
 
   std::int64_t session() const { return session_; }
@@ -30,6 +31,8 @@ class Resumption {
 
   /// Of the frames that were mapped before the session was interrupted; -1: none.
   std::int64_t last_mapped_utime() const { return last_mapped_utime_; }
+  /// Of the raw frames in the log; -1: none.
+  std::int64_t last_stored_utime() const { return continued_ ? continued_->last_frame_utime : -1; }
   /// This frame was mapped before the session was interrupted.
   bool was_mapped(std::int64_t utime) const { return utime <= last_mapped_utime_; }
   /// Everything has been made again that was there, when the last mapped frame is this one.
@@ -37,8 +40,11 @@ class Resumption {
 
  private:
   void begin_new_session();
+  bool has_all_frames() const;
+  std::unique_ptr<FrameSource> stored_frames_before(std::unique_ptr<FrameSource> camera) const;
 
   SessionLog& log_;
+  const double max_range_m_;
   const MappingOptions options_;
   std::int64_t wanted_session_;
   std::int64_t session_ = 0;

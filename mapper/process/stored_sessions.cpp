@@ -88,7 +88,10 @@ StoredChunk StoredSessionReader::read_slice_chunk(const LogEvent& event) {
 StoredChunk StoredSessionReader::read_frame_chunk(const LogEvent& event) {
   const auto chunk = decode_chunk<RgbdFrameMessage>(event.data);
   StoredSession& of = session(chunk.header.session);
-  if (chunk.index + 1 == chunk.count) ++of.num_frames;
+  if (chunk.index + 1 == chunk.count) {
+    of.frame_chunks_end = chunk.sequence + 1;
+    of.last_frame_utime = chunk.header.utime;
+  }
   return {event.channel, of.session, chunk.sequence};
 }
 

@@ -29,7 +29,8 @@ struct StoredSession {
   std::vector<std::int64_t> mapped_utimes;  ///< of the frames that were mapped, ascending
   bool final_slice_begun = false;           ///< the session was ending
   std::int64_t slice_chunks_end = 0;        ///< one past the last chunk of the final slice; 0: open
-  std::int64_t num_frames = 0;              ///< raw frames that are stored whole
+  std::int64_t frame_chunks_end = 0;        ///< one past the last chunk of a raw frame stored whole
+  std::int64_t last_frame_utime = -1;       ///< of that frame
   std::int64_t last_event_utime = 0;        ///< wall clock
   std::optional<MapperStatus> last_status;
 };

@@ -64,6 +64,12 @@ void StoredStream::forget_behind_gap() {
   places_.erase(std::ranges::find(places_, kIsMissing, &LogPlace::file), places_.end());
 }
 
+void StoredStream::forget_from(std::int64_t sequence) {
+  const std::scoped_lock lock(log_.mutex_);
+  const auto index = static_cast<std::size_t>(sequence);
+  if (index < places_.size()) places_.resize(index);
+}
+
 void StoredStream::set_place(std::int64_t sequence, const LogPlace& place) {
   this->place(sequence) = place;
 }

@@ -27,6 +27,8 @@ class StoredStream : public SentStore {
 
   /// Forgets what follows the first chunk that is missing: it will be made and added again.
   void forget_behind_gap();
+  /// Forgets the chunks from `sequence` on, likewise.
+  void forget_from(std::int64_t sequence);
 
  private:
   friend class SessionLog;

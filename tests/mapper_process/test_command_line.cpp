@@ -58,6 +58,12 @@ TEST(Mapper, HelpListsTheFlags) {
                            "--lcm-url",
                            "--map-name",
                            "--session",
+                           "--rate",
+                           "--store",
+                           "--resume",
+                           "--store-file-size",
+                           "--store-frames",
+                           "--linger",
                            "--ground-truth",
                            "--config",
                            "--print-config"}) {

@@ -202,5 +202,32 @@ TEST_F(Resume, BeginsANewSessionBesideTheOldOneForALiveCamera) {
   EXPECT_GT(after.slice_chunks.rbegin()->first.first, 7);
 }
 
+TEST_F(Resume, GoesOnWithALiveCameraWhenTheLogHasItsFrames) {
+  const auto live = [this](const std::string& store_or_resume) {
+    Flags flags = this->flags(store_or_resume, {"--store-frames"});
+    flags[1] = "synthetic://office?frames=60&camera=on";
+    return flags;
+  };
+  kill_after(live("--store"), 3);
+  const StoredRun before = read_stored_run(log_);
+  const Listener listener;
+  MapperProgram mapper(live("--resume"), folder_ / "said.txt");
+  ASSERT_TRUE(Listener::wait_until([&] {
+    return read_stored_run(log_).pose_utimes.size() > before.pose_utimes.size() + 5;
+  })) << said();
+  mapper.interrupt();
+  EXPECT_EQ(mapper.wait(), 0) << said();
+  const StoredRun after = read_stored_run(log_);
+  EXPECT_EQ(after.slice_chunks.rbegin()->first.first, 7) << "the same session";
+  for (const auto& [key, chunk] : before.slice_chunks) {
+    EXPECT_EQ(after.slice_chunks.at(key), chunk);
+  }
+  EXPECT_TRUE(after.has_final_slice);
+  EXPECT_TRUE(std::ranges::is_sorted(after.pose_utimes, std::ranges::less_equal()))
+      << "times go on";
+  EXPECT_EQ(after.statuses.back().frames_resumed,
+            static_cast<std::int64_t>(before.pose_utimes.size()));
+}
+
 }  // namespace
 }  // namespace kintsugi::mapper
