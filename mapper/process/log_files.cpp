@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// What the mapper writes is smaller: more than this was not left by an interrupted write.
-constexpr std::int64_t kMaxEventBytes = 256 * 1024;
+constexpr std::int64_t kMaxEventBytes = 262'144;
 
 fs::path numbered(const fs::path& path, int number) {
   if (number == 0) return path;
