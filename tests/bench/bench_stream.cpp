@@ -27,7 +27,8 @@ namespace kintsugi {
 namespace {
 
 constexpr std::int64_t kSession = 1;
-constexpr int kNumPoints = 20'000;  // a slice: 640 kB
+constexpr int kNumPoints = 20'000;
+constexpr double kSliceBytes = double{sizeof(CloudPoint)} * kNumPoints;
 
 struct Options {
   double rate_bytes_per_s = StreamPublisher::Config{}.rate_bytes_per_s;
@@ -38,9 +39,7 @@ struct Options {
     return std::string(testing::kPrivateBusUrl) +
            "&recv_buf_size=" + std::to_string(receive_buffer_bytes);
   }
-  int num_slices() const {
-    return static_cast<int>(seconds * rate_bytes_per_s / (kNumPoints * sizeof(CloudPoint)));
-  }
+  int num_slices() const { return static_cast<int>(seconds * rate_bytes_per_s / kSliceBytes); }
 };
 
 struct Case {
@@ -107,7 +106,7 @@ void receive(const Options& options, const Case& which, Received& received) {
   }
   const double duration_s = PatientClock::steady_clock_s() - begin_s;
   received.cpu = (cpu_s() - begin_cpu_s) / duration_s;
-  received.bytes_per_s = options.num_slices() * kNumPoints * sizeof(CloudPoint) / duration_s;
+  received.bytes_per_s = options.num_slices() * kSliceBytes / duration_s;
   received.chunks_duplicate = stream.counts().chunks_duplicate;
   received.requests = stream.counts().requests_sent;
 }

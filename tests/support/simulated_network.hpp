@@ -51,8 +51,8 @@ class SimulatedReceiver {
                     const Subscriber::Config& config = {})
       : link(its_link),
         subscriber(
-            channels::kCloudSlice, [this](CloudSlice slice) { ++times_received[slice.id]; }, {},
-            config),
+            channels::kCloudSlice, [this](const CloudSlice& slice) { ++times_received[slice.id]; },
+            {}, config),
         simulation_(simulation),
         random_(seed),
         clock_([this] { return simulation_.now_s(); }) {
