@@ -2,8 +2,16 @@
 
 namespace kintsugi::segmenter {
 
+void take_snapshot(const SegmentMap& map, MapSnapshot& snapshot) {
+  map.copy_state(snapshot.state);
+  snapshot.is_complete = map.is_complete();
+  snapshot.segments = map.statistics().all();
+}
+
 MapSnapshot take_snapshot(const SegmentMap& map) {
-  return {map.state(), map.is_complete(), map.statistics().all()};
+  MapSnapshot snapshot;
+  take_snapshot(map, snapshot);
+  return snapshot;
 }
 
 }  // namespace kintsugi::segmenter

@@ -15,6 +15,8 @@ struct MapSnapshot {
   std::vector<SegmentStatistics> segments;  ///< by ascending id
 };
 
+/// Into `snapshot`, whose memory is used again: fresh memory takes most of the time of a copy.
+void take_snapshot(const SegmentMap& map, MapSnapshot& snapshot);
 MapSnapshot take_snapshot(const SegmentMap& map);
 
 }  // namespace kintsugi::segmenter

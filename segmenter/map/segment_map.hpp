@@ -53,6 +53,8 @@ class SegmentMap {
   /// What a SegmentMap can be made of again. After add() has thrown it is good to look at only:
   /// points that were to come have kNoSegment then.
   [[nodiscard]] SegmentMapState state() const;
+  /// The same into the memory that `state` has: several times as fast when it is enough.
+  void copy_state(SegmentMapState& state) const;
 
   /// The join threshold theta of a segment that has points.
   [[nodiscard]] double theta(std::uint32_t segment_id) const {

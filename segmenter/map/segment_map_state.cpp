@@ -41,6 +41,16 @@ SequenceSet set_of(const std::vector<SequenceRange>& chunks) {
   return set;
 }
 
+/// Empty, with memory for `size` records; from the second time on, for a map that grows.
+template <class Record>
+void clear_for(std::vector<Record>& records, std::size_t size) {
+  const bool is_new = records.capacity() == 0;
+  records.clear();
+  if (records.capacity() < size) {
+    records.reserve(is_new ? size : size + size / 4);
+  }
+}
+
 void check_counts(const SegmentMapState& state) {
   std::uint64_t num_points = 0;
   for (const SliceRecord& slice : state.slices) {
@@ -153,6 +163,11 @@ SegmentMap::SegmentMap(const SegmentMapState& state)
 
 SegmentMapState SegmentMap::state() const {
   SegmentMapState state;
+  copy_state(state);
+  return state;
+}
+
+void SegmentMap::copy_state(SegmentMapState& state) const {
   state.config = config_;
   state.session = session_;
   state.map_session = map_session_;
@@ -160,8 +175,10 @@ SegmentMapState SegmentMap::state() const {
   state.final_slice_id = final_slice_id_;
   state.next_id = ids_.next_id();
   state.chunks = chunks_.ranges();
-  state.points_W.reserve(cloud_.num_live());
-  state.segment_ids.reserve(cloud_.num_live());
+  state.slices.clear();
+  clear_for(state.points_W, cloud_.num_live());
+  clear_for(state.segment_ids, cloud_.num_live());
+  state.thetas.clear();
   for (SliceRecord slice : cloud_.slices()) {
     const auto points_W = cloud_.points_W().subspan(slice.first, slice.count);
     const PointIndex first = slice.first;
@@ -177,7 +194,6 @@ SegmentMapState SegmentMap::state() const {
       if (ids_.num_points_of(id) > 0) state.thetas.push_back(theta(id));
     }
   }
-  return state;
 }
 
 }  // namespace kintsugi::segmenter

@@ -32,19 +32,37 @@ void save_state(const SegmentMapState& state, const std::filesystem::path& file)
 }  // namespace
 
 void MapWriter::write(const SegmentMap& map, const std::string& stem) {
-  put_files(std::make_shared<const MapSnapshot>(take_snapshot(map)), stem);
+  put_files(copy(map), stem);
 }
 
 void MapWriter::save(const SegmentMap& map) {
   if (!config_.save_file.empty()) {
-    put_saved(std::make_shared<const MapSnapshot>(take_snapshot(map)));
+    put_saved(copy(map));
   }
 }
 
 void MapWriter::write_and_save(const SegmentMap& map, const std::string& stem) {
-  const auto snapshot = std::make_shared<const MapSnapshot>(take_snapshot(map));
+  const Snapshot snapshot = copy(map);
   put_files(snapshot, stem);
   put_saved(snapshot);
+}
+
+// Whoever has it last hands its memory back.
+MapWriter::Snapshot MapWriter::copy(const SegmentMap& map) {
+  std::unique_ptr<MapSnapshot> snapshot;
+  {
+    const std::lock_guard lock(spare_mutex_);
+    snapshot = std::move(spare_);
+  }
+  if (!snapshot) {
+    snapshot = std::make_unique<MapSnapshot>();
+  }
+  take_snapshot(map, *snapshot);
+  return {snapshot.release(), [this](const MapSnapshot* written) {
+            std::unique_ptr<MapSnapshot> spare(const_cast<MapSnapshot*>(written));
+            const std::lock_guard lock(spare_mutex_);
+            spare_.swap(spare);
+          }};
 }
 
 void MapWriter::put_files(const Snapshot& map, const std::string& stem) {

@@ -51,12 +51,15 @@ class MapWriter {
     std::string why;
   };
 
+  [[nodiscard]] Snapshot copy(const SegmentMap& map);
   void put_files(const Snapshot& map, const std::string& stem);
   void put_saved(const Snapshot& map);
   void put(const std::string& name, Action action);
   void attempt(const std::string& name, std::int64_t number, const Action& action);
 
   Config config_;
+  std::mutex spare_mutex_;                      // guards the next
+  std::unique_ptr<MapSnapshot> spare_;          // memory of a copy that is written
   mutable std::mutex mutex_;                    // guards what follows
   std::map<std::string, std::int64_t> newest_;  // number of the newest action, by its name
   std::map<std::string, Failure> failures_;     // likewise
