@@ -29,6 +29,8 @@ stop_row() {
   local process="$1" seconds="$2" pid
   if if_quick || [[ "$process" == mapper ]]; then choose_scene; else choose_live_scene; fi
   reference
+  must "the machine is too busy: frames were dropped without a fault" test \
+    "$(status_last "$reference" mapper frames_dropped)" = 0
   faulty_start
   pid="$(pid_of "$process")"
   pid_of mapper >/dev/null
