@@ -161,12 +161,20 @@ status_most() {
 read_figures() {
   local process
   for process in mapper segmenter viewer; do
-    figure[${process}_mb]="$(sed -nE "s/^ *memory at most:.* $process ([0-9]+) MB.*/\1/p" "$1.txt")"
+    figure[${process}_mb]="$(peak_memory_mb "$1" "$process")"
   done
   [[ -s "$1/status.csv" ]] || return 0
   figure[lag_slices]="$(status_most "$1" segmenter lag_slices)"
   figure[requested]=$(($(status_most "$1" segmenter requests_sent) + $(status_most "$1" viewer requests_sent)))
   figure[resent]=$(($(status_most "$1" mapper chunks_resent) + $(status_most "$1" segmenter chunks_resent)))
+}
+# peak_memory_mb RUN PROCESS: as scripts/trio says it; of a run without trio, the most that a status said.
+peak_memory_mb() {
+  if [[ -e "$1.txt" ]]; then
+    sed -nE "s/^ *memory at most:.* $2 ([0-9]+) MB.*/\1/p" "$1.txt"
+  else
+    calculate "$(status_most "$1" "$2" memory_bytes) / 1e6" 0
+  fi
 }
 
 # same_map [RUN]: the map of the faulty run, and its pictures, are those of the reference, byte for byte.
