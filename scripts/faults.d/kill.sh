@@ -1,9 +1,10 @@
-# A process is killed (SIGKILL) at a random moment of a run, and started again by scripts/trio.
+# A process is killed (SIGKILL) at a random moment of a run, and started again by scripts/trio. KINTSUGI_KILL_RUNS: how
+# many runs a row makes, each with moments of its own (20, with --quick 2).
 
 for process in segmenter viewer mapper; do
-  fault_row "kill-$process" "$process killed at a random moment, 20 runs" kill_row "$process"
+  fault_row "kill-$process" "$process killed at a random moment of each run" kill_row "$process"
 done
-fault_row kill-all "all three killed, each at a random moment of its own, 20 runs" kill_row segmenter viewer mapper
+fault_row kill-all "all three killed, each at a random moment of its own in each run" kill_row segmenter viewer mapper
 
 # kill_at MOMENT PROCESS: seconds after the start of the faulty run; without effect when it has ended by then.
 kill_at() {
@@ -17,8 +18,8 @@ kill_at() {
 random_moment() { calculate "0.95 * ${figure[reference_s]} * $RANDOM / 32768" 2; }
 
 kill_row() {
-  local num_runs=20 run process kills=0 most_s=0 moments
-  if_quick && num_runs=2
+  local num_runs="${KINTSUGI_KILL_RUNS:-20}" run process kills=0 most_s=0 moments
+  if_quick && num_runs="${KINTSUGI_KILL_RUNS:-2}"
   choose_scene
   reference
   for ((run = 1; run <= num_runs; ++run)); do
