@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <opencv2/imgcodecs.hpp>
 
+#include "tests/support/file_size_limit.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "viewer/output/picture_file.hpp"
 #include "viewer/output/video_file.hpp"
@@ -13,6 +14,7 @@ namespace kintsugi::viewer {
 namespace {
 
 namespace fs = std::filesystem;
+using kintsugi::testing::FileSizeLimit;
 using kintsugi::testing::TemporaryFolder;
 
 bool is_empty(const TemporaryFolder& folder) { return fs::is_empty(folder.path()); }
@@ -60,6 +62,36 @@ TEST(VideoFile, LeavesNothingWithoutFramesOrUnfinished) {
   EXPECT_TRUE(is_empty(folder));
   VideoFile(folder / "b.mp4", {64, 48}, 10.0).add(cv::Mat3b(48, 64));
   EXPECT_TRUE(is_empty(folder));
+}
+
+TEST(VideoFile, IsWholeOrAbsentWhereverTheDiskEnds) {
+  const TemporaryFolder folder;
+  constexpr int kFrames = 5;
+  const auto write = [](const fs::path& path) {
+    VideoFile video(path, {64, 48}, 10.0);
+    for (int i = 0; i < kFrames; ++i) video.add(cv::Mat3b(48, 64, cv::Vec3b(10, 10, 10 * i)));
+    video.finish();
+  };
+  write(folder / "whole.mp4");
+  const auto size = static_cast<rlim_t>(fs::file_size(folder / "whole.mp4"));
+  int lost = 0;
+  for (rlim_t limit = 1; limit < size; limit += 3) {
+    const fs::path path = folder / "a.mp4";
+    try {
+      const FileSizeLimit disk(limit);
+      write(path);
+    } catch (const std::runtime_error&) {
+      ++lost;
+      EXPECT_EQ(1, std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()));
+      continue;
+    }
+    cv::VideoCapture played(path.string());
+    int frames = 0;
+    for (cv::Mat frame; played.read(frame);) ++frames;
+    EXPECT_EQ(kFrames, frames) << limit << " of " << size << " bytes";
+    fs::remove(path);
+  }
+  EXPECT_GT(lost, 0);
 }
 
 TEST(VideoFile, RefusesWhatItCannotWrite) {

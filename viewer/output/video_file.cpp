@@ -13,10 +13,16 @@ const std::filesystem::path& require_mp4(const std::filesystem::path& path) {
   return path;
 }
 
-/// OpenCV knows no other way to count than the container's index, which is written last.
+/// OpenCV knows no other way to count than the container's index, which is written last. Of an
+/// index that is cut short the count may be there and the places of the frames not: then neither
+/// the first nor the last is found.
 std::int64_t count_frames(const std::filesystem::path& path) {
   cv::VideoCapture video(path.string(), cv::CAP_FFMPEG);
-  return video.isOpened() ? static_cast<std::int64_t>(video.get(cv::CAP_PROP_FRAME_COUNT)) : 0;
+  if (!video.isOpened() || !video.grab()) return 0;
+  const double count = video.get(cv::CAP_PROP_FRAME_COUNT);
+  const bool has_last =
+      count <= 1.0 || (video.set(cv::CAP_PROP_POS_FRAMES, count - 1.0) && video.grab());
+  return has_last ? static_cast<std::int64_t>(count) : 0;
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ class VideoFile {
   /// Appends a picture of the size given before.
   void add(const cv::Mat3b& image);
 
-  /// Closes the file, checks that every frame can be found in it (FFmpeg reports no full disk to
+  /// Closes the file, checks that its index is whole (FFmpeg reports no full disk to
   /// OpenCV) and gives it its name. Without a frame there is no file. Throws std::runtime_error
   /// naming the file; nothing remains then. Call once, and add() no more.
   void finish();
