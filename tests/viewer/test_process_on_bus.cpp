@@ -21,6 +21,7 @@
 #include "tests/support/private_bus.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/viewer/recorded_room.hpp"
+#include "tests/viewer/stuck_file.hpp"
 #include "tests/viewer/viewer_program.hpp"
 
 namespace kintsugi::viewer {
@@ -60,10 +61,10 @@ class ViewerOnBus : public ::testing::Test {
     return program;
   }
 
-  /// Handles the bus until `done` or half a minute has passed; true when done.
+  /// Handles the bus until `done`, or for much longer than that takes; true when done.
   template <class Condition>
   bool wait_until(Condition&& done, RoomOnBus* room = nullptr) {
-    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(30);
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::minutes(2);
     while (!done() && std::chrono::steady_clock::now() < deadline) {
       bus_->handle(std::chrono::milliseconds(20));
       if (room != nullptr) room->serve();
@@ -85,14 +86,15 @@ TEST_F(ViewerOnBus, DrawsTheFinalMapAndExits) {
   ASSERT_TRUE(wait_until([&] { return status_.has_value(); }));
   publish(*bus_, make_room(kLength_m, kResolution_m));
   ASSERT_TRUE(wait_until([&] { return status_->finished; }));
+  ASSERT_TRUE(wait_until([&] { return program.has_ended(); }));
   EXPECT_EQ(0, program.wait());
+  ASSERT_TRUE(wait_until([&] { return !pictures_.empty(); }));  // it may come after the status
 
   EXPECT_EQ(20, status_->slices_received);
   EXPECT_EQ(20, status_->updates_applied);
   EXPECT_EQ(0, status_->lag_slices);
   EXPECT_EQ(0, status_->messages_bad);
   EXPECT_TRUE(fs::exists(folder_ / "out/final.png"));
-  ASSERT_FALSE(pictures_.empty());
   EXPECT_EQ(cv::Size(640, 360), cv::imdecode(pictures_.back().image_jpeg, cv::IMREAD_COLOR).size());
 }
 
@@ -154,10 +156,25 @@ TEST_F(ViewerOnBus, DrawsTheSameFinalPicturesWheneverItWasStartedAndWhoeverWasRe
 TEST_F(ViewerOnBus, RefusesWhatComesWhileItDrawsAndAsksForItLater) {
   const SyntheticMap room = make_room(kLength_m, 0.02);  // 9 MB of points
   RoomOnBus trio(*bus_, room);
-  Program program(arguments({"--exit-on-final", "--max-queue", "1", "--every", "1",
-                             "--drawing-share", "1", "--supersampling", "4"}));
+  fs::create_directory(folder_ / "out");
+  const StuckFile first_picture(folder_ / "out/snapshot_000000.partial.png");
+  Program program(arguments({"--exit-on-final", "--max-queue", "1", "--every", "1"}), 0,
+                  folder_ / "said.txt");
   ASSERT_TRUE(wait_until([&] { return status_.has_value(); }));
-  trio.publish(20);
+  trio.publish(1);
+  ASSERT_TRUE(wait_until([&] { return first_picture.is_being_written(); }, &trio));
+
+  trio.publish(19);
+  // The viewer says what it cannot read as it comes: by then it has had what came before.
+  const Bytes nonsense(100, 0xff);
+  ASSERT_TRUE(wait_until(
+      [&] {
+        bus_->publish(channels::kCloudSlice, nonsense);
+        return bytes_of_file(folder_ / "said.txt").find("bad message") != std::string::npos;
+      },
+      &trio));
+  EXPECT_TRUE(first_picture.go_on());
+
   ASSERT_TRUE(wait_until([&] { return program.has_ended(); }, &trio));
   EXPECT_EQ(0, program.wait());
   ASSERT_TRUE(wait_until([&] { return status_->finished; }));

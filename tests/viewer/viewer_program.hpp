@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include <fcntl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -15,7 +16,9 @@ namespace kintsugi::viewer {
 class Program {
  public:
   /// `max_file_bytes` > 0: writing more than that into one file fails, as on a full disk.
-  explicit Program(std::vector<std::string> arguments, rlim_t max_file_bytes = 0) {
+  /// `output`: a file for what it prints; empty: the test's own.
+  explicit Program(std::vector<std::string> arguments, rlim_t max_file_bytes = 0,
+                   const std::string& output = {}) {
     arguments.insert(arguments.begin(), KINTSUGI_VIEWER);
     std::vector<char*> argv;
     argv.reserve(arguments.size() + 1);
@@ -27,6 +30,11 @@ class Program {
         const rlimit limit{max_file_bytes, max_file_bytes};
         setrlimit(RLIMIT_FSIZE, &limit);
         std::signal(SIGXFSZ, SIG_IGN);
+      }
+      if (!output.empty()) {
+        const int file = open(output.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+        dup2(file, STDOUT_FILENO);
+        dup2(file, STDERR_FILENO);
       }
       execv(argv[0], argv.data());
       _exit(127);
