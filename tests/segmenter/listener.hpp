@@ -62,7 +62,7 @@ class Listener {
 
   template <class Condition>
   bool hears(const Condition& condition) {
-    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::minutes(2);
     while (!condition() && std::chrono::steady_clock::now() < deadline) {
       bus_.handle(std::chrono::milliseconds(100));
     }

@@ -1,6 +1,8 @@
 // The process on a private bus, when things go wrong.
 
+#include <algorithm>
 #include <csignal>
+#include <limits>
 #include <map>
 #include <random>
 #include <set>
@@ -263,12 +265,19 @@ TEST_F(ProcessFaults, GoingOnAsksOnlyForWhatIsNotInTheSavedMap) {
   config.resume_file = config.files.save_file;
   config.exit_on_final = true;
   Listener listener(config);
+  std::int64_t first_asked = std::numeric_limits<std::int64_t>::max();
+  subscribe<ResendRequest>(listener.bus(), channels::kResendRequest,
+                           [&](const ResendRequest& request) {
+                             if (request.channel != channels::kCloudSlice) return;
+                             for (const SequenceRange& range : request.ranges) {
+                               first_asked = std::min(first_asked, range.first);
+                             }
+                           });
   MapperImitation mapper(listener.bus(), 5, [&](std::int64_t) { return true; });
   mapper.publish(slices);  // all of it is lost, and must be asked for
   mapper.answer(listener.bus());
   EXPECT_EQ(listener.hear_the_end(), 0);
-  EXPECT_EQ(mapper.publisher().counts().chunks_resent,
-            mapper.publisher().chunks_published() - saved.chunks[0].last - 1);
+  EXPECT_EQ(first_asked, saved.chunks[0].last + 1);
   EXPECT_EQ(labels_in(folder_ / "segments.ply"), labels_without_fault(slices, "exact"));
 }
 
@@ -324,11 +333,16 @@ TEST_F(FullDisk, TheOldMapStaysAndTheNewIsWrittenWhenThereIsSpace) {
   EXPECT_TRUE(listener.hears([&] { return listener.status->slices_segmented == 19; }));
   const std::size_t num_saved = read_map_state(config.files.save_file).slices.size();
   EXPECT_LT(num_saved, 19U);  // the old file, whole
-  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(disk_), {}), 1);  // and no other
+  // And no other, but while it tries.
+  EXPECT_TRUE(listener.hears(
+      [&] { return std::distance(std::filesystem::directory_iterator(disk_), {}) == 1; }));
 
   ASSERT_EQ(mount("tmpfs", disk_.c_str(), "tmpfs", MS_REMOUNT, "size=16m"), 0);
-  EXPECT_TRUE(listener.hears([&] { return listener.status->problem.empty(); }));
-  EXPECT_EQ(read_map_state(config.files.save_file).slices.size(), 19U);
+  // What was being written may lack the newest slice; it comes by itself.
+  EXPECT_TRUE(listener.hears([&] {
+    return listener.status->problem.empty() &&
+           read_map_state(config.files.save_file).slices.size() == 19;
+  }));
   mapper.publish(slices.back());
   EXPECT_TRUE(listener.hears([&] { return listener.status->finished; }));
   request_stop();
