@@ -103,8 +103,9 @@ class Listener {
   /// Waits, long enough for a machine that has other things to do.
   template <typename Condition>
   static bool wait_until(const Condition& condition) {
-    for (int i = 0; i < 600 && !condition(); ++i) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::minutes(2);
+    while (!condition() && std::chrono::steady_clock::now() < deadline) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }
     return condition();
   }

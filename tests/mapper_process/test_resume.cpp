@@ -57,8 +57,10 @@ class Resume : public ::testing::Test {
     return run;
   }
 
-  /// Kills a run once it has logged so many slice chunks.
-  void kill_after(const Flags& flags, std::size_t num_chunks) const {
+  /// Kills a run once it has logged so many slice chunks, up to 8. A replay needs 10 s for all of
+  /// them, because it waits for the bus: so there is time to see when.
+  void kill_after(Flags flags, std::size_t num_chunks) const {
+    flags.insert(flags.end(), {"--rate", "0.01"});
     MapperProgram mapper(flags, folder_ / "said.txt");
     EXPECT_TRUE(Listener::wait_until([&] {
       std::error_code ignored;
@@ -79,8 +81,9 @@ TEST_F(Resume, KilledAtAnyMomentsTheSessionIsThatOfARunWithoutFaults) {
   int kills = 0;
   for (int i = 0; i < 8; ++i) {
     const bool begun = std::filesystem::exists(log_);
-    // Slow enough on the bus that some kills come while slices are being sent.
-    MapperProgram mapper(flags(begun ? "--resume" : "--store", {"--replay", "--rate", "0.3"}),
+    // So slow on the bus that the mapper waits for it: a run gets on by two slices or three, and
+    // four at least are killed before the last, however fast the machine is.
+    MapperProgram mapper(flags(begun ? "--resume" : "--store", {"--replay", "--rate", "0.002"}),
                          folder_ / "said.txt");
     std::this_thread::sleep_for(std::chrono::milliseconds(delay_ms(random)));
     kills += mapper.crash() ? 1 : 0;
@@ -94,9 +97,14 @@ TEST_F(Resume, KilledAtAnyMomentsTheSessionIsThatOfARunWithoutFaults) {
 }
 
 TEST_F(Resume, MapsTheFramesAgainThatWereMappedThenAndNoOthers) {
-  kill_after(flags("--store", {}), 3);  // at the device's own pace
+  const auto at_own_pace = [this](const std::string& store_or_resume) {
+    Flags flags = this->flags(store_or_resume, {});
+    flags[1] = "synthetic://office?frames=120";  // 4 s: it is killed before
+    return flags;
+  };
+  kill_after(at_own_pace("--store"), 3);
   const StoredRun before = read_stored_run(log_);
-  EXPECT_EQ(run(flags("--resume", {})), 0) << said();
+  EXPECT_EQ(run(at_own_pace("--resume")), 0) << said();
   const StoredRun after = read_stored_run(log_);
   ASSERT_GE(after.pose_utimes.size(), before.pose_utimes.size());
   EXPECT_TRUE(std::ranges::is_sorted(after.pose_utimes, std::ranges::less_equal()))
