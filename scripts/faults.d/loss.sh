@@ -28,7 +28,7 @@ loss_row() {
   reference
   drop_datagrams "$percent"
   faulty
-  read -r sent figure[lost] < <(sent_and_lost_datagrams)
+  read -r sent "figure[lost]" < <(sent_and_lost_datagrams)
   note "of $sent datagrams"
   same_map
   ((percent == 0)) || must "nothing was dropped" test "${figure[lost]}" -gt 0
