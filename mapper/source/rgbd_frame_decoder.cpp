@@ -1,7 +1,5 @@
 #include "mapper/source/rgbd_frame_decoder.hpp"
 
-#include <utility>
-
 #include <opencv2/core.hpp>
 
 #include "mapper/openni2_driver/image_decoder.hpp"
@@ -16,7 +14,7 @@ struct RgbdFrameDecoder::Conversion {
 };
 
 RgbdFrameDecoder::RgbdFrameDecoder(double max_range_m, std::optional<Intrinsics> calibration)
-    : max_range_m_(max_range_m), calibration_(std::move(calibration)) {}
+    : max_range_m_(max_range_m), calibration_(calibration) {}
 
 RgbdFrameDecoder::~RgbdFrameDecoder() = default;
 
