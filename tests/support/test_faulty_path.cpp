@@ -22,7 +22,7 @@ int number_of(const Bytes& datagram) { return datagram.at(0) + 256 * datagram.at
 /// One datagram a millisecond; what comes out, in order, in the end all of it.
 std::vector<int> numbers_out(FaultyPath& path) {
   std::vector<int> numbers;
-  numbers.reserve(2 * kDatagrams);
+  numbers.reserve(std::size_t{2} * kDatagrams);
   for (int i = 0; i < kDatagrams + 1000; ++i) {
     const double now_s = 1e-3 * i;
     if (i < kDatagrams) path.put(datagram(i), now_s);

@@ -112,6 +112,7 @@ TEST_F(ViewerTest, DrawsTheSameFinalPicturesFromWhateverCameInWhateverOrder) {
   there.close();
   const std::vector<std::string> names{"final.png", "map_final.png", "segments_final.png"};
   std::vector<std::string> expected;
+  expected.reserve(names.size());
   for (const std::string& name : names) expected.push_back(read(name));
 
   std::mt19937 random(1);
