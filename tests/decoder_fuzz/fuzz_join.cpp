@@ -8,10 +8,10 @@ namespace kintsugi {
 namespace {
 
 template <BulkMessage Message>
-void join_all(const std::vector<fuzzing::Event>& events) {
+void join_all(const std::vector<fuzzing::LoggedMessage>& events) {
   std::vector<Chunk<Message>> chunks;
   std::int64_t received = 0;
-  for (const fuzzing::Event& event : events) {
+  for (const fuzzing::LoggedMessage& event : events) {
     try {
       chunks.push_back(decode_chunk<Message>(event.data));
       received += static_cast<std::int64_t>(event.data.size());

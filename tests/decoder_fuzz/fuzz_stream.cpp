@@ -20,13 +20,13 @@ StreamSubscriberConfig<Message> small_bounds() {
 }
 
 template <BulkMessage Message>
-void receive(const char* channel, const std::vector<fuzzing::Event>& events) {
+void receive(const char* channel, const std::vector<fuzzing::LoggedMessage>& events) {
   const auto config = small_bounds<Message>();
   std::int64_t messages = 0;
   StreamSubscriber<Message> subscriber(
       channel, [&](const Message&) { ++messages; }, {}, config);
   double now_s = 0.0;
-  for (const fuzzing::Event& event : events) {
+  for (const fuzzing::LoggedMessage& event : events) {
     (void)subscriber.handle(event.channel, event.data);
     for (const ResendRequest& request : subscriber.poll(now_s += 0.3)) {
       fuzzing::require(encode(request).size() <= config.max_request_bytes,

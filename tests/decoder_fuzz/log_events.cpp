@@ -22,8 +22,8 @@ std::uint32_t word(ByteView log, std::size_t place) {
 
 }  // namespace
 
-std::vector<Event> read_events(ByteView log) {
-  std::vector<Event> events;
+std::vector<LoggedMessage> read_events(ByteView log) {
+  std::vector<LoggedMessage> events;
   while (log.size() >= kHeaderBytes && word(log, 0) == kSyncWord) {
     const std::uint64_t channel_bytes = word(log, 20);
     const std::uint64_t data_bytes = word(log, 24);
@@ -37,10 +37,10 @@ std::vector<Event> read_events(ByteView log) {
   return events;
 }
 
-Bytes write_events(const std::vector<Event>& events) {
+Bytes write_events(const std::vector<LoggedMessage>& events) {
   Bytes log;
   std::uint64_t number = 0;
-  for (const Event& event : events) {
+  for (const LoggedMessage& event : events) {
     append(log, kSyncWord, 4);
     append(log, number, 8);
     append(log, 1'700'000'000'000'000 + 1'000 * number++, 8);

@@ -8,15 +8,15 @@
 
 namespace kintsugi::fuzzing {
 
-struct Event {
+struct LoggedMessage {
   std::string channel;
   Bytes data;
 };
 
 /// The events at the beginning of `log`, up to the first that is not whole.
-std::vector<Event> read_events(ByteView log);
+std::vector<LoggedMessage> read_events(ByteView log);
 
 /// An LCM log of `events`.
-Bytes write_events(const std::vector<Event>& events);
+Bytes write_events(const std::vector<LoggedMessage>& events);
 
 }  // namespace kintsugi::fuzzing

@@ -9,16 +9,17 @@
 namespace {
 
 using kintsugi::Bytes;
-using kintsugi::fuzzing::Event;
+using kintsugi::fuzzing::LoggedMessage;
 
-void mutate(Event& event, std::size_t max_growth) {
+void mutate(LoggedMessage& event, std::size_t max_growth) {
   event.data = kintsugi::fuzzing::mutated(event.data, event.data.size() + max_growth);
   if (event.data.size() >= kintsugi::codec::kChecksumEnd) {
     kintsugi::codec::set_checksum(event.data);
   }
 }
 
-void change_one(std::vector<Event>& events, std::size_t max_growth, std::minstd_rand& random) {
+void change_one(std::vector<LoggedMessage>& events, std::size_t max_growth,
+                std::minstd_rand& random) {
   const std::size_t i = random() % events.size();
   const std::size_t other = random() % events.size();
   const auto place = events.begin() + static_cast<std::ptrdiff_t>(i);
@@ -27,7 +28,7 @@ void change_one(std::vector<Event>& events, std::size_t max_growth, std::minstd_
       events.erase(place);
       break;
     case 1:
-      events.insert(place, Event(events[other]));
+      events.insert(place, LoggedMessage(events[other]));
       break;
     case 2:
       std::swap(events[i], events[other]);
@@ -42,7 +43,7 @@ void change_one(std::vector<Event>& events, std::size_t max_growth, std::minstd_
 extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
                                                std::size_t max_size, unsigned seed) {
   std::minstd_rand random(seed);
-  std::vector<Event> events = kintsugi::fuzzing::read_events({data, size});
+  std::vector<LoggedMessage> events = kintsugi::fuzzing::read_events({data, size});
   // Now and then, and where there is no event, bytes of the log itself.
   if (events.empty() || random() % 16 == 0) return LLVMFuzzerMutate(data, size, max_size);
   constexpr std::size_t kMaxGrowth = 512;

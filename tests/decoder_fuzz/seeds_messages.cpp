@@ -11,7 +11,7 @@ namespace {
 
 template <BulkMessage Message>
 void append_chunks(const char* channel, const Message& message, std::int64_t first_sequence,
-                   std::vector<Event>& events) {
+                   std::vector<LoggedMessage>& events) {
   const std::int32_t count = num_chunks(message, kMinMaxChunkBytes);
   for (std::int32_t i = 0; i < count; ++i) {
     events.push_back({channel, encode_chunk(message, first_sequence + i, i, kMinMaxChunkBytes)});
@@ -20,7 +20,7 @@ void append_chunks(const char* channel, const Message& message, std::int64_t fir
 
 template <BulkMessage Message>
 Bytes log_of(const char* channel, const Message& first, const Message& second) {
-  std::vector<Event> events;
+  std::vector<LoggedMessage> events;
   append_chunks(channel, first, 0, events);
   Heartbeat heartbeat = testing::example_heartbeat();
   heartbeat.session = first.session;
@@ -68,7 +68,7 @@ Seeds request_seeds() {
 Seeds stored_session_seeds() {
   CloudSlice slice = testing::example_slice(60, 0);
   slice.kind = SliceKind::kFinal;
-  std::vector<Event> events = {
+  std::vector<LoggedMessage> events = {
       {mapper::kOptionsChannel, mapper::encode_options(slice.session, {{"resolution", "0.01"}})},
       {channels::kMapperStatus, encode(testing::example_mapper_status())},
       {channels::kCameraPose, encode(testing::example_camera_pose())}};
@@ -88,7 +88,7 @@ Seeds rgbd_frame_seeds() {
     frame.intrinsics.height = 6;
     frame.depth_png = image_seeds().at("depth_png");
     frame.color_jpeg = image;
-    std::vector<Event> events;
+    std::vector<LoggedMessage> events;
     append_chunks(channels::kRgbdFrame, frame, 0, events);
     seeds[name] = write_events(events);
   }
