@@ -56,7 +56,7 @@ class SessionMapsTest : public ::testing::Test {
              },
              [this](std::int64_t session) { return !coming_.contains(session); },
              [this](std::int64_t session) { forgotten_.insert(session); }},
-            {[this](SegmentUpdate update) { mirrors_[update.map_session].apply(update); },
+            {[this](const SegmentUpdate& update) { mirrors_[update.map_session].apply(update); },
              [this](const SegmentMap& map, Save why) {
                saves_.push_back({map.map_session(), testing::labels_of(map), why});
              },
