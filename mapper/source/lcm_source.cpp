@@ -9,6 +9,7 @@
 
 #include "lcmtypes/bus.hpp"
 #include "lcmtypes/bus_thread.hpp"
+#include "lcmtypes/patient_clock.hpp"
 #include "lcmtypes/stream_subscriber.hpp"
 #include "mapper/core/stopwatch.hpp"
 #include "mapper/openni2_driver/calibration.hpp"
@@ -97,12 +98,11 @@ SourceCounts LcmSource::counts() const {
 }
 
 std::optional<RgbdFrameMessage> LcmSource::wait_for_message() {
-  const auto begin = std::chrono::steady_clock::now();
-  const auto max_silence = std::chrono::duration<double>(config_.lcm_silence_s);
+  PatientClock patience;
   while (end_reason_.empty()) {
     if (auto message = receiver_->pop(kPoll)) return message;
-    const bool silent = session_ != 0 && config_.lcm_silence_s > 0.0 &&
-                        std::chrono::steady_clock::now() - begin > max_silence;
+    const bool silent =
+        session_ != 0 && config_.lcm_silence_s > 0.0 && patience.now_s() > config_.lcm_silence_s;
     if (config_.stop_requested()) {
       end(true, "stopped on request");
     } else if (receiver_->thread->failed()) {

@@ -33,7 +33,7 @@ OpenNi2Source::OpenNi2Source(const SourceConfig& config)
       clock_(!device_->is_recording(), depth_period_us(*device_)),
       color_clock_(depth_period_us(*device_)),
       pairer_(device_->has_color(), depth_period_us(*device_)),
-      last_depth_(Clock::now()) {
+      last_depth_s_(patience_.now_s()) {
   converter_.emplace(find_intrinsics(config, *device_), device_->depth_units_per_m(),
                      config.max_range_m);
   frames_total_ = device_->num_depth_frames().value_or(-1);
@@ -88,7 +88,7 @@ void OpenNi2Source::add(DeviceImage image) {
   if (!image.is_depth) {
     return pairer_.add_color(color_clock_.add_color(utime), std::move(image.color_rgb));
   }
-  last_depth_ = Clock::now();
+  last_depth_s_ = patience_.now_s();
   compare_clocks(utime);
   pairer_.add_depth(utime, continuous_index(image.index), std::move(image.depth_raw));
 }
@@ -141,7 +141,7 @@ void OpenNi2Source::check_for_end(DeviceState state_before) {
 }
 
 void OpenNi2Source::check_for_silence() {
-  const double silence_s = std::chrono::duration<double>(Clock::now() - last_depth_).count();
+  const double silence_s = patience_.now_s() - last_depth_s_;
   const bool is_recording = device_->is_recording();
   if (silence_s < (is_recording ? kMaxSilenceOfRecording_s : config_.device_silence_s)) return;
   std::string reason = "no depth image came for " + in_seconds(silence_s);
@@ -174,7 +174,7 @@ void OpenNi2Source::wait_for_camera() {
   first_stamp_us_.reset();
   exposure_locked_ = false;
   last_refusal_.clear();
-  last_depth_ = Clock::now();
+  last_depth_s_ = patience_.now_s();
   config_.notify(
       {SourceNotice::Kind::kResumed, "device '" + name_ + "' is back after " + in_seconds(away_s)});
 }

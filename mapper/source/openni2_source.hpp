@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "lcmtypes/patient_clock.hpp"
 #include "mapper/source/camera_return.hpp"
 #include "mapper/source/color_clock.hpp"
 #include "mapper/source/device_clock.hpp"
@@ -62,7 +63,8 @@ class OpenNi2Source : public FrameSource {
   std::optional<std::int64_t> frame_index_;     ///< ... in our count
   std::optional<std::int64_t> first_stamp_us_;  ///< since it was opened
   bool exposure_locked_ = false;
-  Clock::time_point last_depth_;
+  PatientClock patience_;
+  double last_depth_s_;       ///< of patience_
   std::string last_refusal_;  ///< why the last bad image was refused
   SourceCounts counts_;
   std::string end_reason_;
