@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# A log of raw frames, played by lcm-logplayer into a mapper that reads the bus, gives the same frames again.
+# A log of raw frames, played by lcm-logplayer into a mapper that reads the bus, gives the same frames again. Raw frames
+# are not sent again when they are lost: few may be, and none is another.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.sh"
 
 run_trio "${small_room[@]}" --replay --publish-frames --out first
@@ -18,7 +19,7 @@ SH
   fail "the mapper on the bus"
 }
 expect_file second.txt
-(($(grep -vc '^#' second.txt) == 120)) || fail "not every frame was tracked: $(cat second.log)"
+(($(grep -vc '^#' second.txt) >= 115)) || fail "too few frames were tracked: $(cat second.log)"
 # One pose for each frame, at the device's own times.
-diff <(grep -v '^#' first/trajectory.txt | cut -d' ' -f1) <(grep -v '^#' second.txt | cut -d' ' -f1) ||
-  fail "the mapper on the bus saw other frames: $(cat second.log)"
+others="$(comm -13 <(grep -v '^#' first/trajectory.txt | cut -d' ' -f1) <(grep -v '^#' second.txt | cut -d' ' -f1))"
+[[ -z "$others" ]] || fail "the mapper on the bus saw other frames: $others $(cat second.log)"
