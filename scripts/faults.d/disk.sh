@@ -45,15 +45,12 @@ problems_are_said() {
   must "the viewer does not say that its pictures cannot be written" said_problem viewer problem
 }
 
-# A snapshot and a saved map with each slice, so that all three writers meet the full disk.
-disk_scene() {
+# fill_disk_in_a_run: starts the run, with a snapshot and a saved map at each slice, so that all writers meet the full
+# disk; after a third of the time that the reference took, it is full.
+fill_disk_in_a_run() {
   local snapshot_every=1
   choose_scene
   scene+=(--segmenter '--write-every=1')
-}
-
-disk_full_row() {
-  disk_scene
   reference
   small_disk
   watch_statuses
@@ -61,6 +58,10 @@ disk_full_row() {
   pid_of mapper >/dev/null
   sleep "$(calculate "0.3 * ${figure[reference_s]}")"
   fill_disk
+}
+
+disk_full_row() {
+  fill_disk_in_a_run
   problems_are_said 60
   free_disk
   faulty_wait 1 # a snapshot is missing for good
@@ -70,14 +71,7 @@ disk_full_row() {
 }
 
 disk_full_end_row() {
-  disk_scene
-  reference
-  small_disk
-  watch_statuses
-  faulty_start
-  pid_of mapper >/dev/null
-  sleep "$(calculate "0.3 * ${figure[reference_s]}")"
-  fill_disk
+  fill_disk_in_a_run
   must "trio did not say that not all is written" faulty_fails
   unwatch_statuses
   must "half-written files are left" no_partial_files faulty
