@@ -3,16 +3,16 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sched.h>
-#include <sys/mount.h>
 
 #include "lcmtypes/atomic_file.hpp"
+#include "tests/support/small_disk.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace kintsugi {
 namespace {
 
 namespace fs = std::filesystem;
+using kintsugi::testing::SmallDisk;
 using kintsugi::testing::TemporaryFolder;
 using ::testing::HasSubstr;
 
@@ -97,11 +97,8 @@ TEST(AtomicFile, CommitFailsWhenNothingWasWritten) {
 
 TEST(AtomicFile, AFullDiskIsReportedAndKeepsTheOldFile) {
   const TemporaryFolder folder;
-  if (unshare(CLONE_NEWNS) != 0 ||
-      mount(nullptr, "/", nullptr, MS_REC | MS_PRIVATE, nullptr) != 0 ||
-      mount("tmpfs", folder.path().c_str(), "tmpfs", 0, "size=64k") != 0) {
-    GTEST_SKIP() << "not permitted to mount a small file system here";
-  }
+  SmallDisk disk(folder.path());
+  if (const auto why_not = disk.mount("64k")) GTEST_SKIP() << *why_not;
   std::ofstream(folder / "map.ply") << "old";
   try {
     AtomicFile file(folder / "map.ply");
@@ -116,7 +113,6 @@ TEST(AtomicFile, AFullDiskIsReportedAndKeepsTheOldFile) {
   }
   EXPECT_EQ(content(folder / "map.ply"), "old");
   EXPECT_EQ(num_files(folder.path()), 1U);
-  umount(folder.path().c_str());
 }
 
 }  // namespace

@@ -8,12 +8,11 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sched.h>
-#include <sys/mount.h>
 
 #include "tests/mapper_process/mapper_program.hpp"
 #include "tests/mapper_process/stored_run.hpp"
 #include "tests/support/private_bus.hpp"
+#include "tests/support/small_disk.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace kintsugi::mapper {
@@ -29,46 +28,12 @@ using testing::StoredRun;
 using Flags = std::vector<std::string>;
 constexpr int kNumFrames = 40;
 
-/// A file system of so many bytes, on a folder; nobody else sees it.
-class SmallDisk {
- public:
-  explicit SmallDisk(std::filesystem::path folder) : folder_(std::move(folder)) {}
-  ~SmallDisk() { umount2(folder_.c_str(), MNT_DETACH); }
-  SmallDisk(const SmallDisk&) = delete;
-  SmallDisk& operator=(const SmallDisk&) = delete;
-
-  bool mount(const std::string& options) const {
-    return ::mount("tmpfs", folder_.c_str(), "tmpfs", 0, options.c_str()) == 0;
-  }
-  bool resize(const std::string& options) const {
-    return ::mount("tmpfs", folder_.c_str(), "tmpfs", MS_REMOUNT, options.c_str()) == 0;
-  }
-  bool forbid_writing() const {
-    return ::mount("tmpfs", folder_.c_str(), "tmpfs", MS_REMOUNT | MS_RDONLY, "") == 0;
-  }
-
- private:
-  std::filesystem::path folder_;
-};
-
-/// Why not, if so.
-std::optional<std::string> enter_private_mounts() {
-  if (unshare(CLONE_NEWNS) != 0) return "no private mount namespace here";
-  if (mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) != 0) return "mounts stay shared";
-  return {};
-}
-
 class FullDisk : public ::testing::Test {
  protected:
   void SetUp() override {
-    static auto why_not = kintsugi::testing::enter_private_bus();
-    if (!why_not) {
-      static const auto no_mounts = enter_private_mounts();
-      why_not = no_mounts;
-    }
-    if (why_not) GTEST_SKIP() << *why_not;
-    std::filesystem::create_directory(folder_ / "disk");
-    if (!disk_.mount("size=64k")) GTEST_SKIP() << "no tmpfs may be mounted here";
+    static const auto no_bus = kintsugi::testing::enter_private_bus();
+    if (no_bus) GTEST_SKIP() << *no_bus;
+    if (const auto why_not = disk_.mount("64k")) GTEST_SKIP() << *why_not;
   }
 
   Flags flags(const std::string& log) const {
@@ -82,7 +47,7 @@ class FullDisk : public ::testing::Test {
   }
 
   const kintsugi::testing::TemporaryFolder folder_;
-  const SmallDisk disk_{folder_ / "disk"};
+  kintsugi::testing::SmallDisk disk_{folder_ / "disk"};
   const std::string log_ = folder_ / "disk" / "run.lcm";
 };
 
@@ -111,7 +76,7 @@ TEST_F(FullDisk, WhileMappingIsSaidOnceAndMadeUpForWhenThereIsSpace) {
            static_cast<std::uintmax_t>(listener.statuses().back().store_bytes);
   })) << "no half-written event";
 
-  ASSERT_TRUE(disk_.resize("size=10m"));
+  ASSERT_TRUE(disk_.resize("10m"));
   ASSERT_TRUE(
       Listener::wait_until([&] { return listener.statuses().back().store_problem.empty(); }));
   mapper.interrupt();
@@ -129,7 +94,7 @@ TEST_F(FullDisk, InTheEndLeavesAWholeLogThatCanBeResumed) {
   EXPECT_EQ(MapperProgram(flags(log_), folder_ / "said.txt").wait(), 1);
   EXPECT_THAT(said(), HasSubstr("the log lacks"));
   const StoredRun before = read_stored_run(log_);
-  ASSERT_TRUE(disk_.resize("size=10m"));
+  ASSERT_TRUE(disk_.resize("10m"));
   Flags resume = flags(log_);
   *std::ranges::find(resume, "--store") = "--resume";
   EXPECT_EQ(MapperProgram(resume, folder_ / "said.txt").wait(), 0) << said();

@@ -9,7 +9,6 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/mount.h>
 #include <sys/wait.h>
 
 #include "lcmtypes/bus_thread.hpp"
@@ -17,6 +16,7 @@
 #include "tests/segmenter/listener.hpp"
 #include "tests/segmenter/mapper_imitation.hpp"
 #include "tests/segmenter/slice_session.hpp"
+#include "tests/support/small_disk.hpp"
 
 namespace kintsugi::segmenter {
 namespace {
@@ -303,23 +303,16 @@ class FullDisk : public ProcessFaults {
   void SetUp() override {
     ProcessFaults::SetUp();
     if (IsSkipped()) return;
-    disk_ = folder_ / "disk";
-    std::filesystem::create_directory(disk_);
-    if (unshare(CLONE_NEWNS) != 0 ||
-        mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) != 0 ||
-        mount("tmpfs", disk_.c_str(), "tmpfs", 0, "size=128k") != 0) {
-      GTEST_SKIP() << "no file system of the test's own here: " << std::strerror(errno);
-    }
+    if (const auto why_not = disk_.mount("128k")) GTEST_SKIP() << *why_not;
   }
-  void TearDown() override { umount(disk_.c_str()); }
 
-  std::filesystem::path disk_;
+  kintsugi::testing::SmallDisk disk_{folder_ / "disk"};
 };
 
 TEST_F(FullDisk, TheOldMapStaysAndTheNewIsWrittenWhenThereIsSpace) {
   const auto slices = wavy_session(20, 400);  // 36 bytes a point: three slices fit beside the old
   SegmenterProcess::Config config = on_the_bus(folder_, "exact");
-  config.files.save_file = disk_ / "map.kseg";
+  config.files.save_file = disk_.folder() / "map.kseg";
   config.maps.processor.save_every = 1;
   config.rewrite_period = std::chrono::milliseconds(200);
   config.exit_on_final = false;
@@ -335,9 +328,9 @@ TEST_F(FullDisk, TheOldMapStaysAndTheNewIsWrittenWhenThereIsSpace) {
   EXPECT_LT(num_saved, 19U);  // the old file, whole
   // And no other, but while it tries.
   EXPECT_TRUE(listener.hears(
-      [&] { return std::distance(std::filesystem::directory_iterator(disk_), {}) == 1; }));
+      [&] { return std::distance(std::filesystem::directory_iterator(disk_.folder()), {}) == 1; }));
 
-  ASSERT_EQ(mount("tmpfs", disk_.c_str(), "tmpfs", MS_REMOUNT, "size=16m"), 0);
+  ASSERT_TRUE(disk_.resize("16m"));
   // What was being written may lack the newest slice; it comes by itself.
   EXPECT_TRUE(listener.hears([&] {
     return listener.status->problem.empty() &&

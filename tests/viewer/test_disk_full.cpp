@@ -12,12 +12,11 @@
 #include <gtest/gtest.h>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/videoio.hpp>
-#include <sched.h>
-#include <sys/mount.h>
 
 #include "lcmtypes/channels.hpp"
 #include "lcmtypes/message_subscriber.hpp"
 #include "tests/support/private_bus.hpp"
+#include "tests/support/small_disk.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/viewer/recorded_room.hpp"
 #include "tests/viewer/viewer_program.hpp"
@@ -31,21 +30,14 @@ constexpr auto npos = std::string::npos;
 using testing::TemporaryFolder;
 
 /// Files in this folder are on a small disk of their own.
-class SmallDisk : public ::testing::Test {
+class DiskFull : public ::testing::Test {
  protected:
   void SetUp() override {
     if (const auto why_not = testing::enter_private_bus()) GTEST_SKIP() << *why_not;
-    const bool is_mounted = unshare(CLONE_NEWNS) == 0 &&
-                            mount(nullptr, "/", nullptr, MS_REC | MS_PRIVATE, nullptr) == 0 &&
-                            mount("tmpfs", folder_.path().c_str(), "tmpfs", 0, "size=6000000") == 0;
-    if (!is_mounted) GTEST_SKIP() << "cannot mount a tmpfs here: " << std::strerror(errno);
-    is_mounted_ = true;
+    if (const auto why_not = disk_.mount("6000000")) GTEST_SKIP() << *why_not;
     bus_ = std::make_unique<Bus>(testing::kPrivateBusUrl);
     subscribe<ViewerStatus>(*bus_, channels::kViewerStatus,
                             [this](const ViewerStatus& status) { status_ = status; });
-  }
-  void TearDown() override {
-    if (is_mounted_) umount2(folder_.path().c_str(), MNT_DETACH);
   }
 
   void fill_disk(std::uintmax_t bytes_left = 0) const {
@@ -68,12 +60,12 @@ class SmallDisk : public ::testing::Test {
   }
 
   const TemporaryFolder folder_;
-  bool is_mounted_ = false;
+  testing::SmallDisk disk_{folder_.path()};
   std::unique_ptr<Bus> bus_;
   std::optional<ViewerStatus> status_;
 };
 
-TEST_F(SmallDisk, KeepsTheViewerFromNothingButItsFilesAndGetsThemWhenThereIsRoom) {
+TEST_F(DiskFull, KeepsTheViewerFromNothingButItsFilesAndGetsThemWhenThereIsRoom) {
   const SyntheticMap map = make_room(5.0, 0.05);  // 20 slices
   RoomOnBus room(*bus_, map);
   Program program({"--lcm-url", testing::kPrivateBusUrl, "--out", folder_ / "out", "--size",
@@ -116,7 +108,7 @@ TEST_F(SmallDisk, KeepsTheViewerFromNothingButItsFilesAndGetsThemWhenThereIsRoom
   EXPECT_TRUE(cv::VideoCapture((folder_ / "room.mp4").string()).isOpened());
 }
 
-TEST_F(SmallDisk, LeavesFramesOutOfAVideoThatPlaysBack) {
+TEST_F(DiskFull, LeavesFramesOutOfAVideoThatPlaysBack) {
   constexpr int kFrames = 40;
   VideoRecorder video(folder_ / "a.mp4", {320, 240}, 10.0);
   cv::Mat3b noise(240, 320);
@@ -141,7 +133,7 @@ TEST_F(SmallDisk, LeavesFramesOutOfAVideoThatPlaysBack) {
   EXPECT_EQ(2 * kFrames, frames);
 }
 
-TEST_F(SmallDisk, SaysThatAVideoIsLostAndLeavesNothing) {
+TEST_F(DiskFull, SaysThatAVideoIsLostAndLeavesNothing) {
   auto video = std::make_unique<VideoRecorder>(folder_ / "a.mp4", cv::Size(320, 240), 10.0);
   cv::Mat3b noise(240, 320);  // compressed still larger than the page that the file has already
   cv::randu(noise, 0, 256);
