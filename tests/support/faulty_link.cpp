@@ -6,15 +6,12 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <exception>
-#include <fstream>
 #include <string>
 
-#include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
 #include <poll.h>
 
 #include "lcmtypes/stop_signal.hpp"
+#include "tests/support/bus_program.hpp"
 #include "tests/support/faulty_path.hpp"
 #include "tests/support/multicast_port.hpp"
 
@@ -94,27 +91,15 @@ void run(const Options& options) {
     for (Direction& direction : directions) direction.pass_on();
   }
   const nlohmann::json done = {{"forth", report(directions[0])}, {"back", report(directions[1])}};
-  std::puts(done.dump(2).c_str());
-  if (options.report.empty()) return;
-  if (!(std::ofstream(options.report) << done.dump(2) << '\n')) {
-    throw std::runtime_error("cannot write " + options.report);
-  }
+  give_report(done, options.report);
 }
 
 }  // namespace
 }  // namespace kintsugi::testing
 
 int main(int argc, char** argv) {
-  CLI::App app("A bad network between two buses on one host, until it is told to stop.");
-  kintsugi::testing::Options options;
-  kintsugi::testing::add_flags(app, options);
-  CLI11_PARSE(app, argc, argv);
-  kintsugi::install_stop_signals();
-  try {
-    kintsugi::testing::run(options);
-    return 0;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "faulty_link: %s\n", error.what());
-    return 1;
-  }
+  using namespace kintsugi::testing;
+  return run_bus_program<Options>(
+      argc, argv, "A bad network between two buses on one host, until it is told to stop.",
+      add_flags, run);
 }

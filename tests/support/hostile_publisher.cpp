@@ -1,20 +1,14 @@
 // hostile_publisher: messages that none of our programs would send, on every channel of a bus.
 
 #include <chrono>
-#include <cstdio>
-#include <exception>
-#include <fstream>
 #include <map>
-#include <stdexcept>
 #include <string>
 #include <thread>
-
-#include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
 
 #include "lcmtypes/bus.hpp"
 #include "lcmtypes/channels.hpp"
 #include "lcmtypes/stop_signal.hpp"
+#include "tests/support/bus_program.hpp"
 #include "tests/support/hostile_messages.hpp"
 
 namespace kintsugi::testing {
@@ -78,27 +72,15 @@ void run(const Options& options) {
     ++sent[message.channel];
   }
   const nlohmann::json done = {{"seconds", Seconds(Clock::now() - start).count()}, {"sent", sent}};
-  std::puts(done.dump(2).c_str());
-  if (options.report.empty()) return;
-  if (!(std::ofstream(options.report) << done.dump(2) << '\n')) {
-    throw std::runtime_error("cannot write " + options.report);
-  }
+  give_report(done, options.report);
 }
 
 }  // namespace
 }  // namespace kintsugi::testing
 
 int main(int argc, char** argv) {
-  CLI::App app("Messages that none of our programs would send, on every channel of a bus.");
-  kintsugi::testing::Options options;
-  kintsugi::testing::add_flags(app, options);
-  CLI11_PARSE(app, argc, argv);
-  kintsugi::install_stop_signals();
-  try {
-    kintsugi::testing::run(options);
-    return 0;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "hostile_publisher: %s\n", error.what());
-    return 1;
-  }
+  using namespace kintsugi::testing;
+  return run_bus_program<Options>(
+      argc, argv, "Messages that none of our programs would send, on every channel of a bus.",
+      add_flags, run);
 }

@@ -3,15 +3,8 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdio>
-#include <exception>
-#include <fstream>
-#include <stdexcept>
 #include <string>
 #include <thread>
-
-#include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
 
 #include "lcmtypes/bus.hpp"
 #include "lcmtypes/bus_thread.hpp"
@@ -21,6 +14,7 @@
 #include "mapper/process/run_statistics.hpp"
 #include "mapper/process/session_log.hpp"
 #include "mapper/process/stored_stream.hpp"
+#include "tests/support/bus_program.hpp"
 #include "tests/support/played_map.hpp"
 
 namespace kintsugi::testing {
@@ -203,11 +197,7 @@ class SlicePlayer {
                                  {"requests_bad", counts.requests_bad},
                                  {"most_queued_bytes", most_queued_bytes_},
                                  {"seconds", elapsed_s()}};
-    std::puts(done.dump(2).c_str());
-    if (options_.report.empty()) return;
-    if (!(std::ofstream(options_.report) << done.dump(2) << '\n')) {
-      throw std::runtime_error("cannot write " + options_.report);
-    }
+    give_report(done, options_.report);
   }
 
   const Options options_;
@@ -224,20 +214,14 @@ class SlicePlayer {
   bool lingering_ = false;
 };
 
+void play(const Options& options) { SlicePlayer(options).run(); }
+
 }  // namespace
 }  // namespace kintsugi::testing
 
 int main(int argc, char** argv) {
-  CLI::App app("Publishes a generated map as a mapper does, and answers who misses something.");
-  kintsugi::testing::Options options;
-  kintsugi::testing::add_flags(app, options);
-  CLI11_PARSE(app, argc, argv);
-  kintsugi::install_stop_signals();
-  try {
-    kintsugi::testing::SlicePlayer(options).run();
-    return 0;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "slice_player: %s\n", error.what());
-    return 1;
-  }
+  using namespace kintsugi::testing;
+  return run_bus_program<Options>(
+      argc, argv, "Publishes a generated map as a mapper does, and answers who misses something.",
+      add_flags, play);
 }

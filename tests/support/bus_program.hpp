@@ -1,0 +1,46 @@
+#pragma once
+// What the programs beside have in common: flags, an end on a stop signal, a report in JSON.
+
+#include <cstdio>
+#include <exception>
+#include <fstream>
+#include <stdexcept>
+#include <string>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "lcmtypes/stop_signal.hpp"
+
+namespace kintsugi::testing {
+
+/// The main() of a program: reads flags into Options, runs, and says what went wrong.
+template <class Options>
+int run_bus_program(int argc, char** argv, const std::string& description,
+                    void (*add_flags)(CLI::App& app, Options& options),
+                    void (*run)(const Options& options)) {
+  CLI::App app(description);
+  Options options;
+  add_flags(app, options);
+  CLI11_PARSE(app, argc, argv);
+  install_stop_signals();
+  try {
+    run(options);
+    return 0;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s: %s\n", *argv, error.what());
+    return 1;
+  }
+}
+
+/// Prints a report, and writes it into `file` too unless that is empty.
+/// @throws std::runtime_error when it cannot be written
+inline void give_report(const nlohmann::json& report, const std::string& file) {
+  const std::string text = report.dump(2);
+  std::puts(text.c_str());
+  if (!file.empty() && !(std::ofstream(file) << text << '\n')) {
+    throw std::runtime_error("cannot write " + file);
+  }
+}
+
+}  // namespace kintsugi::testing
