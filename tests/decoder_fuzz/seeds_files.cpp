@@ -16,9 +16,12 @@
 namespace kintsugi::fuzzing {
 namespace {
 
-using std::string_literals::operator""s;
-
 Bytes bytes_of(const std::string& text) { return {text.begin(), text.end()}; }
+
+/// depth.txt, rgb.txt and associations.txt with a zero byte between them.
+Bytes three_lists(const std::string& depth, const std::string& rgb, const std::string& pairs) {
+  return bytes_of(depth + '\0' + rgb + '\0' + pairs);
+}
 
 Bytes encoded(const char* extension, const cv::Mat& image) {
   Bytes bytes;
@@ -130,11 +133,11 @@ Seeds text_seeds(const std::string& target) {
        {{"pinhole", bytes_of("# fx fy\n525 525.5 319.5 239.5 640 480 5000\n")},
         {"lens", bytes_of("525 525.5 319.5 239.5 640 480 1000 0.1 -0.2 1e-3 0 0.05\n")}}},
       {"folder_recording",
-       {{"lists", bytes_of("# depth\n0.1 depth/0.png\n0.2 depth/1.png\n\0"
-                           "0.1 rgb/0.png\n0.25 rgb/2.png\n"s)},
-        {"associations", bytes_of("\0\0"
-                                  "0.1 depth/0.png 0.1 rgb/0.png\n"
-                                  "0.2 rgb/1.png 0.2 depth/1.png\n"s)}}},
+       {{"lists", three_lists("# depth\n0.1 depth/0.png\n0.2 depth/1.png\n",
+                              "0.1 rgb/0.png\n0.25 rgb/2.png\n", "")},
+        {"associations", three_lists("", "",
+                                     "0.1 depth/0.png 0.1 rgb/0.png\n"
+                                     "0.2 rgb/1.png 0.2 depth/1.png\n")}}},
       {"trajectory",
        {{"two_poses", bytes_of("# timestamp tx ty tz qx qy qz qw\n0.5 1 2 -3 0 0 0 1\n"
                                "1341836537.6556914 1e-3 0 0 0.5 -0.5 0.5 0.5 # here\n")}}},
