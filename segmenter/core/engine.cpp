@@ -26,11 +26,23 @@ void require_positive(const char* field, double value) {
   if (!(value > 0.0) || !std::isfinite(value)) throw_invalid(field, value, "> 0 and finite");
 }
 
+void require_not_negative(const char* field, double value) {
+  if (!(value >= 0.0) || !std::isfinite(value)) throw_invalid(field, value, ">= 0 and finite");
+}
+
 }  // namespace
+
+std::int64_t EngineConfig::fragment_limit() const {
+  constexpr double kToldFor_m = 0.01;
+  const double scale = kToldFor_m / resolution_m;
+  return std::llround(min_points * scale * scale);
+}
 
 void EngineConfig::validate() const {
   require_positive("threshold", threshold);
   require_positive("scale", scale);
+  require_not_negative("color_weight", color_weight);
+  require_not_negative("min_points", min_points);
   if (!(beta > 0.0 && beta < 1.0)) throw_invalid("beta", beta, "in (0, 1)");
   require_positive("resolution_m", resolution_m);
   require_positive("radius_factor", radius_factor);

@@ -13,10 +13,14 @@
 
 namespace kintsugi::segmenter {
 
-/// Parameters of the segmentation; the defaults are the paper's.
+/// Parameters of the segmentation; the defaults are the paper's. presets.hpp has others.
 struct EngineConfig {
-  double threshold = 0.001;    ///< T, the join threshold of a single point, > 0
-  double scale = 0.0005;       ///< k, bias towards large segments, > 0
+  double threshold = 0.001;   ///< T, the join threshold of a single point, > 0
+  double scale = 0.0005;      ///< k, bias towards large segments, > 0
+  double color_weight = 0.0;  ///< lambda: share of the colour difference in weights, >= 0; 0: none
+  /// Felzenszwalb and Huttenlocher's last step joins segments of fewer points to a neighbour. Told
+  /// for points 1 cm apart; at other resolutions it is the same area. >= 0; 0: no such step.
+  double min_points = 0.0;
   double beta = 0.85;          ///< of Eq. 4, in (0, 1); mode `voting`
   double resolution_m = 0.01;  ///< voxel size of the map, > 0
   double radius_factor = 2.0;  ///< neighbours are closer than radius_factor * resolution_m, > 0
@@ -32,6 +36,10 @@ struct EngineConfig {
 
   /// r, as the float32 that squared distances are compared with.
   float radius_m() const { return static_cast<float>(radius_factor * resolution_m); }
+  /// No threshold theta exceeds T + k: edges of this weight and more never join anything.
+  double max_weight() const { return threshold + scale; }
+  /// min_points at this resolution: segments of fewer points are fragments; 0: there are none.
+  std::int64_t fragment_limit() const;
   /// Throws std::invalid_argument naming field, value and bound.
   void validate() const;
 };
@@ -83,12 +91,17 @@ class SegmentationEngine {
   /// that are gone.
   virtual std::span<const ComponentId> components() const = 0;
 
+  /// The partition before fragments are joined to their neighbours; components() where they are
+  /// not.
+  virtual std::span<const ComponentId> unmerged_components() const { return components(); }
+
   /// The points in the cloud whose component has another name than before the last update(): every
   /// added point, and others that changed component or whose component was renamed. Ascending, each
   /// once.
   virtual std::span<const PointIndex> changed() const = 0;
 
-  /// The join threshold theta of a component that there is.
+  /// The join threshold theta of a component that there is; where fragments are joined, that of
+  /// the unmerged component that gives it its name.
   virtual double theta(ComponentId component) const = 0;
 
   /// Memory taken, the cloud left out.
