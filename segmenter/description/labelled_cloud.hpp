@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "lcmtypes/messages.hpp"
+
+namespace kintsugi::segmenter {
+
+class SegmentMap;
+struct MapSnapshot;
+
+/// A view of points that carry segment ids: of a live map, a saved one or a labelled file. Valid as
+/// long as what it was made of, and as that does not change.
+struct LabelledCloud {
+  std::span<const CloudPoint> points_W;
+  std::span<const std::uint32_t> segment_ids;  ///< of each; kNoSegment: the point is not looked at
+  float resolution_m = 0.0F;                   ///< voxel size, > 0
+  float radius_m = 0.0F;                       ///< r: points closer than this are neighbours, > 0
+};
+
+LabelledCloud labelled_cloud(const SegmentMap& map);
+LabelledCloud labelled_cloud(const MapSnapshot& map);
+
+}  // namespace kintsugi::segmenter
