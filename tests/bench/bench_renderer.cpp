@@ -27,7 +27,7 @@ void draw_figure(benchmark::State& state, const View& view) {
   const Renderer renderer{Renderer::Config{}};
   for (auto _ : state) {
     benchmark::DoNotOptimize(
-        renderer.draw_figure(scene, scene.heard_track(), followed, view, caption(scene)));
+        renderer.draw_figure({scene, scene.heard_track(), followed, view}, caption(scene)));
   }
   state.counters["points"] = static_cast<double>(scene.counts().points);
 }

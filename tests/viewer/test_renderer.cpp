@@ -33,6 +33,8 @@ struct Furnished {
       followed.update(pose, scene.up().up_W());
     }
   }
+
+  Subject seen(const View& view) const { return {scene, scene.heard_track(), followed, view}; }
 };
 
 double share_of(const cv::Mat3b& image, const Color& color) {
@@ -43,7 +45,7 @@ double share_of(const cv::Mat3b& image, const Color& color) {
 
 TEST(Renderer, DrawsAnEmptyScene) {
   const Scene scene(1);
-  const cv::Mat3b figure = Renderer(small()).draw_figure(scene, {}, {}, FollowView{}, "nothing");
+  const cv::Mat3b figure = Renderer(small()).draw_figure({scene, {}, {}, FollowView{}}, "nothing");
   EXPECT_EQ(cv::Size(480, 270), figure.size());
   EXPECT_GT(share_of(figure, kBackground), 0.8);
 }
@@ -51,8 +53,7 @@ TEST(Renderer, DrawsAnEmptyScene) {
 TEST(Renderer, ShowsTheFloorInItsColorFromAbove) {
   const Furnished room;
   const View from_above = FixedView{{0.0, -8.0, 2.0}, {0.0, 0.0, 2.001}};
-  const cv::Mat3b map = Renderer(small()).draw_map(room.scene, room.scene.heard_track(),
-                                                   room.followed, from_above, Coloring::kTrue);
+  const cv::Mat3b map = Renderer(small()).draw_map(room.seen(from_above), Coloring::kTrue);
   // The ceiling faces away and is left out. The floor is (150, 118, 84) give or take 8, seen head
   // on: full brightness but for the darkening at edges. A place with neither desk nor path:
   const Color& floor = map(135 + 20, 240 + 40);
@@ -64,8 +65,7 @@ TEST(Renderer, ShowsTheFloorInItsColorFromAbove) {
 TEST(Renderer, ShowsSegmentsInTheirColorsAndGreyWithoutASegmenter) {
   const View from_above = FixedView{{0.0, -8.0, 2.0}, {0.0, 0.0, 2.001}};
   const auto floor_of = [&](const Furnished& room) {
-    return Renderer(small()).draw_map(room.scene, room.scene.heard_track(), room.followed,
-                                      from_above, Coloring::kSegments)(155, 280);
+    return Renderer(small()).draw_map(room.seen(from_above), Coloring::kSegments)(155, 280);
   };
   const Color expected = segment_color(1);
   const Color segmented = floor_of(Furnished());
@@ -96,8 +96,8 @@ TEST(Renderer, ShowsOnlyTheNewestRevisionOfEachSlice) {
   const View view = FixedView{{0.0, -8.0, 2.0}, {0.0, 0.0, 2.001}};
   const auto difference = [&] {
     const Renderer renderer(small());
-    return cv::norm(renderer.draw_map(corrected, {}, {}, view, Coloring::kSegments),
-                    renderer.draw_map(expected, {}, {}, view, Coloring::kSegments), cv::NORM_INF);
+    return cv::norm(renderer.draw_map({corrected, {}, {}, view}, Coloring::kSegments),
+                    renderer.draw_map({expected, {}, {}, view}, Coloring::kSegments), cv::NORM_INF);
   };
   EXPECT_GT(difference(), 0.0);
   for (std::size_t i = 0; i < room.slices.size(); i += 3) {
@@ -111,8 +111,7 @@ TEST(Renderer, DrawsTheSameBytesOnAnyNumberOfThreads) {
   const Furnished room;
   const auto draw = [&](std::size_t threads) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-    return Renderer(small()).draw_figure(room.scene, room.scene.heard_track(), room.followed,
-                                         FollowView{}, "caption");
+    return Renderer(small()).draw_figure(room.seen(FollowView{}), "caption");
   };
   EXPECT_EQ(0.0, cv::norm(draw(1), draw(4), cv::NORM_INF));
 }
@@ -124,14 +123,8 @@ TEST(Renderer, FillsAnyReasonableSize) {
     config.width_px = size.width;
     config.height_px = size.height;
     const Renderer renderer(config);
-    EXPECT_EQ(size, renderer
-                        .draw_figure(room.scene, room.scene.heard_track(), room.followed,
-                                     OverviewView{}, "caption")
-                        .size());
-    EXPECT_EQ(size, renderer
-                        .draw_map(room.scene, room.scene.heard_track(), room.followed, FollowView{},
-                                  Coloring::kTrue)
-                        .size());
+    EXPECT_EQ(size, renderer.draw_figure(room.seen(OverviewView{}), "caption").size());
+    EXPECT_EQ(size, renderer.draw_map(room.seen(FollowView{}), Coloring::kTrue).size());
   }
 }
 

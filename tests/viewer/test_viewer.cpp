@@ -24,8 +24,8 @@ class ViewerTest : public ::testing::Test {
  protected:
   Viewer make_viewer() {
     Viewer::Config config;
-    config.renderer.width_px = 160;
-    config.renderer.height_px = 120;
+    config.painter.renderer.width_px = 160;
+    config.painter.renderer.height_px = 120;
     config.folder = folder_.path();
     config.every_slices = 4;
     return {config,
@@ -323,8 +323,8 @@ TEST_F(ViewerTest, RefusesAConfigurationOutOfItsBounds) {
            [](Viewer::Config& c) { c.every_slices = 0; },
            [](Viewer::Config& c) { c.video_period_s = 0.0; },
            [](Viewer::Config& c) { c.video_frames_per_s = 0.5; },
-           [](Viewer::Config& c) { c.max_drawing_share = 1.5; },
-           [](Viewer::Config& c) { c.renderer.width_px = 0; }}) {
+           [](Viewer::Config& c) { c.painter.max_drawing_share = 1.5; },
+           [](Viewer::Config& c) { c.painter.renderer.width_px = 0; }}) {
     Viewer::Config config;
     spoil(config);
     EXPECT_THROW(config.validate(), std::invalid_argument);

@@ -26,6 +26,10 @@ VirtualCamera supersampled(VirtualCamera camera, int factor) {
   return camera;
 }
 
+VirtualCamera camera_of(const Subject& subject, cv::Size size, const ViewConfig& config) {
+  return camera_for(subject.view, subject.scene, subject.followed, size.width, size.height, config);
+}
+
 /// One picture of the points per coloring; what is seen in each pixel is found once.
 std::vector<cv::Mat3b> draw_points(std::span<const PointChunk> chunks, const VirtualCamera& camera,
                                    std::span<const Coloring> colorings,
@@ -96,16 +100,14 @@ void Renderer::Config::validate() const {
 
 Renderer::Renderer(const Config& config) : config_(config) { config_.validate(); }
 
-cv::Mat3b Renderer::draw_figure(const Scene& scene, const CameraTrack& track,
-                                const FollowedCamera& followed, const View& view,
-                                const std::string& caption) const {
+cv::Mat3b Renderer::draw_figure(const Subject& subject, const std::string& caption) const {
   constexpr std::array kColorings{Coloring::kTrue, Coloring::kSegments};
   constexpr std::array kMapTitles{"map", "segments"};
   const Layout layout = layout_of(config_.width_px, config_.height_px);
   cv::Mat3b figure(config_.height_px, config_.width_px, cv::Vec3b(90, 80, 72));
 
-  const VirtualCamera map_camera =
-      camera_for(view, scene, followed, layout.map[0].width, layout.map[0].height, config_.view);
+  const Scene& scene = subject.scene;
+  const VirtualCamera map_camera = camera_of(subject, layout.map[0].size(), config_.view);
   std::vector<cv::Mat3b> maps = draw_points(scene.chunks(), map_camera, kColorings, config_);
 
   const SceneSlice* newest = scene.newest_slice();
@@ -120,7 +122,7 @@ cv::Mat3b Renderer::draw_figure(const Scene& scene, const CameraTrack& track,
       newest == nullptr ? "no slice yet" : "newest slice: " + std::to_string(newest->id);
 
   for (std::size_t i = 0; i < kColorings.size(); ++i) {
-    draw_camera(maps[i], map_camera, track, config_.frustum_m);
+    draw_camera(maps[i], map_camera, subject.track, config_.frustum_m);
     draw_title(maps[i], kMapTitles[i]);
     draw_title(slices[i], slice_title);
     maps[i].copyTo(figure(layout.map[i]));
@@ -130,13 +132,12 @@ cv::Mat3b Renderer::draw_figure(const Scene& scene, const CameraTrack& track,
   return figure;
 }
 
-cv::Mat3b Renderer::draw_map(const Scene& scene, const CameraTrack& track,
-                             const FollowedCamera& followed, const View& view,
-                             Coloring coloring) const {
+cv::Mat3b Renderer::draw_map(const Subject& subject, Coloring coloring) const {
   const VirtualCamera camera =
-      camera_for(view, scene, followed, config_.width_px, config_.height_px, config_.view);
-  cv::Mat3b image = draw_points(scene.chunks(), camera, std::array{coloring}, config_).front();
-  draw_camera(image, camera, track, config_.frustum_m);
+      camera_of(subject, {config_.width_px, config_.height_px}, config_.view);
+  cv::Mat3b image =
+      draw_points(subject.scene.chunks(), camera, std::array{coloring}, config_).front();
+  draw_camera(image, camera, subject.track, config_.frustum_m);
   return image;
 }
 

@@ -12,7 +12,15 @@
 
 namespace kintsugi::viewer {
 
-/// Draws a Scene. Pure functions of the scene, the view and the configuration: the same picture,
+/// What a picture shows, and from where. Refers to the scene and the followed camera.
+struct Subject {
+  const Scene& scene;
+  CameraTrack track;
+  const FollowedCamera& followed;
+  View view;
+};
+
+/// Draws a Scene. Pure functions of the subject and the configuration: the same picture,
 /// byte for byte, on any number of threads.
 class Renderer {
  public:
@@ -32,13 +40,10 @@ class Renderer {
 
   /// The paper's Fig. 1 in one picture: the map in true colour and its segments side by side, the
   /// newest slice below each on its own, the camera's path, and a caption.
-  cv::Mat3b draw_figure(const Scene& scene, const CameraTrack& track,
-                        const FollowedCamera& followed, const View& view,
-                        const std::string& caption) const;
+  cv::Mat3b draw_figure(const Subject& subject, const std::string& caption) const;
 
   /// The map alone in one coloring, filling the picture.
-  cv::Mat3b draw_map(const Scene& scene, const CameraTrack& track, const FollowedCamera& followed,
-                     const View& view, Coloring coloring) const;
+  cv::Mat3b draw_map(const Subject& subject, Coloring coloring) const;
 
   const Config& config() const { return config_; }
 

@@ -31,7 +31,8 @@ std::optional<Options> parse_options(int argc, char** argv, int& exit_code) {
                "kintsugi-viewer");
   Options options;
   Viewer::Config& viewer = options.viewer;
-  Renderer::Config& renderer = viewer.renderer;
+  Painter::Config& painter = viewer.painter;
+  Renderer::Config& renderer = painter.renderer;
   std::string view = "follow";
   std::string size = std::to_string(renderer.width_px) + "x" + std::to_string(renderer.height_px);
   std::string folder = viewer.folder.string();
@@ -64,9 +65,9 @@ std::optional<Options> parse_options(int argc, char** argv, int& exit_code) {
       ->capture_default_str();
   app.add_option("--video-rate", viewer.video_frames_per_s, "Frames per second of the video")
       ->capture_default_str();
-  app.add_flag("--plots", viewer.plots, "Write plots.png: lag and times over the slices");
+  app.add_flag("--plots", painter.plots, "Write plots.png: lag and times over the slices");
   app.add_flag("--exit-on-final", options.exit_on_final, "Exit when the final map is drawn");
-  app.add_option("--drawing-share", viewer.max_drawing_share,
+  app.add_option("--drawing-share", painter.max_drawing_share,
                  "Most of the wall time that drawing may take, when reading the bus")
       ->default_val(0.5);
   app.add_option("--follow-radius", renderer.view.follow_radius_m,
@@ -87,7 +88,7 @@ std::optional<Options> parse_options(int argc, char** argv, int& exit_code) {
 
   try {
     app.parse(argc, argv);
-    viewer.view = parse_view(view);
+    painter.view = parse_view(view);
     parse_size(size, renderer.width_px, renderer.height_px);
     viewer.folder = folder;
     renderer.view.overview_yaw_rad = overview_yaw_deg / kDegreesPerRadian;
@@ -97,7 +98,7 @@ std::optional<Options> parse_options(int argc, char** argv, int& exit_code) {
     }
     if (!log.empty()) options.log = log;
     if (!video.empty()) viewer.video = video;
-    if (options.log) viewer.max_drawing_share = 1.0;
+    if (options.log) painter.max_drawing_share = 1.0;
     viewer.validate();
   } catch (const CLI::ParseError& error) {
     exit_code = app.exit(error);

@@ -2,6 +2,7 @@
 
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -9,30 +10,22 @@
 #include "viewer/core/require.hpp"
 
 namespace kintsugi::viewer {
-namespace {
-
-constexpr double kFinalsRetry_s = 2.0;
-constexpr double kFinalsPatience_s = 30.0;  ///< trying longer keeps nobody from finishing
-
-}  // namespace
-
 void Viewer::Config::validate() const {
-  renderer.validate();
+  painter.validate();
   require(every_slices >= 1, "Viewer::Config::every_slices", every_slices, ">= 1");
   require(video_period_s > 0.0, "Viewer::Config::video_period_s", video_period_s, "> 0 s");
   require(video_frames_per_s >= 1.0 && video_frames_per_s <= 120.0,
           "Viewer::Config::video_frames_per_s", video_frames_per_s, "in [1, 120]");
-  require(max_drawing_share > 0.0 && max_drawing_share <= 1.0, "Viewer::Config::max_drawing_share",
-          max_drawing_share, "in (0, 1]");
 }
 
 Viewer::Viewer(const Config& config, Outputs outputs)
     : config_((config.validate(), config)),
       outputs_(std::move(outputs)),
-      renderer_(config.renderer),
+      painter_(config.painter),
       folder_(config.folder) {
   if (config_.video) {
-    const cv::Size size(config_.renderer.width_px, config_.renderer.height_px);
+    const Renderer::Config& renderer = config_.painter.renderer;
+    const cv::Size size(renderer.width_px, renderer.height_px);
     video_ = std::make_unique<VideoRecorder>(*config_.video, size, config_.video_frames_per_s);
   }
 }
@@ -77,8 +70,8 @@ void Viewer::draw_if_due() {
   if (scene == nullptr) return;
   const bool snapshot = scene->snapshot_is_due(config_.every_slices);
   const bool frame = video_ && scene->frame_is_due(config_.video_period_s);
-  if ((!snapshot && !frame) || Clock::now() < next_drawing_) return;
-  const cv::Mat3b figure = draw(*scene);
+  if ((!snapshot && !frame) || painter_.is_resting()) return;
+  const cv::Mat3b figure = painter_.draw_figure(*scene);
   if (frame) {
     video_->add(figure);
     scene->note_frame();
@@ -89,25 +82,8 @@ void Viewer::draw_if_due() {
 void Viewer::draw_snapshot_now() {
   SessionScene* const scene = sessions_.current_scene();
   if (scene != nullptr && scene->scene().newest_slice() != nullptr) {
-    write_snapshot(*scene, draw(*scene));
+    write_snapshot(*scene, painter_.draw_figure(*scene));
   }
-}
-
-cv::Mat3b Viewer::draw(SessionScene& shown) {
-  const Clock::time_point start = Clock::now();
-  const Scene& scene = shown.scene();
-  cv::Mat3b figure = renderer_.draw_figure(scene, scene.heard_track(), shown.followed(),
-                                           config_.view, caption(scene));
-  note_drawing_time(shown, start);
-  return figure;
-}
-
-void Viewer::note_drawing_time(SessionScene& shown, Clock::time_point start) {
-  const Clock::time_point end = Clock::now();
-  render_ms_ = std::chrono::duration<double, std::milli>(end - start).count();
-  shown.history().add_render_time(shown.scene(), render_ms_);
-  const double pause = 1.0 / config_.max_drawing_share - 1.0;
-  next_drawing_ = end + std::chrono::duration_cast<Clock::duration>(pause * (end - start));
 }
 
 void Viewer::write_snapshot(SessionScene& shown, const cv::Mat3b& figure) {
@@ -116,7 +92,7 @@ void Viewer::write_snapshot(SessionScene& shown, const cv::Mat3b& figure) {
   if (!folder_.save(fmt::format("snapshot_{:06}.png", slice_id), figure)) ++failures_;
   outputs_.on_picture(figure, text);
   shown.note_snapshot();
-  spdlog::info("{}; drawn in {:.0f} ms", text, render_ms_);
+  spdlog::info("{}; drawn in {:.0f} ms", text, painter_.render_ms());
 }
 
 std::string Viewer::final_suffix(const SessionScene& shown) const {
@@ -137,7 +113,7 @@ void Viewer::write_finals(double now_s, bool more_may_come) {
     if (!has_ended(shown, now_s, more_may_come)) continue;
     has_current_ended |= is_current(shown);
     if (!shown.final_is_due(final_suffix(shown))) continue;
-    all_written = now_s >= next_finals_s_ && write_final(shown) && all_written;
+    all_written = finals_retry_.is_time(now_s) && write_final(shown) && all_written;
   }
   note_finals(now_s, all_written, has_current_ended);
   const SessionScene* const replaced = sessions_.replaced();
@@ -146,14 +122,11 @@ void Viewer::write_finals(double now_s, bool more_may_come) {
 
 void Viewer::note_finals(double now_s, bool all_written, bool has_current_ended) {
   if (all_written) {
-    finals_failing_since_s_.reset();
-  } else if (now_s >= next_finals_s_) {
-    next_finals_s_ = now_s + kFinalsRetry_s;
-    if (!finals_failing_since_s_) finals_failing_since_s_ = now_s;
+    finals_retry_.note_success();
+  } else {
+    finals_retry_.note_failure(now_s);
   }
-  const bool tried_enough =
-      finals_failing_since_s_ && now_s - *finals_failing_since_s_ >= kFinalsPatience_s;
-  finished_ = has_current_ended && (all_written || tried_enough);
+  finished_ = has_current_ended && (all_written || finals_retry_.has_tried_enough(now_s));
 }
 
 /// False when not all of them could be written: they are due again.
@@ -163,20 +136,11 @@ bool Viewer::write_final(SessionScene& shown) {
   shown.prepare_final();
   const Scene& scene = shown.scene();
   const std::string text = final_caption(scene);
-  const Clock::time_point start = Clock::now();
-  const CameraTrack track = scene.slice_track();
-  const cv::Mat3b figure =
-      renderer_.draw_figure(scene, track, shown.followed(), OverviewView{}, text);
-  note_drawing_time(shown, start);
-  if (!finals_failing_since_s_) outputs_.on_picture(figure, text);
-  const auto map_in = [&](Coloring coloring) {
-    return renderer_.draw_map(scene, track, shown.followed(), OverviewView{}, coloring);
-  };
-  bool is_written = folder_.save("final" + suffix + ".png", figure);
-  is_written &= folder_.save("map_final" + suffix + ".png", map_in(Coloring::kTrue));
-  is_written &= folder_.save("segments_final" + suffix + ".png", map_in(Coloring::kSegments));
-  if (config_.plots) {
-    is_written &= folder_.save("plots" + suffix + ".png", shown.history().draw({1000, 900}));
+  const std::vector<NamedPicture> pictures = painter_.draw_finals(shown);
+  if (!finals_retry_.is_failing()) outputs_.on_picture(pictures.front().picture, text);
+  bool is_written = true;
+  for (const auto& [name, picture] : pictures) {
+    is_written &= folder_.save(name + suffix + ".png", picture);
   }
   if (!is_written) return false;
   shown.note_final(suffix);
@@ -202,7 +166,7 @@ ViewerStatus Viewer::status() const {
   ViewerStatus status;
   status.finished = finished_;
   status.snapshots_written = folder_.written();
-  status.render_ms = render_ms_;
+  status.render_ms = painter_.render_ms();
   status.problem = folder_.problem();
   if (status.problem.empty() && video_) status.problem = video_->problem();
   for (const auto& [session, shown] : sessions_.scenes()) {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -8,10 +7,11 @@
 #include <optional>
 #include <string>
 
-#include "viewer/core/renderer.hpp"
 #include "viewer/process/map_sessions.hpp"
 #include "viewer/process/message.hpp"
+#include "viewer/process/painter.hpp"
 #include "viewer/process/picture_folder.hpp"
+#include "viewer/process/retry_clock.hpp"
 #include "viewer/process/video_recorder.hpp"
 
 namespace kintsugi::viewer {
@@ -28,15 +28,12 @@ namespace kintsugi::viewer {
 class Viewer {
  public:
   struct Config {
-    Renderer::Config renderer;
-    View view = FollowView{};
+    Painter::Config painter;
     std::filesystem::path folder = ".";  ///< of the pictures; must exist
     int every_slices = 10;               ///< a snapshot each time so many more slices are shown
     std::optional<std::filesystem::path> video;
     double video_period_s = 0.1;  ///< map time between two frames
     double video_frames_per_s = 20.0;
-    bool plots = false;              ///< write plots.png with the final pictures
-    double max_drawing_share = 1.0;  ///< of the wall time; less leaves the rest to other processes
 
     /// Throws std::invalid_argument naming the field, its value and the bound.
     void validate() const;
@@ -72,8 +69,6 @@ class Viewer {
   std::int64_t failures() const { return failures_; }
 
  private:
-  using Clock = std::chrono::steady_clock;
-
   void use(CloudSlice slice, double now_s);
   void use(const SegmentUpdate& update, double now_s);
   void use(const CameraPose& pose, double now_s);
@@ -87,13 +82,11 @@ class Viewer {
   void note_finals(double now_s, bool all_written, bool has_current_ended);
   bool write_final(SessionScene& shown);
 
-  cv::Mat3b draw(SessionScene& shown);
   void write_snapshot(SessionScene& shown, const cv::Mat3b& figure);
-  void note_drawing_time(SessionScene& shown, Clock::time_point start);
 
   Config config_;
   Outputs outputs_;
-  Renderer renderer_;
+  Painter painter_;
   PictureFolder folder_;
   std::unique_ptr<VideoRecorder> video_;
 
@@ -101,10 +94,7 @@ class Viewer {
   MapSessions sessions_;
 
   bool finished_ = false;
-  std::optional<double> finals_failing_since_s_;
-  double next_finals_s_ = 0.0;
-  Clock::time_point next_drawing_ = Clock::now();
-  double render_ms_ = 0.0;
+  RetryClock finals_retry_;
   std::int64_t failures_ = 0;
 };
 
