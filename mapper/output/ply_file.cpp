@@ -3,6 +3,7 @@
 #include <bit>
 #include <cerrno>
 #include <fstream>
+#include <stdexcept>
 #include <system_error>
 #include <utility>
 
@@ -34,8 +35,15 @@ struct PlyFile::List {
   std::int64_t count = 0;
 };
 
-PlyFile::PlyFile(const std::filesystem::path& path, std::vector<PlyElement> elements)
-    : path_(path) {
+PlyFile::PlyFile(const std::filesystem::path& path, std::vector<PlyElement> elements,
+                 std::vector<std::string> comments)
+    : path_(path), comments_(std::move(comments)) {
+  for (const std::string& comment : comments_) {
+    if (comment.find_first_of("\r\n") != std::string::npos) {
+      throw std::invalid_argument(path.string() + ": a comment in its header has several lines: '" +
+                                  comment + "'");
+    }
+  }
   AtomicFile check(path);
   for (PlyElement& element : elements) {
     const std::filesystem::path name = list_name(path, element.name);
@@ -57,6 +65,7 @@ void PlyFile::commit() {
   AtomicFile file(path_);
   std::ostream& out = file.stream();
   out << "ply\nformat binary_little_endian 1.0\n";
+  for (const std::string& comment : comments_) out << "comment " << comment << '\n';
   for (const auto& list : lists_) {
     out << "element " << list->element.name << ' ' << list->count << '\n';
     for (const std::string& property : list->element.properties) {

@@ -24,8 +24,10 @@ struct PlyElement {
 /// Under the final name there is nothing new before commit(), and without it nothing remains.
 class PlyFile {
  public:
-  /// @throws std::invalid_argument when `path` has no file name
-  PlyFile(const std::filesystem::path& path, std::vector<PlyElement> elements);
+  /// Each of `comments` becomes a line of the header.
+  /// @throws std::invalid_argument when `path` has no file name, or a comment has several lines
+  PlyFile(const std::filesystem::path& path, std::vector<PlyElement> elements,
+          std::vector<std::string> comments = {});
   ~PlyFile();
 
   /// Appends `count` records, packed as the properties say, to list `element`.
@@ -40,6 +42,7 @@ class PlyFile {
   struct List;
 
   std::filesystem::path path_;
+  std::vector<std::string> comments_;
   std::vector<std::unique_ptr<List>> lists_;
 };
 
