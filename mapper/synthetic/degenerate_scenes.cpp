@@ -24,8 +24,8 @@ Material wood_or_plain(bool is_textured) {
 
 /// Its surface is at y = 0 and looks along -y; no end of it comes into view.
 void add_long_wall(SceneBuilder& builder, bool is_textured) {
-  builder.add_object("wall", at(0, kThickness_m / 2, 0), box(16, kThickness_m, 12),
-                     brick_or_plain(is_textured));
+  builder.add_structure("wall", at(0, kThickness_m / 2, 0), box(16, kThickness_m, 12),
+                        brick_or_plain(is_textured));
 }
 
 Trajectory along(const std::vector<Waypoint>& waypoints, double duration_s, std::uint32_t seed) {
@@ -45,8 +45,8 @@ SceneWithPath wall_scene(bool is_textured, std::uint32_t seed) {
 
 SceneWithPath floor_scene(bool is_textured, std::uint32_t seed) {
   SceneBuilder builder;
-  builder.add_object("floor", at(0, 0, -kThickness_m / 2), box(16, 12, kThickness_m),
-                     wood_or_plain(is_textured));
+  builder.add_structure("floor", at(0, 0, -kThickness_m / 2), box(16, 12, kThickness_m),
+                        wood_or_plain(is_textured));
   return {std::move(builder).build(), along({{{-0.6, -0.9, 1.3}, {-0.5, 0, 0}},
                                              {{-0.1, -0.7, 1.4}, {-0.1, 0.2, 0}},
                                              {{0.4, -0.8, 1.3}, {0.3, 0.1, 0}}},
@@ -58,13 +58,13 @@ SceneWithPath corridor_scene(bool is_textured, std::uint32_t seed) {
   constexpr double kWidth_m = 1.7;
   constexpr double kHeight_m = 2.4;
   SceneBuilder builder;
-  builder.add_object("floor", at(0, 0, -kThickness_m / 2), box(kLength_m, kWidth_m, kThickness_m),
-                     wood_or_plain(is_textured));
-  builder.add_object("ceiling", at(0, 0, kHeight_m + kThickness_m / 2),
-                     box(kLength_m, kWidth_m, kThickness_m), plain(rgb(240, 240, 235)));
+  builder.add_structure("floor", at(0, 0, -kThickness_m / 2),
+                        box(kLength_m, kWidth_m, kThickness_m), wood_or_plain(is_textured));
+  builder.add_structure("ceiling", at(0, 0, kHeight_m + kThickness_m / 2),
+                        box(kLength_m, kWidth_m, kThickness_m), plain(rgb(240, 240, 235)));
   for (const double side : {-1.0, 1.0}) {
-    builder.add_object("wall", at(0, side * (kWidth_m + kThickness_m) / 2, kHeight_m / 2),
-                       box(kLength_m, kThickness_m, kHeight_m), brick_or_plain(is_textured));
+    builder.add_structure("wall", at(0, side * (kWidth_m + kThickness_m) / 2, kHeight_m / 2),
+                          box(kLength_m, kThickness_m, kHeight_m), brick_or_plain(is_textured));
   }
   return {std::move(builder).build(), along({{{-1.0, 0.05, 1.4}, {1.0, 0.0, 1.0}},
                                              {{-0.1, -0.1, 1.45}, {1.9, 0.1, 1.0}},

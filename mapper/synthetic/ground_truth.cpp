@@ -55,7 +55,8 @@ void write_instances(const Scene& scene, const std::filesystem::path& path) {
                     {"name", instance.name},
                     {"shape", instance.shape},
                     {"color", {level(0), level(1), level(2)}},
-                    {"solids", solids}});
+                    {"solids", solids},
+                    {"is_structure", instance.is_structure}});
   }
   AtomicFile file(path);
   file.stream() << nlohmann::ordered_json{{"instances", list}}.dump(1) << '\n';

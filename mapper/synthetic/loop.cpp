@@ -33,7 +33,7 @@ void add_quarter(SceneBuilder& builder, int k, CounterRandom& random) {
            X_WQ * Eigen::Vector3d(kOuter_m, kOuter_m, 0), wall,
            {{.middle_m = kOuter_m + 2.7, .width_m = 0.8, .bottom_m = 1.1, .top_m = 2.1}});
   Pose X_WM = X_WQ * at(kMiddle_m, kMiddle_m, -0.1);
-  builder.add_object("floor", X_WM, box(kOuter_m, kOuter_m, 0.2), floor_of(kKinds[k]));
+  builder.add_structure("floor", X_WM, box(kOuter_m, kOuter_m, 0.2), floor_of(kKinds[k]));
   furnish(builder, kKinds[k], {X_WQ * at(kMiddle_m, kMiddle_m, 0), kRoom_m, kRoom_m, false},
           random);
 }

@@ -41,7 +41,7 @@ void add_opening_frame(SceneBuilder& builder, const Opening& opening) {
 }
 
 void add_window(SceneBuilder& builder, const Pose& X_WG, const Opening& opening) {
-  builder.begin_object("window", X_WG);
+  builder.begin_structure("window", X_WG);
   add_opening_frame(builder, opening);
   const double left = opening.middle_m - opening.width_m / 2;
   const double right = opening.middle_m + opening.width_m / 2;
@@ -53,10 +53,10 @@ void add_window(SceneBuilder& builder, const Pose& X_WG, const Opening& opening)
 }
 
 void add_doorway(SceneBuilder& builder, const Pose& X_WG, const Opening& opening) {
-  builder.begin_object("door frame", X_WG);
+  builder.begin_structure("door frame", X_WG);
   add_opening_frame(builder, opening);
   if (!opening.has_door_leaf) return;
-  builder.begin_object("door", X_WG);
+  builder.begin_structure("door", X_WG);
   add_piece(builder, opening.middle_m - opening.width_m / 2, opening.middle_m + opening.width_m / 2,
             0.0, opening.top_m, 0.05, kDoor);
   for (double side : {-1.0, 1.0}) {
@@ -74,7 +74,7 @@ void add_wall(SceneBuilder& builder, const Eigen::Vector3d& start_W, const Eigen
   const Eigen::Vector3d along = end_W - start_W;
   const double length = along.norm();
   const Pose X_WG = at(start_W.x(), start_W.y(), start_W.z(), std::atan2(along.y(), along.x()));
-  builder.begin_object("wall", X_WG);
+  builder.begin_structure("wall", X_WG);
   double done = 0.0;
   for (const Opening& opening : openings) {
     const double left = opening.middle_m - opening.width_m / 2;
@@ -87,7 +87,7 @@ void add_wall(SceneBuilder& builder, const Eigen::Vector3d& start_W, const Eigen
   add_piece(builder, done, length, 0, kRoomHeight_m, kWallThickness_m, material);
 
   done = 0.0;
-  builder.begin_object("skirting", X_WG);
+  builder.begin_structure("skirting", X_WG);
   for (const Opening& opening : openings) {
     if (opening.bottom_m > 0.0) continue;
     add_skirting(builder, done, opening.middle_m - opening.width_m / 2 - kTrim_m);
@@ -104,8 +104,8 @@ void add_slab(SceneBuilder& builder, const char* name, const Eigen::Vector2d& mi
               const Eigen::Vector2d& max_W, double top_z, const Material& material) {
   constexpr double kThickness_m = 0.2;
   const Eigen::Vector2d middle = (min_W + max_W) / 2;
-  builder.add_object(name, at(middle.x(), middle.y(), top_z - kThickness_m / 2),
-                     box(max_W.x() - min_W.x(), max_W.y() - min_W.y(), kThickness_m), material);
+  builder.add_structure(name, at(middle.x(), middle.y(), top_z - kThickness_m / 2),
+                        box(max_W.x() - min_W.x(), max_W.y() - min_W.y(), kThickness_m), material);
 }
 
 void add_picture(SceneBuilder& builder, const Pose& X_WG, double width, double height,

@@ -50,11 +50,18 @@ std::optional<RayHit> Scene::intersect(const Eigen::Vector3d& origin_W,
 }
 
 double Scene::signed_distance(const Eigen::Vector3d& p_W) const {
-  return bvh_->nearest_to_point(p_W, [&](int index, double best) {
+  return nearest_surface(p_W).signed_m;
+}
+
+SurfaceDistance Scene::nearest_surface(const Eigen::Vector3d& p_W) const {
+  int nearest = -1;
+  const double signed_m = bvh_->nearest_to_point(p_W, [&](int index, double best) {
     const Primitive& primitive = primitives_[index];
-    return std::min(best,
-                    synthetic::signed_distance(primitive.shape, primitive.X_WO.inverse() * p_W));
+    const double d = synthetic::signed_distance(primitive.shape, primitive.X_WO.inverse() * p_W);
+    if (d < best || (d == best && index < nearest)) nearest = index;
+    return std::min(d, best);
   });
+  return {signed_m, nearest < 0 ? kNoInstance : primitives_[nearest].instance};
 }
 
 }  // namespace kintsugi::synthetic

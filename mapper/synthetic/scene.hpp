@@ -2,6 +2,7 @@
 // A union of solids: what a ray meets, and how far a point is from the nearest surface.
 
 #include <Eigen/Geometry>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -32,6 +33,9 @@ struct Instance {
   std::string name;      ///< "mug"; not unique
   std::string shape;     ///< of its first solid: "cylinder", ...
   Color color = Color::Zero();
+  /// Of the building: floor, wall, ceiling, stairs, what is built into a wall. The others are what
+  /// a person could name and pick up, push or take off its nail.
+  bool is_structure = false;
 };
 
 struct RayHit {
@@ -40,6 +44,12 @@ struct RayHit {
   Eigen::Vector3d normal_W = Eigen::Vector3d::Zero();  ///< unit, outward
   int instance = kNoInstance;
   int primitive = -1;  ///< index in Scene::primitives()
+};
+
+/// How far a point is from the surface of a scene, and whose surface it is.
+struct SurfaceDistance {
+  double signed_m = std::numeric_limits<double>::infinity();  ///< as Scene::signed_distance()
+  int instance = kNoInstance;                                 ///< only of an empty scene none
 };
 
 /// A scene in its own frame W: z up, the floor of the first storey at z = 0, metres.
@@ -68,6 +78,10 @@ class Scene {
   /// which is exact while the nearest surface of that solid is also a surface of the union (that
   /// is, away from where solids touch or overlap). Infinity for an empty scene.
   double signed_distance(const Eigen::Vector3d& p_W) const;
+
+  /// The same, with the instance of the solid it is measured to; of solids equally near that of the
+  /// first in the list, whose surface is also the one that is seen.
+  SurfaceDistance nearest_surface(const Eigen::Vector3d& p_W) const;
 
  private:
   std::vector<Primitive> primitives_;

@@ -31,9 +31,20 @@ Material textured(Texture texture, const Color& color, const Color& second_color
   return {texture, color, second_color, static_cast<float>(scale_m)};
 }
 
-void SceneBuilder::begin_object(const std::string& name, const Pose& X_WG) {
+void SceneBuilder::begin(const std::string& name, const Pose& X_WG, bool is_structure) {
   X_WG_ = X_WG;
-  instances_.push_back({.id = static_cast<int>(instances_.size()) + 1, .name = name, .shape = ""});
+  instances_.push_back({.id = static_cast<int>(instances_.size()) + 1,
+                        .name = name,
+                        .shape = "",
+                        .is_structure = is_structure});
+}
+
+void SceneBuilder::begin_object(const std::string& name, const Pose& X_WG) {
+  begin(name, X_WG, false);
+}
+
+void SceneBuilder::begin_structure(const std::string& name, const Pose& X_WG) {
+  begin(name, X_WG, true);
 }
 
 void SceneBuilder::add(const Shape& shape, const Pose& X_GO, const Material& material) {
@@ -48,6 +59,12 @@ void SceneBuilder::add(const Shape& shape, const Pose& X_GO, const Material& mat
 void SceneBuilder::add_object(const std::string& name, const Pose& X_WG, const Shape& shape,
                               const Material& material) {
   begin_object(name, X_WG);
+  add(shape, Pose::Identity(), material);
+}
+
+void SceneBuilder::add_structure(const std::string& name, const Pose& X_WG, const Shape& shape,
+                                 const Material& material) {
+  begin_structure(name, X_WG);
   add(shape, Pose::Identity(), material);
 }
 

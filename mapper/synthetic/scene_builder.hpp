@@ -25,16 +25,23 @@ class SceneBuilder {
   /// Starts an object whose own frame is G: the solids added next belong to it.
   void begin_object(const std::string& name, const Pose& X_WG);
 
+  /// The same for a part of the building.
+  void begin_structure(const std::string& name, const Pose& X_WG);
+
   /// Adds a solid to the object begun last; its name, shape and colour are those of its first.
   void add(const Shape& shape, const Pose& X_GO, const Material& material);
 
-  /// Both in one, for an object of a single solid.
+  /// Both in one, for an object or a part of the building that is a single solid.
   void add_object(const std::string& name, const Pose& X_WG, const Shape& shape,
                   const Material& material);
+  void add_structure(const std::string& name, const Pose& X_WG, const Shape& shape,
+                     const Material& material);
 
   Scene build() &&;
 
  private:
+  void begin(const std::string& name, const Pose& X_WG, bool is_structure);
+
   Pose X_WG_ = Pose::Identity();
   std::vector<Primitive> primitives_;
   std::vector<Instance> instances_;

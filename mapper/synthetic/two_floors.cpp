@@ -87,10 +87,10 @@ void add_room(SceneBuilder& builder, const Visit& visit, double z, CounterRandom
   add_wall(builder, corner(-x, back), corner(x, back), wall,
            {{.middle_m = x + 1.25, .width_m = 0.7, .bottom_m = 1.2, .top_m = 2.1}});
   add_wall(builder, corner(x, back), corner(x, front), wall);
-  builder.add_object("floor", plan.X_WR * at(0, 0.03, -0.1), box(2 * x, kRoomDepth_m + 0.06, 0.2),
-                     floor_of(visit.kind));
-  builder.add_object("ceiling", plan.X_WR * at(0, 0.03, kRoomHeight_m + 0.05),
-                     box(2 * x, kRoomDepth_m + 0.06, 0.1), kCeiling);
+  builder.add_structure("floor", plan.X_WR * at(0, 0.03, -0.1),
+                        box(2 * x, kRoomDepth_m + 0.06, 0.2), floor_of(visit.kind));
+  builder.add_structure("ceiling", plan.X_WR * at(0, 0.03, kRoomHeight_m + 0.05),
+                        box(2 * x, kRoomDepth_m + 0.06, 0.1), kCeiling);
   furnish(builder, visit.kind, plan, random);
 }
 
@@ -158,7 +158,7 @@ void add_corridor(SceneBuilder& builder, const Floor& floor, CounterRandom& rand
 
 void add_steps(SceneBuilder& builder) {
   constexpr double kRise_m = kStorey_m / kSteps;
-  builder.begin_object("stairs", at(0, 0, 0));
+  builder.begin_structure("stairs", at(0, 0, 0));
   for (int i = 0; i < kSteps; ++i) {
     const double top = (i + 1) * kRise_m;
     const double height = std::min(top, 0.5);
@@ -170,9 +170,9 @@ void add_steps(SceneBuilder& builder) {
   const double length = std::hypot(kStorey_m, kSteps * kTread_m) + 0.3;
   for (double side : {-1.0, 1.0}) {
     const Pose X_WR = at((kStairsStart_m + kStairsEnd_m) / 2, side * 0.92, kStorey_m / 2 + 0.95);
-    builder.add_object("handrail",
-                       X_WR * Pose(Eigen::AngleAxisd(kPi / 2 - slope, Eigen::Vector3d::UnitY())),
-                       capsule(0.03, length), plain(rgb(120, 72, 40)));
+    builder.add_structure("handrail",
+                          X_WR * Pose(Eigen::AngleAxisd(kPi / 2 - slope, Eigen::Vector3d::UnitY())),
+                          capsule(0.03, length), plain(rgb(120, 72, 40)));
   }
 }
 
@@ -181,8 +181,8 @@ void add_parapet(SceneBuilder& builder, const Eigen::Vector3d& start_W,
                  const Eigen::Vector3d& end_W) {
   const Eigen::Vector3d along = end_W - start_W;
   const double length = along.norm();
-  builder.begin_object("parapet",
-                       at(start_W.x(), start_W.y(), start_W.z(), std::atan2(along.y(), along.x())));
+  builder.begin_structure(
+      "parapet", at(start_W.x(), start_W.y(), start_W.z(), std::atan2(along.y(), along.x())));
   builder.add(box(length, 0.08, 0.85), at(length / 2, 0, 0.425),
               textured(Texture::kWood, rgb(176, 128, 82), rgb(146, 100, 60), 0.12));
   builder.add(capsule(0.035, length + 0.1), at(length / 2, 0, 0.93) * axis_along_x(), kSteel);
@@ -201,9 +201,9 @@ void add_stairwell(SceneBuilder& builder, CounterRandom& random) {
   }
   add_wall(builder, {kCorridorEnd_m, kWallAxis_m, 0}, {east, kWallAxis_m, 0}, kWall);
   for (double side : {-1.0, 1.0}) {  // between the two walls, beside the slab
-    builder.add_object("wall",
-                       at((kCorridorEnd_m + kEast_m) / 2, side * kWallAxis_m, kStorey_m - 0.105),
-                       box(kEast_m - kCorridorEnd_m, kWallThickness_m, 0.19), kWall);
+    builder.add_structure("wall",
+                          at((kCorridorEnd_m + kEast_m) / 2, side * kWallAxis_m, kStorey_m - 0.105),
+                          box(kEast_m - kCorridorEnd_m, kWallThickness_m, 0.19), kWall);
   }
   add_wall(builder, {east, -kWallAxis_m, kStorey_m}, {east, north, kStorey_m}, kWall,
            {{.middle_m = 1.1, .width_m = 1.2, .bottom_m = 0.9, .top_m = 2.1}});

@@ -18,8 +18,8 @@ constexpr double kDepth_m = kSide_m + kRoomDepth_m;
 void add_box(SceneBuilder& builder, double x0, double y0, double z0, double x1, double y1,
              double z1) {
   const Pose X_WG = at(0.5 * (x0 + x1), 0.5 * (y0 + y1), 0.5 * (z0 + z1));
-  builder.add_object("wall", X_WG, synthetic::box(x1 - x0, y1 - y0, z1 - z0),
-                     synthetic::plain(synthetic::rgb(220, 220, 215)));
+  builder.add_structure("wall", X_WG, synthetic::box(x1 - x0, y1 - y0, z1 - z0),
+                        synthetic::plain(synthetic::rgb(220, 220, 215)));
 }
 
 /// The walls of one room and the room's part of the corridor's, `side` +1 or -1 along y.

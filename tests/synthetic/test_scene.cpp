@@ -52,6 +52,34 @@ TEST(Scene, DistancesOfTheTinyScenesAreTheClosedForm) {
   EXPECT_NEAR(room.signed_distance({-1.9, 0, 1.2}), 0.1, 1e-12);
 }
 
+TEST(Scene, NearestSurfaceIsWhoseInTheTinyScenes) {
+  const Scene room = make_scene("box-room");
+  const auto nearest_name = [&](const Vector3d& p_W) {
+    return room.instances().at(room.nearest_surface(p_W).instance - 1).name;
+  };
+  EXPECT_EQ(nearest_name({0, 0, 0.01}), "floor");
+  EXPECT_EQ(nearest_name({0, 0, -0.01}), "floor") << "within it";
+  EXPECT_EQ(nearest_name({0, 0, 2.4}), "ceiling");
+  EXPECT_EQ(nearest_name({-1.9, 0, 1.2}), "wall");
+  EXPECT_EQ(nearest_name({-1.4, 1.4 - 0.25, 1.2}), "pillar");
+  EXPECT_EQ(nearest_name({1.6, -0.3 - 0.19, 0.2}), "ball") << "within it";
+  // On the red box stands the blue one: 3 cm from the edge between them, to either side of it.
+  EXPECT_EQ(nearest_name({1.5, 0.8, 1.13}), "blue box");
+  EXPECT_EQ(nearest_name({1.5 + 0.25, 0.8, 0.81}), "red box");
+  EXPECT_TRUE(room.instances().at(0).is_structure) << room.instances().at(0).name;
+  EXPECT_FALSE(room.instances().at(6).is_structure) << room.instances().at(6).name;
+}
+
+TEST(Scene, NearestSurfaceOfCoincidingSolidsIsTheFirst) {
+  SceneBuilder builder;
+  builder.add_object("first", at(0, 0, 0), box(1, 1, 1), {});
+  builder.add_object("second", at(0, 0, 0), box(1, 1, 1), {});
+  const Scene scene = std::move(builder).build();
+  EXPECT_EQ(scene.nearest_surface({0, 0, 0.75}).instance, 1);
+  EXPECT_EQ(scene.nearest_surface({0, 0, 0.25}).instance, 1);
+  EXPECT_EQ(Scene({}, {}).nearest_surface({0, 0, 0}).instance, kNoInstance);
+}
+
 TEST(Scene, TreeFindsWhatBruteForceFinds) {
   constexpr double kRounding_m = 1e-12;  // of moving the ray into the solid's frame
   const Scene scene = make_scene("office");
@@ -80,10 +108,14 @@ TEST(Scene, DistanceIsTheSmallestOfAllSolids) {
   for (int i = 0; i < 3000; ++i) {
     const Vector3d p_W = random.point_in({-2.3, -2.0, -0.2}, {2.3, 2.0, 2.7});
     double smallest = kInfinity;
+    int instance = kNoInstance;
     for (const Primitive& primitive : scene.primitives()) {
-      smallest = std::min(smallest, signed_distance(primitive.shape, to_object(primitive, p_W)));
+      const double distance = signed_distance(primitive.shape, to_object(primitive, p_W));
+      if (distance < smallest) instance = primitive.instance;
+      smallest = std::min(smallest, distance);
     }
     EXPECT_EQ(scene.signed_distance(p_W), smallest);
+    EXPECT_EQ(scene.nearest_surface(p_W).instance, instance);
   }
 }
 
