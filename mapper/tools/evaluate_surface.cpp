@@ -2,36 +2,20 @@
 
 #include <exception>
 #include <iostream>
-#include <stdexcept>
-#include <string>
 
 #include <CLI/CLI.hpp>
 #include <spdlog/spdlog.h>
 
 #include "mapper/evaluation/surface_error.hpp"
-#include "mapper/openni2_driver/recording_uri.hpp"
-#include "mapper/output/cloud_reader.hpp"
-#include "mapper/synthetic/sequence.hpp"
+#include "mapper/tools/map_of_scene.hpp"
 
 namespace {
 
-using namespace kintsugi;
 using namespace kintsugi::mapper;
 
-struct Options {
-  std::string cloud;
-  std::string scene;
-  bool in_scene_frame = false;
-};
-
-void evaluate(const Options& options) {
-  const auto uri = parse_recording_uri(options.scene);
-  if (!uri || uri->scheme != RecordingUri::Scheme::kSynthetic) {
-    throw std::invalid_argument("'" + options.scene + "': expected synthetic://NAME?key=value&...");
-  }
-  const synthetic::Sequence sequence(synthetic::Sequence::Config::parse(uri->path, uri->options));
-  const Pose X_SW = options.in_scene_frame ? Pose::Identity() : sequence.X_WC(0);
-  const SurfaceError error = surface_error(read_cloud(options.cloud), sequence.scene(), X_SW);
+void evaluate(const MapOfSceneOptions& options) {
+  const MapOfScene map = read_map_of_scene(options);
+  const SurfaceError error = surface_error(map.points_W, map.scene, map.X_SW);
   std::cout << "points " << error.num_points << "  per_m2 " << error.points_per_m2 << "  mean_m "
             << error.mean_m << "  median_m " << error.median_m << "  p95_m "
             << error.percentile_95_m << "  p99_m " << error.percentile_99_m << "  max_m "
@@ -42,15 +26,11 @@ void evaluate(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  Options options;
+  MapOfSceneOptions options;
   CLI::App app{"Distance of every point of a map from the true surface of a synthetic scene."};
-  app.add_option("CLOUD", options.cloud, "PLY file of kintsugi-mapper --cloud, or an LCM log")
-      ->required();
-  app.add_option("SCENE", options.scene, "the device that was mapped, synthetic://NAME?...")
-      ->required();
-  app.add_flag("--scene-frame", options.in_scene_frame,
-               "the map is in the scene's frame (true poses were given), not in that of the camera "
-               "at its first frame");
+  add_cloud(app, options);
+  add_scene(app, options);
+  add_scene_frame(app, options);
   CLI11_PARSE(app, argc, argv);
   try {
     evaluate(options);

@@ -1,0 +1,71 @@
+#include "mapper/evaluation/instance_labels.hpp"
+
+#include <cmath>
+#include <span>
+#include <stdexcept>
+#include <string>
+
+#include <oneapi/tbb/parallel_for.h>
+
+#include "mapper/output/ply_file.hpp"
+#include "mapper/synthetic/scene.hpp"
+
+namespace kintsugi::mapper {
+namespace {
+
+/// A vertex as it is in the file.
+struct LabelledPoint {
+  float x, y, z;
+  std::uint32_t instance_id;
+};
+static_assert(sizeof(LabelledPoint) == 16, "four properties without padding");
+
+std::vector<std::string> instance_comments(const synthetic::Scene& scene) {
+  std::vector<std::string> comments;
+  comments.reserve(scene.instances().size());
+  for (const synthetic::Instance& instance : scene.instances()) {
+    const char* const kind = instance.is_structure ? "structure " : "object ";
+    comments.push_back("instance " + std::to_string(instance.id) + ' ' + kind + instance.name);
+  }
+  return comments;
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> nearest_instances(const std::vector<CloudPoint>& points_W,
+                                             const synthetic::Scene& scene, const Pose& X_SW,
+                                             double max_distance_m) {
+  if (!(max_distance_m > 0.0)) {
+    throw std::invalid_argument("nearest_instances: max_distance_m is " +
+                                std::to_string(max_distance_m) + ", expected more than 0");
+  }
+  std::vector<std::uint32_t> labels(points_W.size());
+  tbb::parallel_for(std::size_t{0}, points_W.size(), [&](std::size_t i) {
+    const CloudPoint& p = points_W[i];
+    const auto nearest = scene.nearest_surface(X_SW * Eigen::Vector3d(p.x, p.y, p.z));
+    const bool is_near = std::abs(nearest.signed_m) <= max_distance_m;
+    labels[i] = static_cast<std::uint32_t>(is_near ? nearest.instance : synthetic::kNoInstance);
+  });
+  return labels;
+}
+
+void write_instance_cloud(const std::filesystem::path& path,
+                          const std::vector<CloudPoint>& points_W,
+                          const std::vector<std::uint32_t>& labels, const synthetic::Scene& scene) {
+  if (labels.size() != points_W.size()) {
+    throw std::invalid_argument("write_instance_cloud: " + std::to_string(labels.size()) +
+                                " labels, expected one for each of " +
+                                std::to_string(points_W.size()) + " points");
+  }
+  std::vector<LabelledPoint> vertices;
+  vertices.reserve(points_W.size());
+  for (std::size_t i = 0; i < points_W.size(); ++i) {
+    vertices.push_back({points_W[i].x, points_W[i].y, points_W[i].z, labels[i]});
+  }
+  PlyFile file(path, {{"vertex", {"float x", "float y", "float z", "uint instance_id"}}},
+               instance_comments(scene));
+  file.append(0, std::as_bytes(std::span(vertices)), std::ssize(vertices));
+  file.commit();
+}
+
+}  // namespace kintsugi::mapper

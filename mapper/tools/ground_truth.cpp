@@ -1,0 +1,81 @@
+// kintsugi-ground-truth: the true instance of every point of a map of a synthetic scene.
+
+#include <algorithm>
+#include <exception>
+#include <iostream>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <spdlog/spdlog.h>
+
+#include "mapper/evaluation/instance_labels.hpp"
+#include "mapper/tools/map_of_scene.hpp"
+
+namespace {
+
+using namespace kintsugi;
+using namespace kintsugi::mapper;
+
+struct Options {
+  MapOfSceneOptions map;
+  std::string out;
+  double max_distance_m = 0.03;
+  std::int64_t min_points = 100;
+};
+
+struct Found {
+  int objects = 0;
+  int structure = 0;
+};
+
+/// Instances with at least `min_points` points.
+Found count_instances(const std::vector<std::uint32_t>& labels, const synthetic::Scene& scene,
+                      std::int64_t min_points) {
+  std::vector<std::int64_t> num_points(scene.instances().size() + 1, 0);
+  for (const std::uint32_t label : labels) ++num_points.at(label);
+  Found found;
+  for (const synthetic::Instance& instance : scene.instances()) {
+    if (num_points.at(static_cast<std::size_t>(instance.id)) < min_points) continue;
+    ++(instance.is_structure ? found.structure : found.objects);
+  }
+  return found;
+}
+
+void label(const Options& options) {
+  const MapOfScene map = read_map_of_scene(options.map);
+  const auto labels = nearest_instances(map.points_W, map.scene, map.X_SW, options.max_distance_m);
+  write_instance_cloud(options.out, map.points_W, labels, map.scene);
+  const Found found = count_instances(labels, map.scene, options.min_points);
+  std::cout << "points " << labels.size() << "  unlabelled "
+            << std::count(labels.begin(), labels.end(), 0U) << "  min_points " << options.min_points
+            << "  objects " << found.objects << "  structure " << found.structure << '\n';
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  CLI::App app{
+      "Writes every point of a map with the instance of the nearest surface of the synthetic scene "
+      "that was mapped."};
+  add_scene(app, options.map);
+  add_cloud(app, options.map);
+  app.add_option("OUT", options.out, "PLY file to write: x y z (of CLOUD) and instance_id")
+      ->required();
+  add_scene_frame(app, options.map);
+  app.add_option("--max-distance", options.max_distance_m,
+                 "metres; points farther from every surface get instance 0")
+      ->capture_default_str();
+  app.add_option("--min-points", options.min_points,
+                 "instances with at least so many points are counted in what is printed")
+      ->capture_default_str();
+  CLI11_PARSE(app, argc, argv);
+  try {
+    label(options);
+    return 0;
+  } catch (const std::exception& error) {
+    spdlog::error("kintsugi-ground-truth: {}", error.what());
+    return 1;
+  }
+}
