@@ -1,5 +1,6 @@
 #include "segmenter/core/batch_engine.hpp"
 
+#include "segmenter/core/fragments/fragment_step.hpp"
 #include "segmenter/core/graph.hpp"
 
 namespace kintsugi::segmenter {
@@ -12,7 +13,7 @@ BatchEngine::BatchEngine(const PointCloud& cloud, const EngineConfig& config)
 }
 
 RunStatistics BatchEngine::update(const CloudChange& change) {
-  const std::vector<ComponentId> before = take_over(change);
+  std::vector<ComponentId> before = take_over(change);
   std::vector<PointIndex> points;
   for (PointIndex i = 0; i < cloud_.size(); ++i) {
     if (components_[i] != kNoComponent) points.push_back(i);
@@ -21,9 +22,10 @@ RunStatistics BatchEngine::update(const CloudChange& change) {
 
   for (const PointIndex i : points) components_[i] = forest_.find(i);
   components_ = canonical_labels(components_);
+  if (joins_fragments()) join_fragments_of(points);
   changed_.clear();
   for (const PointIndex i : points) {
-    if (components_[i] != before[i]) changed_.push_back(i);
+    if (components()[i] != before[i]) changed_.push_back(i);
   }
   return {.num_edges = batch.num_edges,
           .num_joins = batch.num_joins,
@@ -39,11 +41,22 @@ std::vector<ComponentId> BatchEngine::take_over(const CloudChange& change) {
     index_->insert(change.added);
   }
   components_.resize(cloud_.size(), kNoComponent);
-  for (const PointIndex i : change.removed) components_[i] = kNoComponent;
-  for (const PointIndex i : change.added) components_[i] = kNoComponent;
-  std::vector<ComponentId> before = components_;
-  for (const PointIndex i : change.added) components_[i] = i;
+  if (joins_fragments()) joined_.resize(cloud_.size(), kNoComponent);
+  std::vector<ComponentId> before(components().begin(), components().end());
+  for (const PointIndex i : change.removed) before[i] = components_[i] = kNoComponent;
+  for (const PointIndex i : change.added) {
+    before[i] = kNoComponent;
+    components_[i] = i;
+  }
   return before;
+}
+
+void BatchEngine::join_fragments_of(std::span<const PointIndex> points) {
+  FragmentForest forest(components_, config_.fragment_limit());
+  FragmentObserver nobody;
+  join_fragments(cloud_, points, components_, config_.radius_m(), forest, nobody);
+  joined_.assign(components_.size(), kNoComponent);
+  for (const PointIndex i : points) joined_[i] = components_[forest.namer(forest.find_point(i))];
 }
 
 BatchStatistics BatchEngine::segment(std::span<const PointIndex> points) {
@@ -66,7 +79,7 @@ double BatchEngine::theta(ComponentId component) const {
 std::size_t BatchEngine::bytes() const {
   const std::size_t index_bytes = index_ ? index_->bytes() : 0;
   return index_bytes + forest_.bytes() +
-         (components_.capacity() + changed_.capacity()) * sizeof(PointIndex);
+         (components_.capacity() + joined_.capacity() + changed_.capacity()) * sizeof(PointIndex);
 }
 
 }  // namespace kintsugi::segmenter

@@ -9,13 +9,17 @@
 
 namespace kintsugi::segmenter {
 
-/// Mode `batch`: Algorithm 1 over all points there are, from scratch at each update. The reference.
+/// Mode `batch`: Algorithm 1 and the fragment step, if there is one, over all points there are,
+/// from scratch at each update. The reference.
 class BatchEngine final : public SegmentationEngine {
  public:
   BatchEngine(const PointCloud& cloud, const EngineConfig& config);
 
   RunStatistics update(const CloudChange& change) override;
-  std::span<const ComponentId> components() const override { return components_; }
+  std::span<const ComponentId> components() const override {
+    return joins_fragments() ? joined_ : components_;
+  }
+  std::span<const ComponentId> unmerged_components() const override { return components_; }
   std::span<const PointIndex> changed() const override { return changed_; }
   double theta(ComponentId component) const override;
   std::size_t bytes() const override;
@@ -23,12 +27,15 @@ class BatchEngine final : public SegmentationEngine {
  private:
   std::vector<ComponentId> take_over(const CloudChange& change);
   BatchStatistics segment(std::span<const PointIndex> points);
+  bool joins_fragments() const { return config_.fragment_limit() > 0; }
+  void join_fragments_of(std::span<const PointIndex> points);
 
   const PointCloud& cloud_;
   EngineConfig config_;
   std::unique_ptr<NeighbourIndex> index_;  ///< none for the grid: all neighbours are found at once
   SegmentForest forest_;
   std::vector<ComponentId> components_;  ///< by the smallest point of each
+  std::vector<ComponentId> joined_;  ///< the same with fragments joined; none where they are not
   std::vector<PointIndex> changed_;
 };
 

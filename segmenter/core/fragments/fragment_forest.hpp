@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+
+#include "segmenter/core/engine.hpp"
+#include "segmenter/core/growing_array.hpp"
+
+namespace kintsugi::segmenter {
+
+/// Disjoint sets of components while fragments are joined to their neighbours: the state of the
+/// fragment step. A set of fewer than `limit` points is small.
+///
+/// Each set is called after one of its components. Where a small set joins a large one, that is the
+/// one the large set is called after; where two small ones join, the component of the first point
+/// (by PointId) of the edge. So names follow from the points alone.
+class FragmentForest {
+ public:
+  /// `components` by point, kNoComponent for points that are gone; `limit` in points.
+  FragmentForest(std::span<const ComponentId> components, std::int64_t limit)
+      : components_(components), limit_(limit), sets_(components.size()) {
+    for (PointIndex i = 0; i < components.size(); ++i) {
+      if (components[i] == kNoComponent) continue;
+      Set& set = sets_[components[i]];
+      set.parent = components[i];
+      if (set.num_points == 0) set.namer = i;
+      ++set.num_points;
+    }
+  }
+
+  /// The root of the set of `component`.
+  ComponentId find(ComponentId component) {
+    while (sets_[component].parent != component) {
+      sets_[component].parent = sets_[sets_[component].parent].parent;
+      component = sets_[component].parent;
+    }
+    return component;
+  }
+  ComponentId find_point(PointIndex point) { return find(components_[point]); }
+  std::uint32_t num_points(ComponentId root) const { return sets_[root].num_points; }
+  bool is_small(ComponentId root) const { return num_points(root) < limit_; }
+  /// A point of the component that the set is called after.
+  PointIndex namer(ComponentId root) const { return sets_[root].namer; }
+
+  /// Joins the sets of two roots, of which at least one is small, along an edge whose first point
+  /// is `first_point`.
+  void join(ComponentId a, ComponentId b, PointIndex first_point) {
+    const bool are_both_small = is_small(a) && is_small(b);
+    if (sets_[a].num_points < sets_[b].num_points) std::swap(a, b);
+    sets_[b].parent = a;
+    sets_[a].num_points += sets_[b].num_points;
+    if (are_both_small) sets_[a].namer = first_point;
+  }
+
+ private:
+  struct Set {
+    ComponentId parent = 0;
+    PointIndex namer = 0;
+    std::uint32_t num_points = 0;
+  };
+
+  std::span<const ComponentId> components_;
+  std::int64_t limit_;
+  GrowingArray<Set> sets_;
+};
+
+}  // namespace kintsugi::segmenter
