@@ -34,17 +34,20 @@ class DecodeError : public std::runtime_error {
 template <class T>
 concept SmallMessage = std::same_as<T, CameraPose> || std::same_as<T, MapperStatus> ||
     std::same_as<T, SegmenterStatus> || std::same_as<T, ViewerStatus> ||
-    std::same_as<T, Heartbeat> || std::same_as<T, ResendRequest>;
+    std::same_as<T, Heartbeat> || std::same_as<T, ResendRequest> || std::same_as<T, SegmentQuery>;
 
 template <class T>
 concept BulkMessage = std::same_as<T, CloudSlice> || std::same_as<T, SegmentUpdate> ||
-    std::same_as<T, RgbdFrameMessage> || std::same_as<T, Snapshot>;
+    std::same_as<T, SegmentAnswer> || std::same_as<T, RgbdFrameMessage> ||
+    std::same_as<T, Snapshot>;
 
 // Bounds that both sides agree on. A message outside them is refused, sent or received.
 inline constexpr std::int64_t kMaxPayloadBytes = std::int64_t{1} << 30;  ///< of a bulk message
 inline constexpr std::int64_t kMaxSequence = std::int64_t{1} << 48;
 inline constexpr std::size_t kMaxStringBytes = 1024;
 inline constexpr std::size_t kMaxResendRanges = 1024;
+inline constexpr std::size_t kMaxQueriedIds = 4096;
+inline constexpr double kMaxQueryRadius_m = 100.0;
 inline constexpr float kMinResolution_m = 1e-4F;
 inline constexpr float kMaxResolution_m = 10.0F;
 inline constexpr int kMaxImageSide_px = 16384;

@@ -152,6 +152,82 @@ struct SegmentUpdate {
   std::vector<SegmentStatistics> statistics;  ///< of every segment that changed
 };
 
+/// Where a query looks.
+enum class QueryPlace : std::int8_t {
+  kAnywhere = 0,
+  kPoint = 1,  ///< the segment of the map point nearest to point_W
+  kRay = 2,    ///< the segment that a camera at point_W sees along direction_W
+  kBox = 3,    ///< the segments with a point in the box, its faces included
+  kIds = 4,    ///< the segments of these ids, as far as they exist
+};
+
+/// Asks a segmenter for segments: those at a place that pass every filter, the largest first (of
+/// equal ones the smaller id). Fields that the place does not use are ignored.
+struct SegmentQuery {
+  std::int64_t utime = 0;        ///< wall clock, microseconds
+  std::int64_t client = 0;       ///< who asks; > 0
+  std::int64_t number = 0;       ///< of those of the client, >= 0; the same when asked again
+  std::int64_t map_session = 0;  ///< of the mapper whose map is asked; 0: the newest of map_name
+  std::string map_name;          ///< of the mapper whose map is asked; empty: any
+  QueryPlace place = QueryPlace::kAnywhere;
+  double point_W[3] = {};      ///< kPoint: where; kRay: where it starts; metres
+  double direction_W[3] = {};  ///< kRay: unit
+  double box_min_W[3] = {};    ///< kBox: metres
+  double box_max_W[3] = {};    ///< kBox: metres, none below box_min_W
+  double radius_m = 0.0;       ///< kPoint, kRay: how far off a map point may be; 0: two voxels
+  std::vector<std::uint32_t> segment_ids;  ///< kIds
+  bool only_planar = false;
+  std::int64_t changed_since = 0;  ///< only what changed after this device time; 0: all
+  std::int32_t max_segments = 0;   ///< the largest so many; 0: all
+
+  bool operator==(const SegmentQuery&) const = default;
+};
+
+/// Everything that is told of one segment; 176 bytes on the bus.
+struct DescribedSegment {
+  SegmentStatistics statistics;
+  std::int64_t last_change_utime = 0;    ///< device time of the slice that changed it last
+  float oriented_box_center_W[3] = {};   ///< metres
+  float oriented_box_axes_W[3][3] = {};  ///< three unit vectors
+  float oriented_box_size_m[3] = {};     ///< along each axis, >= 0
+  float plane_normal_W[3] = {};          ///< unit, or zero: no plane fits
+  float plane_offset_m = 0.0F;           ///< points p on the plane have plane_normal_W * p = this
+  float plane_rms_m = 0.0F;              ///< of the distances of its points from the plane
+  float plane_share = 0.0F;              ///< of its points within one voxel of the plane, 0 to 1
+  float distance_m = 0.0F;               ///< kPoint: from it; kRay: along it; else 0
+  std::uint32_t is_planar = 0;           ///< 1: yes
+
+  bool operator==(const DescribedSegment&) const = default;
+};
+
+/// Two segments that touch; 12 bytes on the bus.
+struct SegmentContact {
+  std::uint32_t segment_id = 0;    ///< one that is described
+  std::uint32_t neighbour_id = 0;  ///< any other
+  std::uint32_t num_pairs = 0;     ///< pairs of neighbouring points, one in each; > 0
+
+  bool operator==(const SegmentContact&) const = default;
+};
+
+/// What a segmenter answers to a SegmentQuery.
+struct SegmentAnswer {
+  std::int64_t utime = 0;        ///< wall clock, microseconds
+  std::int64_t session = 0;      ///< of the segmenter; > 0
+  std::int64_t client = 0;       ///< who asked
+  std::int64_t number = 0;       ///< of the query
+  std::int64_t map_session = 0;  ///< of the mapper whose map answers; 0: none does
+  std::string map_name;          ///< of that mapper
+  std::string problem;           ///< why there is no answer; empty: there is
+  std::int32_t map_slices = 0;   ///< in the map that was asked
+  std::int64_t map_points = 0;
+  std::int64_t map_segments = 0;
+  std::int64_t num_matching = 0;  ///< segments; not all are described when fewer were wanted
+  bool has_hit = false;           ///< kPoint, kRay: a map point was found
+  float hit_W[3] = {};            ///< that point, metres
+  std::vector<DescribedSegment> segments;  ///< the largest first
+  std::vector<SegmentContact> contacts;    ///< of each of segments, by ascending ids
+};
+
 struct Snapshot {
   std::int64_t utime = 0;
   std::int64_t session = 0;

@@ -77,6 +77,7 @@ void StreamPublisher::publish_state(std::vector<Message> messages) {
 
 template void StreamPublisher::publish(CloudSlice);
 template void StreamPublisher::publish(SegmentUpdate);
+template void StreamPublisher::publish(SegmentAnswer);
 template void StreamPublisher::publish(RgbdFrameMessage);
 template void StreamPublisher::publish(Snapshot);
 template void StreamPublisher::publish_state(std::vector<CloudSlice>);

@@ -231,6 +231,7 @@ bool StreamSubscriber<Message>::has_given_up(std::int64_t session) const {
 
 template class StreamSubscriber<CloudSlice>;
 template class StreamSubscriber<SegmentUpdate>;
+template class StreamSubscriber<SegmentAnswer>;
 template class StreamSubscriber<RgbdFrameMessage>;
 template class StreamSubscriber<Snapshot>;
 

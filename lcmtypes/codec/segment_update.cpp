@@ -1,13 +1,13 @@
 #include <kintsugi/segment_update_t.hpp>
 
 #include "lcmtypes/codec/bulk.hpp"
+#include "lcmtypes/codec/statistics.hpp"
 
 namespace kintsugi {
 namespace codec {
 
 static_assert(sizeof(LabelRun) == 20);
 static_assert(sizeof(SegmentEvent) == 12);
-static_assert(sizeof(SegmentStatistics) == 72);
 
 template <>
 struct Bulk<SegmentUpdate> : PlacedByByte<segment_update_t> {
@@ -81,17 +81,6 @@ struct Bulk<SegmentUpdate> : PlacedByByte<segment_update_t> {
     check.not_negative("run slice_revision", run.slice_revision);
     check.range<std::int64_t>("run count", run.count, 1, kMaxPoints);
     check.range<std::int64_t>("run first", run.first, 0, kMaxPoints - run.count);
-  }
-  static void check_statistics(const Check& check, const SegmentStatistics& statistics) {
-    for (int axis = 0; axis < 3; ++axis) {
-      check.finite("statistics box_min_W", statistics.box_min_W[axis]);
-      check.finite("statistics box_max_W", statistics.box_max_W[axis]);
-      check.finite("statistics centroid_W", statistics.centroid_W[axis]);
-      check.finite("statistics mean_normal_W", statistics.mean_normal_W[axis]);
-    }
-    check.finite("statistics area_m2", statistics.area_m2);
-    check.not_negative("statistics first_slice", statistics.first_slice);
-    check.not_negative("statistics last_slice", statistics.last_slice);
   }
 };
 

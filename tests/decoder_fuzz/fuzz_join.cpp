@@ -33,6 +33,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const auto events = kintsugi::fuzzing::read_events({data, size});
   kintsugi::join_all<kintsugi::CloudSlice>(events);
   kintsugi::join_all<kintsugi::SegmentUpdate>(events);
+  kintsugi::join_all<kintsugi::SegmentAnswer>(events);
   kintsugi::join_all<kintsugi::RgbdFrameMessage>(events);
   kintsugi::join_all<kintsugi::Snapshot>(events);
   return 0;

@@ -44,8 +44,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   decode_small<ViewerStatus>(message);
   decode_small<Heartbeat>(message);
   decode_small<ResendRequest>(message);
+  decode_small<SegmentQuery>(message);
   decode_bulk<CloudSlice>(message);
   decode_bulk<SegmentUpdate>(message);
+  decode_bulk<SegmentAnswer>(message);
   decode_bulk<RgbdFrameMessage>(message);
   decode_bulk<Snapshot>(message);
   return 0;

@@ -46,6 +46,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const auto events = fuzzing::read_events({data, size});
   receive<CloudSlice>(channels::kCloudSlice, events);
   receive<SegmentUpdate>(channels::kSegmentUpdate, events);
+  receive<SegmentAnswer>(channels::kSegmentAnswer, events);
   receive<RgbdFrameMessage>(channels::kRgbdFrame, events);
   receive<Snapshot>(channels::kSnapshot, events);
   return 0;

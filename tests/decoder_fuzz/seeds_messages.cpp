@@ -42,6 +42,8 @@ Seeds message_seeds() {
           {"resend_request", encode(example_resend_request())},
           {"cloud_slice", encode_chunk(example_slice(10), 0, 0, kDefaultMaxChunkBytes)},
           {"segment_update", encode_chunk(example_update(12), 0, 0, kDefaultMaxChunkBytes)},
+          {"segment_query", encode(example_query())},
+          {"segment_answer", encode_chunk(example_answer(3), 0, 0, kDefaultMaxChunkBytes)},
           {"rgbd_frame", encode_chunk(example_frame(40, 30), 0, 0, kDefaultMaxChunkBytes)},
           {"snapshot", encode_chunk(example_snapshot(50), 0, 0, kDefaultMaxChunkBytes)}};
 }
@@ -51,6 +53,7 @@ Seeds log_seeds() {
   return {
       {"slices", log_of(channels::kCloudSlice, example_slice(90, 0), example_slice(50, 1))},
       {"updates", log_of(channels::kSegmentUpdate, example_update(200, 0), example_update(9, 1))},
+      {"answers", log_of(channels::kSegmentAnswer, example_answer(20), example_answer(0))},
       {"frames", log_of(channels::kRgbdFrame, example_frame(1'500, 900), example_frame(40, 0))},
       {"pictures", log_of(channels::kSnapshot, example_snapshot(3'000), example_snapshot(50))}};
 }

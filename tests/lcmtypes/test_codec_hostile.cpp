@@ -47,8 +47,10 @@ std::vector<Subject> subjects() {
           small("viewer_status", example_viewer_status()),
           small("heartbeat", example_heartbeat()),
           small("resend_request", example_resend_request()),
+          small("segment_query", example_query()),
           bulk("cloud_slice", example_slice(10)),
           bulk("segment_update", example_update(12)),
+          bulk("segment_answer", example_answer(4)),
           bulk("rgbd_frame", example_frame(40, 30)),
           bulk("snapshot", example_snapshot(50))};
 }
@@ -222,6 +224,35 @@ TEST(CodecBounds, NameTypeFieldValueAndBound) {
   EXPECT_THAT(refusal(example_update(1),
                       [&](SegmentUpdate& u) { u.statistics[0].area_m2 = std::nanf(""); }),
               HasSubstr("area_m2 is nan"));
+  EXPECT_THAT(refusal(example_query(), [](SegmentQuery& q) { q.place = QueryPlace{5}; }),
+              HasSubstr("segment_query_t.place is 5, expected 0 .. 4"));
+  EXPECT_THAT(refusal(example_query(), [](SegmentQuery& q) { q.client = 0; }),
+              HasSubstr("client is 0, expected > 0"));
+  EXPECT_THAT(refusal(example_query(), [](SegmentQuery& q) { q.direction_W[0] = 0.01; }),
+              AllOf(HasSubstr("direction_W"), HasSubstr("a unit vector")));
+  EXPECT_THAT(refusal(example_query(), [&](SegmentQuery& q) { q.point_W[2] = nan; }),
+              HasSubstr("point_W is nan"));
+  EXPECT_THAT(refusal(example_query(), [&](SegmentQuery& q) { q.radius_m = nan; }),
+              HasSubstr("radius_m is nan"));
+  EXPECT_THAT(refusal(example_query(),
+                      [](SegmentQuery& q) {
+                        q.place = QueryPlace::kBox;
+                        q.box_max_W[1] = -3.0;
+                      }),
+              HasSubstr("box_max_W is -3, expected at least box_min_W"));
+  EXPECT_THAT(refusal(example_query(), [](SegmentQuery& q) { q.segment_ids.resize(4'097); }),
+              HasSubstr("num_ids is 4097, expected 0 .. 4096"));
+  EXPECT_THAT(refusal(example_answer(1), [](SegmentAnswer& a) { a.num_matching = 0; }),
+              HasSubstr("num_matching is 0, expected 1 .. 321000"));
+  EXPECT_THAT(refusal(example_answer(0), [](SegmentAnswer& a) { a.problem = "\x1b[2J"; }),
+              HasSubstr("control"));
+  EXPECT_THAT(refusal(example_answer(1), [](SegmentAnswer& a) { a.segments[0].is_planar = 2; }),
+              HasSubstr("is_planar is 2"));
+  EXPECT_THAT(refusal(example_answer(1),
+                      [](SegmentAnswer& a) { a.segments[0].oriented_box_axes_W[1][1] = 1.001F; }),
+              AllOf(HasSubstr("oriented_box_axes_W"), HasSubstr("a unit vector")));
+  EXPECT_THAT(refusal(example_answer(1), [](SegmentAnswer& a) { a.contacts[0].num_pairs = 0; }),
+              HasSubstr("num_pairs is 0"));
   EXPECT_THAT(refusal(example_frame(1, 1), [](RgbdFrameMessage& f) { f.intrinsics.fx = 0; }),
               HasSubstr("rgbd_frame_t.fx is 0"));
   EXPECT_THAT(refusal(example_frame(1, 1), [](RgbdFrameMessage& f) { f.intrinsics.height = 0; }),

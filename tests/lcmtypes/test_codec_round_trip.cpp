@@ -48,6 +48,7 @@ TEST(CodecRoundTrip, SmallMessagesKeepEveryField) {
   EXPECT_TRUE(through_the_wire(example_viewer_status()) == example_viewer_status());
   EXPECT_TRUE(through_the_wire(example_heartbeat()) == example_heartbeat());
   EXPECT_TRUE(through_the_wire(example_resend_request()) == example_resend_request());
+  EXPECT_TRUE(through_the_wire(example_query()) == example_query());
 }
 
 TEST(CodecRoundTrip, BulkMessagesKeepEveryFieldWhateverTheChunkSize) {
@@ -56,6 +57,9 @@ TEST(CodecRoundTrip, BulkMessagesKeepEveryFieldWhateverTheChunkSize) {
   expect_round_trip(example_slice(5'000));
   expect_round_trip(example_update(0));
   expect_round_trip(example_update(3'001));
+  expect_round_trip(example_answer(0));
+  expect_round_trip(example_answer(1));
+  expect_round_trip(example_answer(901));
   expect_round_trip(example_frame(10'001, 0));
   expect_round_trip(example_frame(1, 70'003));
   expect_round_trip(example_snapshot(123'457));
@@ -72,6 +76,10 @@ TEST(CodecRoundTrip, LongestNamesLeaveRoomForAPayloadInTheSmallestChunk) {
   SegmentUpdate update = example_update(20);
   update.map_name = slice.map_name;
   expect_round_trip(update);
+  SegmentAnswer answer = example_answer(0);
+  answer.map_name = slice.map_name;
+  answer.problem = slice.map_name;
+  expect_round_trip(answer);
 }
 
 TEST(CodecRoundTrip, PointsMayHoldAnyValue) {

@@ -102,6 +102,72 @@ inline Snapshot example_snapshot(int image_bytes) {
   return {6'000'000, 45, "12.5 s, 100 000 points", 1280, 720, example_bytes(image_bytes)};
 }
 
+inline SegmentQuery example_query() {
+  SegmentQuery query;
+  query.utime = 8'000'000;
+  query.client = 46;
+  query.number = 3;
+  query.map_session = 42;
+  query.map_name = "office";
+  query.place = QueryPlace::kRay;
+  for (int axis = 0; axis < 3; ++axis) {
+    query.point_W[axis] = 0.5 + axis;
+    query.box_min_W[axis] = -1.0 - axis;
+    query.box_max_W[axis] = 2.0 + axis;
+  }
+  query.direction_W[1] = 1.0;
+  query.radius_m = 0.25;
+  query.segment_ids = {7, 0xFFFFFFFFU, 12};
+  query.only_planar = true;
+  query.changed_since = 9'000'000;
+  query.max_segments = 20;
+  return query;
+}
+
+inline DescribedSegment example_described_segment(std::uint32_t id) {
+  DescribedSegment segment;
+  segment.statistics.segment_id = id;
+  segment.statistics.num_points = 500;
+  segment.statistics.area_m2 = 0.05F;
+  segment.last_change_utime = 9'500'000 + id;
+  segment.oriented_box_center_W[1] = 0.25F;
+  for (int axis = 0; axis < 3; ++axis) {
+    segment.oriented_box_axes_W[axis][2 - axis] = -1.0F;
+    segment.oriented_box_size_m[axis] = 0.5F * static_cast<float>(axis);
+  }
+  segment.plane_normal_W[2] = -1.0F;
+  segment.plane_offset_m = -2.5F;
+  segment.plane_rms_m = 0.004F;
+  segment.plane_share = 0.875F;
+  segment.distance_m = 1.75F;
+  segment.is_planar = 1;
+  return segment;
+}
+
+inline SegmentAnswer example_answer(int num_segments) {
+  SegmentAnswer answer;
+  answer.utime = 8'100'000;
+  answer.session = 43;
+  answer.client = 46;
+  answer.number = 3;
+  answer.map_session = 42;
+  answer.map_name = "office";
+  answer.problem = "no map is kept";
+  answer.map_slices = 12;
+  answer.map_points = 1'000'000;
+  answer.map_segments = 321'000;
+  answer.num_matching = num_segments + 1;
+  answer.has_hit = true;
+  answer.hit_W[0] = 1.5F;
+  answer.hit_W[2] = -0.5F;
+  for (int i = 0; i < num_segments; ++i) {
+    const auto id = static_cast<std::uint32_t>(i + 1);
+    answer.segments.push_back(example_described_segment(id));
+    if (i % 3 == 0) answer.contacts.push_back({id, id + 5, 40});
+  }
+  return answer;
+}
+
 inline CameraPose example_camera_pose() {
   return {7'000'000, 42, 210, TrackingState::kTracking, example_pose()};
 }

@@ -28,6 +28,8 @@ std::map<std::string, std::vector<Bytes>> examples() {
           {channels::kCameraPose, {encode(example_camera_pose())}},
           {channels::kRgbdFrame, chunks_of(example_frame(3'000, 1'500), kSmall)},
           {channels::kSegmentUpdate, chunks_of(example_update(500), kSmall)},
+          {channels::kSegmentQuery, {encode(example_query())}},
+          {channels::kSegmentAnswer, chunks_of(example_answer(20), kSmall)},
           {channels::kSnapshot, chunks_of(example_snapshot(3'000), kSmall)},
           {channels::kMapperStatus, {encode(example_mapper_status())}},
           {channels::kSegmenterStatus, {encode(example_segmenter_status())}},

@@ -1,6 +1,8 @@
 #pragma once
 // Field by field, so that a field the codec forgets makes a test fail.
 
+#include <algorithm>
+
 #include "lcmtypes/messages.hpp"
 
 namespace kintsugi {
@@ -21,6 +23,15 @@ inline bool operator==(const SegmentUpdate& a, const SegmentUpdate& b) {
          a.num_slices == b.num_slices && a.num_points == b.num_points &&
          a.num_segments == b.num_segments && a.labels == b.labels && a.runs == b.runs &&
          a.events == b.events && a.statistics == b.statistics;
+}
+
+inline bool operator==(const SegmentAnswer& a, const SegmentAnswer& b) {
+  return a.utime == b.utime && a.session == b.session && a.client == b.client &&
+         a.number == b.number && a.map_session == b.map_session && a.map_name == b.map_name &&
+         a.problem == b.problem && a.map_slices == b.map_slices && a.map_points == b.map_points &&
+         a.map_segments == b.map_segments && a.num_matching == b.num_matching &&
+         a.has_hit == b.has_hit && std::ranges::equal(a.hit_W, b.hit_W) &&
+         a.segments == b.segments && a.contacts == b.contacts;
 }
 
 inline bool operator==(const RgbdFrameMessage& a, const RgbdFrameMessage& b) {
