@@ -59,7 +59,7 @@ bool passes_over(int error) {
 bool leaves_host(const std::string& url) {
   const std::size_t option = url.find("ttl=");
   return is_datagrams(url) && option != std::string::npos &&
-         std::atoi(url.c_str() + option + 4) > 0;
+         std::strtol(url.c_str() + option + 4, nullptr, 10) > 0;
 }
 
 }  // namespace

@@ -135,6 +135,7 @@ AbsoluteTrajectoryError absolute_trajectory_error(const Trajectory& estimate,
   AbsoluteTrajectoryError result;
   result.X_TW = Pose(Eigen::umeyama(estimated_W, actual_T, false));
   std::vector<double> errors_m;
+  errors_m.reserve(pairs.size());
   for (Eigen::Index i = 0; i < count; ++i) {
     errors_m.push_back((result.X_TW * estimated_W.col(i) - actual_T.col(i)).norm());
   }

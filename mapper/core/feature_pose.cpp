@@ -63,7 +63,7 @@ std::optional<Pose> pose_from_features(const ImageFeatures& features_K,
                                          cv::noArray(), rotation, translation, false, kTrials,
                                          kMaxError, kConfidence, agreeing, cv::SOLVEPNP_EPNP);
   if (!solved || static_cast<int>(agreeing.size()) < kMinAgreeing) return std::nullopt;
-  const Pose X_KC = to_pose(rotation, translation).inverse();
+  Pose X_KC = to_pose(rotation, translation).inverse();
   if (!X_KC.matrix().allFinite()) return std::nullopt;
   return X_KC;
 }

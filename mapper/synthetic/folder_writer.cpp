@@ -65,7 +65,9 @@ FrameRange FrameRange::parse(const std::string& text, int count) {
       if (error != std::errc()) fail("first:end:step");
       at = stopped;
     }
-    if (at != end && *at++ != ':') fail("first:end:step");
+    if (at == end) break;
+    if (*at != ':') fail("first:end:step");
+    ++at;
   }
   if (at != end) fail("first:end:step");
   if (range.first < 0 || range.end > count || range.first >= range.end || range.step < 1) {

@@ -86,7 +86,8 @@ void FlannIndex::remove(std::span<const PointIndex> points) {
   std::unordered_map<Tile*, std::unordered_set<PointIndex>> leaving;
   for (const PointIndex i : points) leaving[tile_at(i).get()].insert(i);
   std::vector<Tile*> dirty;
-  for (const auto& [tile, gone] : leaving) {
+  // The order in which trees are built decides nothing.
+  for (const auto& [tile, gone] : leaving) {  // NOLINT(*-nondeterministic-pointer-iteration-order)
     std::erase_if(tile->points, [&gone = gone](PointIndex i) { return gone.contains(i); });
     tile->tree.reset();
     dirty.push_back(tile);

@@ -30,6 +30,7 @@ double mean_over_runs(const Replay& replay, double MeasuredRun::*value) {
 
 SliceTimes slice_times(const Replay& replay) {
   std::vector<double> times_ms;
+  times_ms.reserve(replay.runs.size());
   for (const MeasuredRun& run : replay.runs) times_ms.push_back(run.engine_ms);
   std::sort(times_ms.begin(), times_ms.end());
   const auto rank =

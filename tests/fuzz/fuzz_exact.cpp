@@ -100,6 +100,7 @@ std::vector<CloudPoint> generated_map() {
 
 int fuzz(const Options& options) {
   std::vector<std::vector<CloudPoint>> maps;
+  maps.reserve(options.maps.size() + 1);
   for (const auto& file : options.maps) maps.push_back(bench::all_points(bench::read_map(file)));
   if (maps.empty()) maps.push_back(generated_map());
 

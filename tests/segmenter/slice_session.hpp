@@ -93,6 +93,7 @@ class LabelMirror {
 
   std::vector<SegmentStatistics> statistics() const {
     std::vector<SegmentStatistics> all;
+    all.reserve(statistics_.size());
     for (const auto& [id, statistics] : statistics_) {
       all.push_back(statistics);
     }
