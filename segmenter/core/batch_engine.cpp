@@ -60,16 +60,15 @@ void BatchEngine::join_fragments_of(std::span<const PointIndex> points) {
 }
 
 BatchStatistics BatchEngine::segment(std::span<const PointIndex> points) {
-  const double max_weight = config_.threshold + config_.scale;
   forest_ = SegmentForest(config_.threshold, config_.scale);
   forest_.grow(cloud_.size());
   if (index_) {
-    const std::vector<Edge> edges = build_graph(cloud_, *index_, max_weight);
+    const std::vector<Edge> edges = build_graph(cloud_, *index_, config_);
     return {.num_edges = static_cast<std::int64_t>(edges.size()),
             .num_joins = join_segments(edges, forest_)};
   }
   JoinObserver nobody;
-  return segment_points(cloud_, points, config_.radius_m(), max_weight, forest_, nobody);
+  return segment_points(cloud_, points, config_, forest_, nobody);
 }
 
 double BatchEngine::theta(ComponentId component) const {

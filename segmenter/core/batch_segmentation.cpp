@@ -32,14 +32,15 @@ using EdgesByThread = oneapi::tbb::enumerable_thread_specific<EdgeBuckets>;
 
 /// The edges with a weight in `range` between points for which keep() holds.
 template <typename Keep>
-EdgesByThread find_edges(const PointRows& rows, const WeightRange& range, const Keep& keep) {
+EdgesByThread find_edges(const PointRows& rows, double color_weight, const WeightRange& range,
+                         const Keep& keep) {
   EdgesByThread found;
   oneapi::tbb::parallel_for(std::size_t{0}, rows.num_rows(), [&](std::size_t row) {
     EdgeBuckets& edges = found.local();
     rows.for_each_pair(row, keep, [&](PointRows::Slot a, PointRows::Slot b) {
       const PointRows::Point& p = rows.points()[a];
       const PointRows::Point& q = rows.points()[b];
-      const float weight = edge_weight(p, q);
+      const float weight = edge_weight(p, q, color_weight);
       if (weight >= range.from && weight < range.to) {
         edges.add({weight, std::min(p.index, q.index), std::max(p.index, q.index)});
       }
@@ -66,13 +67,13 @@ BatchStatistics join(EdgesByThread& found, SegmentForest& forest, JoinObserver& 
 }
 
 /// A weight that about one in kFirstShare edges is below, by a sample of the rows.
-double weight_of_first_share(const PointRows& rows, double max_weight) {
+double weight_of_first_share(const PointRows& rows, double color_weight, double max_weight) {
   std::vector<float> weights;
   for (std::size_t row = 0; row < rows.num_rows(); row += kRowsPerSample) {
     rows.for_each_pair(
         row, [](PointRows::Slot, PointRows::Slot) { return true; },
         [&](PointRows::Slot a, PointRows::Slot b) {
-          const float weight = edge_weight(rows.points()[a], rows.points()[b]);
+          const float weight = edge_weight(rows.points()[a], rows.points()[b], color_weight);
           if (weight < max_weight) weights.push_back(weight);
         });
   }
@@ -85,12 +86,14 @@ double weight_of_first_share(const PointRows& rows, double max_weight) {
 }  // namespace
 
 BatchStatistics segment_points(const PointCloud& cloud, std::span<const PointIndex> points,
-                               float radius_m, double max_weight, SegmentForest& forest,
+                               const EngineConfig& config, SegmentForest& forest,
                                JoinObserver& observer) {
-  const PointRows rows(cloud, points, radius_m);
-  const double limit =
-      points.size() < kMinPointsForTwoPasses ? max_weight : weight_of_first_share(rows, max_weight);
-  EdgesByThread light = find_edges(rows, WeightRange{0.0, limit},
+  const PointRows rows(cloud, points, config.radius_m());
+  const double max_weight = config.max_weight();
+  const double limit = points.size() < kMinPointsForTwoPasses
+                           ? max_weight
+                           : weight_of_first_share(rows, config.color_weight, max_weight);
+  EdgesByThread light = find_edges(rows, config.color_weight, WeightRange{0.0, limit},
                                    [](PointRows::Slot, PointRows::Slot) { return true; });
   const BatchStatistics first = join(light, forest, observer);
   if (limit >= max_weight) return first;
@@ -100,7 +103,7 @@ BatchStatistics segment_points(const PointCloud& cloud, std::span<const PointInd
     segments[k] = forest.find(rows.points()[k].index);
   }
   EdgesByThread heavy =
-      find_edges(rows, WeightRange{limit, max_weight},
+      find_edges(rows, config.color_weight, WeightRange{limit, max_weight},
                  [&](PointRows::Slot a, PointRows::Slot b) { return segments[a] != segments[b]; });
   const BatchStatistics second = join(heavy, forest, observer);
   return {first.num_edges + second.num_edges, first.num_joins + second.num_joins};

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <span>
 
+#include "segmenter/core/engine.hpp"
 #include "segmenter/core/felzenszwalb.hpp"
 #include "segmenter/core/point_cloud.hpp"
 #include "segmenter/core/segment_forest.hpp"
@@ -16,15 +17,15 @@ struct BatchStatistics {
 };
 
 /// Algorithms 1 and 2 for all of `points` at once: joins them in `forest`, where each must be alone
-/// in its segment. `max_weight` is T + k: heavier edges cannot join anything, since no threshold
-/// theta exceeds it, and are neither kept nor told. `radius_m` > 0.
+/// in its segment. Edges of max_weight() and more cannot join anything, since no threshold theta
+/// exceeds it, and are neither kept nor told.
 ///
 /// After Osipov, Sanders and Singler, "The Filter-Kruskal Minimum Spanning Tree Algorithm" (2009):
 /// the lightest third of the edges, which is enough for nearly all joins, is found and joined
 /// first; then of the others only those between two of the segments so far. The result, and what
 /// `observer` is told, are those of all edges in ascending order, for any number of threads.
 BatchStatistics segment_points(const PointCloud& cloud, std::span<const PointIndex> points,
-                               float radius_m, double max_weight, SegmentForest& forest,
+                               const EngineConfig& config, SegmentForest& forest,
                                JoinObserver& observer);
 
 }  // namespace kintsugi::segmenter

@@ -8,7 +8,8 @@
 
 namespace kintsugi::segmenter {
 
-// A Point has a position x, y, z and a unit normal nx, ny, nz, finite float32 all.
+// A Point has a position x, y, z and a unit normal nx, ny, nz, finite float32 all, and a colour
+// red, green, blue of 8 bits each; black stands for none.
 
 /// In double, summed as (x + y) + z: like each rounding below, part of the definition of weights.
 inline double dot_product(double ax, double ay, double az, double bx, double by, double bz) {
@@ -21,23 +22,45 @@ double normal_difference(const Point& i, const Point& j) {
   return std::max(0.0, 1.0 - dot_product(i.nx, i.ny, i.nz, j.nx, j.ny, j.nz));
 }
 
-/// Eq. 2 for the edge from point i to point j: c, squared where the surface is convex
-/// ((p_j - p_i) . n_j > 0), rounded once to float32.
+/// The squared distance of two colours, 0 to 3 * 255^2; 0 where either point has none, which says
+/// nothing about the surface.
 template <typename Point>
-float directed_edge_weight(const Point& i, const Point& j) {
+int squared_color_distance(const Point& a, const Point& b) {
+  const int red = a.red - b.red;
+  const int green = a.green - b.green;
+  const int blue = a.blue - b.blue;
+  const bool has_a = (a.red | a.green | a.blue) != 0;
+  const bool has_b = (b.red | b.green | b.blue) != 0;
+  // By arithmetic: most points have a colour, but a branch on the data hinders vectorising.
+  return static_cast<int>(has_a) * static_cast<int>(has_b) *
+         (red * red + green * green + blue * blue);
+}
+
+/// What the colours add to a weight: lambda times their squared distance in the unit cube.
+template <typename Point>
+double color_term(const Point& a, const Point& b, double color_weight) {
+  constexpr double kSquaredRange = 255.0 * 255.0;
+  return color_weight / kSquaredRange * squared_color_distance(a, b);
+}
+
+/// Eq. 2 for the edge from point i to point j: c, squared where the surface is convex
+/// ((p_j - p_i) . n_j > 0). `color_weight` (lambda, >= 0) times the colour difference is added, and
+/// the sum rounded once to float32.
+template <typename Point>
+float directed_edge_weight(const Point& i, const Point& j, double color_weight) {
   const double c = normal_difference(i, j);
   const double rise = dot_product(static_cast<double>(j.x) - i.x, static_cast<double>(j.y) - i.y,
                                   static_cast<double>(j.z) - i.z, j.nx, j.ny, j.nz);
-  return static_cast<float>(rise > 0.0 ? c * c : c);
+  return static_cast<float>((rise > 0.0 ? c * c : c) + color_term(i, j, color_weight));
 }
 
 /// The weight of the undirected edge, the smaller of both directions. Algorithm 2 inserts the two;
 /// the smaller alone gives the same partition, because an edge is either joined at its first chance
 /// or one of its sides has frozen for good.
 template <typename Point>
-float edge_weight(const Point& a, const Point& b) {
-  // What the directions share is computed once: c is the same to the bit, and p_a - p_b is
-  // -(p_b - p_a) exactly.
+float edge_weight(const Point& a, const Point& b, double color_weight) {
+  // What the directions share is computed once: c and the colour term are the same to the bit, and
+  // p_a - p_b is -(p_b - p_a) exactly.
   const double c = normal_difference(a, b);
   const double dx = static_cast<double>(b.x) - a.x;
   const double dy = static_cast<double>(b.y) - a.y;
@@ -49,8 +72,8 @@ float edge_weight(const Point& a, const Point& b) {
   const auto either =
       static_cast<std::size_t>(is_convex_ab) | static_cast<std::size_t>(is_convex_ba);
   const auto both = static_cast<std::size_t>(is_convex_ab) & static_cast<std::size_t>(is_convex_ba);
-  const std::array<float, 2> weights = {static_cast<float>(c), static_cast<float>(c * c)};
-  return weights[c <= 1.0 ? either : both];
+  const std::array<double, 2> weights = {c, c * c};
+  return static_cast<float>(weights[c <= 1.0 ? either : both] + color_term(a, b, color_weight));
 }
 
 }  // namespace kintsugi::segmenter

@@ -32,8 +32,8 @@ ExactEngine::ExactEngine(const PointCloud& cloud, const EngineConfig& config)
       config_(config),
       rule_{config.threshold, config.scale},
       index_(make_neighbour_index(config.neighbour_search, cloud, config.radius_m())),
-      edges_of_(cloud, *index_, config.threshold + config.scale),
-      edges_ahead_(cloud, *index_, config.radius_m(), config.threshold + config.scale),
+      edges_of_(cloud, *index_, config),
+      edges_ahead_(cloud, *index_, config),
       state_(rule_),
       replay_(state_, edges_of_),
       names_(state_.vertices, state_.forest) {}
@@ -140,8 +140,7 @@ void ExactEngine::rebuild(const CloudChange& change, RunStatistics& statistics) 
   for (PointIndex x = 0; x < state_.vertices.size(); ++x) {
     if (!state_.vertices[x].is_gone) points.push_back(x);
   }
-  const BatchStatistics batch =
-      exact::build_state(cloud_, points, config_.radius_m(), rule_, state_);
+  const BatchStatistics batch = exact::build_state(cloud_, points, config_, state_);
   statistics.replay_ms += stopwatch.lap_ms();
   names_.update_all(change.removed);
   statistics.naming_ms = stopwatch.lap_ms();

@@ -7,13 +7,14 @@
 namespace kintsugi::segmenter {
 
 std::vector<Edge> build_graph(const PointCloud& cloud, const NeighbourIndex& index,
-                              double max_weight) {
+                              const EngineConfig& config) {
+  const double max_weight = config.max_weight();
   oneapi::tbb::enumerable_thread_specific<std::vector<Edge>> found;
   index.visit_all([&](PointIndex i, std::span<const PointIndex> neighbours) {
     std::vector<Edge>& edges = found.local();
     for (const PointIndex j : neighbours) {
       if (j < i) continue;  // the other end inserts it
-      const float weight = edge_weight(cloud[i], cloud[j]);
+      const float weight = edge_weight(cloud[i], cloud[j], config.color_weight);
       if (weight < max_weight) edges.push_back({weight, i, j});
     }
   });

@@ -3,16 +3,15 @@
 #include <vector>
 
 #include "segmenter/core/edge.hpp"
+#include "segmenter/core/engine.hpp"
 #include "segmenter/core/neighbour_index.hpp"
 
 namespace kintsugi::segmenter {
 
 /// Algorithm 2 for a whole cloud: one undirected edge (i < j) for each two neighbours in `index`
-/// with a weight below `max_weight`, in no particular order.
-///
-/// A threshold theta never exceeds T + k, so an edge with weight >= T + k cannot join anything:
-/// with `max_weight` = T + k the partition is that of all edges.
+/// with a weight below config.max_weight(), in no particular order. A threshold theta never exceeds
+/// that, so heavier edges cannot join anything: the partition is that of all edges.
 std::vector<Edge> build_graph(const PointCloud& cloud, const NeighbourIndex& index,
-                              double max_weight);
+                              const EngineConfig& config);
 
 }  // namespace kintsugi::segmenter

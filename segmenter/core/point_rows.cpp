@@ -81,7 +81,7 @@ PointRows::PointRows(const PointCloud& cloud, std::span<const PointIndex> points
   points_.resize(keys.size());
   oneapi::tbb::parallel_for(std::size_t{0}, keys.size(), [&](std::size_t k) {
     const CloudPoint& p = cloud[keys[k].index];
-    points_[k] = {p.x, p.y, p.z, p.nx, p.ny, p.nz, keys[k].index};
+    points_[k] = {p.x, p.y, p.z, p.nx, p.ny, p.nz, p.red, p.green, p.blue, keys[k].index};
   });
   for (Slot k = 0; k < keys.size(); ++k) {
     const Row row{from_ordered_bits(keys[k].z), from_ordered_bits(keys[k].y), k};

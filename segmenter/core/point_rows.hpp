@@ -23,6 +23,7 @@ class PointRows {
   struct Point {
     float x, y, z;     ///< metres, W
     float nx, ny, nz;  ///< unit normal, W
+    std::uint8_t red, green, blue;
     PointIndex index;  ///< in the cloud
   };
   /// Position of a point in points().

@@ -95,16 +95,17 @@ void VotingEngine::extend_graph(std::span<const PointIndex> added) {
     std::vector<Edge> inner;
     std::vector<Edge> border;
   };
-  const double max_weight = config_.threshold + config_.scale;
+  const double max_weight = config_.max_weight();
+  const double color_weight = config_.color_weight;
   oneapi::tbb::enumerable_thread_specific<Found> found;
   index_->visit_concurrently(added, [&](PointIndex i, std::span<const PointIndex> neighbours) {
     Found& edges = found.local();
     for (const PointIndex j : neighbours) {
       if (!is_in_D(j)) {
         // Every edge counts in the vote, also one that is too heavy to join anything.
-        edges.border.push_back({directed_edge_weight(cloud_[i], cloud_[j]), i, j});
+        edges.border.push_back({directed_edge_weight(cloud_[i], cloud_[j], color_weight), i, j});
       } else if (round_added_[j] < round_ || i < j) {
-        const float weight = edge_weight(cloud_[i], cloud_[j]);
+        const float weight = edge_weight(cloud_[i], cloud_[j], color_weight);
         if (weight < max_weight) edges.inner.push_back({weight, std::min(i, j), std::max(i, j)});
       }
     }

@@ -75,7 +75,7 @@ std::vector<ThetaHistory> theta_histories(const PointCloud& cloud,
   part.add_slice(0, points_W);
   const auto index = make_neighbour_index(config.neighbour_search, part, config.radius_m());
   index->insert(part.take_change().added);
-  std::vector<Edge> edges = build_graph(part, *index, config.threshold + config.scale);
+  std::vector<Edge> edges = build_graph(part, *index, config);
   std::erase_if(edges, [&](const Edge& edge) { return label_of[edge.i] != label_of[edge.j]; });
 
   SegmentForest forest(config.threshold, config.scale);

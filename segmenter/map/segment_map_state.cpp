@@ -103,7 +103,7 @@ struct Partition {
     }
     auto theta = state.thetas.begin();
     for (const auto& [id, name] : name_of_segment) {
-      const double max_theta = state.config.engine.threshold + state.config.engine.scale;
+      const double max_theta = state.config.engine.max_weight();
       if (!(*theta > 0.0 && *theta <= max_theta)) {
         throw std::invalid_argument("segment " + std::to_string(id) + " has theta " +
                                     std::to_string(*theta) + ", must be above 0 and at most T + k");

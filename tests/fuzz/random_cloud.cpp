@@ -10,6 +10,7 @@ namespace kintsugi::segmenter::fuzz {
 namespace {
 
 using testing::CloudShape;
+using testing::colored_as;
 using testing::make_point;
 
 /// The points of a cube around a random one.
@@ -79,8 +80,9 @@ void tie(Random& random, std::vector<CloudPoint>& points) {
   const double step_m = 0.75 * kResolution_m;
   const auto snap = [&](float x) { return snaps_places ? std::round(x / step_m) * step_m : x; };
   for (CloudPoint& p : points) {
-    p = make_point(snap(p.x), snap(p.y), snap(p.z), tilt * static_cast<double>(random.below(3)),
-                   tilt * static_cast<double>(random.below(2)), 1.0);
+    const double slope_x = tilt * static_cast<double>(random.below(3));
+    const double slope_y = tilt * static_cast<double>(random.below(2));
+    p = colored_as(p, make_point(snap(p.x), snap(p.y), snap(p.z), slope_x, slope_y, 1.0));
   }
 }
 
@@ -90,7 +92,30 @@ void tilt(Random& random, std::vector<CloudPoint>& points) {
   for (CloudPoint& p : points) {
     const double angle = random.uniform(0.0, 6.3);
     const double slope = random.log_uniform(1e-2 * most, most);
-    p = make_point(p.x, p.y, p.z, slope * std::cos(angle), slope * std::sin(angle), 1.0);
+    p = colored_as(
+        p, make_point(p.x, p.y, p.z, slope * std::cos(angle), slope * std::sin(angle), 1.0));
+  }
+}
+
+/// Spots of a colour or of none, with noise or (many equal differences) without.
+void paint(Random& random, std::vector<CloudPoint>& points) {
+  constexpr std::size_t kColors = 4;
+  std::array<std::array<double, 3>, kColors> palette{};
+  for (std::size_t k = 1; k < kColors; ++k) {  // the first is black: no colour
+    for (double& channel : palette[k]) channel = random.uniform(0.0, 255.0);
+  }
+  const double noise = random.pick(std::vector<double>{0.0, 2.0, 20.0});
+  const double spot_m = random.log_uniform(0.5, 20.0) * kResolution_m;
+  const auto cell = [&](float x) { return static_cast<std::size_t>(std::abs(x) / spot_m); };
+  for (CloudPoint& p : points) {
+    const std::size_t color = (cell(p.x) + 3 * cell(p.y) + cell(p.z)) % kColors;
+    const auto channel = [&](std::size_t c) {
+      const double shade = color == 0 ? 0.0 : random.uniform(-noise, noise);
+      return static_cast<std::uint8_t>(std::clamp(palette[color][c] + shade, 0.0, 255.0));
+    };
+    p.red = channel(0);
+    p.green = channel(1);
+    p.blue = channel(2);
   }
 }
 
@@ -132,6 +157,7 @@ std::vector<CloudPoint> random_cloud(Random& random, std::size_t num_points,
   } else if (!has_weights || kind < 0.55) {
     tilt(random, points);
   }
+  if (random.chance(0.7)) paint(random, points);
   arrange(random, points);
   return points;
 }

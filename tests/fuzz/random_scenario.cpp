@@ -12,14 +12,17 @@
 namespace kintsugi::segmenter::fuzz {
 namespace {
 
+using testing::colored_as;
 using testing::make_point;
 
-/// The paper's parameters mostly; others shift how much a size weighs against a weight.
+/// The paper's parameters mostly; others shift how much a size weighs against a weight, or a colour
+/// against a normal.
 EngineConfig random_config(Random& random) {
   EngineConfig config;
   config.resolution_m = kResolution_m;
   if (random.chance(0.3)) config.threshold = random.log_uniform(1e-4, 1e-2);
   if (random.chance(0.4)) config.scale = random.log_uniform(1e-5, 2e-1);
+  if (random.chance(0.6)) config.color_weight = random.log_uniform(1e-4, 1e-1);
   // Replayed, whatever the cost; or given up in the middle and built anew.
   if (random.chance(0.8)) config.rebuild_share = 1e9;
   if (random.chance(0.2)) {
@@ -47,9 +50,11 @@ struct RigidMotion {
   CloudPoint operator()(const CloudPoint& p) const {
     const double x = p.x - centre.x;
     const double y = p.y - centre.y;
-    return make_point(centre.x + cos_yaw * x - sin_yaw * y + shift_m[0],
-                      centre.y + sin_yaw * x + cos_yaw * y + shift_m[1], p.z + shift_m[2],
-                      cos_yaw * p.nx - sin_yaw * p.ny, sin_yaw * p.nx + cos_yaw * p.ny, p.nz);
+    const CloudPoint moved =
+        make_point(centre.x + cos_yaw * x - sin_yaw * y + shift_m[0],
+                   centre.y + sin_yaw * x + cos_yaw * y + shift_m[1], p.z + shift_m[2],
+                   cos_yaw * p.nx - sin_yaw * p.ny, sin_yaw * p.nx + cos_yaw * p.ny, p.nz);
+    return colored_as(p, moved);
   }
 };
 
@@ -171,7 +176,7 @@ class ScenarioWriter {
       const double z = jitter(p.z, shift_m);
       const double nx = jitter(p.nx, tilt);
       const double ny = jitter(p.ny, tilt);
-      add_new(make_point(x, y, z, nx, ny, jitter(p.nz, tilt)));
+      add_new(colored_as(p, make_point(x, y, z, nx, ny, jitter(p.nz, tilt))));
     }
   }
 

@@ -1,5 +1,6 @@
 #include "tests/fuzz/scenario.hpp"
 
+#include <cstdint>
 #include <istream>
 #include <limits>
 #include <ostream>
@@ -20,6 +21,14 @@ Number read_number(std::istream& in, const std::string& what) {
   Number number{};
   if (!(in >> number)) throw std::runtime_error("scenario: expected " + what);
   return number;
+}
+
+std::uint8_t read_color_channel(std::istream& in) {
+  const int value = read_number<int>(in, "a colour channel");
+  if (value < 0 || value > UINT8_MAX) {
+    throw std::runtime_error("scenario: colour channel " + std::to_string(value));
+  }
+  return static_cast<std::uint8_t>(value);
 }
 
 void expect_word(std::istream& in, const std::string& word) {
@@ -47,13 +56,14 @@ std::vector<PoolIndex> read_indices(std::istream& in, const char* name, std::siz
 void write_scenario(std::ostream& out, const Scenario& scenario) {
   out.precision(std::numeric_limits<double>::max_digits10);
   const EngineConfig& config = scenario.config;
-  out << "config " << config.threshold << ' ' << config.scale << ' ' << config.resolution_m << ' '
-      << config.radius_factor << ' ' << config.rebuild_share << ' ' << config.explore_share << ' '
-      << config.explore_at_least << '\n';
+  out << "config " << config.threshold << ' ' << config.scale << ' ' << config.color_weight << ' '
+      << config.resolution_m << ' ' << config.radius_factor << ' ' << config.rebuild_share << ' '
+      << config.explore_share << ' ' << config.explore_at_least << '\n';
   out << "slice_points " << scenario.slice_points << '\n';
   out << "points " << scenario.pool.size() << '\n';
   for (const CloudPoint& p : scenario.pool) {
-    out << p.x << ' ' << p.y << ' ' << p.z << "  " << p.nx << ' ' << p.ny << ' ' << p.nz << '\n';
+    out << p.x << ' ' << p.y << ' ' << p.z << "  " << p.nx << ' ' << p.ny << ' ' << p.nz << "  "
+        << int{p.red} << ' ' << int{p.green} << ' ' << int{p.blue} << '\n';
   }
   out << "steps " << scenario.steps.size() << '\n';
   for (const Step& step : scenario.steps) {
@@ -67,8 +77,8 @@ Scenario read_scenario(std::istream& in) {
   expect_word(in, "config");
   EngineConfig& config = scenario.config;
   for (double* const value :
-       {&config.threshold, &config.scale, &config.resolution_m, &config.radius_factor,
-        &config.rebuild_share, &config.explore_share}) {
+       {&config.threshold, &config.scale, &config.color_weight, &config.resolution_m,
+        &config.radius_factor, &config.rebuild_share, &config.explore_share}) {
     *value = read_number<double>(in, "a parameter");
   }
   config.explore_at_least = read_number<std::int64_t>(in, "a number of points");
@@ -80,6 +90,9 @@ Scenario read_scenario(std::istream& in) {
   for (CloudPoint& p : scenario.pool) {
     for (float* const value : {&p.x, &p.y, &p.z, &p.nx, &p.ny, &p.nz}) {
       *value = read_number<float>(in, "a coordinate");
+    }
+    for (std::uint8_t* const channel : {&p.red, &p.green, &p.blue}) {
+      *channel = read_color_channel(in);
     }
   }
   expect_word(in, "steps");

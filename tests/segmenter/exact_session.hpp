@@ -21,19 +21,19 @@ namespace kintsugi::segmenter::exact::testing {
 /// not; the vertex of a point has its number in the pool.
 class Session {
  public:
-  static constexpr JoinRule kRule{.threshold = 0.001, .scale = 0.0005};
-  static constexpr double kMaxWeight = kRule.threshold + kRule.scale;
-  static constexpr float kRadius_m = 0.02F;
+  static constexpr EngineConfig kConfig{.threshold = 0.001, .scale = 0.0005, .color_weight = 0.01};
+  static constexpr JoinRule kRule{.threshold = kConfig.threshold, .scale = kConfig.scale};
 
   explicit Session(const std::vector<CloudPoint>& pool_W)
-      : index_(make_neighbour_index(NeighbourSearch::kGrid, cloud_, kRadius_m)) {
+      : index_(make_neighbour_index(NeighbourSearch::kGrid, cloud_, kConfig.radius_m())) {
     cloud_.add_slice(0, pool_W);
     EXPECT_EQ(cloud_.num_live(), pool_W.size());
     state_.vertices.resize(cloud_.size());
     for (PointIndex a = 0; a < cloud_.size(); ++a) {
       for (PointIndex b = a + 1; b < cloud_.size(); ++b) {
-        const float weight = edge_weight(cloud_[a], cloud_[b]);
-        if (!are_neighbours(cloud_[a], cloud_[b], kRadius_m) || weight >= kMaxWeight) continue;
+        if (!are_neighbours(cloud_[a], cloud_[b], kConfig.radius_m())) continue;
+        const float weight = edge_weight(cloud_[a], cloud_[b], kConfig.color_weight);
+        if (weight >= kConfig.max_weight()) continue;
         possible_edges_.insert(EdgeKey::of(weight, a, b));
       }
     }
@@ -82,7 +82,7 @@ class Session {
     for (PointIndex x = 0; x < cloud_.size(); ++x) {
       if (is_in(x)) points.push_back(x);
     }
-    build_state(cloud_, points, kRadius_m, kRule, state_);
+    build_state(cloud_, points, kConfig, state_);
     names_.update_all(removed);
     names_check_.expect(added);
   }
@@ -94,7 +94,7 @@ class Session {
   std::unique_ptr<NeighbourIndex> index_;
   std::set<EdgeKey> possible_edges_;
   State state_{kRule};
-  EdgeFinder edges_of_{cloud_, *index_, kMaxWeight};
+  EdgeFinder edges_of_{cloud_, *index_, kConfig};
   Replay replay_{state_, edges_of_};
   ComponentNames names_{state_.vertices, state_.forest};
   NamesCheck names_check_{state_.vertices, state_.forest, names_};

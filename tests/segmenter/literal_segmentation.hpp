@@ -20,6 +20,7 @@ namespace kintsugi::segmenter::testing {
 struct LiteralParameters {
   double T = 0.001;
   double k = 0.0005;
+  double lambda = 0.0;
   double beta = 0.85;
   float r = 0.02F;
 };
@@ -37,8 +38,15 @@ struct LiteralSegment {
 
 using LiteralSegments = std::list<LiteralSegment>;
 
-/// Eq. 2.
-inline float literal_weight(const CloudPoint& i, const CloudPoint& j) {
+/// ||(r, g, b)_i - (r, g, b)_j||^2, channels from 0 to 255; black is no colour.
+inline double literal_color_difference(const CloudPoint& i, const CloudPoint& j) {
+  if (i.red == 0 && i.green == 0 && i.blue == 0) return 0.0;
+  if (j.red == 0 && j.green == 0 && j.blue == 0) return 0.0;
+  return std::pow(i.red - j.red, 2) + std::pow(i.green - j.green, 2) + std::pow(i.blue - j.blue, 2);
+}
+
+/// Eq. 2 with colour.
+inline float literal_weight(const CloudPoint& i, const CloudPoint& j, double lambda) {
   const double x = static_cast<double>(i.nx) * static_cast<double>(j.nx);
   const double y = static_cast<double>(i.ny) * static_cast<double>(j.ny);
   const double z = static_cast<double>(i.nz) * static_cast<double>(j.nz);
@@ -48,7 +56,8 @@ inline float literal_weight(const CloudPoint& i, const CloudPoint& j) {
   const double dy = static_cast<double>(j.y) - static_cast<double>(i.y);
   const double dz = static_cast<double>(j.z) - static_cast<double>(i.z);
   const double side = dx * j.nx + dy * j.ny + dz * j.nz;
-  return side > 0.0 ? static_cast<float>(c * c) : static_cast<float>(c);
+  const double color = lambda / (255.0 * 255.0) * literal_color_difference(i, j);
+  return static_cast<float>((side > 0.0 ? c * c : c) + color);
 }
 
 inline bool literal_neighbours(const CloudPoint& i, const CloudPoint& j, float r) {
@@ -61,15 +70,16 @@ inline bool literal_neighbours(const CloudPoint& i, const CloudPoint& j, float r
 /// Algorithm 2. Equal weights come in an order drawn from `seed`: it must not matter.
 inline std::vector<LiteralEdge> literal_build_graph(std::span<const CloudPoint> points,
                                                     const std::set<int>& border,
-                                                    const std::set<int>& D, float r,
+                                                    const std::set<int>& D,
+                                                    const LiteralParameters& parameters,
                                                     unsigned seed) {
   std::vector<LiteralEdge> E;
   std::set<int> all = border;
   all.insert(D.begin(), D.end());
   for (const int i : D) {
     for (const int j : all) {
-      if (i != j && literal_neighbours(points[i], points[j], r)) {
-        E.push_back({i, j, literal_weight(points[i], points[j])});
+      if (i != j && literal_neighbours(points[i], points[j], parameters.r)) {
+        E.push_back({i, j, literal_weight(points[i], points[j], parameters.lambda)});
       }
     }
   }
@@ -120,7 +130,7 @@ inline LiteralPartition literal_batch(std::span<const CloudPoint> points,
                                       const LiteralParameters& parameters, unsigned seed = 0) {
   std::set<int> D;
   for (int i = 0; i < static_cast<int>(points.size()); ++i) D.insert(i);
-  const auto E = literal_build_graph(points, {}, D, parameters.r, seed);
+  const auto E = literal_build_graph(points, {}, D, parameters, seed);
   return literal_segmenter(E, static_cast<int>(points.size()), parameters.T, parameters.k);
 }
 
@@ -137,7 +147,7 @@ class LiteralVoting {
     num_points_ = static_cast<int>(points.size());
     for (int c = 0;; ++c) {
       const std::set<int> border = border_of(D);
-      const auto E = literal_build_graph(points, border, D, parameters_.r, seed);
+      const auto E = literal_build_graph(points, border, D, parameters_, seed);
       std::set<int> discrepant;
       LiteralPartition fresh = segment_graph(D, E, border, discrepant);
       const std::vector<LiteralSegments::iterator> voted = vote(discrepant, D, E, c);

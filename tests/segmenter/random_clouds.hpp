@@ -22,6 +22,14 @@ inline CloudPoint make_point(double x, double y, double z, double nx, double ny,
   return p;
 }
 
+/// `p` in the colour of `other`.
+inline CloudPoint colored_as(const CloudPoint& other, CloudPoint p) {
+  p.red = other.red;
+  p.green = other.green;
+  p.blue = other.blue;
+  return p;
+}
+
 enum class CloudShape {
   kWaves,      ///< a wavy sheet with noise: segments of many sizes
   kLattice,    ///< a lattice whose normals take few values: many equal weights and distances

@@ -13,9 +13,7 @@ namespace {
 using testing::CloudShape;
 using testing::random_cloud;
 
-constexpr double kT = 0.001;
-constexpr double kK = 0.0005;
-constexpr float kRadius_m = 0.02F;
+constexpr EngineConfig kConfig{.threshold = 0.001, .scale = 0.0005, .color_weight = 0.003};
 
 struct Told {
   bool is_join;
@@ -57,25 +55,24 @@ Outcome outcome_of(Recorder&& recorder, SegmentForest& forest, std::int64_t num_
 }
 
 SegmentForest singletons(PointIndex num_points) {
-  SegmentForest forest(kT, kK);
+  SegmentForest forest(kConfig.threshold, kConfig.scale);
   forest.grow(num_points);
   return forest;
 }
 
 Outcome in_one_pass(const PointCloud& cloud, const std::vector<PointIndex>& points) {
-  const auto index = make_neighbour_index(NeighbourSearch::kGrid, cloud, kRadius_m);
+  const auto index = make_neighbour_index(NeighbourSearch::kGrid, cloud, kConfig.radius_m());
   index->insert(points);
   SegmentForest forest = singletons(cloud.size());
   Recorder recorder;
-  const auto num_joins = join_segments(build_graph(cloud, *index, kT + kK), forest, recorder);
+  const auto num_joins = join_segments(build_graph(cloud, *index, kConfig), forest, recorder);
   return outcome_of(std::move(recorder), forest, num_joins);
 }
 
 Outcome by_rows(const PointCloud& cloud, const std::vector<PointIndex>& points) {
   SegmentForest forest = singletons(cloud.size());
   Recorder recorder;
-  const BatchStatistics statistics =
-      segment_points(cloud, points, kRadius_m, kT + kK, forest, recorder);
+  const BatchStatistics statistics = segment_points(cloud, points, kConfig, forest, recorder);
   return outcome_of(std::move(recorder), forest, statistics.num_joins);
 }
 

@@ -25,7 +25,8 @@ std::vector<CloudPoint> chain(const std::vector<double>& weights) {
 }
 
 double theta(const std::vector<CloudPoint>& points, std::size_t i, int size) {
-  return static_cast<double>(edge_weight(points[i], points[i + 1])) + EngineConfig().scale / size;
+  return static_cast<double>(edge_weight(points[i], points[i + 1], 0.0)) +
+         EngineConfig().scale / size;
 }
 
 ThetaHistory history_of_one_segment(const std::vector<CloudPoint>& points) {

@@ -30,7 +30,7 @@ class Built {
       points.push_back(x);
       state_.vertices.reset(x);
     }
-    statistics_ = build_state(cloud_, points, Session::kRadius_m, Session::kRule, state_);
+    statistics_ = build_state(cloud_, points, Session::kConfig, state_);
   }
 
   const State& state() const { return state_; }

@@ -46,8 +46,9 @@ TEST(Harness, ComparesWithTheLiteralAlgorithm) {
     std::vector<CloudPoint> points_W;
     for (const PointIndex i : map.live()) points_W.push_back(map.cloud()[i]);
     const Partition partition = batch_partition(points_W, scenario.config);
-    const auto literal = testing::literal_batch(
-        points_W, {.T = scenario.config.threshold, .k = scenario.config.scale});
+    const auto literal = testing::literal_batch(points_W, {.T = scenario.config.threshold,
+                                                           .k = scenario.config.scale,
+                                                           .lambda = scenario.config.color_weight});
     for (std::size_t k = 0; k < points_W.size(); ++k, ++num_compared) {
       const testing::LiteralSegment& segment = *literal.of.at(static_cast<int>(k));
       ASSERT_EQ(partition.labels[k], static_cast<PointIndex>(*segment.d.begin()));
@@ -120,7 +121,7 @@ TEST(Harness, WritesAScenarioThatReadsBackTheSame) {
 
 TEST(Harness, RefusesWhatIsNoScenario) {
   std::istringstream text(
-      "config 0.001 0.0005 0.01 2 1 1 0\nslice_points 1\npoints 0\nsteps 1\nremove 1 7\n");
+      "config 0.001 0.0005 0.003 0.01 2 1 1 0\nslice_points 1\npoints 0\nsteps 1\nremove 1 7\n");
   EXPECT_THAT([&] { read_scenario(text); },
               ::testing::ThrowsMessage<std::runtime_error>(HasSubstr("point 7 of 0")));
 }

@@ -85,7 +85,7 @@ TEST(WeightedLattice, HasTheWeightsWantedAndNoOtherEdges) {
       if (!are_neighbours(points[i], points[j], radius_m)) continue;
       ++num_edges;
       const double wanted = j == twig ? 300 * kMicro : row[i];
-      EXPECT_NEAR(edge_weight(points[i], points[j]), wanted, kRounding);
+      EXPECT_NEAR(edge_weight(points[i], points[j], 0.0), wanted, kRounding);
     }
   }
   EXPECT_EQ(num_edges, 5);
@@ -98,7 +98,7 @@ TEST(WeightedLattice, ClosesASquareWithEqualSumsOfOppositeWeights) {
   lattice.add({1, 1}, 1, 400 * kMicro);
   lattice.add({0, 1}, 2, 700 * kMicro);
   // The products of two weights, up to 3e-7, are neglected.
-  EXPECT_NEAR(edge_weight(lattice.points()[0], lattice.points()[3]), 400 * kMicro, 1e-6);
+  EXPECT_NEAR(edge_weight(lattice.points()[0], lattice.points()[3], 0.0), 400 * kMicro, 1e-6);
 }
 
 // The pitfalls.

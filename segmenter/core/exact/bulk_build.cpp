@@ -87,12 +87,11 @@ void build_history(PointIndex host, State& state, std::vector<PointIndex>& child
 }  // namespace
 
 BatchStatistics build_state(const PointCloud& cloud, std::span<const PointIndex> points,
-                            float radius_m, const JoinRule& rule, State& state) {
-  SegmentForest forest(rule.threshold, rule.scale);
+                            const EngineConfig& config, State& state) {
+  SegmentForest forest(config.threshold, config.scale);
   forest.grow(static_cast<PointIndex>(state.vertices.size()));
   Recorder recorder(forest, state, points.size());
-  const BatchStatistics statistics =
-      segment_points(cloud, points, radius_m, rule.threshold + rule.scale, forest, recorder);
+  const BatchStatistics statistics = segment_points(cloud, points, config, forest, recorder);
   recorder.enter_joins();
 
   using Range = oneapi::tbb::blocked_range<std::size_t>;

@@ -8,8 +8,8 @@
 namespace kintsugi::segmenter::exact {
 
 /// Builds the state of the engine from scratch by Algorithm 1 over `points`, in little more than
-/// its own time. `state` is clear; is_gone of all others. `radius_m` > 0.
+/// its own time. `state` is clear; is_gone of all others.
 BatchStatistics build_state(const PointCloud& cloud, std::span<const PointIndex> points,
-                            float radius_m, const JoinRule& rule, State& state);
+                            const EngineConfig& config, State& state);
 
 }  // namespace kintsugi::segmenter::exact

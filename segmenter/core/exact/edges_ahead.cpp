@@ -20,22 +20,25 @@ void EdgesAhead::finish() {
 }
 
 EdgesAhead::Found EdgesAhead::find(std::vector<CloudPoint> slice_W) const {
+  const double color_weight = config_.color_weight;
+  const double max_weight = config_.max_weight();
   Found found;
   found.slice.add_slice(0, slice_W);
   const std::vector<PointIndex> all = found.slice.take_change().added;
-  const auto own_index = make_neighbour_index(NeighbourSearch::kGrid, found.slice, radius_m_);
+  const auto own_index =
+      make_neighbour_index(NeighbourSearch::kGrid, found.slice, config_.radius_m());
   own_index->insert(all);
   own_index->visit(all, [&](PointIndex i, std::span<const PointIndex> neighbours) {
     for (const PointIndex j : neighbours) {
       if (j < i) continue;
-      const float weight = edge_weight(found.slice[i], found.slice[j]);
-      if (weight < max_weight_) found.inner.push_back({weight, i, j});
+      const float weight = edge_weight(found.slice[i], found.slice[j], color_weight);
+      if (weight < max_weight) found.inner.push_back({weight, i, j});
     }
   });
   index_.visit_places(found.slice.points_W(), [&](PointIndex i, std::span<const PointIndex> near) {
     for (const PointIndex j : near) {
-      const float weight = edge_weight(found.slice[i], cloud_[j]);
-      if (weight < max_weight_) found.outer.push_back({weight, i, j});
+      const float weight = edge_weight(found.slice[i], cloud_[j], color_weight);
+      if (weight < max_weight) found.outer.push_back({weight, i, j});
     }
   });
   return found;

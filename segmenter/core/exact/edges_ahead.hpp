@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "segmenter/core/engine.hpp"
 #include "segmenter/core/exact/edge_key.hpp"
 #include "segmenter/core/neighbour_index.hpp"
 #include "segmenter/core/point_cloud.hpp"
@@ -14,11 +15,10 @@ namespace kintsugi::segmenter::exact {
 /// Finds the edges of points that are to be added later, on a thread of its own.
 class EdgesAhead {
  public:
-  /// `cloud` and `index` must not change between start() and finish(). Edges of `max_weight` and
-  /// more are left out.
-  EdgesAhead(const PointCloud& cloud, const NeighbourIndex& index, float radius_m,
-             double max_weight)
-      : cloud_(cloud), index_(index), radius_m_(radius_m), max_weight_(max_weight) {}
+  /// `cloud` and `index` must not change between start() and finish(). Edges of max_weight()
+  /// and more are left out.
+  EdgesAhead(const PointCloud& cloud, const NeighbourIndex& index, const EngineConfig& config)
+      : cloud_(cloud), index_(index), config_(config) {}
   ~EdgesAhead() {
     if (search_.valid()) search_.wait();  // what it throws is nobody's any more
   }
@@ -50,8 +50,7 @@ class EdgesAhead {
 
   const PointCloud& cloud_;
   const NeighbourIndex& index_;
-  float radius_m_;
-  double max_weight_;
+  EngineConfig config_;
   std::future<Found> search_;
   std::optional<Found> found_;
 };

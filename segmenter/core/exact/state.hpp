@@ -1,6 +1,7 @@
 #pragma once
 
 #include "segmenter/core/edge_weight.hpp"
+#include "segmenter/core/engine.hpp"
 #include "segmenter/core/exact/join_forest.hpp"
 #include "segmenter/core/exact/tree_edges.hpp"
 #include "segmenter/core/exact/vertex.hpp"
@@ -30,16 +31,19 @@ struct State {
 /// The edges of a point that are not remembered, from the cloud and its neighbour index.
 class EdgeFinder {
  public:
-  /// Edges of `max_weight` and more never join anything and are left out.
-  EdgeFinder(const PointCloud& cloud, const NeighbourIndex& index, double max_weight)
-      : cloud_(cloud), index_(index), max_weight_(max_weight) {}
+  /// Edges of max_weight() and more never join anything and are left out.
+  EdgeFinder(const PointCloud& cloud, const NeighbourIndex& index, const EngineConfig& config)
+      : cloud_(cloud),
+        index_(index),
+        color_weight_(config.color_weight),
+        max_weight_(config.max_weight()) {}
 
   /// Calls fn(other, key) for each edge of the points in `points`, point after point.
   template <typename Fn>
   void for_each(std::span<const PointIndex> points, Fn&& fn) const {
     index_.visit(points, [&](PointIndex i, std::span<const PointIndex> neighbours) {
       for (const PointIndex j : neighbours) {
-        const float weight = edge_weight(cloud_[i], cloud_[j]);
+        const float weight = edge_weight(cloud_[i], cloud_[j], color_weight_);
         if (weight < max_weight_) fn(i, j, EdgeKey::of(weight, i, j));
       }
     });
@@ -48,6 +52,7 @@ class EdgeFinder {
  private:
   const PointCloud& cloud_;
   const NeighbourIndex& index_;
+  double color_weight_;
   double max_weight_;
 };
 
