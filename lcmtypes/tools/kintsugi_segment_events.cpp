@@ -1,0 +1,114 @@
+// An example of a client: follows the segments of a map through time, from the bus or a log.
+
+#include <chrono>
+#include <cstddef>
+#include <exception>
+#include <iostream>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "lcmtypes/atomic_file.hpp"
+#include "lcmtypes/bus.hpp"
+#include "lcmtypes/log_reader.hpp"
+#include "lcmtypes/patient_clock.hpp"
+#include "lcmtypes/stop_signal.hpp"
+#include "lcmtypes/tools/segment_listener.hpp"
+#include "lcmtypes/tools/segment_table_text.hpp"
+
+namespace kintsugi {
+namespace {
+
+struct Options {
+  std::string url;
+  std::string log;
+  std::string map_name;
+  bool exit_on_final = false;
+  bool grown = false;
+  bool quiet = false;
+  std::size_t num_listed = 20;
+  std::string json_file;
+};
+
+void warn(const std::string& text) {
+  if (!text.empty()) std::cerr << "kintsugi-segment-events: " << text << std::endl;
+}
+
+/// Until a stop signal, or the end of the map.
+void listen(SegmentListener& listener, const Options& options) {
+  constexpr std::chrono::milliseconds kTickPeriod(20);
+  Bus bus(options.url);
+  listener.subscribe(bus);
+  PatientClock clock;
+  double next_tick_s = 0.0;
+  while (!stop_requested()) {
+    bus.handle(kTickPeriod);
+    const double now_s = clock.now_s();
+    if (now_s < next_tick_s) continue;
+    next_tick_s = now_s + std::chrono::duration<double>(kTickPeriod).count();
+    listener.ask(bus, now_s);
+    if (options.exit_on_final && listener.has_ended()) return;
+  }
+}
+
+/// All that can be read; says what cannot.
+bool read_log(SegmentListener& listener, const std::string& path) {
+  LogReader log(path);
+  while (const auto event = log.next()) {
+    if (stop_requested()) return true;
+    listener.handle(event->channel, event->data);
+  }
+  warn(log.damage().value_or(""));
+  return !log.damage();
+}
+
+int run(const Options& options) {
+  SegmentListener listener(options.map_name, [&options](const SegmentUpdate& update) {
+    if (!options.quiet) std::cout << update_text(update, options.grown) << std::flush;
+  });
+  bool is_read = true;
+  if (options.log.empty()) {
+    listen(listener, options);
+  } else {
+    is_read = read_log(listener, options.log);
+  }
+  std::cout << table_text(listener.table(), options.num_listed) << std::flush;
+  if (!options.json_file.empty()) {
+    AtomicFile file(options.json_file);
+    write_table_json(listener.table(), listener.is_whole(), file.stream());
+    file.commit();
+  }
+  warn(listener.dropped());
+  warn(listener.problem());
+  return is_read && listener.is_whole() ? 0 : 1;
+}
+
+}  // namespace
+}  // namespace kintsugi
+
+int main(int argc, char** argv) {
+  kintsugi::Options options;
+  CLI::App app(
+      "Prints which segments of a map appear, merge, split and go, and at the end the table of "
+      "those that there are. Exit status 1: updates are missing, or the log is damaged.");
+  auto* url =
+      app.add_option("--lcm-url", options.url, "Bus; default: LCM_DEFAULT_URL, or this host's");
+  app.add_option("--log", options.log, "Read this LCM log instead of the bus")->excludes(url);
+  app.add_option("--map-name", options.map_name,
+                 "Follow the map with this name (default: the first that is heard)");
+  app.add_flag("--exit-on-final", options.exit_on_final,
+               "Exit when the map is complete, and not only on Ctrl-C");
+  app.add_flag("--grown", options.grown, "A line for each segment that grew, too");
+  app.add_flag("--quiet", options.quiet, "Only the table at the end");
+  app.add_option("--top", options.num_listed, "Segments in the table that is printed")
+      ->capture_default_str();
+  app.add_option("--json", options.json_file, "The whole table into this file, as JSON");
+  CLI11_PARSE(app, argc, argv);
+  try {
+    kintsugi::install_stop_signals();
+    return kintsugi::run(options);
+  } catch (const std::exception& error) {
+    kintsugi::warn(error.what());
+    return 1;
+  }
+}
