@@ -22,9 +22,9 @@ SegmentUpdate header_of(const SegmentUpdate& update) {
 }
 
 template <class Value>
-std::optional<Value> look_up(const std::map<std::uint32_t, Value>& values, std::uint32_t id) {
+const Value* look_up(const std::map<std::uint32_t, Value>& values, std::uint32_t id) {
   const auto found = values.find(id);
-  return found != values.end() ? std::optional(found->second) : std::nullopt;
+  return found != values.end() ? &found->second : nullptr;
 }
 
 }  // namespace
@@ -86,15 +86,14 @@ void SegmentTable::forget_unlisted(std::int64_t sequence) {
 }
 
 const SegmentTable::Segment* SegmentTable::find(std::uint32_t segment_id) const {
-  const auto found = segments_.find(segment_id);
-  return found != segments_.end() ? &found->second : nullptr;
+  return look_up(segments_, segment_id);
 }
 
-std::optional<SegmentTable::Origin> SegmentTable::origin(std::uint32_t segment_id) const {
+const SegmentTable::Origin* SegmentTable::origin(std::uint32_t segment_id) const {
   return look_up(origins_, segment_id);
 }
 
-std::optional<SegmentTable::End> SegmentTable::end(std::uint32_t segment_id) const {
+const SegmentTable::End* SegmentTable::end(std::uint32_t segment_id) const {
   return look_up(ends_, segment_id);
 }
 

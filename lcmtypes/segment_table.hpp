@@ -61,16 +61,16 @@ class SegmentTable {
   /// nullptr: there is no such segment.
   const Segment* find(std::uint32_t segment_id) const;
 
-  /// The birth of a segment; nothing when it was not heard. Known of those that are gone too.
-  std::optional<Origin> origin(std::uint32_t segment_id) const;
-  /// The death of a segment; nothing when it was not heard.
-  std::optional<End> end(std::uint32_t segment_id) const;
+  /// The birth of a segment, also of one that is gone; nullptr: it was not heard.
+  const Origin* origin(std::uint32_t segment_id) const;
+  /// The death of a segment; nullptr: it was not heard.
+  const End* end(std::uint32_t segment_id) const;
   /// The segment that there is and has taken the place of this one: itself, or who absorbed it, or
   /// who absorbed that one, and so on. Nothing when there is none, or it is not known.
   std::optional<std::uint32_t> heir(std::uint32_t segment_id) const;
 
-  /// The newest update, without its vectors; nothing when there was none.
-  const std::optional<SegmentUpdate>& newest() const { return newest_; }
+  /// The newest update, without its vectors; nullptr: there was none.
+  const SegmentUpdate* newest() const { return newest_ ? &*newest_ : nullptr; }
   /// The map was complete after one of the updates.
   bool is_final() const { return is_final_; }
   /// Sequence number of the newest update that listed all segments; -1: there was none. What is

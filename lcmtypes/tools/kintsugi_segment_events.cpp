@@ -31,7 +31,7 @@ struct Options {
 };
 
 void warn(const std::string& text) {
-  if (!text.empty()) std::cerr << "kintsugi-segment-events: " << text << std::endl;
+  if (!text.empty()) std::cerr << "kintsugi-segment-events: " << text << '\n';
 }
 
 /// Until a stop signal, or the end of the map.

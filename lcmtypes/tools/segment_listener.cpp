@@ -22,13 +22,14 @@ SegmentListener::SegmentListener(const std::string& map_name,
     : map_name_(map_name),
       on_update_(std::move(on_update)),
       updates_(
-          channels::kSegmentUpdate, [this](SegmentUpdate update) { use(std::move(update)); },
+          channels::kSegmentUpdate, [this](const SegmentUpdate& update) { use(update); },
           [this](const DecodeError& reason) { note_bad(reason); }, of_map(map_name)) {}
 
-void SegmentListener::use(SegmentUpdate update) {
+void SegmentListener::use(const SegmentUpdate& update) {
   if (map_name_.empty()) map_name_ = update.map_name;
   if (update.map_name != map_name_) return;
-  const std::int64_t session = table_.newest() ? table_.newest()->session : update.session;
+  const SegmentUpdate* const newest = table_.newest();
+  const std::int64_t session = newest != nullptr ? newest->session : update.session;
   if (!table_.apply(update)) return;
   // Started again: what is missing of the segmenter before is not missed any more.
   if (session != update.session) updates_.forget(session);
@@ -51,7 +52,7 @@ bool SegmentListener::lacks_updates() const {
 }
 
 std::string SegmentListener::problem() const {
-  if (!table_.newest()) return "no segment update was heard";
+  if (table_.newest() == nullptr) return "no segment update was heard";
   if (lacks_updates()) {
     return "updates are missing: segments may be, and others be there no more";
   }

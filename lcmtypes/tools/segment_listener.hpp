@@ -41,7 +41,7 @@ class SegmentListener {
   const std::string& dropped() const { return dropped_; }
 
  private:
-  void use(SegmentUpdate update);
+  void use(const SegmentUpdate& update);
   void note_bad(const DecodeError& reason);
   bool lacks_updates() const;
 

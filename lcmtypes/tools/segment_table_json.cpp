@@ -20,8 +20,8 @@ double readable(float value) {
 
 Json vector_json(const float (&v)[3]) { return {readable(v[0]), readable(v[1]), readable(v[2])}; }
 
-Json born_json(const std::optional<SegmentTable::Origin>& origin) {
-  if (!origin) return nullptr;
+Json born_json(const SegmentTable::Origin* origin) {
+  if (origin == nullptr) return nullptr;
   return {{"slice", origin->slice_id}, {"parent", origin->parent_id}};
 }
 
@@ -40,7 +40,7 @@ Json segment_json(const SegmentStatistics& s, const SegmentTable& table) {
 }
 
 Json header_json(const SegmentTable& table, bool is_whole) {
-  const SegmentUpdate newest = table.newest().value_or(SegmentUpdate());
+  const SegmentUpdate newest = table.newest() != nullptr ? *table.newest() : SegmentUpdate();
   return {{"map_name", newest.map_name},
           {"map_session", newest.map_session},
           {"session", newest.session},

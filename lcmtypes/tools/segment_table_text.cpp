@@ -88,7 +88,7 @@ std::string update_text(const SegmentUpdate& update, bool with_grown) {
 }
 
 std::string table_text(const SegmentTable& table, std::size_t num_listed) {
-  if (!table.newest()) return "no segment updates\n";
+  if (table.newest() == nullptr) return "no segment updates\n";
   const SegmentUpdate& newest = *table.newest();
   std::string text =
       "map '" + newest.map_name + "' " +
