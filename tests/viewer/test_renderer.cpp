@@ -4,6 +4,7 @@
 #include <oneapi/tbb/global_control.h>
 
 #include "tests/viewer/synthetic_room.hpp"
+#include "viewer/core/axes.hpp"
 #include "viewer/core/chart.hpp"
 #include "viewer/core/renderer.hpp"
 

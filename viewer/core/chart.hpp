@@ -17,7 +17,4 @@ struct Chart {
 /// The charts below each other, each with axes from 0 and round numbers along them.
 cv::Mat3b draw_charts(std::span<const Chart> charts, const std::string& x_title, cv::Size size);
 
-/// The smallest of 1, 2 and 5 times a power of ten that is at least `value`; 1 when `value` <= 0.
-double round_up(double value);
-
 }  // namespace kintsugi::viewer

@@ -5,15 +5,15 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "viewer/core/text.hpp"
+
 namespace kintsugi::viewer {
 namespace {
 
 const cv::Scalar kPathColor(40, 190, 255);
 const cv::Scalar kCameraColor(80, 255, 120);
 const cv::Scalar kTextColor(235, 235, 235);
-const cv::Scalar kTitleShadow(20, 16, 14);
 const cv::Scalar kBarColor(52, 44, 38);
-constexpr int kFont = cv::FONT_HERSHEY_SIMPLEX;
 
 /// Lines grow with the picture, so that they look alike at every size.
 int line_width(const cv::Mat3b& image) { return std::max(1, (image.cols + 320) / 640); }
@@ -70,20 +70,15 @@ void draw_frustum(cv::Mat3b& image, const VirtualCamera& camera, const Pose& X_W
 
 void draw_caption(cv::Mat3b& image, const cv::Rect& bar, const std::string& text) {
   cv::rectangle(image, bar, kBarColor, cv::FILLED);
-  int baseline = 0;
-  const cv::Size unit = cv::getTextSize(text, kFont, 1.0, 1, &baseline);
+  const cv::Size unit = text_size(text, 1.0);
   const double scale = std::min(0.018 * bar.height, (bar.width - 20.0) / std::max(unit.width, 1));
   const int y = bar.y + (bar.height + static_cast<int>(scale * unit.height)) / 2;
-  cv::putText(image, text, {bar.x + 10, y}, kFont, scale, kTextColor, scale > 0.9 ? 2 : 1,
-              cv::LINE_AA);
+  draw_text(image, text, {bar.x + 10, y}, scale, kTextColor);
 }
 
 void draw_title(cv::Mat3b& image, const std::string& text) {
   const double scale = std::clamp(image.cols / 1100.0, 0.4, 1.2);
-  const int width = scale > 0.9 ? 2 : 1;
-  const cv::Point at(10, 10 + static_cast<int>(22 * scale));
-  cv::putText(image, text, at, kFont, scale, kTitleShadow, width + 3, cv::LINE_AA);
-  cv::putText(image, text, at, kFont, scale, kTextColor, width, cv::LINE_AA);
+  draw_outlined_text(image, text, {10, 10 + static_cast<int>(22 * scale)}, scale);
 }
 
 }  // namespace kintsugi::viewer

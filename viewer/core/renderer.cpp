@@ -10,6 +10,7 @@
 
 #include "viewer/core/overlay.hpp"
 #include "viewer/core/require.hpp"
+#include "viewer/core/text.hpp"
 
 namespace kintsugi::viewer {
 namespace {
@@ -74,14 +75,6 @@ Layout layout_of(int width, int height) {
   }
   layout.caption = {0, height - caption_height, width, caption_height};
   return layout;
-}
-
-std::string with_thousands(std::int64_t number) {
-  std::string text = std::to_string(number);
-  for (auto i = static_cast<std::ptrdiff_t>(text.size()) - 3; i > 0; i -= 3) {
-    text.insert(static_cast<std::size_t>(i), 1, ' ');
-  }
-  return text;
 }
 
 }  // namespace
