@@ -23,12 +23,11 @@ using kintsugi::testing::TemporaryFolder;
 class ViewerTest : public ::testing::Test {
  protected:
   Viewer make_viewer() {
-    Viewer::Config config;
-    config.painter.renderer.width_px = 160;
-    config.painter.renderer.height_px = 120;
-    config.folder = folder_.path();
-    config.every_slices = 4;
-    return {config,
+    config_.painter.renderer.width_px = 160;
+    config_.painter.renderer.height_px = 120;
+    config_.folder = folder_.path();
+    config_.every_slices = 4;
+    return {config_,
             {.on_picture = [this](const cv::Mat3b&,
                                   const std::string& caption) { captions_.push_back(caption); },
              .on_forgotten = [this](std::int64_t session) { forgotten_.insert(session); }}};
@@ -55,6 +54,7 @@ class ViewerTest : public ::testing::Test {
   static constexpr double kLater_s = kNow_s + 6.0;  // longer than the viewer's patience
 
   const TemporaryFolder folder_;
+  Viewer::Config config_;
   const SyntheticMap room_ = make_room(2.5, 0.1);  // 10 slices
   std::vector<std::string> captions_;
   std::set<std::int64_t> forgotten_;
@@ -133,6 +133,28 @@ TEST_F(ViewerTest, DrawsTheSameFinalPicturesFromWhateverCameInWhateverOrder) {
     for (std::size_t i = 0; i < names.size(); ++i) {
       EXPECT_TRUE(expected[i] == read(names[i])) << names[i] << ", trial " << trial;
     }
+  }
+}
+
+TEST_F(ViewerTest, WritesTheSameTimelineFromUpdatesInWhateverOrder) {
+  std::vector<SegmentUpdate> updates = room_.updates;
+  for (std::size_t i = 0; i < updates.size(); ++i) {
+    updates[i].events = {{i == 0 ? SegmentEventType::kCreated : SegmentEventType::kGrown, 1}};
+    updates[i].statistics = {{.segment_id = 1, .num_points = static_cast<std::uint32_t>(9 * i)}};
+  }
+  config_.painter.timelines = {1, 77};
+  std::mt19937 random(2);
+  std::string expected;
+  for (int trial = 0; trial < 4; ++trial) {
+    Viewer viewer = make_viewer();
+    for (const CloudSlice& slice : room_.slices) viewer.add(slice, kNow_s);
+    for (const SegmentUpdate& update : updates) viewer.add(update, kNow_s);
+    viewer.close();
+    ASSERT_TRUE(exists("timeline_1.png"));
+    EXPECT_TRUE(exists("timeline_77.png"));  // says that nothing was heard of it
+    if (trial == 0) expected = read("timeline_1.png");
+    EXPECT_TRUE(expected == read("timeline_1.png"));
+    std::ranges::shuffle(updates, random);
   }
 }
 

@@ -10,7 +10,7 @@ SessionScene* MapSessions::enter(std::int64_t session, double now_s) {
   if (!scenes_.empty() && session > scenes_.rbegin()->first) {
     spdlog::info("map session {} follows {}", session, scenes_.rbegin()->first);
   }
-  SessionScene& scene = scenes_.try_emplace(session, session, now_s).first->second;
+  SessionScene& scene = scenes_.try_emplace(session, session, now_s, keep_updates_).first->second;
   for (const CameraPose& pose : waiting_poses_) {
     if (pose.session == session) scene.use(pose);
   }

@@ -12,6 +12,9 @@ namespace kintsugi::viewer {
 /// The scenes of the newest session of a map and of the one before; a larger number is newer.
 class MapSessions {
  public:
+  /// `keep_updates`: as in SessionScene.
+  explicit MapSessions(bool keep_updates) : keep_updates_(keep_updates) {}
+
   /// The scene of a session, begun if need be. nullptr: it is earlier than those that are wanted.
   /// When has_too_many() after it, the oldest is to be forgotten.
   SessionScene* enter(std::int64_t session, double now_s);
@@ -41,6 +44,7 @@ class MapSessions {
 
   bool is_too_old(std::int64_t session) const;
 
+  bool keep_updates_;
   std::map<std::int64_t, SessionScene> scenes_;  // by session
   std::int64_t forgotten_until_ = 0;
   std::deque<CameraPose> waiting_poses_;

@@ -66,6 +66,11 @@ std::optional<Options> parse_options(int argc, char** argv, int& exit_code) {
   app.add_option("--video-rate", viewer.video_frames_per_s, "Frames per second of the video")
       ->capture_default_str();
   app.add_flag("--plots", painter.plots, "Write plots.png: lag and times over the slices");
+  app.add_option("--timeline", painter.timelines,
+                 "Write timeline_ID.png: what became of segment ID; several: ID,ID,...")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(CLI::Range(std::uint32_t{1}, UINT32_MAX));
   app.add_flag("--exit-on-final", options.exit_on_final, "Exit when the final map is drawn");
   app.add_option("--drawing-share", painter.max_drawing_share,
                  "Most of the wall time that drawing may take, when reading the bus")

@@ -1,6 +1,7 @@
 #include "viewer/process/painter.hpp"
 
 #include "viewer/core/require.hpp"
+#include "viewer/core/timeline_chart.hpp"
 
 namespace kintsugi::viewer {
 
@@ -32,6 +33,10 @@ std::vector<NamedPicture> Painter::draw_finals(SessionScene& shown) {
   pictures.push_back({"map_final", renderer_.draw_map(subject, Coloring::kTrue)});
   pictures.push_back({"segments_final", renderer_.draw_map(subject, Coloring::kSegments)});
   if (config_.plots) pictures.push_back({"plots", shown.history().draw({1000, 900})});
+  for (const std::uint32_t id : config_.timelines) {
+    const SegmentTimeline timeline = timeline_of(id, shown.updates());
+    pictures.push_back({"timeline_" + std::to_string(id), draw_timeline(timeline, {1280, 640})});
+  }
   return pictures;
 }
 

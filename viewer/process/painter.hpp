@@ -20,7 +20,8 @@ class Painter {
   struct Config {
     Renderer::Config renderer;
     View view = FollowView{};
-    bool plots = false;              ///< draw plots with the final pictures
+    bool plots = false;                    ///< draw plots with the final pictures
+    std::vector<std::uint32_t> timelines;  ///< segments of which timelines are drawn with them
     double max_drawing_share = 1.0;  ///< of the wall time; less leaves the rest to other processes
 
     /// Throws std::invalid_argument naming the field, its value and the bound.

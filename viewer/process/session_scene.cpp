@@ -20,6 +20,7 @@ void SessionScene::use(CloudSlice slice, double now_s) {
 }
 
 void SessionScene::use(const SegmentUpdate& update, double now_s) {
+  if (keeps_updates_) updates_.add(update);
   if (!scene_.apply_update(update)) return;
   history_.add_lag(scene_);
   note_news(now_s);

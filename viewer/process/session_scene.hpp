@@ -5,6 +5,7 @@
 #include <string>
 
 #include "viewer/core/scene.hpp"
+#include "viewer/core/update_log.hpp"
 #include "viewer/core/view.hpp"
 #include "viewer/process/run_history.hpp"
 
@@ -14,7 +15,9 @@ namespace kintsugi::viewer {
 /// PatientClock.
 class SessionScene {
  public:
-  SessionScene(std::int64_t map_session, double now_s) : scene_(map_session), last_news_s_(now_s) {}
+  /// `keeps_updates`: for updates(), which takes memory for every segment that changes.
+  SessionScene(std::int64_t map_session, double now_s, bool keeps_updates = false)
+      : scene_(map_session), keeps_updates_(keeps_updates), last_news_s_(now_s) {}
 
   void use(CloudSlice slice, double now_s);
   void use(const SegmentUpdate& update, double now_s);
@@ -24,6 +27,8 @@ class SessionScene {
   const Scene& scene() const { return scene_; }
   const FollowedCamera& followed() const { return followed_; }
   RunHistory& history() { return history_; }
+  const UpdateLog& updates() const { return updates_; }
+  std::int64_t memory_bytes() const { return scene_.memory_bytes() + updates_.memory_bytes(); }
   bool is_empty() const { return scene_.counts().slices == 0; }
 
   /// The segmenter has said that its map is complete, and all of it is here.
@@ -55,6 +60,8 @@ class SessionScene {
   Scene scene_;
   FollowedCamera followed_;
   RunHistory history_;
+  bool keeps_updates_;
+  UpdateLog updates_;
   double last_news_s_;
   SceneCounts in_snapshot_;  ///< of the last one
   std::optional<std::int64_t> last_frame_utime_;

@@ -22,7 +22,8 @@ Viewer::Viewer(const Config& config, Outputs outputs)
     : config_((config.validate(), config)),
       outputs_(std::move(outputs)),
       painter_(config.painter),
-      folder_(config.folder) {
+      folder_(config.folder),
+      sessions_(!config.painter.timelines.empty()) {
   if (config_.video) {
     const Renderer::Config& renderer = config_.painter.renderer;
     const cv::Size size(renderer.width_px, renderer.height_px);
@@ -170,7 +171,7 @@ ViewerStatus Viewer::status() const {
   status.problem = folder_.problem();
   if (status.problem.empty() && video_) status.problem = video_->problem();
   for (const auto& [session, shown] : sessions_.scenes()) {
-    status.memory_bytes += shown.scene().memory_bytes();
+    status.memory_bytes += shown.memory_bytes();
   }
   const SessionScene* const shown = sessions_.current_scene();
   if (shown == nullptr) return status;
