@@ -54,7 +54,7 @@ std::vector<ComponentId> BatchEngine::take_over(const CloudChange& change) {
 void BatchEngine::join_fragments_of(std::span<const PointIndex> points) {
   FragmentForest forest(components_, config_.fragment_limit());
   FragmentObserver nobody;
-  join_fragments(cloud_, points, components_, config_.radius_m(), forest, nobody);
+  join_fragments(cloud_, points, components_, config_, forest, nobody);
   joined_.assign(components_.size(), kNoComponent);
   for (const PointIndex i : points) joined_[i] = components_[forest.namer(forest.find_point(i))];
 }

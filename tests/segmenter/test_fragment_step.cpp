@@ -47,8 +47,9 @@ TEST(FragmentStep, IsWhatItsTranscriptionDoes) {
       const std::vector<PointIndex> live = map.live();
       const auto literal = testing::literal_fragment_step(
           map.cloud(), live, engine.unmerged_components(), config.radius_m(),
-          config.fragment_limit(),
-          [](const CloudPoint& a, const CloudPoint& b) { return edge_weight(a, b); });
+          config.fragment_limit(), [&](const CloudPoint& a, const CloudPoint& b) {
+            return edge_weight(a, b, config.color_weight);
+          });
       ASSERT_EQ(labels_at(engine.components(), live), literal) << "seed " << seed;
       num_joined += labels_at(engine.unmerged_components(), live) != literal;
     }

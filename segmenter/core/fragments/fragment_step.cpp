@@ -18,7 +18,7 @@ using EdgesByThread = oneapi::tbb::enumerable_thread_specific<EdgeBuckets>;
 
 /// The edges between two components of which one is small.
 EdgesByThread find_edges(const PointRows& rows, std::span<const ComponentId> components,
-                         const FragmentForest& forest) {
+                         const FragmentForest& forest, double color_weight) {
   struct Component {
     ComponentId name;
     bool is_small;
@@ -39,7 +39,7 @@ EdgesByThread find_edges(const PointRows& rows, std::span<const ComponentId> com
     rows.for_each_pair(row, keep, [&](PointRows::Slot a, PointRows::Slot b) {
       const PointRows::Point& p = rows.points()[a];
       const PointRows::Point& q = rows.points()[b];
-      edges.add({edge_weight(p, q), p.index, q.index});
+      edges.add({edge_weight(p, q, color_weight), p.index, q.index});
     });
   });
   return found;
@@ -48,9 +48,10 @@ EdgesByThread find_edges(const PointRows& rows, std::span<const ComponentId> com
 }  // namespace
 
 void join_fragments(const PointCloud& cloud, std::span<const PointIndex> points,
-                    std::span<const ComponentId> components, float radius_m, FragmentForest& forest,
-                    FragmentObserver& observer) {
-  EdgesByThread found = find_edges(PointRows(cloud, points, radius_m), components, forest);
+                    std::span<const ComponentId> components, const EngineConfig& config,
+                    FragmentForest& forest, FragmentObserver& observer) {
+  const PointRows rows(cloud, points, config.radius_m());
+  EdgesByThread found = find_edges(rows, components, forest, config.color_weight);
   const EdgeOrder order(cloud);
   const auto is_joining = [&](ComponentId a, ComponentId b) {
     return a != b && (forest.is_small(a) || forest.is_small(b));

@@ -25,9 +25,9 @@ class FragmentObserver {
 ///
 /// `points` are those in the cloud, and `components` the partition `forest` was made for. Edges
 /// inside a component, or between two that are not small, are not looked at: they join nothing.
-/// The result is the same for any number of threads. `radius_m` > 0.
+/// The result is the same for any number of threads.
 void join_fragments(const PointCloud& cloud, std::span<const PointIndex> points,
-                    std::span<const ComponentId> components, float radius_m, FragmentForest& forest,
-                    FragmentObserver& observer);
+                    std::span<const ComponentId> components, const EngineConfig& config,
+                    FragmentForest& forest, FragmentObserver& observer);
 
 }  // namespace kintsugi::segmenter
