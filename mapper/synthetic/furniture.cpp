@@ -12,6 +12,11 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
+// Of bookcases.
+constexpr double kBoard_m = 0.025;
+constexpr double kLowestBoard_m = 0.05;
+constexpr double kBoardSpacing_m = 0.36;
+
 const Material kOak = textured(Texture::kWood, rgb(206, 160, 104), rgb(178, 130, 80), 0.10);
 const Material kWalnut = textured(Texture::kWood, rgb(128, 84, 54), rgb(98, 62, 40), 0.10);
 const Material kDark = plain(rgb(52, 54, 60));
@@ -42,6 +47,8 @@ void add_fronts(SceneBuilder& builder, double width, double bottom, double top, 
 }
 
 }  // namespace
+
+Material oak() { return kOak; }
 
 void add_desk(SceneBuilder& builder, const Pose& X_WG, double width, double depth) {
   builder.begin_object("desk", X_WG);
@@ -219,25 +226,31 @@ void add_traffic_cone(SceneBuilder& builder, const Pose& X_WG) {
   builder.add(box(0.32, 0.32, 0.03), at(0, 0, 0.015), plain(rgb(238, 104, 30)));
 }
 
-void add_bookcase(SceneBuilder& builder, const Pose& X_WG, double width, double height,
-                  CounterRandom& random) {
+int add_bookcase_frame(SceneBuilder& builder, const Pose& X_WG, double width, double height) {
   constexpr double kDepth_m = 0.28;
-  constexpr double kBoard_m = 0.025;
-  constexpr double kSpacing_m = 0.36;
   builder.begin_object("bookcase", X_WG);
   for (double side : {-1.0, 1.0}) {
     builder.add(box(kBoard_m, kDepth_m, height), at(side * (width - kBoard_m) / 2, 0, height / 2),
                 kOak);
   }
   builder.add(box(width, 0.02, height), at(0, kDepth_m / 2 - 0.01, height / 2), kOak);
-  const int boards = static_cast<int>((height - kBoard_m) / kSpacing_m) + 1;
+  const int boards = static_cast<int>((height - kBoard_m) / kBoardSpacing_m) + 1;
   for (int i = 0; i < boards; ++i) {
-    builder.add(box(width, kDepth_m, kBoard_m), at(0, 0, 0.05 + kSpacing_m * i), kOak);
+    builder.add(box(width, kDepth_m, kBoard_m), at(0, 0, kLowestBoard_m + kBoardSpacing_m * i),
+                kOak);
   }
+  return boards;
+}
+
+Pose on_board(int i) { return at(0, -0.02, kLowestBoard_m + kBoardSpacing_m * i + kBoard_m / 2); }
+
+void add_bookcase(SceneBuilder& builder, const Pose& X_WG, double width, double height,
+                  CounterRandom& random) {
+  const int boards = add_bookcase_frame(builder, X_WG, width, height);
   for (int i = 0; i < boards; ++i) {
-    const Pose X_WB = X_WG * at(0, -0.02, 0.05 + kSpacing_m * i + kBoard_m / 2);
+    const Pose X_WB = X_WG * on_board(i);
     const double room = width - 2 * kBoard_m - 0.02;
-    const bool is_top = 0.05 + kSpacing_m * (i + 1) > height;
+    const bool is_top = kLowestBoard_m + kBoardSpacing_m * (i + 1) > height;
     if (i % 2 == 0 && !is_top) {
       add_book_row(builder, X_WB * at(-0.18 * room, 0, 0), 0.6 * room, 0.26, random);
       add_any_small_object(builder, X_WB * at(0.32 * room, 0, 0), random);

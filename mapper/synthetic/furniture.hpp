@@ -12,6 +12,9 @@ inline constexpr double kCounterHeight_m = 0.90;
 inline constexpr double kTableHeight_m = 0.72;
 inline constexpr double kCabinetHeight_m = 0.80;
 
+/// The wood of desks and bookcases: what else is made of it differs from them by its shape alone.
+Material oak();
+
 void add_desk(SceneBuilder& builder, const Pose& X_WG, double width, double depth);
 void add_table(SceneBuilder& builder, const Pose& X_WG, double width, double depth);
 void add_round_table(SceneBuilder& builder, const Pose& X_WG, double radius, double height);
@@ -30,6 +33,12 @@ void add_floor_lamp(SceneBuilder& builder, const Pose& X_WG, const Color& color)
 void add_coat_rack(SceneBuilder& builder, const Pose& X_WG);
 void add_backpack(SceneBuilder& builder, const Pose& X_WG, const Color& color);
 void add_traffic_cone(SceneBuilder& builder, const Pose& X_WG);
+
+/// An empty bookcase, 0.28 m deep, with a board every 0.36 m. Returns their number.
+int add_bookcase_frame(SceneBuilder& builder, const Pose& X_WG, double width, double height);
+
+/// X_GB: on its board i, counted from below, in the middle.
+Pose on_board(int i);
 
 /// Boards every 0.36 m with books and small objects on them; 0.28 m deep.
 void add_bookcase(SceneBuilder& builder, const Pose& X_WG, double width, double height,

@@ -1,7 +1,10 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <set>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -120,6 +123,31 @@ TEST(Renderer, PicturesAreTheSameOnAnyNumberOfThreads) {
   EXPECT_TRUE(same_bytes(one.color_rgb, two.color_rgb));
   EXPECT_TRUE(same_bytes(one.normals_W, two.normals_W));
   EXPECT_TRUE(same_bytes(one.instances, two.instances));
+}
+
+// What a segmentation is scored on: it has to be in the camera's view, and not only as a speck.
+TEST(Renderer, OfficeShowsAtLeastEightyObjectsOnItsPath) {
+  constexpr int kMinPixels = 400;  // an eighth of a percent of the picture
+  const SceneWithPath content = make_scene_with_path("office");
+  std::vector<int> most_pixels(content.scene.instances().size() + 1, 0);
+  for (double t_s = 0; t_s <= content.trajectory.duration_s(); t_s += 1.5) {
+    const RenderedFrame frame =
+        render(content.scene, default_intrinsics(), content.trajectory.X_WC(t_s));
+    std::vector<int> pixels(most_pixels.size(), 0);
+    for (const std::uint16_t id : frame.instances) ++pixels.at(id);
+    for (std::size_t id = 0; id < pixels.size(); ++id) {
+      most_pixels[id] = std::max(most_pixels[id], pixels[id]);
+    }
+  }
+  int num_seen = 0;
+  std::set<std::string> kinds;
+  for (const Instance& instance : content.scene.instances()) {
+    if (instance.is_structure || most_pixels.at(instance.id) < kMinPixels) continue;
+    ++num_seen;
+    kinds.insert(instance.name);
+  }
+  EXPECT_GE(num_seen, 80);
+  EXPECT_GE(kinds.size(), 40U) << "not only books";
 }
 
 TEST(Renderer, OddImageSizesAreWholeAndAgreeWithTheLargerPicture) {
