@@ -20,7 +20,7 @@ constexpr double kMinWait_s = 0.001;
 
 const StreamPublisherConfig& validated(const StreamPublisherConfig& config) {
   config.validate();
-  return config;  // NOLINT(bugprone-return-const-ref-from-parameter): the caller's
+  return config;
 }
 
 }  // namespace
