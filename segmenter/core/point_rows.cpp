@@ -56,11 +56,11 @@ void sort_by(std::uint32_t Key::*member, GrowingArray<Key>& keys, GrowingArray<K
   }
 }
 
-GrowingArray<Key> sorted_keys(const PointCloud& cloud, std::span<const PointIndex> points,
-                              double cell_m) {
+GrowingArray<Key> sorted_keys(std::span<const CloudPoint> points_W,
+                              std::span<const PointIndex> points, double cell_m) {
   GrowingArray<Key> keys(points.size());
   oneapi::tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t k) {
-    const CloudPoint& p = cloud[points[k]];
+    const CloudPoint& p = points_W[points[k]];
     keys[k] = {ordered_bits(p.x), ordered_bits(cell_coordinate(p.y, cell_m)),
                ordered_bits(cell_coordinate(p.z, cell_m)), points[k]};
   });
@@ -73,14 +73,15 @@ GrowingArray<Key> sorted_keys(const PointCloud& cloud, std::span<const PointInde
 
 }  // namespace
 
-PointRows::PointRows(const PointCloud& cloud, std::span<const PointIndex> points, float radius_m)
+PointRows::PointRows(std::span<const CloudPoint> points_W, std::span<const PointIndex> points,
+                     float radius_m)
     : squared_radius_m2_(radius_m * radius_m),
       reach_m_(static_cast<float>(radius_m * kReachPerRadius)) {
   assert(radius_m > 0.0F);
-  const GrowingArray<Key> keys = sorted_keys(cloud, points, radius_m * kReachPerRadius);
+  const GrowingArray<Key> keys = sorted_keys(points_W, points, radius_m * kReachPerRadius);
   points_.resize(keys.size());
   oneapi::tbb::parallel_for(std::size_t{0}, keys.size(), [&](std::size_t k) {
-    const CloudPoint& p = cloud[keys[k].index];
+    const CloudPoint& p = points_W[keys[k].index];
     points_[k] = {p.x, p.y, p.z, p.nx, p.ny, p.nz, p.red, p.green, p.blue, keys[k].index};
   });
   for (Slot k = 0; k < keys.size(); ++k) {

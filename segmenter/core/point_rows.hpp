@@ -24,13 +24,16 @@ class PointRows {
     float x, y, z;     ///< metres, W
     float nx, ny, nz;  ///< unit normal, W
     std::uint8_t red, green, blue;
-    PointIndex index;  ///< in the cloud
+    PointIndex index;  ///< in points_W
   };
   /// Position of a point in points().
   using Slot = std::uint32_t;
 
-  /// `points` are in the cloud, each once; `radius_m` > 0.
-  PointRows(const PointCloud& cloud, std::span<const PointIndex> points, float radius_m);
+  /// `points` are places in `points_W`, each once; `radius_m` > 0.
+  PointRows(std::span<const CloudPoint> points_W, std::span<const PointIndex> points,
+            float radius_m);
+  PointRows(const PointCloud& cloud, std::span<const PointIndex> points, float radius_m)
+      : PointRows(cloud.points_W(), points, radius_m) {}
 
   std::span<const Point> points() const { return points_.span(); }
   std::size_t num_rows() const { return rows_.size() - 1; }
