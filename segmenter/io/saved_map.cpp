@@ -15,10 +15,10 @@ namespace {
 
 // The file: Start, Header; the mode and the name of the map as text; then for all slices one after
 // another SliceHeader, the indices of rejected points (int32), accepted points (CloudPoint), their
-// segment ids (uint32); thetas (double); the chunks that are in the map (SequenceRange); the
-// checksum. A change of any of this is a new version.
+// segment ids (uint32); the last change of each segment (LastChange); thetas (double); the chunks
+// that are in the map (SequenceRange); the checksum. A change of any of this is a new version.
 constexpr std::array<char, 8> kMagic = {'K', 'S', 'E', 'G', 'M', 'A', 'P', '\n'};
-constexpr std::uint32_t kVersion = 2;
+constexpr std::uint32_t kVersion = 3;
 
 struct Start {
   std::array<char, 8> magic = kMagic;
@@ -31,6 +31,8 @@ struct Header {
   std::int64_t map_session = 0;
   double threshold = 0.0;
   double scale = 0.0;
+  double color_weight = 0.0;
+  double min_points = 0.0;
   double beta = 0.0;
   double resolution_m = 0.0;
   double radius_factor = 0.0;
@@ -43,7 +45,7 @@ struct Header {
   std::uint32_t num_points = 0;
   std::uint32_t num_thetas = 0;
   std::uint32_t num_chunk_ranges = 0;
-  std::uint32_t reserved = 0;
+  std::uint32_t num_segments = 0;
 };
 
 struct SliceHeader {
@@ -52,7 +54,7 @@ struct SliceHeader {
   std::int32_t num_points = 0;
   std::uint32_t num_rejected = 0;
 };
-static_assert(sizeof(Start) == 16 && sizeof(Header) == 96 && sizeof(SliceHeader) == 16,
+static_assert(sizeof(Start) == 16 && sizeof(Header) == 112 && sizeof(SliceHeader) == 16,
               "no padding, which would be written with whatever is in it");
 
 Header header_of(const SegmentMapState& state) {
@@ -62,6 +64,8 @@ Header header_of(const SegmentMapState& state) {
   header.map_session = state.map_session;
   header.threshold = engine.threshold;
   header.scale = engine.scale;
+  header.color_weight = engine.color_weight;
+  header.min_points = engine.min_points;
   header.beta = engine.beta;
   header.resolution_m = engine.resolution_m;
   header.radius_factor = engine.radius_factor;
@@ -74,6 +78,7 @@ Header header_of(const SegmentMapState& state) {
     header.num_rejected += static_cast<std::uint32_t>(slice.rejected.size());
   }
   header.num_points = static_cast<std::uint32_t>(state.points_W.size());
+  header.num_segments = static_cast<std::uint32_t>(state.last_changes.size());
   header.num_thetas = static_cast<std::uint32_t>(state.thetas.size());
   header.num_chunk_ranges = static_cast<std::uint32_t>(state.chunks.size());
   return header;
@@ -83,8 +88,9 @@ std::uint64_t num_bytes_after(const Header& header) {
   constexpr std::uint64_t kPointBytes = sizeof(CloudPoint) + sizeof(std::uint32_t);
   return std::uint64_t{header.num_mode_bytes} + header.num_name_bytes +
          header.num_slices * sizeof(SliceHeader) + header.num_rejected * sizeof(std::int32_t) +
-         header.num_points * kPointBytes + header.num_thetas * sizeof(double) +
-         header.num_chunk_ranges * sizeof(SequenceRange) + sizeof(std::uint32_t);
+         header.num_points * kPointBytes + header.num_segments * sizeof(LastChange) +
+         header.num_thetas * sizeof(double) + header.num_chunk_ranges * sizeof(SequenceRange) +
+         sizeof(std::uint32_t);
 }
 
 /// Everything that can be told from the first bytes and the size of the file.
@@ -113,9 +119,6 @@ Header read_header(RecordReader& file) {
     file.fail(std::to_string(file.left()) + " bytes follow, expected " + std::to_string(expected) +
               " for what the header tells: the file is cut off or damaged");
   }
-  if (header.reserved != 0) {
-    file.fail("reserved is " + std::to_string(header.reserved) + ", expected 0");
-  }
   return header;
 }
 
@@ -123,6 +126,8 @@ SegmentMapConfig config_of(const Start& start, const Header& header) {
   SegmentMapConfig config;
   config.engine.threshold = header.threshold;
   config.engine.scale = header.scale;
+  config.engine.color_weight = header.color_weight;
+  config.engine.min_points = header.min_points;
   config.engine.beta = header.beta;
   config.engine.resolution_m = header.resolution_m;
   config.engine.radius_factor = header.radius_factor;
@@ -178,6 +183,7 @@ void write_map_state(const SegmentMapState& state, const std::filesystem::path& 
     out.write_all(std::span(state.points_W).subspan(slice.first, slice.count));
     out.write_all(std::span(state.segment_ids).subspan(slice.first, slice.count));
   }
+  out.write_all(std::span(state.last_changes));
   out.write_all(std::span(state.thetas));
   out.write_all(std::span(state.chunks));
   out.write_checksum();
@@ -200,6 +206,7 @@ SegmentMapState read_map_state(const std::filesystem::path& path) {
   state.points_W.reserve(header.num_points);
   state.segment_ids.reserve(header.num_points);
   for (std::uint32_t i = 0; i < header.num_slices; ++i) read_slice(file, state);
+  state.last_changes = file.read_all<LastChange>(header.num_segments);
   state.thetas = file.read_all<double>(header.num_thetas);
   state.chunks = file.read_all<SequenceRange>(header.num_chunk_ranges);
   if (file.left() != sizeof(std::uint32_t)) {

@@ -51,7 +51,8 @@ std::vector<SegmentUpdate> SegmentMap::add(std::span<const CloudSlice> slices) {
   SegmentUpdate& last = updates.back();
   last.is_final = is_complete();
   last.runs = label_runs(cloud_, id_update.changes);
-  for (const std::uint32_t id : statistics_.apply(cloud_, ids_, id_update.changes)) {
+  const LastChange now{last.utime, last.slice_id};
+  for (const std::uint32_t id : statistics_.apply(cloud_, ids_, id_update.changes, now)) {
     last.statistics.push_back(statistics_(id));
   }
   last.events = std::move(id_update.events);

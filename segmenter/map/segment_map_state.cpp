@@ -4,6 +4,7 @@
 #include <functional>
 #include <limits>
 #include <map>
+#include <set>
 #include <span>
 #include <stdexcept>
 
@@ -72,6 +73,15 @@ void check_counts(const SegmentMapState& state) {
     throw std::invalid_argument("slices of " + std::to_string(num_points) + " points, but " +
                                 std::to_string(state.points_W.size()) + " points with " +
                                 std::to_string(state.segment_ids.size()) + " segment ids");
+  }
+}
+
+void check_last_changes(const SegmentMapState& state, const std::set<std::int32_t>& slice_ids) {
+  for (const LastChange& change : state.last_changes) {
+    if (!slice_ids.contains(change.slice_id)) {
+      throw std::invalid_argument("a segment last changed with slice " +
+                                  std::to_string(change.slice_id) + ", which is not there");
+    }
   }
 }
 
@@ -147,6 +157,7 @@ SegmentMap::SegmentMap(const SegmentMapState& state)
     throw std::invalid_argument("the final slice " + std::to_string(final_slice_id_) +
                                 " is not there");
   }
+  check_last_changes(state, slice_ids_);
   const CloudChange everything = cloud_.take_change();
   if (config_.mode == "voting") {
     const Partition partition(state);
@@ -159,6 +170,7 @@ SegmentMap::SegmentMap(const SegmentMapState& state)
   changes.reserve(everything.added.size());
   for (const PointIndex i : everything.added) changes.push_back({i, kNoSegment, ids_.ids()[i]});
   statistics_.apply(cloud_, ids_, changes);
+  statistics_.set_last_changes(state.last_changes);
 }
 
 SegmentMapState SegmentMap::state() const {
@@ -175,6 +187,7 @@ void SegmentMap::copy_state(SegmentMapState& state) const {
   state.final_slice_id = final_slice_id_;
   state.next_id = ids_.next_id();
   state.chunks = chunks_.ranges();
+  state.last_changes = statistics_.last_changes();
   state.slices.clear();
   clear_for(state.points_W, cloud_.num_live());
   clear_for(state.segment_ids, cloud_.num_live());

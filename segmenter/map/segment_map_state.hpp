@@ -8,6 +8,7 @@
 #include "lcmtypes/messages.hpp"
 #include "segmenter/core/engine.hpp"
 #include "segmenter/core/point_cloud.hpp"
+#include "segmenter/map/last_change.hpp"
 
 namespace kintsugi::segmenter {
 
@@ -36,6 +37,9 @@ struct SegmentMapState {
   std::vector<SliceRecord> slices;         ///< in order of arrival; `first` is a place in points_W
   std::vector<CloudPoint> points_W;        ///< accepted points, slice after slice
   std::vector<std::uint32_t> segment_ids;  ///< of each of points_W
+
+  /// Of each segment by ascending id.
+  std::vector<LastChange> last_changes;
 
   /// Mode `voting`, else empty: theta of each segment by ascending id. It depends on the history.
   std::vector<double> thetas;

@@ -2,16 +2,12 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cmath>
+#include <stdexcept>
+#include <string>
 #include <utility>
 
 namespace kintsugi::segmenter {
 namespace {
-
-constexpr double kUnits = 1099511627776.0;  // 2^40
-
-// Below 2^63: a coordinate is below 2^20 m (admission.hpp).
-std::int64_t to_units(float value) { return std::llround(static_cast<double>(value) * kUnits); }
 
 // A segment of more points than this keeps its extent by blocks: looking at all of them takes
 // longer than a face of its box is worth. One of less than half as many does no longer.
@@ -19,23 +15,10 @@ constexpr std::int64_t kLargePoints = 1024;
 
 }  // namespace
 
-void SegmentStatisticsTable::Sums::add(const CloudPoint& point, std::int64_t sign) {
-  num_points += sign;
-  const std::array<float, 3> normal_W{point.nx, point.ny, point.nz};
-  const std::array<std::int64_t, 3> rgb{point.red, point.green, point.blue};
-  const std::array<float, 3> p_W{point.x, point.y, point.z};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const std::int64_t signed_position = sign * to_units(p_W[axis]);
-    const std::int64_t signed_normal = sign * to_units(normal_W[axis]);
-    position[axis] += signed_position;
-    normal[axis] += signed_normal;
-    color[axis] += sign * rgb[axis];
-  }
-}
-
 std::vector<std::uint32_t> SegmentStatisticsTable::apply(const PointCloud& cloud,
                                                          const SegmentIds& ids,
-                                                         std::span<const IdChange> changes) {
+                                                         std::span<const IdChange> changes,
+                                                         const LastChange& now) {
   place_.resize(ids.next_id());
   const std::vector<Touched> touched = add_up(cloud, changes);
   std::vector<std::uint32_t> changed_ids;
@@ -50,6 +33,7 @@ std::vector<std::uint32_t> SegmentStatisticsTable::apply(const PointCloud& cloud
       remove(id);
     } else {
       refresh_extent(cloud, ids, id, blocks);
+      sums_of(id).last_change = now;
       changed_ids.push_back(id);
     }
   }
@@ -140,35 +124,11 @@ void SegmentStatisticsTable::remove(std::uint32_t segment_id) {
 }
 
 SegmentStatistics SegmentStatisticsTable::operator()(std::uint32_t segment_id) const {
-  const Sums& sums = sums_[place_[segment_id]];
-  assert(sums.num_points > 0);
-  const auto count = static_cast<double>(sums.num_points);
-  SegmentStatistics result;
-  result.segment_id = segment_id;
-  result.num_points = static_cast<std::uint32_t>(sums.num_points);
+  return sums_[place_[segment_id]].statistics(segment_id, resolution_m_);
+}
 
-  std::array<double, 3> mean_normal{};
-  double squared_length = 0.0;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    mean_normal[axis] = static_cast<double>(sums.normal[axis]) / (kUnits * count);
-    squared_length += mean_normal[axis] * mean_normal[axis];
-  }
-  constexpr double kMinLength = 1e-6;  // below it rounding decides the direction
-  const double length = std::sqrt(squared_length);
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    result.box_min_W[axis] = sums.extent.min_W[axis];
-    result.box_max_W[axis] = sums.extent.max_W[axis];
-    result.centroid_W[axis] =
-        static_cast<float>(static_cast<double>(sums.position[axis]) / (kUnits * count));
-    result.mean_normal_W[axis] =
-        length < kMinLength ? 0.0F : static_cast<float>(mean_normal[axis] / length);
-    result.mean_color[axis] =
-        static_cast<std::uint8_t>(std::lround(static_cast<double>(sums.color[axis]) / count));
-  }
-  result.area_m2 = static_cast<float>(count * resolution_m_ * resolution_m_);
-  result.first_slice = sums.extent.first_slice;
-  result.last_slice = sums.extent.last_slice;
-  return result;
+LastChange SegmentStatisticsTable::last_change(std::uint32_t segment_id) const {
+  return sums_[place_[segment_id]].last_change;
 }
 
 std::vector<SegmentStatistics> SegmentStatisticsTable::all() const {
@@ -179,6 +139,28 @@ std::vector<SegmentStatistics> SegmentStatisticsTable::all() const {
     }
   }
   return result;
+}
+
+std::vector<LastChange> SegmentStatisticsTable::last_changes() const {
+  std::vector<LastChange> result;
+  result.reserve(sums_.size());
+  for (const std::uint32_t place : place_) {
+    if (place != 0) result.push_back(sums_[place].last_change);
+  }
+  return result;
+}
+
+void SegmentStatisticsTable::set_last_changes(std::span<const LastChange> last_changes) {
+  const auto num_segments =
+      std::count_if(place_.begin(), place_.end(), [](std::uint32_t place) { return place != 0; });
+  if (std::ssize(last_changes) != num_segments) {
+    throw std::invalid_argument(std::to_string(num_segments) + " segments, but " +
+                                std::to_string(last_changes.size()) + " last changes");
+  }
+  auto next = last_changes.begin();
+  for (const std::uint32_t place : place_) {
+    if (place != 0) sums_[place].last_change = *next++;
+  }
 }
 
 std::size_t SegmentStatisticsTable::bytes() const {

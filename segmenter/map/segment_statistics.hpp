@@ -1,7 +1,6 @@
 #pragma once
 // What is known about each segment, kept up to date as points change segment.
 
-#include <array>
 #include <cstdint>
 #include <map>
 #include <span>
@@ -13,45 +12,44 @@
 #include "segmenter/core/segment_ids.hpp"
 #include "segmenter/map/block_extents.hpp"
 #include "segmenter/map/extent.hpp"
+#include "segmenter/map/last_change.hpp"
+#include "segmenter/map/segment_sums.hpp"
 
 namespace kintsugi::segmenter {
 
-/// Statistics of every segment.
-///
-/// Sums are integers in fixed point (units of 2^-40), so that adding and removing points in any
-/// order gives the very result of summing from scratch. A coordinate of more than 15 micrometres,
-/// a float32, is exact in these units.
+/// Statistics of every segment, and the slice with which it last changed. Statistics are those of
+/// segment_sums.hpp: the very ones that summing from scratch would give.
 class SegmentStatisticsTable {
  public:
   /// @param resolution_m voxel size, > 0: a point stands for resolution_m^2 of surface
   explicit SegmentStatisticsTable(float resolution_m) : resolution_m_(resolution_m) {}
 
-  /// Takes over `changes`; `cloud` and `ids` are those after them. Returns the ids of the segments
-  /// that changed and still have points, ascending. Costs time in proportion to the changes; only
+  /// Takes over `changes`, which came with the slice that `now` names; `cloud` and `ids` are those
+  /// after them. Returns the ids of the segments that changed and still have points, ascending;
+  /// `now` is their last change from here on. Costs time in proportion to the changes; only
   /// for segments that lost a point on the face of their box a little that grows with their size.
   std::vector<std::uint32_t> apply(const PointCloud& cloud, const SegmentIds& ids,
-                                   std::span<const IdChange> changes);
+                                   std::span<const IdChange> changes, const LastChange& now = {});
 
   /// Of a segment that has points.
   [[nodiscard]] SegmentStatistics operator()(std::uint32_t segment_id) const;
+  [[nodiscard]] LastChange last_change(std::uint32_t segment_id) const;
 
   /// Of every segment that has points, by ascending id.
   [[nodiscard]] std::vector<SegmentStatistics> all() const;
+  [[nodiscard]] std::vector<LastChange> last_changes() const;
+
+  /// Takes over what last_changes() was for the same segments. Throws std::invalid_argument when
+  /// it is not one for each.
+  void set_last_changes(std::span<const LastChange> last_changes);
 
   /// Memory in use.
   [[nodiscard]] std::size_t bytes() const;
 
  private:
-  __extension__ using WideInteger = __int128;  // 2^60 for each coordinate, and room for 2^67 points
-  struct Sums {
-    std::int64_t num_points = 0;
-    std::array<WideInteger, 3> position{};
-    std::array<WideInteger, 3> normal{};
-    std::array<std::int64_t, 3> color{};
-    Extent extent;
+  struct Sums : SegmentSums {
     bool extent_is_stale = false;  ///< a point that touched it has left
-
-    void add(const CloudPoint& point, std::int64_t sign);
+    LastChange last_change;
   };
   /// A segment and a block of places in the cloud where it gained or lost points.
   struct Touched {

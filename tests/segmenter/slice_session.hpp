@@ -73,6 +73,7 @@ class LabelMirror {
     }
     for (const SegmentStatistics& statistics : update.statistics) {
       statistics_[statistics.segment_id] = statistics;
+      last_changes_[statistics.segment_id] = {update.utime, update.slice_id};
     }
     for (const SegmentEvent& event : update.events) {
       if (event.type == SegmentEventType::kMerged) statistics_.erase(event.other_id);
@@ -91,6 +92,13 @@ class LabelMirror {
     return static_cast<std::int64_t>(ids.size());
   }
 
+  /// Of the segments that statistics() has.
+  std::vector<LastChange> last_changes() const {
+    std::vector<LastChange> all;
+    for (const auto& [id, statistics] : statistics_) all.push_back(last_changes_.at(id));
+    return all;
+  }
+
   std::vector<SegmentStatistics> statistics() const {
     std::vector<SegmentStatistics> all;
     all.reserve(statistics_.size());
@@ -103,6 +111,7 @@ class LabelMirror {
  private:
   Labels labels_;
   std::map<std::uint32_t, SegmentStatistics> statistics_;
+  std::map<std::uint32_t, LastChange> last_changes_;
 };
 
 }  // namespace kintsugi::segmenter::testing

@@ -68,6 +68,7 @@ SegmentMapConfig config_of(std::string_view mode) {
 void expect_same(const SegmentMap& a, const SegmentMap& b) {
   EXPECT_EQ(testing::labels_of(a), testing::labels_of(b));
   EXPECT_EQ(a.statistics().all(), b.statistics().all());
+  EXPECT_EQ(a.statistics().last_changes(), b.statistics().last_changes());
   EXPECT_EQ(a.segment_ids().next_id(), b.segment_ids().next_id());
   EXPECT_EQ(a.is_complete(), b.is_complete());
   for (const SegmentStatistics& segment : a.statistics().all()) {
@@ -109,6 +110,8 @@ TEST_P(SavedMap, KeepsWhatItIs) {
   SegmentMapConfig config = config_of(GetParam());
   config.engine.neighbour_search = NeighbourSearch::kFlann;
   config.engine.beta = 0.5;
+  config.engine.color_weight = 0.003;
+  config.engine.min_points = 7.0;
   SegmentMap map(config, 99, slices[0]);
   map.add(slices);
   save_map(map, folder / "map");
@@ -119,6 +122,8 @@ TEST_P(SavedMap, KeepsWhatItIs) {
   EXPECT_EQ(loaded->config().mode, GetParam());
   EXPECT_EQ(loaded->config().engine.threshold, 0.002);
   EXPECT_EQ(loaded->config().engine.beta, 0.5);
+  EXPECT_EQ(loaded->config().engine.color_weight, 0.003);
+  EXPECT_EQ(loaded->config().engine.min_points, 7.0);
   EXPECT_EQ(loaded->config().engine.resolution_m, static_cast<double>(0.01F));
   EXPECT_EQ(loaded->config().engine.neighbour_search, NeighbourSearch::kFlann);
   EXPECT_TRUE(loaded->has_final_slice());
@@ -198,12 +203,12 @@ TEST_F(SavedMapFile, ReasonsSayWhatWasExpected) {
   EXPECT_THAT(reason("ply\nformat ascii 1.0\nand so on"),
               AllOf(HasSubstr("no saved segment map"), HasSubstr("KSEGMAP")));
   std::string newer = bytes_;
-  newer[8] = 3;
-  EXPECT_THAT(reason(newer), AllOf(HasSubstr("version 3"), HasSubstr("expected 2")));
+  newer[8] = 4;
+  EXPECT_THAT(reason(newer), AllOf(HasSubstr("version 4"), HasSubstr("expected 3")));
+  std::string older = bytes_;
+  older[8] = 2;
+  EXPECT_THAT(reason(older), AllOf(HasSubstr("version 2"), HasSubstr("expected 3")));
   EXPECT_THAT(reason(bytes_.substr(0, bytes_.size() - 3)), HasSubstr("cut off"));
-  std::string unknown = bytes_;
-  unknown[108] = 1;  // the last number of the header
-  EXPECT_THAT(reason(unknown), HasSubstr("reserved is 1, expected 0"));
   std::string damaged = bytes_;
   damaged[200] ^= 1;
   EXPECT_THAT(reason(damaged), HasSubstr("checksum"));
@@ -214,14 +219,14 @@ TEST_F(SavedMapFile, ReasonsSayWhatWasExpected) {
 }
 
 TEST_F(SavedMapFile, ClaimsAreHeldAgainstItsSizeBeforeMemoryIsTaken) {
-  // Each count of the header, which ends at byte 112, claims two billion.
-  for (std::size_t at = 80; at < 108; at += 4) {
+  // Each count of the header, which ends at byte 128, claims two billion.
+  for (std::size_t at = 96; at < 128; at += 4) {
     std::string hostile = bytes_;
     const std::uint32_t count = 2'000'000'000;
     std::memcpy(hostile.data() + at, &count, sizeof(count));
     write(path_, hostile);
     EXPECT_LT(allocated_by([&] { EXPECT_THROW(load_map(path_), std::runtime_error); }), 100'000U);
-    write(path_, hostile.substr(0, 112));
+    write(path_, hostile.substr(0, 128));
     EXPECT_LT(allocated_by([&] { EXPECT_THROW(load_map(path_), std::runtime_error); }), 100'000U);
   }
 }
@@ -238,6 +243,8 @@ TEST_F(SavedMapFile, IsRefusedWhenItIsNoStateOfAMap) {
   expect_refused([](auto& s) { s.slices[0].num_points = -7; }, "of -7 points");
   expect_refused([](auto& s) { s.points_W[2].y = NAN; }, "slice 0 has a point that may not");
   expect_refused([](auto& s) { s.final_slice_id = 4; }, "the final slice 4");
+  expect_refused([](auto& s) { s.last_changes.pop_back(); }, "last changes");
+  expect_refused([](auto& s) { s.last_changes[0].slice_id = 2; }, "changed with slice 2");
   expect_refused([](auto& s) { s.thetas.pop_back(); }, "thetas");
   expect_refused([](auto& s) { s.thetas[0] = NAN; }, "theta");
   expect_refused([](auto& s) { s.thetas[0] = 1.0; }, "theta");

@@ -44,6 +44,7 @@ class SegmentMapTest : public ::testing::TestWithParam<std::string_view> {
     }
     EXPECT_EQ(mirror_.labels(), testing::labels_of(map));
     EXPECT_EQ(mirror_.statistics(), map.statistics().all());
+    EXPECT_EQ(mirror_.last_changes(), map.statistics().last_changes());
     EXPECT_EQ(mirror_.num_segments(), updates.back().num_segments);
     EXPECT_EQ(updates.back().num_points, map.cloud().num_live());
     return updates;

@@ -1,0 +1,61 @@
+#include "segmenter/map/segment_sums.hpp"
+
+#include <cassert>
+#include <cmath>
+
+namespace kintsugi::segmenter {
+namespace {
+
+constexpr double kUnits = 1099511627776.0;  // 2^40
+
+// Below 2^63: a coordinate is below 2^20 m (admission.hpp).
+std::int64_t to_units(float value) { return std::llround(static_cast<double>(value) * kUnits); }
+
+}  // namespace
+
+void SegmentSums::add(const CloudPoint& point, std::int64_t sign) {
+  num_points += sign;
+  const std::array<float, 3> normal_W{point.nx, point.ny, point.nz};
+  const std::array<std::int64_t, 3> rgb{point.red, point.green, point.blue};
+  const std::array<float, 3> p_W{point.x, point.y, point.z};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::int64_t signed_position = sign * to_units(p_W[axis]);
+    const std::int64_t signed_normal = sign * to_units(normal_W[axis]);
+    position[axis] += signed_position;
+    normal[axis] += signed_normal;
+    color[axis] += sign * rgb[axis];
+  }
+}
+
+SegmentStatistics SegmentSums::statistics(std::uint32_t segment_id, float resolution_m) const {
+  assert(num_points > 0);
+  const auto count = static_cast<double>(num_points);
+  SegmentStatistics result;
+  result.segment_id = segment_id;
+  result.num_points = static_cast<std::uint32_t>(num_points);
+
+  std::array<double, 3> mean_normal{};
+  double squared_length = 0.0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    mean_normal[axis] = static_cast<double>(normal[axis]) / (kUnits * count);
+    squared_length += mean_normal[axis] * mean_normal[axis];
+  }
+  constexpr double kMinLength = 1e-6;  // below it rounding decides the direction
+  const double length = std::sqrt(squared_length);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    result.box_min_W[axis] = extent.min_W[axis];
+    result.box_max_W[axis] = extent.max_W[axis];
+    result.centroid_W[axis] =
+        static_cast<float>(static_cast<double>(position[axis]) / (kUnits * count));
+    result.mean_normal_W[axis] =
+        length < kMinLength ? 0.0F : static_cast<float>(mean_normal[axis] / length);
+    result.mean_color[axis] =
+        static_cast<std::uint8_t>(std::lround(static_cast<double>(color[axis]) / count));
+  }
+  result.area_m2 = static_cast<float>(count * resolution_m * resolution_m);
+  result.first_slice = extent.first_slice;
+  result.last_slice = extent.last_slice;
+  return result;
+}
+
+}  // namespace kintsugi::segmenter
