@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "lcmtypes/messages.hpp"
@@ -30,5 +31,13 @@ std::optional<SegmentDescription> describe_segment(const MapSnapshot& map,
 
 /// Describes every segment, by ascending id, by all cores: far cheaper than one after the other.
 std::vector<SegmentDescription> describe_segments(const MapSnapshot& map);
+/// The same of what is known already.
+/// @param segments of the cloud: all of them, by ascending id
+/// @param last_changes of each; or none: not known
+/// @param graph of the cloud
+std::vector<SegmentDescription> describe_segments(const LabelledCloud& cloud,
+                                                  std::span<const SegmentStatistics> segments,
+                                                  std::span<const LastChange> last_changes,
+                                                  const AdjacencyGraph& graph);
 
 }  // namespace kintsugi::segmenter

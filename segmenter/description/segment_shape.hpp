@@ -35,7 +35,8 @@ struct SegmentShape {
 inline constexpr double kPlanarShare = 0.9;
 inline constexpr double kPlanarEdge_vox = 5.0;
 
-/// The shape of at least one point; all must be finite.
+/// The shape of at least one point; all must be admissible (admission.hpp), but for
+/// normals, which may be zero.
 ///
 /// The plane is the one through the centroid, normal to the direction of least variance (principal
 /// component analysis). Its normal looks to the side where the mean of the points' normals does;
@@ -48,7 +49,7 @@ inline constexpr double kPlanarEdge_vox = 5.0;
 /// Points on a line, or a single one, determine no plane: the normal is any that is perpendicular.
 ///
 /// @param resolution_m voxel size, > 0
-/// The result depends on the order of points only as far as rounding of sums in double does.
+/// The result does not depend on the order of the points.
 SegmentShape shape_of(std::span<const CloudPoint> points_W, float resolution_m);
 
 }  // namespace kintsugi::segmenter
