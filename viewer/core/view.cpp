@@ -19,7 +19,10 @@ std::optional<std::array<double, 6>> parse_six_numbers(const std::string& text) 
   const char* at = text.data();
   const char* const end = text.data() + text.size();
   for (std::size_t i = 0; i < numbers.size(); ++i) {
-    if (i > 0 && (at == end || *at++ != ',')) return std::nullopt;
+    if (i > 0) {
+      if (at == end || *at != ',') return std::nullopt;
+      ++at;
+    }
     const auto [next, error] = std::from_chars(at, end, numbers[i]);
     if (error != std::errc() || !std::isfinite(numbers[i])) return std::nullopt;
     at = next;
@@ -91,7 +94,7 @@ View parse_view(const std::string& text) {
     throw std::invalid_argument(
         "view is \"" + text + "\", expected follow, overview or x,y,z,lookx,looky,lookz (metres)");
   }
-  const FixedView view{Eigen::Vector3d(numbers->data()), Eigen::Vector3d(numbers->data() + 3)};
+  FixedView view{Eigen::Vector3d(numbers->data()), Eigen::Vector3d(numbers->data() + 3)};
   if ((view.target_W - view.eye_W).norm() < 1e-6) {
     throw std::invalid_argument("view is \"" + text + "\": it looks at the point where it stands");
   }
