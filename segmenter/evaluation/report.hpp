@@ -2,19 +2,11 @@
 // The results of an evaluation as files.
 
 #include <filesystem>
-#include <optional>
-#include <string>
 
 #include "segmenter/evaluation/evaluation.hpp"
+#include "segmenter/evaluation/page_parts.hpp"
 
 namespace kintsugi::segmenter {
-
-/// What the page says of how it came about.
-struct ReportContext {
-  std::string command_line;
-  std::string version;                         ///< of the program
-  std::optional<std::string> gnuplot_version;  ///< nothing: there is no gnuplot
-};
 
 /// Writes into `folder`, which exists, each file beside its name and then renamed: table1.csv,
 /// table2.csv (with times only), agreement.csv, theta.csv, slices_<mode>.csv, of each figure

@@ -1,20 +1,14 @@
 #pragma once
 // The figures of the paper over the results of an evaluation.
 
-#include <string>
+#include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "segmenter/evaluation/evaluation.hpp"
-#include "segmenter/evaluation/plot.hpp"
+#include "segmenter/evaluation/figure.hpp"
 
 namespace kintsugi::segmenter {
-
-struct Figure {
-  std::string name;  ///< of its file: "fig5a"
-  std::string title;
-  std::string caption;
-  Plot plot;
-};
 
 /// Those there are data for: Fig. 5 a and b and a logarithmic view of the same (time per slice),
 /// Fig. 4 (cumulative v), Fig. 2 (theta against joins), slices behind.

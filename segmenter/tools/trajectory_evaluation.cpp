@@ -3,9 +3,9 @@
 #include <iostream>
 #include <map>
 
-#include "lcmtypes/atomic_file.hpp"
 #include "lcmtypes/trajectory.hpp"
 #include "segmenter/evaluation/table.hpp"
+#include "segmenter/evaluation/text_file.hpp"
 #include "segmenter/evaluation/trajectory_report.hpp"
 
 namespace kintsugi::segmenter {
@@ -16,11 +16,8 @@ const std::map<std::string, DeltaUnit> kUnits = {{"s", DeltaUnit::kSeconds},
                                                  {"m", DeltaUnit::kMetres},
                                                  {"deg", DeltaUnit::kDegrees}};
 
-void write_file(const std::filesystem::path& path, const std::string& text) {
-  if (path.empty()) return;
-  AtomicFile file(path);
-  file.stream() << text;
-  file.commit();
+void write_if_named(const std::filesystem::path& path, const std::string& text) {
+  if (!path.empty()) write_text_file(path, text);
 }
 
 }  // namespace
@@ -54,8 +51,8 @@ void evaluate_trajectory(const TrajectoryOptions& options) {
                                               read_tum_file(options.truth_file), options.relative);
   report.estimate_name = options.estimate_file;
   report.truth_name = options.truth_file;
-  write_file(options.csv_file, to_csv(to_table(report)));
-  write_file(options.json_file, to_json(report));
+  write_if_named(options.csv_file, to_csv(to_table(report)));
+  write_if_named(options.json_file, to_json(report));
   std::cout << to_text(report) << std::flush;
 }
 
