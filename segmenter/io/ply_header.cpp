@@ -51,6 +51,12 @@ std::vector<std::string_view> split(std::string_view line) {
   return words;
 }
 
+// Of a line of these words: what follows the first.
+std::string_view text_after(const std::vector<std::string_view>& words) {
+  if (words.size() < 2) return {};
+  return {words[1].data(), words.back().data() + words.back().size()};
+}
+
 // Reads the header line by line.
 class HeaderParser {
  public:
@@ -119,7 +125,9 @@ class HeaderParser {
       parse_element(words);
     } else if (keyword == "property") {
       parse_property(words);
-    } else if (keyword != "comment" && keyword != "obj_info") {
+    } else if (keyword == "comment") {
+      header_.comments.emplace_back(text_after(words));
+    } else if (keyword != "obj_info") {
       fail("unknown keyword " + quoted(keyword) +
            ", expected element, property, comment, obj_info or end_header");
     }

@@ -37,7 +37,8 @@ struct PlyElement {
 struct PlyHeader {
   PlyFormat format = PlyFormat::kAscii;
   std::vector<PlyElement> elements;
-  std::size_t num_bytes = 0;  ///< where the data begin
+  std::vector<std::string> comments;  ///< what follows the keyword of each, without blanks around
+  std::size_t num_bytes = 0;          ///< where the data begin
   int num_lines = 0;
 };
 

@@ -7,6 +7,7 @@
 #include <optional>
 #include <stdexcept>
 #include <system_error>
+#include <utility>
 
 #include "segmenter/io/ply_body.hpp"
 #include "segmenter/io/ply_header.hpp"
@@ -27,7 +28,8 @@ class VertexReader {
         color_(find({"red", "green", "blue"}, Allowed::kColor, false)),
         weight_(find_one("weight", Allowed::kAny)),
         slice_id_(find_one("slice_id", Allowed::kInteger)),
-        segment_id_(find_one("segment_id", Allowed::kInteger)) {}
+        segment_id_(find_one("segment_id", Allowed::kInteger)),
+        instance_id_(find_one("instance_id", Allowed::kInteger)) {}
 
   [[nodiscard]] bool has_normals() const { return normal_.has_value(); }
 
@@ -55,6 +57,10 @@ class VertexReader {
     }
     if (segment_id_) {
       cloud.segment_ids.push_back(id_value<std::uint32_t>(row, "segment_id", values[*segment_id_]));
+    }
+    if (instance_id_) {
+      cloud.instance_ids.push_back(
+          id_value<std::uint32_t>(row, "instance_id", values[*instance_id_]));
     }
   }
 
@@ -162,6 +168,7 @@ class VertexReader {
   std::optional<std::size_t> weight_;
   std::optional<std::size_t> slice_id_;
   std::optional<std::size_t> segment_id_;
+  std::optional<std::size_t> instance_id_;
 };
 
 PlyCloud read_vertices(PlyBody& body, const PlyElement& element, const std::string& name) {
@@ -181,7 +188,7 @@ PlyCloud read_vertices(PlyBody& body, const PlyElement& element, const std::stri
 }  // namespace
 
 PlyCloud parse_ply(std::string_view bytes, const std::string& name) {
-  const PlyHeader header = parse_ply_header(bytes, name);
+  PlyHeader header = parse_ply_header(bytes, name);
   const auto body = make_ply_body(bytes, header, name);
   std::optional<PlyCloud> cloud;
   for (const PlyElement& element : header.elements) {
@@ -195,6 +202,7 @@ PlyCloud parse_ply(std::string_view bytes, const std::string& name) {
     throw std::runtime_error(name + ": the header declares no element 'vertex'");
   }
   body->expect_end();
+  cloud->comments = std::move(header.comments);
   return std::move(*cloud);
 }
 

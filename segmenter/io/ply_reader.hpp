@@ -14,19 +14,21 @@ namespace kintsugi::segmenter {
 /// The vertices of a PLY file, in its order; every per-point vector is as long as points_W, or
 /// empty where the file has no such property.
 struct PlyCloud {
-  std::vector<CloudPoint> points_W;        ///< properties the file lacks are zero
-  std::vector<std::int32_t> slice_ids;     ///< order of arrival, >= 0
-  std::vector<std::uint32_t> segment_ids;  ///< of a labelled cloud
+  std::vector<CloudPoint> points_W;         ///< properties the file lacks are zero
+  std::vector<std::int32_t> slice_ids;      ///< order of arrival, >= 0
+  std::vector<std::uint32_t> segment_ids;   ///< of a labelled cloud
+  std::vector<std::uint32_t> instance_ids;  ///< of a cloud whose truth is known
   bool has_normals = false;
+  std::vector<std::string> comments;  ///< of the header, in its order
 };
 
 /// Reads ascii and binary PLY of either byte order.
 ///
 /// Of element `vertex` it uses x y z (float or double; required), nx ny nz (float or double),
-/// red green blue (uchar, or float in 0..1), weight (any type), slice_id and segment_id (any
-/// integer type). Other properties and elements are skipped, but must be there in full. Positions
-/// become float32. Values that are not finite, or too large, are kept as they are: judging points
-/// is left to who uses them (admission.hpp).
+/// red green blue (uchar, or float in 0..1), weight (any type), slice_id, segment_id and
+/// instance_id (any integer type). Other properties and elements are skipped, but must be there in
+/// full. Positions become float32. Values that are not finite, or too large, are kept as they are:
+/// judging points is left to who uses them (admission.hpp).
 ///
 /// @throws std::runtime_error naming the file, the place (line, byte offset, vertex) and what was
 ///   expected: a file that cannot be read, a bad header, a count that the file cannot hold, missing

@@ -136,6 +136,20 @@ TEST(PlyReader, KeepsValuesThatAreNotFiniteForTheDoorToJudge) {
   EXPECT_EQ(cloud.points_W[2].x, -HUGE_VALF);
 }
 
+TEST(PlyReader, ReadsInstancesAndWhatTheCommentsSay) {
+  const PlyCloud cloud =
+      parse_ply(ascii_header("comment instance 7 object  a cup\ncomment\n"
+                             "element vertex 1\n" +
+                             kXyz + "property ushort instance_id\ncomment  last \t\n") +
+                    "1 2 3 7\n",
+                "cloud.ply");
+  EXPECT_THAT(cloud.instance_ids, ::testing::ElementsAre(7));
+  EXPECT_THAT(cloud.comments, ::testing::ElementsAre("instance 7 object  a cup", "", "last"));
+  EXPECT_THAT(error_of(ascii_header("element vertex 1\n" + kXyz + "property float instance_id\n") +
+                       "1 2 3 7\n"),
+              HasSubstr("'instance_id' of type float, expected an integer type"));
+}
+
 TEST(PlyReader, ReadsACloudWithoutVertices) {
   EXPECT_TRUE(parse_ply(ascii_header("element vertex 0\n" + kXyz), "none").points_W.empty());
 }
