@@ -41,6 +41,18 @@ void write_range(std::ostream& out, char axis,
   if (range) out << "set " << axis << "range [" << range->first << ":" << range->second << "]\n";
 }
 
+std::string style_of(const Series& series) {
+  switch (series.style) {
+    case Series::Style::kLine:
+      return "lines";
+    case Series::Style::kLinesAndPoints:
+      return "linespoints pointtype 7 pointsize 0.5";
+    case Series::Style::kSteps:
+      return "steps";
+  }
+  return "lines";
+}
+
 }  // namespace
 
 std::vector<std::pair<double, double>> thinned(const std::vector<std::pair<double, double>>& points,
@@ -71,23 +83,24 @@ std::string to_gnuplot(const Plot& plot) {
          "set key outside above center horizontal Left reverse samplen 2\n"
       << "set xlabel " << gnuplot_quoted(plot.x_label) << "\nset ylabel "
       << gnuplot_quoted(plot.y_label) << "\n";
+  if (plot.log_x) out << "set logscale x 2\nset format x '%g'\n";
   if (plot.log_y) out << "set logscale y\nset format y '%g'\n";
   write_range(out, 'x', plot.x_range);
   write_range(out, 'y', plot.y_range);
   for (std::size_t i = 0; i < plot.series.size(); ++i) {
     out << "$series" << i << " << EOD\n";
     for (const auto& [x, y] : plot.series[i].points) {
-      if (!plot.log_y || y > 0.0) out << x << ' ' << y << '\n';
+      const bool can_be_shown = (!plot.log_x || x > 0.0) && (!plot.log_y || y > 0.0);
+      if (can_be_shown) out << x << ' ' << y << '\n';
     }
     out << "EOD\n";
   }
   out << "plot ";
   for (std::size_t i = 0; i < plot.series.size(); ++i) {
     const Series& series = plot.series[i];
-    out << (i == 0 ? "" : ", \\\n  ") << "$series" << i << " with "
-        << (series.style == Series::Style::kSteps ? "steps" : "lines") << " linecolor rgb '"
-        << series.color << "' linewidth 1.5 dashtype " << (series.dashed ? 2 : 1) << " title "
-        << gnuplot_quoted(series.name);
+    out << (i == 0 ? "" : ", \\\n  ") << "$series" << i << " with " << style_of(series)
+        << " linecolor rgb '" << series.color << "' linewidth 1.5 dashtype "
+        << (series.dashed ? 2 : 1) << " title " << gnuplot_quoted(series.name);
   }
   out << "\n";
   return out.str();

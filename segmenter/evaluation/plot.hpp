@@ -10,7 +10,7 @@
 namespace kintsugi::segmenter {
 
 struct Series {
-  enum class Style { kLine, kSteps };
+  enum class Style { kLine, kLinesAndPoints, kSteps };
 
   std::string name;   ///< in the legend
   std::string color;  ///< "#rrggbb"
@@ -23,6 +23,7 @@ struct Series {
 struct Plot {
   std::string x_label;  ///< with its unit
   std::string y_label;
+  bool log_x = false;
   bool log_y = false;
   std::optional<std::pair<double, double>> x_range{};
   std::optional<std::pair<double, double>> y_range{};

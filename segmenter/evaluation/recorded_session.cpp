@@ -8,6 +8,22 @@
 #include "segmenter/tools/cloud_slices.hpp"
 
 namespace kintsugi::segmenter {
+namespace {
+
+std::vector<std::vector<std::uint32_t>> grouped_by_slice(
+    const std::vector<std::uint32_t>& values,
+    const std::vector<std::vector<std::size_t>>& indices_by_slice) {
+  std::vector<std::vector<std::uint32_t>> grouped;
+  grouped.reserve(indices_by_slice.size());
+  for (const auto& indices : indices_by_slice) {
+    auto& of_slice = grouped.emplace_back();
+    of_slice.reserve(indices.size());
+    for (const std::size_t i : indices) of_slice.push_back(values[i]);
+  }
+  return grouped;
+}
+
+}  // namespace
 
 std::vector<const CloudSlice*> RecordedSession::newest_slices() const {
   std::map<std::int32_t, const CloudSlice*> by_id;
@@ -41,6 +57,9 @@ RecordedSession read_session_cloud(const std::filesystem::path& path,
     session.steps.back().slices.push_back(std::move(slice));
   }
   session.num_slices = std::ssize(session.steps);
+  if (!input.cloud.segment_ids.empty()) {
+    session.segment_ids = grouped_by_slice(input.cloud.segment_ids, cut.input_indices);
+  }
   session.remarks.push_back("A cloud has no times: build time, length and Table II are left out.");
   if (input.cloud.slice_ids.empty()) {
     session.remarks.push_back("The cloud has no slice_id: it was evaluated as a single slice.");

@@ -18,6 +18,8 @@ struct RecordedSession {
   std::vector<SliceGroup> steps;  ///< one run of an engine each; at least one
   std::int64_t num_slices = 0;    ///< each once, however often it was corrected
   bool has_times = false;         ///< the slices' utime means something
+  /// Of a labelled cloud: the segment_id of each point, of each slice; else empty.
+  std::vector<std::vector<std::uint32_t>> segment_ids;
 
   /// From the first camera pose (without poses: from the first slice) to the last slice.
   std::optional<double> build_time_s;

@@ -1,5 +1,5 @@
 // kintsugi-evaluate: replays a recorded map and writes the tables and figures of the paper; or
-// holds a camera path against the true one.
+// scores its segments against true instances; or holds a camera path against the true one.
 
 #include <chrono>
 #include <exception>
@@ -13,9 +13,11 @@
 #include "lcmtypes/atomic_file.hpp"
 #include "segmenter/evaluation/evaluation.hpp"
 #include "segmenter/evaluation/plot.hpp"
+#include "segmenter/evaluation/quality_report.hpp"
 #include "segmenter/evaluation/report.hpp"
 #include "segmenter/evaluation/result_tables.hpp"
 #include "segmenter/options.hpp"
+#include "segmenter/tools/quality_evaluation.hpp"
 #include "segmenter/tools/trajectory_evaluation.hpp"
 
 namespace kintsugi::segmenter {
@@ -27,6 +29,7 @@ struct Options {
   CloudInputConfig cloud;
   SegmentMapConfig map;  // its engine
   EvaluationConfig evaluation;
+  QualityOptions quality;
   TrajectoryOptions trajectory;
 };
 
@@ -64,6 +67,7 @@ void add_options(CLI::App& app, Options& options) {
   app.remove_option(app.get_option("--mode"));
   auto* const group = app.add_option_group("PLY files");
   add_cloud_options(*group, options.cloud);
+  add_quality_options(*app.add_option_group("Quality"), options.quality);
   add_trajectory_options(*app.add_option_group("Camera paths"), options.trajectory);
   app.callback([&options] { require_task(options); });
 }
@@ -113,23 +117,37 @@ void log_results(const Evaluation& evaluation) {
   }
 }
 
-/// Returns the exit status.
-int run(Options options, const std::string& command_line) {
-  options.evaluation.engine = options.map.engine;
-  options.evaluation.validate();
-  options.cloud.validate();
-  make_folder(options.folder);
-  ReportContext context{command_line, KINTSUGI_VERSION, gnuplot_version()};
-  if (!context.gnuplot_version) {
-    spdlog::warn("no gnuplot: figures are left out; it is in the Debian package gnuplot-nox");
-  }
+bool report_quality(const Options& options, const ReportContext& context) {
+  const RecordedSession session = read(options);
+  const bool is_drawn = write_quality_report(evaluate_quality_logged(session, options.quality),
+                                             context, options.folder);
+  return is_drawn && session.is_whole;
+}
+
+bool report_performance(const Options& options, const ReportContext& context) {
   const Evaluation evaluation = evaluate(read(options), options.evaluation, ProgressLog());
   const bool is_drawn = write_report(evaluation, context, options.folder);
   log_results(evaluation);
   spdlog::info("memory: {} MB at the end, {} MB at most", evaluation.resident_bytes / 1'000'000,
                evaluation.peak_resident_bytes / 1'000'000);
+  return is_drawn && evaluation.session.is_whole;
+}
+
+/// Returns the exit status.
+int run(Options options, const std::string& command_line) {
+  options.evaluation.engine = options.quality.evaluation.engine = options.map.engine;
+  options.evaluation.validate();
+  options.quality.evaluation.validate();
+  options.cloud.validate();
+  make_folder(options.folder);
+  const ReportContext context{command_line, KINTSUGI_VERSION, gnuplot_version()};
+  if (!context.gnuplot_version) {
+    spdlog::warn("no gnuplot: figures are left out; it is in the Debian package gnuplot-nox");
+  }
+  const bool is_whole = options.quality.truth_file.empty() ? report_performance(options, context)
+                                                           : report_quality(options, context);
   spdlog::info("written: {}", (options.folder / "index.html").string());
-  return is_drawn && evaluation.session.is_whole ? 0 : 1;
+  return is_whole ? 0 : 1;
 }
 
 }  // namespace
@@ -141,7 +159,8 @@ int main(int argc, char** argv) {
   spdlog::set_pattern("%^%l%$: %v");
   CLI::App app{
       "Replays a recorded map slice by slice and writes the paper's tables and figures; or, with "
-      "--trajectory, tells the errors of a camera path."};
+      "--ground-truth, scores its segments; or, with --trajectory, tells the errors of a camera "
+      "path."};
   Options options;
   add_options(app, options);
   CLI11_PARSE(app, argc, argv);

@@ -1,0 +1,49 @@
+#include "segmenter/tools/quality_evaluation.hpp"
+
+#include <spdlog/spdlog.h>
+
+namespace kintsugi::segmenter {
+
+void add_quality_options(CLI::App& app, QualityOptions& options) {
+  QualityEvaluationConfig& evaluation = options.evaluation;
+  auto* const truth = app.add_option(
+      "--ground-truth", options.truth_file,
+      "instead of the paper's tables: score segments of IN against this PLY file with x y z "
+      "instance_id (0: not known)");
+  app.add_option(
+         "--presets", evaluation.presets,
+         "what to score: presets; labels: the segment_id that IN has; flags: the parameters "
+         "given by flags")
+      ->needs(truth)
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->capture_default_str();
+  app.add_flag("--sweep", evaluation.sweep,
+               "also the preset objects with one parameter at a time changed")
+      ->needs(truth);
+  app.add_option("--min-instance-points", evaluation.quality.min_instance_points,
+                 "instances of fewer points of the map are not counted, >= 1")
+      ->needs(truth)
+      ->capture_default_str();
+}
+
+QualityEvaluation evaluate_quality_logged(const RecordedSession& session,
+                                          const QualityOptions& options) {
+  const Truth truth = read_truth(options.truth_file);
+  spdlog::info("{}: {} points, {} instances, {} of them objects", truth.source,
+               truth.points_W.size(), truth.instances.size(), truth.objects().size());
+  std::size_t num_done = 0;
+  return evaluate_quality(
+      session, truth, options.evaluation,
+      [&](const QualityResult& result, std::size_t num_results) {
+        const SegmentationQuality& quality = result.quality;
+        spdlog::info(
+            "{} of {}: {}: mean best IoU {:.3f}, {} of {} objects found, ASA {:.3f}, {:.1f} % of "
+            "points in large segments",
+            ++num_done, num_results, result.variant.name, quality.object_iou,
+            quality.num_objects_found, quality.num_objects, quality.achievable_accuracy,
+            100.0 * quality.large_segment_share);
+      });
+}
+
+}  // namespace kintsugi::segmenter
