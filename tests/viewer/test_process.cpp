@@ -127,6 +127,7 @@ TEST(ViewerProcess, RefusesWhatItCannotRun) {
   EXPECT_NE(0, run({"--view", "1,2,3"}));
   EXPECT_NE(0, run({"--size", "1280"}));
   EXPECT_NE(0, run({"--size", "0x720"}));
+  EXPECT_NE(0, run({"--highlight", "-1"}));
   EXPECT_NE(0, run({"--timeline", "0"}));
   EXPECT_NE(0, run({"--timeline", "1,x"}));
   EXPECT_NE(0, run({"--unknown"}));

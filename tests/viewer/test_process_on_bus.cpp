@@ -17,6 +17,7 @@
 
 #include "lcmtypes/channels.hpp"
 #include "lcmtypes/message_subscriber.hpp"
+#include "lcmtypes/stream_publisher.hpp"
 #include "lcmtypes/stream_subscriber.hpp"
 #include "tests/support/private_bus.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -96,6 +97,31 @@ TEST_F(ViewerOnBus, DrawsTheFinalMapAndExits) {
   EXPECT_EQ(0, status_->messages_bad);
   EXPECT_TRUE(fs::exists(folder_ / "out/final.png"));
   EXPECT_EQ(cv::Size(640, 360), cv::imdecode(pictures_.back().image_jpeg, cv::IMREAD_COLOR).size());
+}
+
+TEST_F(ViewerOnBus, ShowsWhatTheSegmenterAnswersToAnybody) {
+  const SyntheticMap room = make_room(kLength_m, kResolution_m);
+  const Program program(arguments());
+  ASSERT_TRUE(wait_until([&] { return status_.has_value(); }));
+  publish(*bus_, room);
+  ASSERT_TRUE(wait_until([&] { return status_->finished; }));
+  SegmentAnswer answer;
+  answer.utime = 1;
+  answer.session = room.updates.front().session;
+  answer.client = 77;
+  answer.map_session = room.slices.front().session;
+  answer.map_slices = 20;
+  answer.map_points = 1'000;
+  answer.map_segments = 6;
+  answer.num_matching = 1;
+  DescribedSegment& segment = answer.segments.emplace_back();
+  segment.statistics.segment_id = 7;
+  segment.statistics.num_points = 1;
+  for (int i = 0; i < 3; ++i) segment.oriented_box_axes_W[i][i] = 1.0F;
+  StreamPublisher answers(*bus_, channels::kSegmentAnswer, answer.session, {});
+  answers.publish(answer);
+  EXPECT_TRUE(wait_until([&] { return fs::exists(folder_ / "out/highlight.png"); }));
+  EXPECT_EQ(0, status_->messages_bad);
 }
 
 TEST_F(ViewerOnBus, WritesOnSignals) {

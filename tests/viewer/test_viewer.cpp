@@ -158,6 +158,61 @@ TEST_F(ViewerTest, WritesTheSameTimelineFromUpdatesInWhateverOrder) {
   }
 }
 
+SegmentAnswer answer_of(std::int64_t map_session, std::int64_t utime,
+                        std::initializer_list<std::uint32_t> ids) {
+  SegmentAnswer answer;
+  answer.utime = utime;
+  answer.map_session = map_session;
+  for (const std::uint32_t id : ids) {
+    answer.segments.emplace_back().statistics.segment_id = id;
+  }
+  return answer;
+}
+
+TEST_F(ViewerTest, HighlightsTheSegmentsOfTheNewestAnswer) {
+  Viewer viewer = make_viewer();
+  const std::int64_t session = room_.slices.front().session;
+  add_session(viewer, session, 3, kNow_s);
+  const auto picture_after = [&](const SegmentAnswer& answer) {
+    fs::remove(folder_ / "highlight.png");
+    viewer.add(answer, kNow_s);
+    viewer.draw_if_due();
+    return exists("highlight.png") ? read("highlight.png") : std::string();
+  };
+  const std::string of_floor = picture_after(answer_of(session, 10, {1}));
+  const std::string of_ceiling = picture_after(answer_of(session, 20, {2}));
+  const std::string of_both = picture_after(answer_of(session, 30, {1, 2}));
+  const std::string of_none = picture_after(answer_of(session, 40, {}));
+  EXPECT_EQ(4U, captions_.size());  // published too
+  EXPECT_EQ(4U, (std::set{of_floor, of_ceiling, of_both, of_none}.size()));
+  EXPECT_FALSE(of_floor.empty());
+
+  EXPECT_EQ("", picture_after(answer_of(session, 35, {1})));  // overtaken
+  EXPECT_EQ("", picture_after(answer_of(session + 1, 50, {1})));
+  SegmentAnswer none = answer_of(session, 50, {});
+  none.problem = "the map is not here";
+  EXPECT_EQ("", picture_after(none));
+  EXPECT_TRUE(of_floor == picture_after(answer_of(session, 60, {1})));
+}
+
+TEST_F(ViewerTest, LeavesAnswersOutOfTheFinalPictures) {
+  std::string expected;
+  for (const bool is_asked : {false, true}) {
+    Viewer viewer = make_viewer();
+    const std::int64_t session = room_.slices.front().session;
+    add_session(viewer, session, room_.slices.size(), kNow_s);
+    if (is_asked) viewer.add(answer_of(session, 10, {1}), kNow_s);
+    viewer.close();
+    if (!is_asked) expected = read("segments_final.png");
+    EXPECT_TRUE(expected == read("segments_final.png"));
+  }
+  config_.painter.highlight = {1};
+  Viewer viewer = make_viewer();
+  add_session(viewer, room_.slices.front().session, room_.slices.size(), kNow_s);
+  viewer.close();
+  EXPECT_FALSE(expected == read("segments_final.png"));
+}
+
 TEST_F(ViewerTest, DrawsCorrectedSlicesAgain) {
   Viewer viewer = make_viewer();
   for (std::size_t i = 0; i < 4; ++i) {

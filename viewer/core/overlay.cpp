@@ -39,6 +39,8 @@ void draw_line(cv::Mat3b& image, const VirtualCamera& camera, Eigen::Vector3d a_
            color, width, cv::LINE_AA, kShift);
 }
 
+double title_scale(const cv::Mat3b& image) { return std::clamp(image.cols / 1100.0, 0.4, 1.2); }
+
 }  // namespace
 
 void draw_path(cv::Mat3b& image, const VirtualCamera& camera,
@@ -77,8 +79,13 @@ void draw_caption(cv::Mat3b& image, const cv::Rect& bar, const std::string& text
 }
 
 void draw_title(cv::Mat3b& image, const std::string& text) {
-  const double scale = std::clamp(image.cols / 1100.0, 0.4, 1.2);
-  draw_outlined_text(image, text, {10, 10 + static_cast<int>(22 * scale)}, scale);
+  const cv::Rect box = title_box(image, text);
+  draw_outlined_text(image, text, {box.x, box.br().y}, title_scale(image));
+}
+
+cv::Rect title_box(const cv::Mat3b& image, const std::string& text) {
+  const double scale = title_scale(image);
+  return {10, 10, text_size(text, scale).width, static_cast<int>(22 * scale)};
 }
 
 }  // namespace kintsugi::viewer

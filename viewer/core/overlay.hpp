@@ -22,5 +22,7 @@ void draw_caption(cv::Mat3b& image, const cv::Rect& bar, const std::string& text
 
 /// Draws what a panel shows into its top left corner.
 void draw_title(cv::Mat3b& image, const std::string& text);
+/// What that covers.
+cv::Rect title_box(const cv::Mat3b& image, const std::string& text);
 
 }  // namespace kintsugi::viewer

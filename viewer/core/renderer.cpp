@@ -3,60 +3,26 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
-#include <stdexcept>
+#include <utility>
 #include <vector>
-
-#include <opencv2/imgproc.hpp>
 
 #include "viewer/core/overlay.hpp"
 #include "viewer/core/require.hpp"
+#include "viewer/core/segment_labels.hpp"
 #include "viewer/core/text.hpp"
 
 namespace kintsugi::viewer {
 namespace {
 
-/// The same view with `factor` times as many pixels along each side.
-VirtualCamera supersampled(VirtualCamera camera, int factor) {
-  Intrinsics& k = camera.intrinsics;
-  k.fx *= factor;
-  k.fy *= factor;
-  k.cx = factor * k.cx + 0.5 * (factor - 1);
-  k.cy = factor * k.cy + 0.5 * (factor - 1);
-  k.width *= factor;
-  k.height *= factor;
-  return camera;
-}
-
 VirtualCamera camera_of(const Subject& subject, cv::Size size, const ViewConfig& config) {
   return camera_for(subject.view, subject.scene, subject.followed, size.width, size.height, config);
 }
 
-/// One picture of the points per coloring; what is seen in each pixel is found once.
-std::vector<cv::Mat3b> draw_points(std::span<const PointChunk> chunks, const VirtualCamera& camera,
-                                   std::span<const Coloring> colorings,
-                                   const Renderer::Config& config) {
-  const VirtualCamera fine = supersampled(camera, config.supersampling);
-  const VisibilityImage visible = splat_points(chunks, fine, config.splat);
-  const cv::Size size(camera.intrinsics.width, camera.intrinsics.height);
-  std::vector<cv::Mat3b> images;
-  for (const Coloring coloring : colorings) {
-    images.emplace_back();
-    cv::resize(shade(visible, chunks, fine, coloring), images.back(), size, 0.0, 0.0,
-               cv::INTER_AREA);
-  }
-  return images;
-}
-
-void draw_camera(cv::Mat3b& image, const VirtualCamera& camera, const CameraTrack& track,
-                 double frustum_m) {
-  draw_path(image, camera, track.path_W);
-  if (track.X_WC) draw_frustum(image, camera, *track.X_WC, frustum_m);
-}
-
-/// Where the parts of the figure go: two columns, map above slice, the caption below both.
+/// Where the parts of the figure go: two columns, the map above its detail, the caption below
+/// both.
 struct Layout {
   std::array<cv::Rect, 2> map;
-  std::array<cv::Rect, 2> slice;
+  std::array<cv::Rect, 2> detail;
   cv::Rect caption;
 };
 
@@ -64,17 +30,38 @@ Layout layout_of(int width, int height) {
   constexpr int kGap = 2;
   const int caption_height = std::clamp(height / 20, 16, 60);
   const int map_height = (height - caption_height) * 68 / 100;
-  const int slice_top = map_height + kGap;
-  const int slice_height = height - caption_height - slice_top;
+  const int detail_top = map_height + kGap;
+  const int detail_height = height - caption_height - detail_top;
   const int column = (width - kGap) / 2;
   Layout layout;
   for (int i = 0; i < 2; ++i) {
     const int left = i == 0 ? 0 : width - column;
     layout.map[i] = {left, 0, column, map_height};
-    layout.slice[i] = {left, slice_top, column, slice_height};
+    layout.detail[i] = {left, detail_top, column, detail_height};
   }
   layout.caption = {0, height - caption_height, width, caption_height};
   return layout;
+}
+
+/// What is shown below the map: the highlighted segments from near by, or the newest slice alone.
+struct Detail {
+  std::string title;
+  std::vector<PointChunk> chunks;
+  VirtualCamera camera;
+};
+
+Detail detail_of(const Subject& subject, const Eigen::Matrix3d& R_WV, cv::Size size,
+                 const ViewConfig& config) {
+  const Intrinsics intrinsics = pinhole(size.width, size.height, config.field_of_view_rad);
+  std::vector<PointChunk> all = subject.scene.chunks();
+  if (const auto camera = close_up(all, subject.highlight, R_WV, intrinsics)) {
+    return {"highlighted", std::move(all), *camera};
+  }
+  const SceneSlice* newest = subject.scene.newest_slice();
+  if (newest == nullptr) return {"no slice yet", {}, camera_around({}, R_WV, intrinsics, config)};
+  std::vector<PointChunk> chunks = subject.scene.chunks(*newest);
+  const VirtualCamera camera = camera_around(chunks, R_WV, intrinsics, config);
+  return {"newest slice: " + std::to_string(newest->id), std::move(chunks), camera};
 }
 
 }  // namespace
@@ -98,28 +85,14 @@ cv::Mat3b Renderer::draw_figure(const Subject& subject, const std::string& capti
   constexpr std::array kMapTitles{"map", "segments"};
   const Layout layout = layout_of(config_.width_px, config_.height_px);
   cv::Mat3b figure(config_.height_px, config_.width_px, cv::Vec3b(90, 80, 72));
-
-  const Scene& scene = subject.scene;
-  const VirtualCamera map_camera = camera_of(subject, layout.map[0].size(), config_.view);
-  std::vector<cv::Mat3b> maps = draw_points(scene.chunks(), map_camera, kColorings, config_);
-
-  const SceneSlice* newest = scene.newest_slice();
-  const std::vector<PointChunk> slice_chunks =
-      newest == nullptr ? std::vector<PointChunk>() : scene.chunks(*newest);
-  const VirtualCamera slice_camera = camera_around(
-      slice_chunks, map_camera.X_WV.linear(),
-      pinhole(layout.slice[0].width, layout.slice[0].height, config_.view.field_of_view_rad),
-      config_.view);
-  std::vector<cv::Mat3b> slices = draw_points(slice_chunks, slice_camera, kColorings, config_);
-  const std::string slice_title =
-      newest == nullptr ? "no slice yet" : "newest slice: " + std::to_string(newest->id);
-
+  const Panel map = panel(subject, subject.scene.chunks(),
+                          camera_of(subject, layout.map[0].size(), config_.view));
+  const Detail detail =
+      detail_of(subject, map.camera().X_WV.linear(), layout.detail[0].size(), config_.view);
+  const Panel detail_panel = panel(subject, detail.chunks, detail.camera);
   for (std::size_t i = 0; i < kColorings.size(); ++i) {
-    draw_camera(maps[i], map_camera, subject.track, config_.frustum_m);
-    draw_title(maps[i], kMapTitles[i]);
-    draw_title(slices[i], slice_title);
-    maps[i].copyTo(figure(layout.map[i]));
-    slices[i].copyTo(figure(layout.slice[i]));
+    draw_panel(map, kColorings[i], kMapTitles[i], &subject.track).copyTo(figure(layout.map[i]));
+    draw_panel(detail_panel, kColorings[i], detail.title, nullptr).copyTo(figure(layout.detail[i]));
   }
   draw_caption(figure, layout.caption, caption);
   return figure;
@@ -128,9 +101,26 @@ cv::Mat3b Renderer::draw_figure(const Subject& subject, const std::string& capti
 cv::Mat3b Renderer::draw_map(const Subject& subject, Coloring coloring) const {
   const VirtualCamera camera =
       camera_of(subject, {config_.width_px, config_.height_px}, config_.view);
-  cv::Mat3b image =
-      draw_points(subject.scene.chunks(), camera, std::array{coloring}, config_).front();
-  draw_camera(image, camera, subject.track, config_.frustum_m);
+  return draw_panel(panel(subject, subject.scene.chunks(), camera), coloring, "", &subject.track);
+}
+
+Panel Renderer::panel(const Subject& subject, std::vector<PointChunk> chunks,
+                      const VirtualCamera& camera) const {
+  return {std::move(chunks), camera, config_.splat, config_.supersampling, subject.highlight};
+}
+
+cv::Mat3b Renderer::draw_panel(const Panel& panel, Coloring coloring, const std::string& title,
+                               const CameraTrack* track) const {
+  cv::Mat3b image = panel.draw(coloring);
+  if (track != nullptr) {
+    draw_path(image, panel.camera(), track->path_W);
+    if (track->X_WC) draw_frustum(image, panel.camera(), *track->X_WC, config_.frustum_m);
+  }
+  if (coloring == Coloring::kSegments && (config_.label_ids || !panel.highlight().empty())) {
+    const std::array reserved{title_box(image, title)};
+    draw_labels(image, place_labels(panel.segment_ids(), panel.highlight(), reserved));
+  }
+  draw_title(image, title);
   return image;
 }
 

@@ -1,10 +1,13 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include <opencv2/core.hpp>
 
 #include "viewer/core/camera_track.hpp"
+#include "viewer/core/highlight.hpp"
+#include "viewer/core/panel.hpp"
 #include "viewer/core/scene.hpp"
 #include "viewer/core/shade.hpp"
 #include "viewer/core/splat.hpp"
@@ -18,6 +21,7 @@ struct Subject {
   CameraTrack track;
   const FollowedCamera& followed;
   View view;
+  Highlight highlight = {};
 };
 
 /// Draws a Scene. Pure functions of the subject and the configuration: the same picture,
@@ -29,6 +33,7 @@ class Renderer {
     int height_px = 720;      ///< of a picture
     int supersampling = 2;    ///< each pixel is the mean of this many squared
     double frustum_m = 0.35;  ///< depth of the pyramid that stands for the camera
+    bool label_ids = false;   ///< write the ids of the largest segments that are seen
     SplatConfig splat;
     ViewConfig view;
 
@@ -39,7 +44,8 @@ class Renderer {
   explicit Renderer(const Config& config);
 
   /// The paper's Fig. 1 in one picture: the map in true colour and its segments side by side, the
-  /// newest slice below each on its own, the camera's path, and a caption.
+  /// newest slice below each on its own, the camera's path, and a caption. Highlighted segments
+  /// have their ids, are outlined and take the place of the newest slice; all else is dimmed.
   cv::Mat3b draw_figure(const Subject& subject, const std::string& caption) const;
 
   /// The map alone in one coloring, filling the picture.
@@ -48,6 +54,12 @@ class Renderer {
   const Config& config() const { return config_; }
 
  private:
+  Panel panel(const Subject& subject, std::vector<PointChunk> chunks,
+              const VirtualCamera& camera) const;
+  /// `track` may be nullptr: not drawn.
+  cv::Mat3b draw_panel(const Panel& panel, Coloring coloring, const std::string& title,
+                       const CameraTrack* track) const;
+
   Config config_;
 };
 

@@ -46,7 +46,7 @@ float facing(const CloudPoint& p, const Eigen::Vector3f& eye_W) {
 }  // namespace
 
 cv::Mat3b shade(const VisibilityImage& visible, std::span<const PointChunk> chunks,
-                const VirtualCamera& camera, Coloring coloring) {
+                const VirtualCamera& camera, Coloring coloring, const Highlight& highlight) {
   cv::Mat3b image(visible.height(), visible.width(), kBackground);
   const Eigen::Vector3f eye_W = camera.X_WV.translation().cast<float>();
   const Light light = light_of(coloring);
@@ -58,9 +58,10 @@ cv::Mat3b shade(const VisibilityImage& visible, std::span<const PointChunk> chun
       const CloudPoint& point = chunk.points_W[index];
       const float brightness = (light.ambient + (1.0F - light.ambient) * facing(point, eye_W)) *
                                std::exp(-light.edge * occlusion(visible, u, v));
-      const Color color =
-          coloring == Coloring::kTrue ? true_color(point) : segment_color(chunk.labels[index]);
-      image(v, u) = Color(cv::Vec3f(color) * brightness);
+      const std::uint32_t id = chunk.labels[index];
+      const Color color = coloring == Coloring::kTrue ? true_color(point) : segment_color(id);
+      const Color lit = cv::Vec3f(color) * brightness;
+      image(v, u) = highlight.empty() || highlight.contains(id) ? lit : dimmed(lit);
     }
   });
   return image;

@@ -4,7 +4,7 @@
 
 #include <opencv2/core.hpp>
 
-#include "viewer/core/colors.hpp"
+#include "viewer/core/highlight.hpp"
 #include "viewer/core/splat.hpp"
 
 namespace kintsugi::viewer {
@@ -18,8 +18,9 @@ inline const Color kBackground{34, 28, 24};
 
 /// Colours what splat_points() found, as seen by `camera`; `chunks` are those it was given.
 /// Surfaces get light from the camera's side, and edges in depth are darkened (eye-dome lighting,
-/// Boucheny 2009), so that shape shows within one colour. Pixels with nothing are kBackground.
+/// Boucheny 2009), so that shape shows within one colour. What is not highlighted
+/// is dimmed, unless nothing is. Pixels with nothing are kBackground.
 cv::Mat3b shade(const VisibilityImage& visible, std::span<const PointChunk> chunks,
-                const VirtualCamera& camera, Coloring coloring);
+                const VirtualCamera& camera, Coloring coloring, const Highlight& highlight = {});
 
 }  // namespace kintsugi::viewer

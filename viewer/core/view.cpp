@@ -132,6 +132,22 @@ VirtualCamera camera_around(std::span<const PointChunk> chunks, const Eigen::Mat
   return fit_points(points_W, kOutliers, R_WV, intrinsics, config.margin_px);
 }
 
+std::optional<VirtualCamera> close_up(std::span<const PointChunk> chunks, const Highlight& segments,
+                                      const Eigen::Matrix3d& R_WV, const Intrinsics& intrinsics) {
+  constexpr double kSurroundings = 0.12;  // of the picture's height, on each side
+  if (segments.empty()) return std::nullopt;
+  std::vector<Eigen::Vector3d> points_W;
+  for (const PointChunk& chunk : chunks) {
+    for (std::size_t i = 0; i < chunk.points_W.size(); ++i) {
+      const CloudPoint& p = chunk.points_W[i];
+      const Eigen::Vector3d p_W(p.x, p.y, p.z);
+      if (segments.contains(chunk.labels[i]) && p_W.allFinite()) points_W.push_back(p_W);
+    }
+  }
+  if (points_W.empty()) return std::nullopt;
+  return fit_points(points_W, 0.0, R_WV, intrinsics, kSurroundings * intrinsics.height);
+}
+
 VirtualCamera camera_for(const View& view, const Scene& scene, const FollowedCamera& followed,
                          int width, int height, const ViewConfig& config) {
   const Intrinsics intrinsics = pinhole(width, height, config.field_of_view_rad);

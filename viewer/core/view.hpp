@@ -2,10 +2,12 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <variant>
 
+#include "viewer/core/highlight.hpp"
 #include "viewer/core/scene.hpp"
 #include "viewer/core/virtual_camera.hpp"
 
@@ -59,6 +61,11 @@ struct ViewConfig {
 /// picture; without any, at W's origin.
 VirtualCamera camera_around(std::span<const PointChunk> chunks, const Eigen::Matrix3d& R_WV,
                             const Intrinsics& intrinsics, const ViewConfig& config);
+
+/// The camera with this orientation that fits the points of these segments into the picture, with
+/// what is about them. Nothing when there are no such points.
+std::optional<VirtualCamera> close_up(std::span<const PointChunk> chunks, const Highlight& segments,
+                                      const Eigen::Matrix3d& R_WV, const Intrinsics& intrinsics);
 
 /// The camera that a view asks for; the overview where there is no pose to follow yet.
 VirtualCamera camera_for(const View& view, const Scene& scene, const FollowedCamera& followed,

@@ -18,8 +18,8 @@ class Inbox {
  public:
   explicit Inbox(std::size_t max_bytes) : max_bytes_(max_bytes) {}
 
-  /// Takes the message even when there is no room, because it has been received; but poses and
-  /// statuses, which nobody waits for, are dropped then.
+  /// Takes the message even when there is no room, because it has been received; but poses,
+  /// statuses and answers, which nobody waits for, are dropped then.
   void put(Message message) {
     {
       const std::lock_guard lock(mutex_);

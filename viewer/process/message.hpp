@@ -8,7 +8,7 @@
 namespace kintsugi::viewer {
 
 /// What the viewer takes from the bus or a log.
-using Message = std::variant<CloudSlice, SegmentUpdate, CameraPose, SegmenterStatus>;
+using Message = std::variant<CloudSlice, SegmentUpdate, CameraPose, SegmenterStatus, SegmentAnswer>;
 
 /// Memory of a message.
 inline std::size_t bytes_of(const Message& message) {
@@ -23,6 +23,10 @@ inline std::size_t bytes_of(const Message& message) {
     }
     std::size_t operator()(const CameraPose& /*small*/) const { return 0; }
     std::size_t operator()(const SegmenterStatus& /*small*/) const { return 0; }
+    std::size_t operator()(const SegmentAnswer& m) const {
+      return m.segments.size() * sizeof(DescribedSegment) +
+             m.contacts.size() * sizeof(SegmentContact);
+    }
   };
   return sizeof(Message) + std::visit(Bulk{}, message);
 }
@@ -30,7 +34,8 @@ inline std::size_t bytes_of(const Message& message) {
 /// A message that is lost without harm: nobody sends it again.
 inline bool is_passing(const Message& message) {
   return std::holds_alternative<CameraPose>(message) ||
-         std::holds_alternative<SegmenterStatus>(message);
+         std::holds_alternative<SegmenterStatus>(message) ||
+         std::holds_alternative<SegmentAnswer>(message);
 }
 
 }  // namespace kintsugi::viewer

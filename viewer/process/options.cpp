@@ -38,6 +38,7 @@ std::optional<Options> parse_options(int argc, char** argv, int& exit_code) {
   std::string folder = viewer.folder.string();
   std::string log;
   std::string video;
+  std::vector<std::uint32_t> highlight;
   double overview_yaw_deg = std::round(renderer.view.overview_yaw_rad * kDegreesPerRadian);
   double overview_pitch_deg = std::round(renderer.view.overview_pitch_rad * kDegreesPerRadian);
   bool print_config = false;
@@ -66,6 +67,13 @@ std::optional<Options> parse_options(int argc, char** argv, int& exit_code) {
   app.add_option("--video-rate", viewer.video_frames_per_s, "Frames per second of the video")
       ->capture_default_str();
   app.add_flag("--plots", painter.plots, "Write plots.png: lag and times over the slices");
+  app.add_flag("--label-ids", renderer.label_ids,
+               "Write the ids of the largest segments into the pictures of the segments");
+  app.add_option("--highlight", highlight,
+                 "Show these segments, ID,ID,...: their ids, and everything else dimmed")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(CLI::Range(std::uint32_t{1}, UINT32_MAX));
   app.add_option("--timeline", painter.timelines,
                  "Write timeline_ID.png: what became of segment ID; several: ID,ID,...")
       ->delimiter(',')
@@ -96,6 +104,7 @@ std::optional<Options> parse_options(int argc, char** argv, int& exit_code) {
     painter.view = parse_view(view);
     parse_size(size, renderer.width_px, renderer.height_px);
     viewer.folder = folder;
+    painter.highlight.insert(highlight.begin(), highlight.end());
     renderer.view.overview_yaw_rad = overview_yaw_deg / kDegreesPerRadian;
     renderer.view.overview_pitch_rad = overview_pitch_deg / kDegreesPerRadian;
     if (!log.empty() && !options.lcm_url.empty()) {

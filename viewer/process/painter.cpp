@@ -1,5 +1,7 @@
 #include "viewer/process/painter.hpp"
 
+#include <utility>
+
 #include "viewer/core/require.hpp"
 #include "viewer/core/timeline_chart.hpp"
 
@@ -17,8 +19,11 @@ Painter::Painter(const Config& config)
 cv::Mat3b Painter::draw_figure(SessionScene& shown) {
   const Clock::time_point start = Clock::now();
   const Scene& scene = shown.scene();
+  Highlight highlight = config_.highlight;
+  highlight.insert(shown.answered().begin(), shown.answered().end());
   cv::Mat3b figure = renderer_.draw_figure(
-      {scene, scene.heard_track(), shown.followed(), config_.view}, caption(scene));
+      {scene, scene.heard_track(), shown.followed(), config_.view, std::move(highlight)},
+      caption(scene));
   note_time(shown, start);
   return figure;
 }
@@ -26,7 +31,8 @@ cv::Mat3b Painter::draw_figure(SessionScene& shown) {
 std::vector<NamedPicture> Painter::draw_finals(SessionScene& shown) {
   const Clock::time_point start = Clock::now();
   const Scene& scene = shown.scene();
-  const Subject subject{scene, scene.slice_track(), shown.followed(), OverviewView{}};
+  const Subject subject{scene, scene.slice_track(), shown.followed(), OverviewView{},
+                        config_.highlight};
   std::vector<NamedPicture> pictures;
   pictures.push_back({"final", renderer_.draw_figure(subject, final_caption(scene))});
   note_time(shown, start);

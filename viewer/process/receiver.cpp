@@ -41,8 +41,12 @@ Receiver::Receiver(const Config& config, OnMessage on_message, OnBad on_bad)
           of_map(stream_config<CloudSlice>(config), choice_, config.map_name)),
       updates_(
           channels::kSegmentUpdate, [this](SegmentUpdate update) { use(std::move(update)); },
+          [this](const DecodeError& reason) { bad(reason); }, stream_config<SegmentUpdate>(config)),
+      answers_(
+          channels::kSegmentAnswer,
+          [this](SegmentAnswer answer) { on_message_(std::move(answer)); },
           [this](const DecodeError& reason) { bad(reason); },
-          stream_config<SegmentUpdate>(config)) {}
+          stream_config<SegmentAnswer>(config)) {}
 
 /// One stream of updates may carry several maps.
 void Receiver::use(SegmentUpdate update) {
@@ -58,6 +62,7 @@ void Receiver::use(SegmentUpdate update) {
 void Receiver::subscribe(Bus& bus) {
   slices_.subscribe(bus);
   updates_.subscribe(bus);
+  answers_.subscribe(bus);
   bus.subscribe(channels::kCameraPose, [this](ByteView data) { handle_small<CameraPose>(data); });
   bus.subscribe(channels::kSegmenterStatus,
                 [this](ByteView data) { handle_small<SegmenterStatus>(data); });
@@ -71,6 +76,7 @@ void Receiver::ask(Bus& bus, double now_s) {
 void Receiver::handle(const std::string& channel, ByteView data) {
   slices_.handle(channel, data);
   updates_.handle(channel, data);
+  answers_.handle(channel, data);
   if (channel == channels::kCameraPose) handle_small<CameraPose>(data);
   if (channel == channels::kSegmenterStatus) handle_small<SegmenterStatus>(data);
 }

@@ -63,6 +63,7 @@ class Receiver {
   std::atomic<std::int64_t> bad_{0};
   StreamSubscriber<CloudSlice> slices_;
   StreamSubscriber<SegmentUpdate> updates_;
+  StreamSubscriber<SegmentAnswer> answers_;  // to whoever asked; one that is lost stays lost
 };
 
 }  // namespace kintsugi::viewer

@@ -30,6 +30,16 @@ void SessionScene::use(const CameraPose& pose) {
   if (scene_.add_pose(pose)) followed_.update(pose, scene_.up().up_W());
 }
 
+void SessionScene::use(const SegmentAnswer& answer) {
+  if (answer.utime < answer_utime_ || !answer.problem.empty()) return;
+  answer_utime_ = answer.utime;
+  answered_.clear();
+  for (const DescribedSegment& segment : answer.segments) {
+    answered_.insert(segment.statistics.segment_id);
+  }
+  is_answer_new_ = true;
+}
+
 bool SessionScene::snapshot_is_due(int every_slices) const {
   const SceneCounts& now = scene_.counts();
   const std::int64_t more =

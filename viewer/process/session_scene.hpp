@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "viewer/core/highlight.hpp"
 #include "viewer/core/scene.hpp"
 #include "viewer/core/update_log.hpp"
 #include "viewer/core/view.hpp"
@@ -23,6 +24,8 @@ class SessionScene {
   void use(const SegmentUpdate& update, double now_s);
   void use(const CameraPose& pose);
   void use(const SegmenterStatus& status) { history_.add_slice_time(status); }
+  /// Of several answers the newest counts, in whatever order they come.
+  void use(const SegmentAnswer& answer);
 
   const Scene& scene() const { return scene_; }
   const FollowedCamera& followed() const { return followed_; }
@@ -40,6 +43,11 @@ class SessionScene {
   /// corrected ones again; without a segmenter, all.
   bool snapshot_is_due(int every_slices) const;
   void note_snapshot() { in_snapshot_ = scene_.counts(); }
+
+  /// The segments of the newest answer: none when it has none, or there was no answer.
+  const Highlight& answered() const { return answered_; }
+  bool answer_is_due() const { return is_answer_new_ && !is_empty(); }
+  void note_answer() { is_answer_new_ = false; }
 
   bool frame_is_due(double period_s) const;
   void note_frame() { last_frame_utime_ = scene_.utime(); }
@@ -64,6 +72,9 @@ class SessionScene {
   UpdateLog updates_;
   double last_news_s_;
   SceneCounts in_snapshot_;  ///< of the last one
+  Highlight answered_;
+  std::int64_t answer_utime_ = 0;
+  bool is_answer_new_ = false;
   std::optional<std::int64_t> last_frame_utime_;
   std::optional<std::string> final_suffix_;  ///< of the final pictures that show the scene as it is
 };

@@ -52,6 +52,10 @@ void Viewer::use(const SegmenterStatus& status, double /*now_s*/) {
   if (SessionScene* const scene = sessions_.find(status.map_session)) scene->use(status);
 }
 
+void Viewer::use(const SegmentAnswer& answer, double /*now_s*/) {
+  if (SessionScene* const scene = sessions_.find(answer.map_session)) scene->use(answer);
+}
+
 SessionScene* Viewer::enter_session(std::int64_t session, double now_s) {
   SessionScene* const scene = sessions_.enter(session, now_s);
   if (scene == nullptr && outputs_.on_forgotten) outputs_.on_forgotten(session);
@@ -71,12 +75,14 @@ void Viewer::draw_if_due() {
   if (scene == nullptr) return;
   const bool snapshot = scene->snapshot_is_due(config_.every_slices);
   const bool frame = video_ && scene->frame_is_due(config_.video_period_s);
-  if ((!snapshot && !frame) || painter_.is_resting()) return;
+  const bool answer = scene->answer_is_due();
+  if ((!snapshot && !frame && !answer) || painter_.is_resting()) return;
   const cv::Mat3b figure = painter_.draw_figure(*scene);
   if (frame) {
     video_->add(figure);
     scene->note_frame();
   }
+  if (answer) write_highlight(*scene, figure);
   if (snapshot) write_snapshot(*scene, figure);
 }
 
@@ -94,6 +100,13 @@ void Viewer::write_snapshot(SessionScene& shown, const cv::Mat3b& figure) {
   outputs_.on_picture(figure, text);
   shown.note_snapshot();
   spdlog::info("{}; drawn in {:.0f} ms", text, painter_.render_ms());
+}
+
+void Viewer::write_highlight(SessionScene& shown, const cv::Mat3b& figure) {
+  if (!folder_.save("highlight.png", figure)) ++failures_;
+  outputs_.on_picture(figure, caption(shown.scene()));
+  shown.note_answer();
+  spdlog::info("{} segments of an answer in highlight.png", shown.answered().size());
 }
 
 std::string Viewer::final_suffix(const SessionScene& shown) const {

@@ -49,7 +49,8 @@ class Viewer {
 
   void add(Message message, double now_s);
 
-  /// Draws a snapshot and a frame of the video if they are due, and time for drawing is left.
+  /// Draws a snapshot, a frame of the video, and highlight.png after an answer of the segmenter, if
+  /// they are due and time for drawing is left.
   void draw_if_due();
   void draw_snapshot_now();
 
@@ -73,6 +74,7 @@ class Viewer {
   void use(const SegmentUpdate& update, double now_s);
   void use(const CameraPose& pose, double now_s);
   void use(const SegmenterStatus& status, double now_s);
+  void use(const SegmentAnswer& answer, double now_s);
   SessionScene* enter_session(std::int64_t session, double now_s);
   void forget_oldest();
 
@@ -83,6 +85,7 @@ class Viewer {
   bool write_final(SessionScene& shown);
 
   void write_snapshot(SessionScene& shown, const cv::Mat3b& figure);
+  void write_highlight(SessionScene& shown, const cv::Mat3b& figure);
 
   Config config_;
   Outputs outputs_;

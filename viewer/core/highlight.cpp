@@ -1,0 +1,22 @@
+#include "viewer/core/highlight.hpp"
+
+#include <opencv2/imgproc.hpp>
+
+namespace kintsugi::viewer {
+
+Color dimmed(const Color& color) {
+  constexpr double kBrightness = 0.45;
+  constexpr double kHue = 0.2;  // share of the colour that is left
+  const double grey = 0.114 * color[0] + 0.587 * color[1] + 0.299 * color[2];  // ITU-R BT.601
+  return Color(kBrightness * (kHue * cv::Vec3d(color) + (1.0 - kHue) * cv::Vec3d::all(grey)));
+}
+
+void outline(cv::Mat3b& image, const cv::Mat1b& mask, int width_px) {
+  const Color kBright(255, 255, 255);
+  const cv::Size size(2 * width_px + 1, 2 * width_px + 1);
+  cv::Mat1b grown;
+  cv::dilate(mask, grown, cv::getStructuringElement(cv::MORPH_ELLIPSE, size));
+  image.setTo(kBright, grown & ~mask);
+}
+
+}  // namespace kintsugi::viewer
