@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "segmenter/core/admission.hpp"
+#include "segmenter/core/neighbour_index.hpp"
 #include "segmenter/preprocess/nearest_neighbours.hpp"
 
 namespace kintsugi::segmenter {
@@ -16,6 +17,8 @@ std::vector<CloudPoint> with_usable_position(std::span<const CloudPoint> points_
   return usable_W;
 }
 
+Eigen::Vector3d normal_W(const CloudPoint& p) { return {p.nx, p.ny, p.nz}; }
+
 }  // namespace
 
 std::int64_t normalize_normals(std::span<CloudPoint> points_W) {
@@ -23,12 +26,12 @@ std::int64_t normalize_normals(std::span<CloudPoint> points_W) {
   constexpr double kMinLength = 1e-6;
   std::int64_t num_scaled = 0;
   for (CloudPoint& p : points_W) {
-    const Eigen::Vector3d normal_W(p.nx, p.ny, p.nz);
-    const double length = normal_W.norm();
+    const Eigen::Vector3d given_W = normal_W(p);
+    const double length = given_W.norm();
     if (!std::isfinite(length) || length < kMinLength || std::abs(length - 1.0) <= kTolerance) {
       continue;
     }
-    const Eigen::Vector3f unit_W = (normal_W / length).cast<float>();
+    const Eigen::Vector3f unit_W = (given_W / length).cast<float>();
     p.nx = unit_W.x();
     p.ny = unit_W.y();
     p.nz = unit_W.z();
@@ -47,6 +50,26 @@ void compute_normals(std::span<CloudPoint> points_W, const NormalsConfig& config
       p = *next++;
     }
   }
+}
+
+void average_normals(std::span<CloudPoint> points_W, float radius_m) {
+  PointCloud cloud;
+  const SliceRecord slice = cloud.add_slice(0, points_W);
+  const auto index = make_neighbour_index(NeighbourSearch::kGrid, cloud, radius_m);
+  index->insert(cloud.take_change().added);
+  index->visit_all([&](PointIndex i, std::span<const PointIndex> neighbours) {
+    const Eigen::Vector3d own_W = normal_W(cloud[i]);
+    Eigen::Vector3d sum_W = own_W;
+    for (const PointIndex j : neighbours) {
+      const Eigen::Vector3d other_W = normal_W(cloud[j]);
+      if (other_W.dot(own_W) > 0.0) sum_W += other_W;
+    }
+    const Eigen::Vector3f mean_W = sum_W.normalized().cast<float>();
+    CloudPoint& p = points_W[static_cast<std::size_t>(slice.index_of(i))];
+    p.nx = mean_W.x();
+    p.ny = mean_W.y();
+    p.nz = mean_W.z();
+  });
 }
 
 float usable_spacing_m(std::span<const CloudPoint> points_W) {

@@ -20,6 +20,12 @@ std::int64_t normalize_normals(std::span<CloudPoint> points_W);
 void compute_normals(std::span<CloudPoint> points_W, const NormalsConfig& config,
                      const std::function<void(double)>& progress);
 
+/// Replaces each normal by the mean of its own and those of the points closer than `radius_m` (> 0)
+/// that do not face away from it (n . n' > 0), scaled to length 1: noise goes, the two sides of a
+/// thin board stay apart. Points that cannot be segmented, without a normal for instance, neither
+/// change nor count. The result does not depend on the number of threads.
+void average_normals(std::span<CloudPoint> points_W, float radius_m);
+
 /// median_spacing_m() of the points whose position can be used.
 float usable_spacing_m(std::span<const CloudPoint> points_W);
 

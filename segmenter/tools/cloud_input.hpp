@@ -12,15 +12,18 @@
 namespace kintsugi::segmenter {
 
 struct CloudInputConfig {
-  double resolution_m = 0.0;        ///< voxel size; 0: the median spacing of the points
-  NormalsConfig normals;            ///< for a cloud without; its viewpoint_W is replaced
+  double resolution_m = 0.0;  ///< voxel size; 0: the median spacing of the points
+  NormalsConfig normals;      ///< for a cloud without; its viewpoint_W is replaced
+  /// Normals that come with the cloud are averaged, too, as computed ones always are.
+  bool averages_given_normals = false;
   std::vector<double> viewpoint_W;  ///< that computed normals face; empty: the mean of the points
 
   /// Throws std::invalid_argument naming field, value and bound.
   void validate() const;
 };
 
-/// --resolution, --normals-k and --viewpoint, into `config`, whose values are the defaults.
+/// --resolution, --normals-k, --average-normals and --viewpoint, into `config`, whose values are
+/// the defaults.
 void add_cloud_options(CLI::App& app, CloudInputConfig& config);
 
 struct CloudInput {
@@ -28,8 +31,9 @@ struct CloudInput {
   float resolution_m = 0.0F;
 };
 
-/// Reads a PLY file, computes normals where it has none, and chooses the resolution. Logs what it
-/// finds, and how many points will be rejected.
+/// Reads a PLY file, chooses the resolution, and computes normals where it has none, averaged
+/// within twice the resolution as the mapper's are. Logs what it finds, and how many points will be
+/// rejected.
 /// @throws std::runtime_error as read_ply(); for a cloud without points; where the resolution is to
 ///   be estimated and too few points can be used
 CloudInput read_cloud(const std::filesystem::path& path, const CloudInputConfig& config);

@@ -177,6 +177,48 @@ TEST(CloudPreparation, ScalesNormalsAndLeavesHopelessOnes) {
   EXPECT_EQ(rejections[1].count, 1);
 }
 
+TEST(CloudPreparation, AveragesNormalsOfPointsCloserThanTheRadius) {
+  auto points = grid_plane(5);  // 1 cm apart
+  for (CloudPoint& p : points) p.nz = 1.0F;
+  CloudPoint& tilted = points[12];  // the middle
+  tilted.nx = 0.6F;
+  tilted.nz = 0.8F;
+  points[11].nz = -1.0F;  // faces away: the other side of a board
+  points[13].nz = 0.0F;   // cannot be segmented
+  average_normals(points, 0.0125F);
+  // Two of four neighbours count.
+  const double length = std::hypot(0.6, 2.8);
+  EXPECT_NEAR(points[12].nx, 0.6 / length, 1e-7);  // float32
+  EXPECT_NEAR(points[12].nz, 2.8 / length, 1e-7);
+  EXPECT_EQ(points[11].nz, -1.0F);
+  EXPECT_EQ(points[13].nz, 0.0F);
+  EXPECT_EQ(points[0].nz, 1.0F);
+  // Those below and above took in what the tilted normal was before.
+  EXPECT_NEAR(points[7].nx, 0.6 / std::hypot(0.6, 4.8), 1e-7);
+}
+
+TEST(CloudPreparation, AveragingBringsNoisyNormalsNearerToTheTruth) {
+  auto points = grid_plane(40);
+  std::mt19937 random(4);
+  std::normal_distribution<double> noise(0.0, 0.1);
+  for (CloudPoint& p : points) {
+    const Eigen::Vector3f n =
+        Eigen::Vector3d(noise(random), noise(random), 1.0).normalized().cast<float>();
+    p.nx = n.x();
+    p.ny = n.y();
+    p.nz = n.z();
+  }
+  const auto mean_square = [&] {
+    double sum = 0.0;
+    for (const CloudPoint& p : points) sum += p.nx * p.nx + p.ny * p.ny;
+    return sum / static_cast<double>(points.size());
+  };
+  const double before = mean_square();
+  average_normals(points, 0.02F);
+  // The mean of nine has a ninth of the variance, at the rim of four to six.
+  EXPECT_LT(mean_square(), before / 7.0);
+}
+
 TEST(CloudPreparation, ComputesNormalsAroundUnusablePoints) {
   auto points = grid_plane(10);
   points.insert(points.begin() + 5, at(std::numeric_limits<double>::quiet_NaN(), 0, 0));
