@@ -1,7 +1,7 @@
 #pragma once
 // Flags that the programs of the segmenter share.
 
-#include <string>
+#include <string_view>
 
 #include <CLI/CLI.hpp>
 
@@ -9,8 +9,11 @@
 
 namespace kintsugi::segmenter {
 
-/// --mode, --audit, --threshold, --scale, --beta, --radius-factor and --neighbours, into `config`,
-/// whose values are the defaults. Ranges are checked by config.validate().
-void add_segmentation_options(CLI::App& app, SegmentMapConfig& config);
+/// --mode, --audit, --preset (`default_preset` unless given), --threshold, --scale, --color-weight,
+/// --min-points, --radius-factor, --beta and --neighbours, into `config`, whose other values are
+/// the defaults. A value that is given counts, whatever the preset and wherever it stands. Ranges
+/// are checked by config.validate().
+void add_segmentation_options(CLI::App& app, SegmentMapConfig& config,
+                              std::string_view default_preset = "objects");
 
 }  // namespace kintsugi::segmenter

@@ -23,6 +23,8 @@ void require_same(const std::filesystem::path& file, const SegmentMapConfig& sav
   require("--mode", saved.mode, wanted.mode);
   require("--threshold", saved.engine.threshold, wanted.engine.threshold);
   require("--scale", saved.engine.scale, wanted.engine.scale);
+  require("--color-weight", saved.engine.color_weight, wanted.engine.color_weight);
+  require("--min-points", saved.engine.min_points, wanted.engine.min_points);
   require("--beta", saved.engine.beta, wanted.engine.beta);
   require("--radius-factor", saved.engine.radius_factor, wanted.engine.radius_factor);
 }

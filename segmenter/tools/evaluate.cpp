@@ -63,7 +63,7 @@ void add_options(CLI::App& app, Options& options) {
       ->delimiter(',')
       ->allow_extra_args(false)
       ->capture_default_str();
-  add_segmentation_options(app, options.map);
+  add_segmentation_options(app, options.map, "paper");
   app.remove_option(app.get_option("--mode"));
   auto* const group = app.add_option_group("PLY files");
   add_cloud_options(*group, options.cloud);

@@ -224,9 +224,10 @@ TEST_F(ProcessFaults, KilledAtAnyMomentAndRestartedEndsWithTheSameIds) {
       MapperImitation mapper(bus, 5);
       mapper.answer(bus);
       const BusThread answering(bus);
-      RestartedSegmenter segmenter({"--lcm-url", kPrivateBusUrl, "--mode", mode, "--out", out,
-                                    "--save", out + "/map.kseg", "--save-every", "2",
-                                    "--resume-if-saved", "--exit-on-final", "--linger", "0"});
+      RestartedSegmenter segmenter({"--lcm-url", kPrivateBusUrl, "--mode", mode, "--preset",
+                                    "paper", "--out", out, "--save", out + "/map.kseg",
+                                    "--save-every", "2", "--resume-if-saved", "--exit-on-final",
+                                    "--linger", "0"});
       std::mt19937 random(seed);
       std::set<std::size_t> kills;
       while (kills.size() < 4) {

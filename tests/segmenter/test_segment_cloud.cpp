@@ -1,5 +1,6 @@
 // kintsugi-segment-cloud, run as a program.
 
+#include <cmath>
 #include <fstream>
 #include <functional>
 #include <iomanip>
@@ -39,12 +40,14 @@ class SegmentCloud : public ::testing::Test {
     out << "ply\nformat ascii 1.0\nelement vertex " << points.size()
         << "\nproperty float x\nproperty float y\nproperty float z\n";
     if (normals) out << "property float nx\nproperty float ny\nproperty float nz\n";
+    out << "property uchar red\nproperty uchar green\nproperty uchar blue\n";
     if (slice_of) out << "property int slice_id\n";
     out << "end_header\n" << std::setprecision(9);
     for (std::size_t i = 0; i < points.size(); ++i) {
       const CloudPoint& p = points[i];
       out << p.x << ' ' << p.y << ' ' << p.z;
       if (normals) out << ' ' << p.nx << ' ' << p.ny << ' ' << p.nz;
+      out << ' ' << int{p.red} << ' ' << int{p.green} << ' ' << int{p.blue};
       if (slice_of) out << ' ' << slice_of(i);
       out << '\n';
     }
@@ -108,7 +111,7 @@ TEST_F(SegmentCloud, TakesSlicesInOrderOfTheirIdsAndKeepsTheOrderOfPoints) {
     }
   }
   write_input(points, true, [&](std::size_t i) { return ids[i]; });
-  const auto result = run(in() + " " + out() + " --mode voting --resolution 0.01");
+  const auto result = run(in() + " " + out() + " --mode voting --preset paper --resolution 0.01");
   ASSERT_EQ(result.exit_code, 0) << result.output;
 
   SegmentMapConfig config;
@@ -124,6 +127,48 @@ TEST_F(SegmentCloud, TakesSlicesInOrderOfTheirIdsAndKeepsTheOrderOfPoints) {
     EXPECT_EQ(cloud.points_W[i].x, points[i].x);
     EXPECT_EQ(cloud.segment_ids[i], expected.at(ids[i] / 10)[i / 5]);
   }
+}
+
+TEST_F(SegmentCloud, PartsWhatDiffersInColorAlone) {
+  // A plate, one half red, the other blue, and one without colour.
+  std::vector<CloudPoint> plate;
+  for (int row = 0; row < 20; ++row) {
+    for (int column = 0; column < 60; ++column) {
+      CloudPoint p = testing::make_point(0.01 * column, 0.01 * row, 0, 0, 0, 1);
+      if (column < 20) p.red = 200;
+      if (column >= 20 && column < 40) p.blue = 200;
+      plate.push_back(p);
+    }
+  }
+  write_input(plate, true);
+  const auto num_segments = [&](const std::string& arguments) {
+    const auto result = run(in() + " " + out() + " --resolution 0.01 " + arguments);
+    EXPECT_EQ(result.exit_code, 0) << result.output;
+    return distinct(read_ply(out()).segment_ids).size();
+  };
+  // Between the blue half and the part without colour only normals count.
+  EXPECT_EQ(num_segments("--mode batch"), 2U);
+  EXPECT_EQ(num_segments("--mode batch --color-weight 0"), 1U);
+  EXPECT_EQ(num_segments("--mode batch --preset paper"), 1U);
+}
+
+TEST_F(SegmentCloud, TellsThatACloudHasNoColor) {
+  write_input(two_plates(), true);
+  EXPECT_THAT(run(in() + " " + out()).output, HasSubstr("without colour"));
+}
+
+TEST_F(SegmentCloud, AveragesNormalsWhenAsked) {
+  auto points = two_plates();
+  points[210].nx = 0.6F;
+  points[210].nz = 0.8F;
+  write_input(points, true);
+  run(in() + " " + out() + " --resolution 0.009");
+  EXPECT_EQ(read_ply(out()).points_W[210].nz, 0.8F);
+  run(in() + " " + out() + " --resolution 0.009 --average-normals");
+  // Neighbours closer than 1.8 cm: 8 upright ones.
+  const double length = std::hypot(0.6, 8.8);
+  EXPECT_NEAR(read_ply(out()).points_W[210].nx, 0.6 / length, 1e-6);  // float32
+  EXPECT_NEAR(read_ply(out()).points_W[210].nz, 8.8 / length, 1e-6);
 }
 
 TEST_F(SegmentCloud, RejectsPointsItCannotUseAndGoesOn) {
@@ -186,6 +231,9 @@ TEST_F(SegmentCloud, RefusesParametersOutOfRange) {
   expect_error("--beta 1.5", "beta");
   expect_error("--resolution -0.01", "--resolution");
   expect_error("--radius-factor nan", "radius_factor");
+  expect_error("--color-weight -1", "color_weight");
+  expect_error("--min-points -1", "min_points");
+  expect_error("--preset desks", "desks");
   expect_error("--mode exact-ish", "mode is 'exact-ish', must be one of: exact, batch, voting");
   expect_error("--neighbours tree", "--neighbours");
   expect_error("--normals-k 2", "num_neighbours is 2, must be >= 3");

@@ -7,6 +7,7 @@
 #include <lcm/lcm-cpp.hpp>
 
 #include "lcmtypes/channels.hpp"
+#include "segmenter/core/presets.hpp"
 #include "segmenter/io/ply_reader.hpp"
 #include "segmenter/process/process_status.hpp"
 #include "segmenter/process/segmenter_process.hpp"
@@ -112,6 +113,7 @@ TEST_F(SegmenterProgram, SegmentsALogAndWritesTheMap) {
 
     SegmentMapConfig config;
     config.mode = mode;
+    config.engine = preset("objects");
     SegmentMap map(config, 1, slices[0]);
     for (const CloudSlice& slice : slices) {
       map.add({&slice, 1});
@@ -198,7 +200,8 @@ TEST_F(SegmenterProgram, ReportsAFolderItCannotWriteTo) {
 
 TEST_F(SegmenterProgram, AuditsModeExactAndNoOther) {
   write_log(path("slices.lcm"), messages_of(wavy_session(4, 150)));
-  const std::string log = "--log " + path("slices.lcm") + " --out " + path("out") + " --audit";
+  const std::string log =
+      "--log " + path("slices.lcm") + " --out " + path("out") + " --preset paper --audit";
   const auto result = run(log);
   EXPECT_EQ(result.exit_code, 0) << result.output;
   const auto refused = run(log + " --mode voting");
@@ -228,7 +231,9 @@ TEST_F(SegmenterProgram, GoesOnWithTheMapThatWasSavedAfterAnySlice) {
   slices.insert(slices.begin() + 4, corrected);
   write_log(path("all.lcm"), messages_of(slices));
   for (const std::string mode : {"exact", "batch", "voting"}) {
-    const std::string options = " --mode " + mode + " --out " + path("out");
+    // What `voting` would go on with is the segments after fragments have been joined.
+    const std::string preset = mode == "voting" ? "paper" : "objects";
+    const std::string options = " --mode " + mode + " --preset " + preset + " --out " + path("out");
     EXPECT_EQ(run("--log " + path("all.lcm") + options).exit_code, 0);
     const auto expected = labels_in(path("out") + "/segments.ply");
     for (std::size_t count = 1; count <= slices.size(); ++count) {
@@ -261,6 +266,12 @@ TEST_F(SegmenterProgram, RefusesToGoOnWithWhatIsNoMapOfItsOwn) {
   };
   EXPECT_THAT(refusal("--resume " + path("map.kseg") + " --threshold 0.002"),
               HasSubstr("was saved with --threshold 0.001, and here it is 0.002"));
+  EXPECT_THAT(refusal("--resume " + path("map.kseg") + " --color-weight 0.01"),
+              HasSubstr("was saved with --color-weight 0.003, and here it is 0.01"));
+  EXPECT_THAT(refusal("--resume " + path("map.kseg") + " --min-points 0"),
+              HasSubstr("was saved with --min-points 50, and here it is 0"));
+  EXPECT_THAT(refusal("--resume " + path("map.kseg") + " --preset paper"),
+              HasSubstr("was saved with --scale 0.002, and here it is 0.0005"));
   EXPECT_THAT(refusal("--resume " + path("map.kseg") + " --mode voting"),
               HasSubstr("was saved with --mode exact"));
   EXPECT_THAT(refusal("--resume " + path("absent.kseg")),
