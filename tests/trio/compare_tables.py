@@ -1,0 +1,29 @@
+"""compare_tables.py SEGMENTS.json TABLE.json: the segments that the segmenter wrote and those that
+a client knows are the same, number for number. Exit status 1 and the first difference if not."""
+
+import json
+import sys
+
+SAME = ("map_name", "map_session", "complete", "num_slices", "num_points", "num_segments")
+OF_SEGMENT = ("id", "points", "box_min", "box_max", "centroid", "mean_normal", "mean_color", "area",
+              "first_slice", "last_slice")
+
+
+def read(path):
+    with open(path, encoding="utf-8") as file:
+        return json.load(file)
+
+
+def compare(name, theirs, ours):
+    if theirs != ours:
+        sys.exit("%s: %s is %s, expected %s" % (sys.argv[2], name, ours, theirs))
+
+
+segments, table = read(sys.argv[1]), read(sys.argv[2])
+for key in SAME:
+    compare(key, segments[key], table[key])
+compare("whole", True, table["whole"])
+compare("number of segments", len(segments["segments"]), len(table["segments"]))
+for theirs, ours in zip(segments["segments"], table["segments"]):
+    for key in OF_SEGMENT:
+        compare("%s of segment %d" % (key, theirs["id"]), theirs[key], ours[key])
