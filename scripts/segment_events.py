@@ -56,7 +56,7 @@ class Listener:
         return self.table.problem(self.assembler)
 
 
-def warn(text):
+def say(text):
     print("segment_events.py: " + text, file=sys.stderr)
 
 
@@ -89,8 +89,13 @@ def listen(listener, options):
 
     for channel in (CHANNEL, HEARTBEAT):
         bus.subscribe(channel, handle).set_queue_capacity(0)  # nothing is dropped
+    say("listening; what is lost is not asked for")
     while not stops:
-        bus.handle_timeout(100)
+        try:
+            bus.handle_timeout(100)
+        except OSError:
+            if not stops:  # not the signal's doing
+                raise
         if options.exit_on_final and listener.table.is_final:
             if not listener.problem() or time.monotonic() - last_news_s > PATIENCE_S:
                 return
@@ -138,10 +143,10 @@ def main():
     if options.json and listener.table.newest:
         write_json(listener.table, not problem, options.json)
     if listener.num_bad:
-        warn("messages dropped: %d, the last: %s" % (listener.num_bad, listener.last_bad))
+        say("messages dropped: %d, the last: %s" % (listener.num_bad, listener.last_bad))
     for text in (damage, problem):
         if text:
-            warn(text)
+            say(text)
     return 1 if damage or problem else 0
 
 

@@ -30,7 +30,8 @@ struct Options {
   std::string json_file;
 };
 
-void warn(const std::string& text) {
+/// To who runs it; nothing when there is nothing to say.
+void say(const std::string& text) {
   if (!text.empty()) std::cerr << "kintsugi-segment-events: " << text << '\n';
 }
 
@@ -39,6 +40,7 @@ void listen(SegmentListener& listener, const Options& options) {
   constexpr std::chrono::milliseconds kTickPeriod(20);
   Bus bus(options.url);
   listener.subscribe(bus);
+  say("listening on " + bus.url());
   PatientClock clock;
   double next_tick_s = 0.0;
   while (!stop_requested()) {
@@ -58,7 +60,7 @@ bool read_log(SegmentListener& listener, const std::string& path) {
     if (stop_requested()) return true;
     listener.handle(event->channel, event->data);
   }
-  warn(log.damage().value_or(""));
+  say(log.damage().value_or(""));
   return !log.damage();
 }
 
@@ -78,8 +80,8 @@ int run(const Options& options) {
     write_table_json(listener.table(), listener.is_whole(), file.stream());
     file.commit();
   }
-  warn(listener.dropped());
-  warn(listener.problem());
+  say(listener.dropped());
+  say(listener.problem());
   return is_read && listener.is_whole() ? 0 : 1;
 }
 
@@ -108,7 +110,7 @@ int main(int argc, char** argv) {
     kintsugi::install_stop_signals();
     return kintsugi::run(options);
   } catch (const std::exception& error) {
-    kintsugi::warn(error.what());
+    kintsugi::say(error.what());
     return 1;
   }
 }
