@@ -30,13 +30,13 @@ RunStatistics AuditedEngine::update(const CloudChange& change) {
   const RunStatistics statistics = engine_->update(change);
   reference_.update(change);
   ++num_updates_;
-  compare();
+  compare(engine_->unmerged_components(), reference_.unmerged_components());
+  compare(engine_->components(), reference_.components());
   return statistics;
 }
 
-void AuditedEngine::compare() const {
-  const auto components = engine_->components();
-  const auto expected = reference_.components();
+void AuditedEngine::compare(std::span<const ComponentId> components,
+                            std::span<const ComponentId> expected) const {
   const std::vector<PointIndex> labels = canonical_labels(components);
   const std::vector<PointIndex> expected_labels = canonical_labels(expected);
   for (PointIndex i = 0; i < cloud_.size(); ++i) {

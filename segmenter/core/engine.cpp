@@ -9,6 +9,7 @@
 #include "segmenter/core/audited_engine.hpp"
 #include "segmenter/core/batch_engine.hpp"
 #include "segmenter/core/exact_engine.hpp"
+#include "segmenter/core/fragments/fragment_engine.hpp"
 #include "segmenter/core/voting_engine.hpp"
 
 namespace kintsugi::segmenter {
@@ -28,6 +29,14 @@ void require_positive(const char* field, double value) {
 
 void require_not_negative(const char* field, double value) {
   if (!(value >= 0.0) || !std::isfinite(value)) throw_invalid(field, value, ">= 0 and finite");
+}
+
+/// With the fragment layer on top, if there is one.
+std::unique_ptr<SegmentationEngine> with_fragments(std::unique_ptr<IncrementalEngine> engine,
+                                                   const PointCloud& cloud,
+                                                   const EngineConfig& config) {
+  if (config.fragment_limit() == 0) return engine;
+  return std::make_unique<FragmentEngine>(std::move(engine), cloud, config);
 }
 
 }  // namespace
@@ -65,7 +74,7 @@ std::unique_ptr<SegmentationEngine> make_engine(std::string_view mode, const Poi
                                                 const EngineConfig& config) {
   config.validate();
   if (mode == "exact") {
-    auto engine = std::make_unique<ExactEngine>(cloud, config);
+    auto engine = with_fragments(std::make_unique<ExactEngine>(cloud, config), cloud, config);
     if (!config.audit) return engine;
     return std::make_unique<AuditedEngine>(std::move(engine), cloud, config);
   }
@@ -74,7 +83,9 @@ std::unique_ptr<SegmentationEngine> make_engine(std::string_view mode, const Poi
                                 "\", must be \"exact\": no other mode is to equal batch");
   }
   if (mode == "batch") return std::make_unique<BatchEngine>(cloud, config);
-  if (mode == "voting") return std::make_unique<VotingEngine>(cloud, config);
+  if (mode == "voting") {
+    return with_fragments(std::make_unique<VotingEngine>(cloud, config), cloud, config);
+  }
   std::string known;
   for (const std::string_view name : kModes) known.append(" ").append(name);
   throw std::invalid_argument("mode is \"" + std::string(mode) + "\", must be one of:" + known);

@@ -55,6 +55,7 @@ struct RunStatistics {
   double neighbours_ms = 0.0;       ///< `exact`: to find points and edges
   double replay_ms = 0.0;           ///< `exact`: to decide joins
   double naming_ms = 0.0;           ///< `exact`: to name the components that changed
+  double fragments_ms = 0.0;        ///< `exact`, `voting`: to join fragments to their neighbours
 };
 
 /// Names a component. Names are below the size() of the cloud, and mean nothing more: those of two
@@ -74,7 +75,8 @@ class SegmentationEngine {
   virtual RunStatistics update(const CloudChange& change) = 0;
 
   /// Instead of the first update(), which would be given `everything`: takes over a partition that
-  /// was saved. `components` by point, each named by its smallest point; `thetas` by that name. An
+  /// was saved, before fragments are joined. `components` by point, each named by its smallest
+  /// point; `thetas` by that name. An
   /// engine whose partition depends only on the points makes it anew.
   virtual void resume(const CloudChange& everything,
                       [[maybe_unused]] std::span<const ComponentId> components,

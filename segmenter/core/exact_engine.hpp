@@ -4,11 +4,11 @@
 #include <span>
 #include <vector>
 
-#include "segmenter/core/engine.hpp"
 #include "segmenter/core/exact/component_names.hpp"
 #include "segmenter/core/exact/edges_ahead.hpp"
 #include "segmenter/core/exact/replay.hpp"
 #include "segmenter/core/exact/state.hpp"
+#include "segmenter/core/incremental_engine.hpp"
 
 namespace kintsugi::segmenter {
 
@@ -41,7 +41,7 @@ namespace kintsugi::segmenter {
 ///
 /// Where the change is a large part of the map, or a correction turns out to reach far, the state
 /// is built anew by Algorithm 1 over all points, which costs little more than `batch`.
-class ExactEngine final : public SegmentationEngine {
+class ExactEngine final : public IncrementalEngine {
  public:
   ExactEngine(const PointCloud& cloud, const EngineConfig& config);
   ~ExactEngine() override;
@@ -51,6 +51,8 @@ class ExactEngine final : public SegmentationEngine {
   std::span<const ComponentId> components() const override { return names_.of_points(); }
   std::span<const PointIndex> changed() const override { return names_.changed(); }
   double theta(ComponentId component) const override;
+  const NeighbourIndex& neighbour_index() const override { return *index_; }
+  PointIndex point_of(ComponentId component) const override { return names_.root(component); }
   std::size_t bytes() const override;
 
  private:

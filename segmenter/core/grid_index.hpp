@@ -107,17 +107,19 @@ class GridIndex final : public NeighbourIndex {
 /// Valid until the index changes.
 class GridIndex::Cursor {
  public:
-  explicit Cursor(const GridIndex& index) : index_(index) {}
+  /// In no index: a place for another one.
+  Cursor() = default;
+  explicit Cursor(const GridIndex& index) : index_(&index) {}
 
   /// As GridIndex::for_each_neighbour().
   template <typename Fn>
   void for_each_neighbour(PointIndex point, Fn&& fn) {
-    for_each_near(index_.cloud_[point], point, fn);
+    for_each_near(index_->cloud_[point], point, fn);
   }
   /// The same for any place, but for the point `left_out`.
   template <typename Fn>
   void for_each_near(const CloudPoint& p, PointIndex left_out, Fn&& fn) {
-    const Cell cell = index_.cell_of(p.x, p.y, p.z);
+    const Cell cell = index_->cell_of(p.x, p.y, p.z);
     const Cell first = block_of({cell.x - 1, cell.y - 1, cell.z - 1});
     const Cell last = block_of({cell.x + 1, cell.y + 1, cell.z + 1});
     for (Cell at = first; at.z <= last.z; ++at.z) {
@@ -133,7 +135,7 @@ class GridIndex::Cursor {
   const Block* find_block(const Cell& block) {
     const Cell tile_cell = tile_of(block);
     if (tile_ == nullptr || !(tile_cell == tile_cell_)) {
-      tile_ = index_.find_tile(tile_cell);
+      tile_ = index_->find_tile(tile_cell);
       tile_cell_ = tile_cell;
     }
     return tile_ == nullptr ? nullptr : tile_->blocks[place_in_tile(block)].get();
@@ -156,13 +158,13 @@ class GridIndex::Cursor {
         const float dy = p.y - e->y;
         const float dz = p.z - e->z;
         // The order of squared_distance().
-        const bool is_near = (dx * dx + dy * dy) + dz * dz < index_.squared_radius_m2_;
+        const bool is_near = (dx * dx + dy * dy) + dz * dz < index_->squared_radius_m2_;
         if (is_near && e->point != left_out) fn(e->point);
       }
     }
   }
 
-  const GridIndex& index_;
+  const GridIndex* index_ = nullptr;
   const Tile* tile_ = nullptr;
   Cell tile_cell_;
 };

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "segmenter/core/edge.hpp"
-#include "segmenter/core/engine.hpp"
+#include "segmenter/core/incremental_engine.hpp"
 #include "segmenter/core/segment_forest.hpp"
 
 namespace kintsugi::segmenter {
@@ -21,7 +21,7 @@ double vote_threshold(double beta, int c);
 ///
 /// The paper's map only grows. Where points are removed, all that is left of their segments is
 /// segmented again together with the new points, in D from the first round on.
-class VotingEngine final : public SegmentationEngine {
+class VotingEngine final : public IncrementalEngine {
  public:
   VotingEngine(const PointCloud& cloud, const EngineConfig& config);
 
@@ -31,6 +31,8 @@ class VotingEngine final : public SegmentationEngine {
   std::span<const ComponentId> components() const override { return components_; }
   std::span<const PointIndex> changed() const override { return changed_; }
   double theta(ComponentId component) const override;
+  const NeighbourIndex& neighbour_index() const override { return *index_; }
+  PointIndex point_of(ComponentId component) const override { return component; }
   std::size_t bytes() const override;
 
  private:

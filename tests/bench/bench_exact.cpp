@@ -2,7 +2,7 @@
 // Markdown tables.
 //
 //   bench_exact --modes exact,voting --corrections 1000
-//   bench_exact --map loop.ply --modes exact --csv slices.csv
+//   bench_exact --map loop.ply --modes exact --csv slices.csv --preset paper
 
 #include <exception>
 #include <filesystem>
@@ -14,6 +14,7 @@
 #include <CLI/CLI.hpp>
 #include <oneapi/tbb/global_control.h>
 
+#include "segmenter/core/presets.hpp"
 #include "tests/bench/bench_exact_corrections.hpp"
 #include "tests/bench/bench_exact_report.hpp"
 #include "tests/bench/bench_exact_slices.hpp"
@@ -25,7 +26,9 @@ namespace {
 struct Options {
   std::filesystem::path map;
   MapConfig generated;
-  EngineConfig engine;
+  std::string preset{preset_names().front()};
+  double resolution_m = EngineConfig{}.resolution_m;
+  EngineConfig engine;  ///< of both
   std::vector<std::string> modes = {"exact"};
   CorrectionsConfig corrections = {.num_single = 0};
   bool measures_batch = true;
@@ -46,7 +49,8 @@ Options parse_command_line(int argc, char** argv) {
   app.add_option("--modes", options.modes, "to take the map slice by slice")
       ->delimiter(',')
       ->capture_default_str();
-  app.add_option("--resolution", options.engine.resolution_m, "voxel size of the map, m")
+  app.add_option("--preset", options.preset, "parameters of the engines")->capture_default_str();
+  app.add_option("--resolution", options.resolution_m, "voxel size of the map, m")
       ->capture_default_str();
   app.add_option("--corrections", options.corrections.num_single,
                  "correct the finished map; so many single points")
@@ -63,6 +67,8 @@ Options parse_command_line(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     std::exit(app.exit(error));
   }
+  options.engine = preset(options.preset);
+  options.engine.resolution_m = options.resolution_m;
   return options;
 }
 
@@ -78,7 +84,10 @@ int run(const Options& options) {
   for (const std::string& mode : options.modes) {
     bench_slices(mode, options.engine, slices, options.csv);
   }
-  if (options.measures_batch) bench_batch(options.engine, slices);
+  if (options.measures_batch) {
+    bench_whole("batch", options.engine, slices);
+    bench_whole(options.modes.front(), options.engine, slices);
+  }
   if (options.corrections.num_single == 0) return 0;
   const bool agrees =
       bench_corrections(options.modes.front(), options.engine, slices, options.corrections);

@@ -207,8 +207,8 @@ bool equals_batch(const EditableMap& map, const EngineConfig& config, bool measu
   const double batch_ms = measures_cpu ? stopwatch.cpu_ms() : stopwatch.wall_ms();
   print_row({"batch over the points at the end", "1", count(live.size()), number(batch_ms), "", "",
              "", "", ""});
-  const auto expected = fuzz::partition_of(*batch, change.added);
-  const auto found = fuzz::partition_of(map.engine(), live);
+  const auto expected = fuzz::partition_of(*batch, batch->components(), change.added);
+  const auto found = fuzz::partition_of(map.engine(), map.engine().components(), live);
   const bool agrees = expected.labels == found.labels && expected.thetas == found.thetas;
   std::cout << "\nLabels and thetas of the corrected map " << (agrees ? "equal" : "DIFFER FROM")
             << " batch; the longest update took " << number(max_ms / batch_ms)

@@ -86,6 +86,8 @@ void print_slices(const std::string& mode, const std::vector<SliceTimes>& slices
               sample(slices, [](const SliceTimes& s) { return s.run.neighbours_ms; }));
   print_times("- joins", sample(slices, [](const SliceTimes& s) { return s.run.replay_ms; }));
   print_times("- names", sample(slices, [](const SliceTimes& s) { return s.run.naming_ms; }));
+  print_times("- fragments",
+              sample(slices, [](const SliceTimes& s) { return s.run.fragments_ms; }));
   print_times("ids", sample(slices, [](const SliceTimes& s) { return s.ids_ms; }));
   print_times("statistics", sample(slices, [](const SliceTimes& s) { return s.statistics_ms; }));
 }
@@ -112,14 +114,16 @@ void print_map(const std::string& mode, const SegmentedMap& map,
 
 void write_csv(const std::filesystem::path& file, const std::vector<SliceTimes>& slices) {
   std::ofstream out(file);
-  out << "slice,map_points,points,total_ms,cpu_ms,neighbours_ms,replay_ms,naming_ms,ids_ms,"
+  out << "slice,map_points,points,total_ms,cpu_ms,neighbours_ms,replay_ms,naming_ms,fragments_ms,"
+         "ids_ms,"
          "statistics_ms,edges,joins,explored,rebuilt\n";
   for (std::size_t k = 0; k < slices.size(); ++k) {
     const SliceTimes& s = slices[k];
     out << k << ',' << s.num_points_before << ',' << s.num_points << ',' << s.total_ms() << ','
         << s.cpu_ms << ',' << s.run.neighbours_ms << ',' << s.run.replay_ms << ','
-        << s.run.naming_ms << ',' << s.ids_ms << ',' << s.statistics_ms << ',' << s.run.num_edges
-        << ',' << s.run.num_joins << ',' << s.run.num_explored << ',' << s.run.is_rebuilt << '\n';
+        << s.run.naming_ms << ',' << s.run.fragments_ms << ',' << s.ids_ms << ',' << s.statistics_ms
+        << ',' << s.run.num_edges << ',' << s.run.num_joins << ',' << s.run.num_explored << ','
+        << s.run.is_rebuilt << '\n';
   }
   if (!out) throw std::runtime_error(file.string() + ": cannot be written");
 }
@@ -140,7 +144,7 @@ void bench_slices(const std::string& mode, const EngineConfig& config, const Sli
   if (!csv.empty()) write_csv(csv, times);
 }
 
-void bench_batch(const EngineConfig& config, const Slices& slices) {
+void bench_whole(const std::string& mode, const EngineConfig& config, const Slices& slices) {
   constexpr int kRuns = 3;
   PointCloud cloud;
   cloud.add_slice(0, all_points(slices));
@@ -149,14 +153,14 @@ void bench_batch(const EngineConfig& config, const Slices& slices) {
   Sample cpu_ms;
   std::size_t bytes = 0;
   for (int run = 0; run < kRuns; ++run) {
-    const auto engine = make_engine("batch", cloud, config);
+    const auto engine = make_engine(mode, cloud, config);
     const Stopwatch stopwatch;
     engine->update(everything);
     wall_ms.add(stopwatch.wall_ms());
     cpu_ms.add(stopwatch.cpu_ms());
     bytes = engine->bytes();
   }
-  print_head({"batch, all at once", ""});
+  print_head({mode + ", all at once", ""});
   print_row({"points", count(cloud.size())});
   print_row({"wall, ms (median of 3)", number(wall_ms.quantile(0.5))});
   print_row({"CPU, ms (median of 3)", number(cpu_ms.quantile(0.5))});

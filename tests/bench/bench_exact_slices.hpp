@@ -13,7 +13,8 @@ namespace kintsugi::segmenter::bench {
 void bench_slices(const std::string& mode, const EngineConfig& config, const Slices& slices,
                   const std::filesystem::path& csv);
 
-/// Segments the whole map at once, several times, and prints time and memory.
-void bench_batch(const EngineConfig& config, const Slices& slices);
+/// Segments the whole map at once, several times, as when a map is resumed, and prints time and
+/// memory.
+void bench_whole(const std::string& mode, const EngineConfig& config, const Slices& slices);
 
 }  // namespace kintsugi::segmenter::bench

@@ -16,6 +16,26 @@ std::string text(const Parts&... parts) {
   return out.str();
 }
 
+/// The k-th point of both partitions is the k-th of `live`.
+std::optional<std::string> difference(const Partition& found, const Partition& expected,
+                                      std::span<const PointIndex> live) {
+  std::size_t num_labels = 0;
+  std::size_t num_thetas = 0;
+  std::optional<std::size_t> first;
+  for (std::size_t k = 0; k < live.size(); ++k) {
+    const bool label_differs = found.labels[k] != expected.labels[k];
+    const bool theta_differs = found.thetas[k] != expected.thetas[k];
+    num_labels += label_differs;
+    num_thetas += theta_differs;
+    if (!first && (label_differs || theta_differs)) first = k;
+  }
+  if (!first) return std::nullopt;
+  return text("of ", live.size(), " points ", num_labels, " labels and ", num_thetas,
+              " thetas differ from batch; first point ", live[*first], ": label ",
+              live[found.labels[*first]], ", batch ", live[expected.labels[*first]], "; theta ",
+              found.thetas[*first], ", batch ", expected.thetas[*first]);
+}
+
 }  // namespace
 
 std::optional<std::string> EngineCheck::operator()(const CloudChange& change,
@@ -70,27 +90,18 @@ std::optional<std::string> EngineCheck::check_changed(const CloudChange& change,
 }
 
 std::optional<std::string> EngineCheck::partition(std::span<const PointIndex> live) const {
-  std::vector<CloudPoint> points_W;
-  points_W.reserve(live.size());
-  for (const PointIndex i : live) points_W.push_back(cloud_[i]);
-  const Partition expected = batch_partition(points_W, config_);
-  const Partition found = partition_of(engine_, live);
-
-  std::size_t num_labels = 0;
-  std::size_t num_thetas = 0;
-  std::optional<std::size_t> first;
-  for (std::size_t k = 0; k < live.size(); ++k) {
-    const bool label_differs = found.labels[k] != expected.labels[k];
-    const bool theta_differs = found.thetas[k] != expected.thetas[k];
-    num_labels += label_differs;
-    num_thetas += theta_differs;
-    if (!first && (label_differs || theta_differs)) first = k;
+  const Partition found = partition_of(engine_, engine_.unmerged_components(), live);
+  if (config_.fragment_limit() == 0) {
+    std::vector<CloudPoint> points_W;
+    points_W.reserve(live.size());
+    for (const PointIndex i : live) points_W.push_back(cloud_[i]);
+    return difference(found, batch_partition(points_W, config_), live);
   }
-  if (!first) return std::nullopt;
-  return text("of ", live.size(), " points ", num_labels, " labels and ", num_thetas,
-              " thetas differ from batch; first point ", live[*first], ": label ",
-              live[found.labels[*first]], ", batch ", live[expected.labels[*first]], "; theta ",
-              found.thetas[*first], ", batch ", expected.thetas[*first]);
+  const BatchPartitions expected = batch_partitions(cloud_, live, config_);
+  if (auto wrong = difference(found, expected.unmerged, live)) return wrong;
+  const auto wrong =
+      difference(partition_of(engine_, engine_.components(), live), expected.joined, live);
+  return wrong ? std::optional("with fragments joined, " + *wrong) : std::nullopt;
 }
 
 }  // namespace kintsugi::segmenter::fuzz

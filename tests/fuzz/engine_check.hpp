@@ -9,8 +9,9 @@
 
 namespace kintsugi::segmenter::fuzz {
 
-/// Holds an engine to its word after each update: the partition and every theta to the bit are
-/// those of batch, and components() and changed() tell what engine.hpp promises.
+/// Holds an engine to its word after each update: both partitions (with fragments joined, and
+/// before that) and every theta to the bit are those of batch, and components() and changed() tell
+/// what engine.hpp promises.
 class EngineCheck {
  public:
   EngineCheck(const SegmentationEngine& engine, const PointCloud& cloud, const EngineConfig& config)
@@ -22,7 +23,7 @@ class EngineCheck {
   std::optional<std::string> operator()(const CloudChange& change,
                                         std::span<const PointIndex> live);
 
-  /// The partition and the thetas alone.
+  /// The partitions and the thetas alone.
   [[nodiscard]] std::optional<std::string> partition(std::span<const PointIndex> live) const;
 
  private:

@@ -11,8 +11,12 @@ namespace {
 
 class FaultyEngine final : public SegmentationEngine {
  public:
-  FaultyEngine(std::unique_ptr<SegmentationEngine> engine, Fault fault, std::size_t step)
-      : engine_(std::move(engine)), fault_(fault), steps_left_(step) {}
+  FaultyEngine(std::unique_ptr<SegmentationEngine> engine, const EngineConfig& config, Fault fault,
+               std::size_t step)
+      : engine_(std::move(engine)),
+        joins_fragments_(config.fragment_limit() > 0),
+        fault_(fault),
+        steps_left_(step) {}
 
   RunStatistics update(const CloudChange& change) override {
     const RunStatistics statistics = engine_->update(change);
@@ -27,6 +31,9 @@ class FaultyEngine final : public SegmentationEngine {
     return statistics;
   }
   std::span<const ComponentId> components() const override { return components_; }
+  std::span<const ComponentId> unmerged_components() const override {
+    return joins_fragments_ ? engine_->unmerged_components() : components_;
+  }
   std::span<const PointIndex> changed() const override { return changed_; }
   std::size_t bytes() const override { return engine_->bytes(); }
   double theta(ComponentId component) const override {
@@ -95,6 +102,7 @@ class FaultyEngine final : public SegmentationEngine {
   }
 
   std::unique_ptr<SegmentationEngine> engine_;
+  bool joins_fragments_;
   Fault fault_;
   std::size_t steps_left_;
   std::vector<ComponentId> components_;
@@ -106,7 +114,7 @@ class FaultyEngine final : public SegmentationEngine {
 
 EngineFactory faulty(const EngineFactory& make_engine, Fault fault, std::size_t step) {
   return [=](const PointCloud& cloud, const EngineConfig& config) {
-    return std::make_unique<FaultyEngine>(make_engine(cloud, config), fault, step);
+    return std::make_unique<FaultyEngine>(make_engine(cloud, config), config, fault, step);
   };
 }
 

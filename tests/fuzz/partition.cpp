@@ -11,15 +11,24 @@ Partition batch_partition(std::span<const CloudPoint> points_W, const EngineConf
   engine.update(cloud.take_change());
   std::vector<PointIndex> all(cloud.size());
   for (PointIndex i = 0; i < cloud.size(); ++i) all[i] = i;
-  return partition_of(engine, all);
+  return partition_of(engine, engine.unmerged_components(), all);
 }
 
-Partition partition_of(const SegmentationEngine& engine, std::span<const PointIndex> live) {
+BatchPartitions batch_partitions(const PointCloud& cloud, std::span<const PointIndex> live,
+                                 const EngineConfig& config) {
+  BatchEngine engine(cloud, config);
+  engine.update(cloud.everything());
+  return {partition_of(engine, engine.unmerged_components(), live),
+          partition_of(engine, engine.components(), live)};
+}
+
+Partition partition_of(const SegmentationEngine& engine, std::span<const ComponentId> components,
+                       std::span<const PointIndex> live) {
   constexpr PointIndex kNone = UINT32_MAX;
-  std::vector<PointIndex> smallest(engine.components().size(), kNone);
+  std::vector<PointIndex> smallest(components.size(), kNone);
   Partition partition;
   for (PointIndex k = 0; k < live.size(); ++k) {
-    const ComponentId component = engine.components()[live[k]];
+    const ComponentId component = components[live[k]];
     PointIndex& label = smallest[component];
     if (label == kNone) label = k;
     partition.labels.push_back(label);

@@ -14,10 +14,20 @@ struct Partition {
   std::vector<double> thetas;
 };
 
-/// By Algorithm 1 over `points_W` and nothing else.
+/// By Algorithm 1 over `points_W` and nothing else, fragments as they are.
 Partition batch_partition(std::span<const CloudPoint> points_W, const EngineConfig& config);
 
-/// What the engine says of the points `live`, the k-th of which is point k of the partition.
-Partition partition_of(const SegmentationEngine& engine, std::span<const PointIndex> live);
+/// By mode batch over the points of `cloud`, before fragments are joined and after. The k-th of the
+/// points `live`, which are those in the cloud, is point k of the partitions.
+struct BatchPartitions {
+  Partition unmerged;
+  Partition joined;
+};
+BatchPartitions batch_partitions(const PointCloud& cloud, std::span<const PointIndex> live,
+                                 const EngineConfig& config);
+
+/// What the engine says of the points `live` in one of its partitions.
+Partition partition_of(const SegmentationEngine& engine, std::span<const ComponentId> components,
+                       std::span<const PointIndex> live);
 
 }  // namespace kintsugi::segmenter::fuzz

@@ -16,13 +16,14 @@ using testing::colored_as;
 using testing::make_point;
 
 /// The paper's parameters mostly; others shift how much a size weighs against a weight, or a colour
-/// against a normal.
+/// against a normal. Fragments are joined mostly, from pairs of points up to all that there is.
 EngineConfig random_config(Random& random) {
   EngineConfig config;
   config.resolution_m = kResolution_m;
   if (random.chance(0.3)) config.threshold = random.log_uniform(1e-4, 1e-2);
   if (random.chance(0.4)) config.scale = random.log_uniform(1e-5, 2e-1);
   if (random.chance(0.6)) config.color_weight = random.log_uniform(1e-4, 1e-1);
+  if (random.chance(0.75)) config.min_points = std::floor(random.log_uniform(1.0, 500.0));
   // Replayed, whatever the cost; or given up in the middle and built anew.
   if (random.chance(0.8)) config.rebuild_share = 1e9;
   if (random.chance(0.2)) {

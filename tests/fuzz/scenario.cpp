@@ -57,8 +57,9 @@ void write_scenario(std::ostream& out, const Scenario& scenario) {
   out.precision(std::numeric_limits<double>::max_digits10);
   const EngineConfig& config = scenario.config;
   out << "config " << config.threshold << ' ' << config.scale << ' ' << config.color_weight << ' '
-      << config.resolution_m << ' ' << config.radius_factor << ' ' << config.rebuild_share << ' '
-      << config.explore_share << ' ' << config.explore_at_least << '\n';
+      << config.min_points << ' ' << config.resolution_m << ' ' << config.radius_factor << ' '
+      << config.rebuild_share << ' ' << config.explore_share << ' ' << config.explore_at_least
+      << '\n';
   out << "slice_points " << scenario.slice_points << '\n';
   out << "points " << scenario.pool.size() << '\n';
   for (const CloudPoint& p : scenario.pool) {
@@ -76,9 +77,9 @@ Scenario read_scenario(std::istream& in) {
   Scenario scenario;
   expect_word(in, "config");
   EngineConfig& config = scenario.config;
-  for (double* const value :
-       {&config.threshold, &config.scale, &config.color_weight, &config.resolution_m,
-        &config.radius_factor, &config.rebuild_share, &config.explore_share}) {
+  for (double* const value : {&config.threshold, &config.scale, &config.color_weight,
+                              &config.min_points, &config.resolution_m, &config.radius_factor,
+                              &config.rebuild_share, &config.explore_share}) {
     *value = read_number<double>(in, "a parameter");
   }
   config.explore_at_least = read_number<std::int64_t>(in, "a number of points");

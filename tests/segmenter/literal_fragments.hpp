@@ -16,12 +16,11 @@ namespace kintsugi::segmenter::testing {
 /// The labels of `partition`, a name for each point of `live`, once of all edges between
 /// neighbours, in ascending order of weight, then of the two PointIds, each has joined its two
 /// components if either has fewer than `limit` points. Each component is named by the smallest
-/// place in `live`. `weight_of(a, b)` is the weight of an edge.
-template <typename WeightOf>
-std::vector<PointIndex> literal_fragment_step(const PointCloud& cloud,
-                                              std::span<const PointIndex> live,
-                                              std::span<const ComponentId> partition, float r,
-                                              std::int64_t limit, WeightOf weight_of) {
+/// place in `live`.
+inline std::vector<PointIndex> literal_fragment_step(const PointCloud& cloud,
+                                                     std::span<const PointIndex> live,
+                                                     std::span<const ComponentId> partition,
+                                                     float r, std::int64_t limit, double lambda) {
   std::vector<std::tuple<float, PointId, PointId, std::size_t, std::size_t>> edges;
   for (std::size_t a = 0; a < live.size(); ++a) {
     for (std::size_t b = a + 1; b < live.size(); ++b) {
@@ -30,7 +29,8 @@ std::vector<PointIndex> literal_fragment_step(const PointCloud& cloud,
       if (!literal_neighbours(p, q, r)) continue;
       const PointId id_a = cloud.id_of(live[a]);
       const PointId id_b = cloud.id_of(live[b]);
-      edges.emplace_back(weight_of(p, q), std::min(id_a, id_b), std::max(id_a, id_b), a, b);
+      const float weight = std::min(literal_weight(p, q, lambda), literal_weight(q, p, lambda));
+      edges.emplace_back(weight, std::min(id_a, id_b), std::max(id_a, id_b), a, b);
     }
   }
   std::sort(edges.begin(), edges.end());

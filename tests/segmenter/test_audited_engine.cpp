@@ -28,10 +28,15 @@ void segment_session(PointCloud& cloud, SegmentationEngine& engine) {
 }
 
 TEST(AuditedEngine, LetsExactPass) {
-  PointCloud cloud;
-  const auto engine = make_engine("exact", cloud, {.audit = true});
-  EXPECT_NO_THROW(segment_session(cloud, *engine));
-  EXPECT_EQ(engine->components().size(), cloud.size());
+  for (const double min_points : {0.0, 20.0}) {
+    PointCloud cloud;
+    const auto engine = make_engine("exact", cloud, {.min_points = min_points, .audit = true});
+    EXPECT_NO_THROW(segment_session(cloud, *engine));
+    EXPECT_EQ(engine->components().size(), cloud.size());
+    EXPECT_EQ(
+        canonical_labels(engine->components()) == canonical_labels(engine->unmerged_components()),
+        min_points == 0.0);
+  }
 }
 
 TEST(AuditedEngine, StopsWithTheFirstDifference) {
@@ -45,6 +50,17 @@ TEST(AuditedEngine, StopsWithTheFirstDifference) {
                                                 HasSubstr("of slice "), HasSubstr("theta "),
                                                 HasSubstr("with batch it is"))));
   }
+}
+
+// The partition below the fragment layer is right.
+TEST(AuditedEngine, StopsWhenAFragmentIsJoinedWrongly) {
+  PointCloud cloud;
+  const EngineConfig config{.min_points = 20};
+  AuditedEngine engine(
+      fuzz::faulty(fuzz::engine_factory("exact"), fuzz::Fault::kWrongLabel, 2)(cloud, config),
+      cloud, config);
+  EXPECT_THAT([&] { segment_session(cloud, engine); },
+              ThrowsMessage<AuditError>(HasSubstr("after update 3")));
 }
 
 TEST(AuditedEngine, IsForExactOnly) {

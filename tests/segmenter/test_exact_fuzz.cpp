@@ -121,7 +121,8 @@ TEST(Harness, WritesAScenarioThatReadsBackTheSame) {
 
 TEST(Harness, RefusesWhatIsNoScenario) {
   std::istringstream text(
-      "config 0.001 0.0005 0.003 0.01 2 1 1 0\nslice_points 1\npoints 0\nsteps 1\nremove 1 7\n");
+      "config 0.001 0.0005 0.003 0 0.01 2 1 1 0\nslice_points 1\npoints 0\nsteps 1\nremove 1 "
+      "7\n");
   EXPECT_THAT([&] { read_scenario(text); },
               ::testing::ThrowsMessage<std::runtime_error>(HasSubstr("point 7 of 0")));
 }

@@ -7,7 +7,6 @@
 #include <gtest/gtest.h>
 
 #include "segmenter/core/batch_engine.hpp"
-#include "segmenter/core/edge_weight.hpp"
 #include "tests/fuzz/changing_cloud.hpp"
 #include "tests/fuzz/partition.hpp"
 #include "tests/fuzz/random.hpp"
@@ -47,9 +46,7 @@ TEST(FragmentStep, IsWhatItsTranscriptionDoes) {
       const std::vector<PointIndex> live = map.live();
       const auto literal = testing::literal_fragment_step(
           map.cloud(), live, engine.unmerged_components(), config.radius_m(),
-          config.fragment_limit(), [&](const CloudPoint& a, const CloudPoint& b) {
-            return edge_weight(a, b, config.color_weight);
-          });
+          config.fragment_limit(), config.color_weight);
       ASSERT_EQ(labels_at(engine.components(), live), literal) << "seed " << seed;
       num_joined += labels_at(engine.unmerged_components(), live) != literal;
     }

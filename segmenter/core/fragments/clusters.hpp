@@ -1,0 +1,93 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include "segmenter/core/edge.hpp"
+#include "segmenter/core/fragments/base_components.hpp"
+#include "segmenter/core/growing_array.hpp"
+
+namespace kintsugi::segmenter {
+
+using ClusterId = std::uint32_t;
+inline constexpr ClusterId kNoCluster = UINT32_MAX;
+
+/// How a cluster ends: the edge from its point `i` to point `j` of another component, by which it
+/// comes to the limit. A cluster that never does has an exit heavier than any edge to no point;
+/// `i` then is in the component that it is called after.
+struct Exit : Edge {
+  static constexpr PointIndex kNowhere = UINT32_MAX;
+
+  static Exit along(const Edge& edge) { return Exit{edge}; }
+  static Exit none(PointIndex namer) {
+    return Exit{{std::numeric_limits<float>::infinity(), namer, kNowhere}};
+  }
+  bool leads_out() const { return j != kNowhere; }
+  bool is_reverse_of(const Exit& other) const { return i == other.j && j == other.i; }
+};
+
+/// The clusters of the fragment layer: which fragments they consist of and how they end.
+class Clusters {
+ public:
+  explicit Clusters(const BaseComponents& components) : components_(components) {}
+
+  void grow(PointIndex num_points) { next_.resize(num_points); }
+  /// Forgets all clusters.
+  void clear();
+
+  /// The cluster of a fragment; kNoCluster.
+  ClusterId of(ComponentId name) const {
+    return name < cluster_of_.size() ? cluster_of_[name] - 1 : kNoCluster;
+  }
+  const Exit& exit(ClusterId cluster) const { return clusters_[cluster].exit; }
+
+  /// `points` are those of some fragments, which are in no cluster.
+  ClusterId add(std::span<const PointIndex> points, const Exit& exit);
+  /// Takes a cluster apart and appends its points. The names of its fragments must be those that
+  /// they had when it was added.
+  void dissolve(ClusterId cluster, std::vector<PointIndex>& points);
+
+  /// Calls fn(PointIndex) with each point of a cluster.
+  template <typename Fn>
+  void for_each_point(ClusterId cluster, Fn&& fn) const {
+    const PointIndex head = clusters_[cluster].exit.i;
+    PointIndex point = head;
+    do {
+      fn(point);
+      point = next_[point];
+    } while (point != head);
+  }
+  /// The first of the clusters whose exit leads to `point`, and the one after another of them;
+  /// kNoCluster: there is none.
+  ClusterId first_to(PointIndex point) const {
+    const auto found = first_to_.find(point);
+    return found == first_to_.end() ? kNoCluster : found->second;
+  }
+  ClusterId next_to(ClusterId cluster) const { return clusters_[cluster].next; }
+
+  std::size_t bytes() const;
+
+ private:
+  struct Cluster {
+    Exit exit;
+    // Of those whose exits lead to the same point.
+    ClusterId next = kNoCluster;
+    ClusterId previous = kNoCluster;
+  };
+
+  void link(ClusterId cluster);
+  void unlink(ClusterId cluster);
+
+  const BaseComponents& components_;
+  std::vector<Cluster> clusters_;
+  std::vector<ClusterId> free_;
+  GrowingArray<std::uint32_t> cluster_of_;  ///< by name of a fragment; plus one, 0: none
+  GrowingArray<PointIndex> next_;           ///< point of the same cluster, in a circle
+  std::unordered_map<PointIndex, ClusterId> first_to_;
+};
+
+}  // namespace kintsugi::segmenter
