@@ -1,5 +1,7 @@
 #include "viewer/core/highlight.hpp"
 
+#include <algorithm>
+
 #include <opencv2/imgproc.hpp>
 
 namespace kintsugi::viewer {
@@ -7,7 +9,9 @@ namespace kintsugi::viewer {
 Color dimmed(const Color& color) {
   constexpr double kBrightness = 0.45;
   constexpr double kHue = 0.2;  // share of the colour that is left
-  const double grey = 0.114 * color[0] + 0.587 * color[1] + 0.299 * color[2];  // ITU-R BT.601
+  // Lightness as in HSL: by luminance, blue would vanish in the background.
+  const auto [darkest, brightest] = std::minmax({color[0], color[1], color[2]});
+  const double grey = 0.5 * (darkest + brightest);
   return Color(kBrightness * (kHue * cv::Vec3d(color) + (1.0 - kHue) * cv::Vec3d::all(grey)));
 }
 
