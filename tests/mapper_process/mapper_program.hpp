@@ -2,7 +2,7 @@
 // The built program on a bus of the test's own, and what it says there.
 
 #include <chrono>
-#include <cstdint>
+#include <csignal>
 #include <filesystem>
 #include <mutex>
 #include <optional>
@@ -11,69 +11,39 @@
 #include <utility>
 #include <vector>
 
-#include <fcntl.h>
-#include <signal.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include "lcmtypes/bus_thread.hpp"
 #include "lcmtypes/channels.hpp"
 #include "lcmtypes/message_subscriber.hpp"
 #include "lcmtypes/patient_clock.hpp"
 #include "lcmtypes/stream_subscriber.hpp"
+#include "tests/support/child_program.hpp"
 #include "tests/support/private_bus.hpp"
 
 namespace kintsugi::mapper::testing {
 
-class MapperProgram {
+class MapperProgram : public kintsugi::testing::ChildProgram {
  public:
   /// @param output for what it prints; empty: the test's own
-  explicit MapperProgram(std::vector<std::string> flags, const std::string& output = {}) {
-    const auto here = std::filesystem::read_symlink("/proc/self/exe").parent_path();
-    flags.insert(flags.begin(), here.parent_path() / "bin" / "kintsugi-mapper");
-    flags.insert(flags.end(), {"--lcm-url", kintsugi::testing::kPrivateBusUrl});
-    std::vector<char*> argv;
-    argv.reserve(flags.size() + 1);
-    for (std::string& flag : flags) argv.push_back(flag.data());
-    argv.push_back(nullptr);
-    posix_spawn_file_actions_t actions;
-    posix_spawn_file_actions_init(&actions);
-    if (!output.empty()) {
-      posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, output.c_str(),
-                                       O_WRONLY | O_CREAT | O_TRUNC, 0666);
-      posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
-    }
-    if (posix_spawn(&pid_, argv[0], &actions, nullptr, argv.data(), environ) != 0) pid_ = -1;
-    posix_spawn_file_actions_destroy(&actions);
-  }
-  ~MapperProgram() {
-    if (pid_ > 0) {
-      kill(pid_, SIGKILL);
-      waitpid(pid_, nullptr, 0);
-    }
-  }
-  MapperProgram(const MapperProgram&) = delete;
-  MapperProgram& operator=(const MapperProgram&) = delete;
+  explicit MapperProgram(std::vector<std::string> flags, const std::string& output = {})
+      : ChildProgram(path(), on_private_bus(std::move(flags)), output) {}
 
-  void interrupt() const { kill(pid_, SIGINT); }
+  void interrupt() const { signal(SIGINT); }
 
   /// SIGKILL; false when it had ended by itself.
   bool crash() {
-    kill(pid_, SIGKILL);
-    return wait() == -1;
-  }
-
-  /// Its exit code; -1 if a signal ended it.
-  int wait() {
-    int status = 0;
-    waitpid(pid_, &status, 0);
-    pid_ = -1;
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    signal(SIGKILL);
+    return wait() == -SIGKILL;
   }
 
  private:
-  pid_t pid_ = -1;
+  static std::string path() {
+    const auto here = std::filesystem::read_symlink("/proc/self/exe").parent_path();
+    return here.parent_path() / "bin" / "kintsugi-mapper";
+  }
+  static std::vector<std::string> on_private_bus(std::vector<std::string> flags) {
+    flags.insert(flags.end(), {"--lcm-url", kintsugi::testing::kPrivateBusUrl});
+    return flags;
+  }
 };
 
 /// Everything the mapper says, kept.
