@@ -28,7 +28,7 @@ void add_options(CLI::App& app, Options& options) {
   add_segmentation_options(app, process.maps.map);
   app.add_option(
          "--out", process.files.folder,
-         "folder for segments.ply and segments.json, written at the end, on SIGUSR1, and as "
+         "folder for segments.ply, .json and .csv, written at the end, on SIGUSR1, and as "
          "--write-every says")
       ->capture_default_str();
   app.add_option("--write-every", processor.write_every,

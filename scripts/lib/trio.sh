@@ -208,7 +208,8 @@ trio_summary() {
     [[ -e "$out/$file" ]] && printf '  %-28s %s\n' "$out/$file" "$what"
   done <<'FILES'
 segments.ply|the map: x y z, normal, colour, segment_id, slice_id, weight
-segments.json|every segment: points, box, centroid, normal, colour, area
+segments.json|every segment: points, boxes, plane, normal, colour, area, neighbours
+segments.csv|the same as a table
 final.png|the map, its segments and the newest slice
 map_final.png|the whole map in true colour
 segments_final.png|the whole map, each segment in its own colour

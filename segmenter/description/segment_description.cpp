@@ -96,7 +96,9 @@ std::optional<SegmentDescription> describe_segment(const MapSnapshot& map,
   if (place == map.segments.size() || map.segments[place].segment_id != segment_id) {
     return std::nullopt;
   }
-  return describe(labelled_cloud(map), map.segments[place], map.state.last_changes[place]);
+  const auto& last_changes = map.state.last_changes;
+  return describe(labelled_cloud(map), map.segments[place],
+                  last_changes.empty() ? LastChange{} : last_changes[place]);
 }
 
 std::vector<SegmentDescription> describe_segments(const LabelledCloud& cloud,

@@ -1,30 +1,51 @@
 #include "segmenter/io/map_files.hpp"
 
-#include <charconv>
 #include <string_view>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
 #include "lcmtypes/atomic_file.hpp"
 #include "segmenter/io/labelled_ply_writer.hpp"
+#include "segmenter/io/number_text.hpp"
+#include "segmenter/io/segments_csv.hpp"
 
 namespace kintsugi::segmenter {
 namespace {
 
 using Json = nlohmann::ordered_json;  // keys in the order a person reads them
 
-// The double with the shortest decimals that mean this float: 0.01 instead of 0.00999999977.
-double readable(float value) {
-  char text[32];
-  const auto end = std::to_chars(std::begin(text), std::end(text), value).ptr;
-  double result = 0.0;
-  std::from_chars(std::begin(text), end, result);
-  return result;
+template <class Vector>
+Json vector_json(const Vector& v) {
+  const auto number = [&](int axis) { return readable(static_cast<float>(v[axis])); };
+  return {number(0), number(1), number(2)};
 }
 
-Json vector_json(const float (&v)[3]) { return {readable(v[0]), readable(v[1]), readable(v[2])}; }
+Json box_json(const OrientedBox& box) {
+  const Eigen::Matrix3d& R_WB = box.X_WB.linear();
+  return {{"center", vector_json(box.X_WB.translation())},
+          {"size", vector_json(box.size_m)},
+          {"axes", {vector_json(R_WB.col(0)), vector_json(R_WB.col(1)), vector_json(R_WB.col(2))}}};
+}
 
-Json segment_json(const SegmentStatistics& s) {
+Json plane_json(const PlaneFit& plane) {
+  const auto number = [](double value) { return readable(static_cast<float>(value)); };
+  return {{"normal", vector_json(plane.normal_W)},
+          {"offset", number(plane.offset_m)},
+          {"rms", number(plane.rms_m)},
+          {"inliers", number(plane.inlier_share)}};
+}
+
+Json neighbours_json(const std::vector<SegmentNeighbour>& neighbours) {
+  Json list = Json::array();
+  for (const SegmentNeighbour& neighbour : neighbours) {
+    list.push_back({{"id", neighbour.segment_id}, {"pairs", neighbour.num_pairs}});
+  }
+  return list;
+}
+
+Json segment_json(const SegmentDescription& segment) {
+  const SegmentStatistics& s = segment.statistics;
   return {{"id", s.segment_id},
           {"points", s.num_points},
           {"box_min", vector_json(s.box_min_W)},
@@ -34,7 +55,13 @@ Json segment_json(const SegmentStatistics& s) {
           {"mean_color", {s.mean_color[0], s.mean_color[1], s.mean_color[2]}},
           {"area", readable(s.area_m2)},
           {"first_slice", s.first_slice},
-          {"last_slice", s.last_slice}};
+          {"last_slice", s.last_slice},
+          {"last_change",
+           {{"slice", segment.last_change.slice_id}, {"utime", segment.last_change.utime}}},
+          {"oriented_box", box_json(segment.shape.box)},
+          {"plane", plane_json(segment.shape.plane)},
+          {"planar", segment.shape.is_planar},
+          {"neighbours", neighbours_json(segment.neighbours)}};
 }
 
 std::string_view name_of(NeighbourSearch search) {
@@ -91,6 +118,24 @@ Json revisions_json(const std::vector<SliceRecord>& records) {
   return slices;
 }
 
+/// `head` and the segments behind it.
+void write_json(const Json& head, std::span<const SegmentDescription> segments,
+                const std::filesystem::path& path) {
+  AtomicFile file(path);
+  std::ostream& out = file.stream();
+  // One line for each segment: a person can read it, and the text of millions is never in memory.
+  std::string text = head.dump(1);
+  text.resize(text.rfind('\n'));
+  out << text << ",\n \"segments\": [";
+  const char* separator = "\n";
+  for (const SegmentDescription& segment : segments) {
+    out << separator << "  " << segment_json(segment).dump();
+    separator = ",\n";
+  }
+  out << "\n ]\n}\n";
+  file.commit();
+}
+
 }  // namespace
 
 void write_map_ply(const MapSnapshot& map, const std::filesystem::path& path) {
@@ -106,30 +151,35 @@ void write_map_ply(const MapSnapshot& map, const std::filesystem::path& path) {
   writer.commit();
 }
 
+void write_segments_json(const MapSnapshot& map, std::span<const SegmentDescription> segments,
+                         const std::filesystem::path& path) {
+  Json head = header_json(map);
+  head["revisions"] = revisions_json(map.state.slices);
+  head["rejected"] = rejected_json(map.state.slices);
+  write_json(head, segments, path);
+}
+
 void write_segments_json(const MapSnapshot& map, const std::filesystem::path& path) {
-  Json root = header_json(map);
-  root["revisions"] = revisions_json(map.state.slices);
-  root["rejected"] = rejected_json(map.state.slices);
-  AtomicFile file(path);
-  std::ostream& out = file.stream();
-  // One line for each segment: a person can read it, and the text of millions is never in memory.
-  std::string head = root.dump(1);
-  head.resize(head.rfind('\n'));
-  out << head << ",\n \"segments\": [";
-  const char* separator = "\n";
-  for (const SegmentStatistics& segment : map.segments) {
-    out << separator << "  " << segment_json(segment).dump();
-    separator = ",\n";
-  }
-  out << "\n ]\n}\n";
-  file.commit();
+  write_segments_json(map, describe_segments(map), path);
+}
+
+void write_segments_json(const LabelledCloud& cloud, std::span<const SegmentDescription> segments,
+                         const std::filesystem::path& path) {
+  const Json head = {
+      {"parameters",
+       {{"resolution", readable(cloud.resolution_m)}, {"radius", readable(cloud.radius_m)}}},
+      {"num_points", cloud.points_W.size()},
+      {"num_segments", segments.size()}};
+  write_json(head, segments, path);
 }
 
 void write_map_files(const MapSnapshot& map, const std::filesystem::path& folder,
                      const std::string& stem) {
   std::filesystem::create_directories(folder);
   write_map_ply(map, folder / (stem + ".ply"));
-  write_segments_json(map, folder / (stem + ".json"));
+  const std::vector<SegmentDescription> segments = describe_segments(map);
+  write_segments_json(map, segments, folder / (stem + ".json"));
+  write_segments_csv(segments, folder / (stem + ".csv"));
 }
 
 }  // namespace kintsugi::segmenter

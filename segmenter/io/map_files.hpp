@@ -2,8 +2,10 @@
 // The files that a segment map leaves behind.
 
 #include <filesystem>
+#include <span>
 #include <string>
 
+#include "segmenter/description/segment_description.hpp"
 #include "segmenter/map/map_snapshot.hpp"
 
 namespace kintsugi::segmenter {
@@ -13,12 +15,19 @@ namespace kintsugi::segmenter {
 void write_map_ply(const MapSnapshot& map, const std::filesystem::path& path);
 
 /// Writes mode, parameters, sessions and counts, the slices that were corrected, the points that
-/// were rejected, then for each segment by ascending id: points, bounding box, centroid, mean
-/// normal, mean colour, area, first and last slice. Metres, frame W.
+/// were rejected, then a line for each segment by ascending id: its description. Metres, frame W.
+/// README lists the keys.
+/// @param segments describe_segments() of the map
+void write_segments_json(const MapSnapshot& map, std::span<const SegmentDescription> segments,
+                         const std::filesystem::path& path);
+/// Describes them, too.
 void write_segments_json(const MapSnapshot& map, const std::filesystem::path& path);
+/// Of a cloud of which nothing else is known: without mode, sessions and slices.
+void write_segments_json(const LabelledCloud& cloud, std::span<const SegmentDescription> segments,
+                         const std::filesystem::path& path);
 
-/// Writes both as `folder`/`stem`.ply and .json, and makes the folder when it is not there. Each
-/// file is whole or absent.
+/// Writes `folder`/`stem`.ply, .json and .csv (segments_csv.hpp), and makes the folder when it is
+/// not there. Each file is whole or absent.
 /// @throws std::runtime_error (std::system_error) naming the file and the reason
 void write_map_files(const MapSnapshot& map, const std::filesystem::path& folder,
                      const std::string& stem);

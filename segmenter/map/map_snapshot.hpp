@@ -19,4 +19,9 @@ struct MapSnapshot {
 void take_snapshot(const SegmentMap& map, MapSnapshot& snapshot);
 MapSnapshot take_snapshot(const SegmentMap& map);
 
+/// Of a map that is not gone on with: no engine runs, and segments are what `state` says they are.
+/// Throws std::invalid_argument naming what is wrong when a segment has a point whose position
+/// cannot be used, or when `state` has last changes, but not one for each segment.
+MapSnapshot make_snapshot(SegmentMapState state);
+
 }  // namespace kintsugi::segmenter

@@ -38,7 +38,7 @@ struct SegmentMapState {
   std::vector<CloudPoint> points_W;        ///< accepted points, slice after slice
   std::vector<std::uint32_t> segment_ids;  ///< of each of points_W
 
-  /// Of each segment by ascending id.
+  /// Of each segment by ascending id. A SegmentMap has them; a snapshot may do without.
   std::vector<LastChange> last_changes;
 
   /// Mode `voting`, else empty: theta of each segment by ascending id. It depends on the history.

@@ -127,7 +127,8 @@ TEST(MapFiles, AreTheSameBytesForTheSameMap) {
   write_map_files(take_snapshot(*small_map()), folder.path(), "b");
   EXPECT_EQ(contents(folder / "a.ply"), contents(folder / "b.ply"));
   EXPECT_EQ(contents(folder / "a.json"), contents(folder / "b.json"));
-  EXPECT_EQ(num_files(folder.path()), 4U);  // nothing partial is left
+  EXPECT_EQ(contents(folder / "a.csv"), contents(folder / "b.csv"));
+  EXPECT_EQ(num_files(folder.path()), 6U);  // nothing partial is left
 }
 
 TEST(MapFiles, NameTheFileThatCannotBeWritten) {

@@ -1,0 +1,34 @@
+#include "segmenter/io/scannet_segments.hpp"
+
+#include <ostream>
+
+#include <nlohmann/json.hpp>
+
+#include "lcmtypes/atomic_file.hpp"
+
+namespace kintsugi::segmenter {
+
+void write_scannet_segments(const std::string& scene_id,
+                            const std::optional<ScanNetParameters>& parameters,
+                            std::span<const std::uint32_t> segment_ids,
+                            const std::filesystem::path& path) {
+  nlohmann::ordered_json params = nlohmann::ordered_json::object();
+  if (parameters.has_value()) {
+    params["kThresh"] = parameters->k_thresh;
+    params["segMinVerts"] = parameters->seg_min_verts;
+  }
+  AtomicFile file(path);
+  std::ostream& out = file.stream();
+  // The indices of millions are never in memory as JSON.
+  out << "{\"params\":" << params.dump()
+      << ",\"sceneId\":" << nlohmann::ordered_json(scene_id).dump() << ",\"segIndices\":[";
+  const char* separator = "";
+  for (const std::uint32_t id : segment_ids) {
+    out << separator << id;
+    separator = ",";
+  }
+  out << "]}\n";
+  file.commit();
+}
+
+}  // namespace kintsugi::segmenter
