@@ -5,17 +5,22 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdlib>
 #include <exception>
 #include <filesystem>
 #include <iostream>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "lcmtypes/stream_publisher.hpp"
+#include "segmenter/description/segment_description.hpp"
+#include "segmenter/io/map_files.hpp"
 #include "segmenter/io/saved_map.hpp"
+#include "segmenter/io/segments_csv.hpp"
 #include "segmenter/map/map_snapshot.hpp"
 #include "tests/bench/map_generator.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -71,6 +76,39 @@ double send_ms(const std::vector<SegmentUpdate>& state, std::int64_t& bytes) {
   });
 }
 
+/// What is known about segments, by all cores, the adjacency graph included where it is needed.
+void describe_rows(const MapSnapshot& map) {
+  const LabelledCloud cloud = labelled_cloud(map);
+  AdjacencyGraph graph;
+  const double graph_ms = best_ms([&] { graph = adjacency_graph(cloud); });
+  row(fmt::format("which segments touch: {} pairs", graph.edges.size()), graph_ms,
+      static_cast<double>(graph.edges.size() * sizeof(AdjacencyEdge)));
+  std::vector<SegmentDescription> segments;
+  row("every segment described, when that is known", best_ms([&] {
+        segments = describe_segments(cloud, map.segments, map.state.last_changes, graph);
+      }),
+      static_cast<double>(segments.size() * sizeof(SegmentDescription)));
+  for (const std::uint32_t num_points : {1000U, UINT32_MAX}) {
+    const auto nearest = std::min_element(
+        map.segments.begin(), map.segments.end(), [&](const auto& a, const auto& b) {
+          const auto difference = [&](const SegmentStatistics& segment) {
+            return std::abs(std::int64_t{segment.num_points} - num_points);
+          };
+          return difference(a) < difference(b);
+        });
+    row(fmt::format("a segment of {} points described alone", nearest->num_points),
+        best_ms([&] { describe_segment(map, nearest->segment_id); }), 0.0);
+  }
+  const kintsugi::testing::TemporaryFolder folder;
+  const double write_ms = time_ms([&] {
+    write_segments_json(map, segments, folder / "segments.json");
+    write_segments_csv(segments, folder / "segments.csv");
+  });
+  row("segments.json and .csv written (in the background)", write_ms,
+      static_cast<double>(std::filesystem::file_size(folder / "segments.json") +
+                          std::filesystem::file_size(folder / "segments.csv")));
+}
+
 void run(const MapConfig& config) {
   const Slices slices = generate_map(config);
   std::optional<SegmentMap> map;
@@ -100,6 +138,7 @@ void run(const MapConfig& config) {
   const double write_ms = time_ms([&] { write_map_state(snapshot->state, file); });
   row("the copy written (in the background)", write_ms,
       static_cast<double>(std::filesystem::file_size(file)));
+  describe_rows(*snapshot);
   snapshot.reset();
   map.reset();
   row("read, and gone on with", time_ms([&] { load_map(file); }), num_points * 36);
