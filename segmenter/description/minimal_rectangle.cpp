@@ -21,7 +21,7 @@ bool is_left_turn(const Vector2d& a, const Vector2d& b, const Vector2d& c) {
 /// Appends the corners of the hull that points in this order, by x or against it, have on their
 /// right; the last point is left to the other half.
 template <class Iterator>
-void append_half_hull(Iterator point, Iterator end, Polygon& hull) {
+void append_half_hull(Iterator point, const Iterator& end, Polygon& hull) {
   const std::size_t first = hull.size();
   for (; point != end; ++point) {
     while (hull.size() >= first + 2 &&
