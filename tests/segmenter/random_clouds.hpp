@@ -3,6 +3,7 @@
 // give equal weights, lattices give equal distances.
 
 #include <cmath>
+#include <cstdint>
 #include <random>
 #include <vector>
 
@@ -28,6 +29,20 @@ inline CloudPoint colored_as(const CloudPoint& other, CloudPoint p) {
   p.green = other.green;
   p.blue = other.blue;
   return p;
+}
+
+/// Each point in one of three colours or in none, by chance.
+inline void paint_at_random(std::vector<CloudPoint>& points, unsigned seed) {
+  constexpr int kNumColors = 4;
+  constexpr std::uint8_t kPalette[kNumColors][3] = {
+      {0, 0, 0}, {120, 90, 60}, {124, 93, 66}, {200, 20, 10}};
+  std::mt19937 generator(seed);
+  for (CloudPoint& p : points) {
+    const auto& color = kPalette[generator() % kNumColors];
+    p.red = color[0];
+    p.green = color[1];
+    p.blue = color[2];
+  }
 }
 
 enum class CloudShape {

@@ -52,13 +52,15 @@ TEST_P(BatchEngineTest, EqualsTheLiteralAlgorithms) {
 }
 
 TEST_P(BatchEngineTest, EqualsTheLiteralAlgorithmsForOtherParameters) {
-  const LiteralParameters parameters{.T = 0.01, .k = 0.003, .r = 0.03F};
+  const LiteralParameters parameters{.T = 0.01, .k = 0.003, .lambda = 0.02, .r = 0.03F};
   for (unsigned seed = 0; seed < 6; ++seed) {
-    const auto points = random_cloud(CloudShape::kUnrelated, 200, seed);
+    auto points = random_cloud(CloudShape::kUnrelated, 200, seed);
+    testing::paint_at_random(points, seed);
     PointCloud cloud;
     cloud.add_slice(0, points);
     BatchEngine engine(cloud, {.threshold = parameters.T,
                                .scale = parameters.k,
+                               .color_weight = parameters.lambda,
                                .radius_factor = 3.0,
                                .neighbour_search = GetParam()});
     engine.update(cloud.take_change());

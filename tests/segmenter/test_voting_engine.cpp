@@ -74,12 +74,15 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(VotingEngine, EqualsTheLiteralAlgorithmsForOtherParameters) {
   for (const double beta : {0.4, 0.85, 0.97}) {
-    const LiteralParameters parameters{.T = 0.004, .k = 0.002, .beta = beta, .r = 0.025F};
+    const LiteralParameters parameters{
+        .T = 0.004, .k = 0.002, .lambda = 0.02, .beta = beta, .r = 0.025F};
     for (unsigned seed = 0; seed < 10; ++seed) {
-      const auto points = arriving_cloud(CloudShape::kUnrelated, Arrival::kMixed, 240, seed);
+      auto points = arriving_cloud(CloudShape::kUnrelated, Arrival::kMixed, 240, seed);
+      testing::paint_at_random(points, seed);
       PointCloud cloud;
       VotingEngine engine(cloud, {.threshold = parameters.T,
                                   .scale = parameters.k,
+                                  .color_weight = parameters.lambda,
                                   .beta = parameters.beta,
                                   .radius_factor = 2.5});
       LiteralVoting literal(parameters);
