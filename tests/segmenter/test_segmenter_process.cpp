@@ -200,8 +200,7 @@ TEST_F(SegmenterProgram, ReportsAFolderItCannotWriteTo) {
 
 TEST_F(SegmenterProgram, AuditsModeExactAndNoOther) {
   write_log(path("slices.lcm"), messages_of(wavy_session(4, 150)));
-  const std::string log =
-      "--log " + path("slices.lcm") + " --out " + path("out") + " --preset paper --audit";
+  const std::string log = "--log " + path("slices.lcm") + " --out " + path("out") + " --audit";
   const auto result = run(log);
   EXPECT_EQ(result.exit_code, 0) << result.output;
   const auto refused = run(log + " --mode voting");

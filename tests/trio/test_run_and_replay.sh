@@ -3,7 +3,7 @@
 # the points and normals in that map are those that were used: segmented again, they give as many segments.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.sh"
 
-run_trio "${small_room[@]}" --replay --video --preset paper --out live
+run_trio "${small_room[@]}" --replay --video --out live
 for file in segments.ply segments.json final.png map_final.png segments_final.png trajectory.txt run.lcm run.mp4; do
   expect_file "live/$file"
   grep -q "live/$file" trio.txt || fail "the summary does not name $file: $(cat trio.txt)"
@@ -14,15 +14,15 @@ expect_no_partial_files live
 (($(vertices live/segments.ply) > 2000)) || fail "the map is all but empty"
 
 for speed in 1 4; do
-  "$root/scripts/replay" live/run.lcm --private --speed "$speed" --preset paper --out "replay$speed" >replay.txt 2>&1 || {
+  "$root/scripts/replay" live/run.lcm --private --speed "$speed" --out "replay$speed" >replay.txt 2>&1 || {
     cat replay.txt
     fail "replay at ${speed}x"
   }
   expect_same live/segments.ply "replay$speed/segments.ply"
 done
 
-"$KINTSUGI_BIN/kintsugi-segment-cloud" live/segments.ply again.ply --mode batch --preset paper --resolution 0.02 \
-  --json again.json >again.txt 2>&1 || {
+"$KINTSUGI_BIN/kintsugi-segment-cloud" live/segments.ply again.ply --mode batch --resolution 0.02 --json again.json \
+  >again.txt 2>&1 || {
   cat again.txt
   fail "kintsugi-segment-cloud"
 }
