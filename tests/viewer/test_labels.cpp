@@ -24,6 +24,8 @@ bool are_apart(const std::vector<SegmentLabel>& labels) {
   for (std::size_t i = 0; i < labels.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
       if (!(labels[i].box & labels[j].box).empty()) return false;
+      if (labels[i].box.contains(labels[j].anchor)) return false;
+      if (labels[j].box.contains(labels[i].anchor)) return false;
     }
   }
   return true;

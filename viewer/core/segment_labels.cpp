@@ -117,9 +117,44 @@ cv::Rect with_margin(const cv::Rect& box) {
   return box - cv::Point(kMargin_px, kMargin_px) + cv::Size(2 * kMargin_px, 2 * kMargin_px);
 }
 
-bool overlaps_any(const cv::Rect& box, std::span<const cv::Rect> others) {
-  return std::ranges::any_of(others, [&](const cv::Rect& other) { return !(box & other).empty(); });
+/// The line from a segment to its label.
+struct Leader {
+  cv::Point from;
+  cv::Point to;
+
+  bool crosses(const cv::Rect& box) const {
+    cv::Point a = from;
+    cv::Point b = to;
+    return cv::clipLine(box, a, b);
+  }
+};
+
+/// Nothing when the label stands on the segment.
+std::optional<Leader> leader_of(cv::Point anchor, const cv::Rect& box) {
+  if (box.contains(anchor)) return std::nullopt;
+  const cv::Rect wide = with_margin(box);
+  return Leader{
+      anchor,
+      {std::clamp(anchor.x, wide.x, wide.br().x), std::clamp(anchor.y, wide.y, wide.br().y)}};
 }
+
+/// What is taken of a picture.
+struct Taken {
+  std::vector<cv::Rect> boxes;
+  std::vector<Leader> leaders;
+
+  bool is_free(const cv::Rect& box, const std::optional<Leader>& leader) const {
+    const auto is_in_the_way = [&](const cv::Rect& other) {
+      return !(box & other).empty() || (leader && leader->crosses(other));
+    };
+    return std::ranges::none_of(boxes, is_in_the_way) &&
+           std::ranges::none_of(leaders, [&](const Leader& other) { return other.crosses(box); });
+  }
+  void add(const cv::Rect& box, const std::optional<Leader>& leader) {
+    boxes.push_back(box);
+    if (leader) leaders.push_back(*leader);
+  }
+};
 
 }  // namespace
 
@@ -128,7 +163,7 @@ std::vector<SegmentLabel> place_labels(const IdImage& ids, const std::set<std::u
   const double scale = std::clamp(ids.cols / 1800.0, 0.42, 1.2);
   const cv::Size usual = text_size("0000", scale);
   const cv::Rect picture(cv::Point(), ids.size());
-  std::vector<cv::Rect> taken(reserved.begin(), reserved.end());
+  Taken taken{{reserved.begin(), reserved.end()}, {}};
   std::vector<SegmentLabel> labels;
   for (const SeenSegment& segment : seen_segments(ids, 0.5F * static_cast<float>(usual.width))) {
     if (labels.size() == kMaxLabels) break;
@@ -136,9 +171,10 @@ std::vector<SegmentLabel> place_labels(const IdImage& ids, const std::set<std::u
     const cv::Size letters = text_size(std::to_string(segment.id), scale);
     for (const cv::Rect& box : candidates(segment, letters)) {
       const cv::Rect wide = with_margin(box);
-      if ((wide & picture) != wide || overlaps_any(wide, taken)) continue;
+      const auto leader = leader_of(segment.anchor, box);
+      if ((wide & picture) != wide || !taken.is_free(wide, leader)) continue;
       labels.push_back({segment.id, segment.anchor, box, scale});
-      taken.push_back(wide);
+      taken.add(wide, leader);
       break;
     }
   }
@@ -147,14 +183,12 @@ std::vector<SegmentLabel> place_labels(const IdImage& ids, const std::set<std::u
 
 void draw_labels(cv::Mat3b& image, std::span<const SegmentLabel> labels) {
   for (const SegmentLabel& label : labels) {
-    if (label.box.contains(label.anchor)) continue;
-    const cv::Rect wide = with_margin(label.box);
-    const cv::Point end(std::clamp(label.anchor.x, wide.x, wide.br().x),
-                        std::clamp(label.anchor.y, wide.y, wide.br().y));
-    cv::line(image, label.anchor, end, kLeaderEdge, 3, cv::LINE_AA);
-    cv::line(image, label.anchor, end, kLeader, 1, cv::LINE_AA);
-    cv::circle(image, label.anchor, 3, kLeaderEdge, cv::FILLED, cv::LINE_AA);
-    cv::circle(image, label.anchor, 2, kLeader, cv::FILLED, cv::LINE_AA);
+    const auto leader = leader_of(label.anchor, label.box);
+    if (!leader) continue;
+    cv::line(image, leader->from, leader->to, kLeaderEdge, 3, cv::LINE_AA);
+    cv::line(image, leader->from, leader->to, kLeader, 1, cv::LINE_AA);
+    cv::circle(image, leader->from, 3, kLeaderEdge, cv::FILLED, cv::LINE_AA);
+    cv::circle(image, leader->from, 2, kLeader, cv::FILLED, cv::LINE_AA);
   }
   for (const SegmentLabel& label : labels) {
     const cv::Point lower_left(label.box.x, label.box.br().y);

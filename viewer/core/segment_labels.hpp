@@ -21,8 +21,9 @@ struct SegmentLabel {
 };
 
 /// Finds room for the ids of the segments with the most pixels; one by one, so that larger segments
-/// have the better places. No label covers another or what is reserved; one that finds no room is
-/// left out, and so is a segment of which next to nothing is seen.
+/// have the better places. No label, nor the line that leads to it, covers another or what is
+/// reserved; one that finds no room is left out, and so is a segment of which next to nothing is
+/// seen.
 ///
 /// @param only these segments, however little is seen of them; empty: all
 std::vector<SegmentLabel> place_labels(const IdImage& ids, const std::set<std::uint32_t>& only,
