@@ -39,6 +39,8 @@ namespace kintsugi::segmenter {
 /// 3. A blocked edge stays blocked until the blocker changes; then its heap is opened.
 /// 4. An edge inside a component stays so unless the tree falls apart: CutSearch's invariant.
 ///
+/// Fragments stay as they are here: FragmentLayer joins them, on top.
+///
 /// Where the change is a large part of the map, or a correction turns out to reach far, the state
 /// is built anew by Algorithm 1 over all points, which costs little more than `batch`.
 class ExactEngine final : public IncrementalEngine {
