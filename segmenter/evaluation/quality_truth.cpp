@@ -6,6 +6,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include <spdlog/fmt/fmt.h>
+
 #include "segmenter/core/admission.hpp"
 #include "segmenter/evaluation/quality_overlap.hpp"
 #include "segmenter/preprocess/nearest_neighbours.hpp"
@@ -32,8 +34,9 @@ std::map<std::uint32_t, TruthInstance> described_instances(const PlyCloud& cloud
   for (const std::string& comment : cloud.comments) {
     const auto instance = parse_instance(comment);
     if (instance && !described.emplace(instance->id, *instance).second) {
-      throw std::runtime_error(name + ": 'comment " + comment + "': instance " +
-                               std::to_string(instance->id) + " is described a second time");
+      throw std::runtime_error(
+          fmt::format("{}: instance {} is described a second time, by 'comment {}'", name,
+                      instance->id, comment));
     }
   }
   return described;
