@@ -19,6 +19,20 @@ csv_column() {
   awk -F, -v name="$2" 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i == name) c = i } NR > 1 && c { print $c }' "$1"
 }
 
+# csv_as_table FILE COLUMN...: these columns as a Markdown table.
+csv_as_table() {
+  local file="$1"
+  shift
+  table "$@"
+  awk -F, -v wanted="$*" 'NR == 1 { n = split(wanted, name, " "); for (i = 1; i <= NF; ++i) column[$i] = i; next }
+           { line = "|"; for (i = 1; i <= n; ++i) line = line " " $column[name[i]] " |"; print line }' "$file"
+}
+
+# figure_png FILE.gp: draws a figure of kintsugi-evaluate as FILE.png.
+figure_png() {
+  sed "1s/.*/set terminal pngcairo size 800,340 font 'sans-serif,10' noenhanced/" "$1" | gnuplot >"${1%.gp}.png"
+}
+
 # quantile SHARE: of the numbers on standard input.
 quantile() {
   sort -g | awk -v share="$1" '{ v[NR] = $1 } END { r = int(share * NR); if (r < share * NR) ++r
