@@ -37,14 +37,14 @@ expect_followed() {
   follower=()
 }
 
-# Live: one from the start, one that begins when there is a map already. When all slices but the last are
-# there they come again, corrected: segments appear, grow, merge and split.
+# Live: one from the start, one that begins when there is a map already. When all slices but the last are there they
+# come again, corrected. With the paper's parameters hundreds of segments appear, merge and split.
 follow early "$events"
 ((has_python_bus)) && follow early_python "${python_events[@]}"
 lcm-logger -q -a run.lcm >logger.log 2>&1 &
 logger=$!
-"$KINTSUGI_BIN/kintsugi-segmenter" --out live --save live/segmenter.map --write-every=4 --exit-on-final --linger=3 \
-  >segmenter.log 2>&1 &
+"$KINTSUGI_BIN/kintsugi-segmenter" --preset paper --out live --save live/segmenter.map --write-every=4 --exit-on-final \
+  --linger=3 >segmenter.log 2>&1 &
 segmenter=$!
 "$KINTSUGI_TEST_BIN/slice_player" --session=7 --points=100000 --slice-points=2000 --speed=10 --seconds=4 --linger=3 \
   >player.log 2>&1 &
@@ -79,7 +79,7 @@ done
 # A segmenter that is started again gives the full state, in which no births and deaths are told.
 follow after "$events"
 ((has_python_bus)) && follow after_python "${python_events[@]}"
-"$KINTSUGI_BIN/kintsugi-segmenter" --log run.lcm --lcm-url "$LCM_DEFAULT_URL" --out resumed \
+"$KINTSUGI_BIN/kintsugi-segmenter" --preset paper --log run.lcm --lcm-url "$LCM_DEFAULT_URL" --out resumed \
   --resume live/segmenter.map --linger=3 >resumed.log 2>&1 || fail "$(cat resumed.log)"
 expect_followed live/segments.json
 grep -q 'all listed' after.txt || fail "no full state was heard: $(cat after.txt)"
