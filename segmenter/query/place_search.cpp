@@ -1,0 +1,96 @@
+#include "segmenter/query/place_search.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace kintsugi::segmenter {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+Eigen::Vector3d position(const CloudPoint& point) { return {point.x, point.y, point.z}; }
+
+/// Calls visit(place, p_W) for each point that belongs to a segment.
+template <class Visit>
+void for_each_point(const LabelledCloud& cloud, const Visit& visit) {
+  for (std::size_t i = 0; i < cloud.segment_ids.size(); ++i) {
+    if (cloud.segment_ids[i] != kNoSegment) visit(i, position(cloud.points_W[i]));
+  }
+}
+
+/// Where a ray meets the disc of a point.
+struct Crossing {
+  std::size_t point = 0;
+  double t_m = 0.0;         ///< along the ray
+  double off_center_m = 0;  ///< from the point
+};
+
+std::optional<Crossing> cross(const Ray& ray, const CloudPoint& point, std::size_t place,
+                              double radius_m) {
+  const Eigen::Vector3d to_point_W = position(point) - ray.origin_W;
+  const double nearest_t_m = to_point_W.dot(ray.direction_W);
+  const double squared_distance_m2 = to_point_W.squaredNorm() - nearest_t_m * nearest_t_m;
+  if (squared_distance_m2 > radius_m * radius_m) return std::nullopt;  // no disc reaches the ray
+
+  Eigen::Vector3d normal_W(point.nx, point.ny, point.nz);
+  if (normal_W.isZero()) normal_W = -ray.direction_W;
+  const double slope = normal_W.dot(ray.direction_W);
+  if (slope >= 0.0) return std::nullopt;  // seen from behind
+  const double t_m = normal_W.dot(to_point_W) / slope;
+  const double off_center_m = (t_m * ray.direction_W - to_point_W).norm();
+  // Written so that the quotient of a normal across the ray, which may be anything, fails.
+  if (!(t_m >= 0.0 && off_center_m <= radius_m)) return std::nullopt;
+  return Crossing{place, t_m, off_center_m};
+}
+
+std::optional<Hit> first_disc(const LabelledCloud& cloud, const Ray& ray, double radius_m) {
+  std::vector<Crossing> crossings;
+  double first_t_m = kInfinity;
+  for_each_point(cloud, [&](std::size_t i, const Eigen::Vector3d& /*p_W*/) {
+    if (const auto crossing = cross(ray, cloud.points_W[i], i, radius_m)) {
+      crossings.push_back(*crossing);
+      first_t_m = std::min(first_t_m, crossing->t_m);
+    }
+  });
+  std::optional<Hit> hit;
+  double off_center_m = kInfinity;
+  for (const Crossing& crossing : crossings) {
+    if (crossing.t_m <= first_t_m + radius_m && crossing.off_center_m < off_center_m) {
+      off_center_m = crossing.off_center_m;
+      hit = Hit{crossing.point, crossing.t_m};
+    }
+  }
+  return hit;
+}
+
+}  // namespace
+
+std::optional<Hit> nearest_point(const LabelledCloud& cloud, const Eigen::Vector3d& point_W,
+                                 double radius_m) {
+  std::optional<Hit> hit;
+  for_each_point(cloud, [&](std::size_t i, const Eigen::Vector3d& p_W) {
+    const double distance_m = (p_W - point_W).norm();
+    if (distance_m <= radius_m && (!hit || distance_m < hit->distance_m)) hit = {i, distance_m};
+  });
+  return hit;
+}
+
+std::optional<Hit> visible_point(const LabelledCloud& cloud, const Ray& ray, double radius_m) {
+  const auto hit = first_disc(cloud, ray, radius_m / 2);
+  return hit ? hit : first_disc(cloud, ray, radius_m);
+}
+
+std::vector<std::uint32_t> segments_in_box(const LabelledCloud& cloud,
+                                           const Eigen::AlignedBox3d& box_W) {
+  std::vector<std::uint32_t> ids;
+  for_each_point(cloud, [&](std::size_t i, const Eigen::Vector3d& p_W) {
+    // Neighbours in the cloud mostly are of one segment: so the list stays short.
+    const std::uint32_t id = cloud.segment_ids[i];
+    if (box_W.contains(p_W) && (ids.empty() || ids.back() != id)) ids.push_back(id);
+  });
+  std::sort(ids.begin(), ids.end());
+  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+  return ids;
+}
+
+}  // namespace kintsugi::segmenter
