@@ -21,7 +21,7 @@ hostile_row() {
   trio_stop TERM 60 viewer
   finish_played 10
   figure[seconds]="$(since_s "$since")"
-  counted segmenter "$(sent CLOUD_SLICE HEARTBEAT RESEND_REQUEST)"
+  counted segmenter "$(sent CLOUD_SLICE HEARTBEAT RESEND_REQUEST SEGMENT_QUERY)"
   # Of its two streams each counts a bad heartbeat.
   counted viewer "$(sent CLOUD_SLICE SEGMENT_UPDATE CAMERA_POSE SEGMENTER_STATUS HEARTBEAT HEARTBEAT)"
   counts_match mapper "$(json_number faulty/player.json requests_bad)" "$(sent RESEND_REQUEST)"

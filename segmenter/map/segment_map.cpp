@@ -36,6 +36,7 @@ std::vector<SegmentUpdate> SegmentMap::add(std::span<const CloudSlice> slices) {
     return {};
   }
 
+  ++version_;
   std::vector<SegmentUpdate> updates;
   for (const CloudSlice& slice : slices) {
     store(slice);

@@ -79,6 +79,8 @@ class SegmentMap {
   [[nodiscard]] std::int64_t session() const { return session_; }
   [[nodiscard]] std::int64_t map_session() const { return map_session_; }
   [[nodiscard]] const std::string& map_name() const { return map_name_; }
+  /// Another number after each change.
+  [[nodiscard]] std::int64_t version() const { return version_; }
   /// Chunks of the slice stream that are in the map.
   [[nodiscard]] const SequenceSet& chunks() const { return chunks_; }
 
@@ -97,6 +99,7 @@ class SegmentMap {
   SegmentStatisticsTable statistics_;
   std::set<std::int32_t> slice_ids_;
   std::int32_t final_slice_id_ = -1;  // -1: not seen
+  std::int64_t version_ = 0;
   SequenceSet chunks_;                // of the slice stream that are in the map
 };
 

@@ -44,6 +44,7 @@ SegmenterProcess::SegmenterProcess(const Config& config)
       session_(new_session()),
       bus_(config.log.empty() || config.publish ? std::make_unique<Bus>(config.lcm_url) : nullptr),
       updates_(config.publish ? bus_.get() : nullptr, session_, config.updates),
+      queries_(config.publish ? bus_.get() : nullptr, session_),
       queue_(config.max_queue_bytes),
       receiver_({session_, config.maps.map_name, config.max_queue_bytes}, queue_),
       writer_(config.files),
@@ -95,6 +96,7 @@ void SegmenterProcess::receive() {
   }
   if (bus_) {
     updates_.subscribe(*bus_);
+    queries_.subscribe(*bus_);
     bus_thread_ =
         std::make_unique<BusThread>(*bus_, [this] { receiver_.ask(*bus_, clock_.now_s()); });
   }
@@ -132,7 +134,8 @@ void SegmenterProcess::linger() {
   const double begin_s = clock_.now_s();
   Clock::time_point next_status{};
   while (!stop_requested() && !bus_thread_->failed()) {
-    const double quiet_s = std::min(clock_.now_s() - begin_s, updates_.time_since_request_s());
+    const double quiet_s = std::min({clock_.now_s() - begin_s, updates_.time_since_request_s(),
+                                     queries_.time_since_query_s()});
     if (has_limit && quiet_s >= limit_s) {
       break;
     }
@@ -201,11 +204,12 @@ void SegmenterProcess::offer_all(std::vector<CloudSlice> slices) {
   counts_ = maps_.counts();
 }
 
-// Who came late gets everything.
+// Who came late gets everything, and who asks what was asked for.
 void SegmenterProcess::answer() {
   if (updates_.take_state_request(clock_.now_s())) {
     updates_.publish_state(maps_.describe(), clock_.now_s());
   }
+  queries_.serve(maps_);
 }
 
 void SegmenterProcess::save_what_is_due() {
@@ -270,6 +274,7 @@ void SegmenterProcess::publish_status() {
   counts.lag += num_queued;
   SegmenterStatus status = make_status(counts, receiver_.counts(), updates_.counts());
   status.session = session_;
+  status.messages_bad += queries_.messages_bad();
   status.mode = config_.maps.map.mode;
   status.finished = counts.complete && nothing_is_queued();
   status.lingering = lingering_;

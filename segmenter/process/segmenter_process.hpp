@@ -14,6 +14,7 @@
 #include "lcmtypes/bus_thread.hpp"
 #include "lcmtypes/patient_clock.hpp"
 #include "segmenter/process/map_writer.hpp"
+#include "segmenter/process/query_responder.hpp"
 #include "segmenter/process/session_maps.hpp"
 #include "segmenter/process/slice_queue.hpp"
 #include "segmenter/process/slice_receiver.hpp"
@@ -28,6 +29,7 @@ namespace kintsugi::segmenter {
 ///               neighbours of the next slice meanwhile; says everything to who comes late
 ///   publishing  (the publisher's) encodes updates and sends them at its pace, and what was lost
 ///   writing     (the writer's) puts copies of the maps into files
+///   answering   (the responder's) says what a copy of a map has to say to a query
 /// Between two stages lies a queue with a bound: slices beyond it are refused, and asked for again
 /// when there is room. run() itself publishes the status, the lag in it, and watches for the end.
 class SegmenterProcess {
@@ -96,6 +98,7 @@ class SegmenterProcess {
   PatientClock clock_;
   std::unique_ptr<Bus> bus_;  // null: neither heard nor published
   UpdatePublisher updates_;
+  QueryResponder queries_;
   SliceQueue queue_;
   SliceReceiver receiver_;
   MapWriter writer_;

@@ -195,6 +195,13 @@ SessionMaps::Counts SessionMaps::counts() const {
   return counts;
 }
 
+std::vector<const SegmentMap*> SessionMaps::maps() const {
+  std::vector<const SegmentMap*> maps;
+  maps.reserve(sessions_.size());
+  for (const auto& [number, session] : sessions_) maps.push_back(&session.processor.map());
+  return maps;
+}
+
 const SegmentMap* SessionMaps::map(std::int64_t map_session) const {
   const auto found = sessions_.find(map_session);
   return found == sessions_.end() ? nullptr : &found->second.processor.map();

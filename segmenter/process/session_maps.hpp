@@ -89,6 +89,8 @@ class SessionMaps {
   [[nodiscard]] std::vector<SegmentUpdate> describe() const;
 
   [[nodiscard]] Counts counts() const;
+  /// All maps, the older sessions first.
+  [[nodiscard]] std::vector<const SegmentMap*> maps() const;
   /// The map of a session; null: none.
   [[nodiscard]] const SegmentMap* map(std::int64_t map_session) const;
 

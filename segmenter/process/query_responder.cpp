@@ -1,0 +1,189 @@
+#include "segmenter/process/query_responder.hpp"
+
+#include <algorithm>
+#include <exception>
+#include <utility>
+#include <vector>
+
+#include <oneapi/tbb/task_arena.h>
+#include <spdlog/spdlog.h>
+#include <sys/resource.h>
+
+#include "lcmtypes/channels.hpp"
+#include "lcmtypes/message_subscriber.hpp"
+#include "segmenter/query/answer.hpp"
+#include "segmenter/query/choose_map.hpp"
+
+namespace kintsugi::segmenter {
+namespace {
+
+constexpr std::size_t kMaxWaiting = 64;  // queries; of more the oldest is forgotten
+constexpr std::chrono::seconds kKeepCopy{10};
+constexpr int kNiceness = 10;  // half way to the lowest priority
+
+bool is_same(const SegmentQuery& a, const SegmentQuery& b) {
+  return a.client == b.client && a.number == b.number;
+}
+
+std::vector<MapIdentity> identities(const std::vector<const SegmentMap*>& maps) {
+  std::vector<MapIdentity> identities;
+  identities.reserve(maps.size());
+  for (const SegmentMap* map : maps) identities.push_back({map->map_session(), map->map_name()});
+  return identities;
+}
+
+/// Memory for a map of so many points, written to once: the kernel gives pages only then.
+void touch_memory(SegmentMapState& state, std::size_t num_points) {
+  state = {};
+  state.points_W = std::vector<CloudPoint>(num_points);
+  state.segment_ids = std::vector<std::uint32_t>(num_points);
+}
+
+SegmentAnswer refusal(const SegmentQuery& query, const std::string& problem) {
+  SegmentAnswer answer;
+  answer.client = query.client;
+  answer.number = query.number;
+  answer.problem = fitting_text(problem);
+  return answer;
+}
+
+}  // namespace
+
+QueryResponder::QueryResponder(Bus* bus, std::int64_t session)
+    : bus_(bus), session_(session), thread_([this] { run(); }) {}
+
+QueryResponder::~QueryResponder() {
+  {
+    const std::lock_guard lock(mutex_);
+    is_ending_ = true;
+  }
+  changed_.notify_all();
+  thread_.join();
+}
+
+void QueryResponder::subscribe(Bus& bus) {
+  kintsugi::subscribe<SegmentQuery>(
+      bus, channels::kSegmentQuery, [this](const SegmentQuery& query) { take(query); },
+      [this](const DecodeError&) { ++num_bad_; });
+}
+
+void QueryResponder::take(const SegmentQuery& query) {
+  const std::lock_guard lock(mutex_);
+  last_query_ = Clock::now();
+  const bool is_waiting = std::ranges::any_of(
+      waiting_, [&](const SegmentQuery& other) { return is_same(query, other); });
+  if (is_waiting || (current_ && is_same(query, *current_))) return;
+  if (waiting_.size() == kMaxWaiting) waiting_.pop_front();
+  waiting_.push_back(query);
+}
+
+// It stays in the queue until it is begun, or cannot be.
+std::optional<SegmentQuery> QueryResponder::next_query() {
+  const std::lock_guard lock(mutex_);
+  if (current_ || room_points_ > 0 || bus_ == nullptr) return std::nullopt;
+  if (!waiting_.empty()) return waiting_.front();
+  if (copy_ && Clock::now() - copy_->last_used > kKeepCopy) copy_.reset();
+  return std::nullopt;
+}
+
+template <class MakeAnswer>
+void QueryResponder::publish(const MakeAnswer& make_answer) {
+  try {
+    SegmentAnswer answer = make_answer();
+    if (!stream_) {
+      StreamPublisher::Config config;
+      config.max_chunk_bytes = bus_->max_message_bytes();
+      stream_ =
+          std::make_unique<StreamPublisher>(*bus_, channels::kSegmentAnswer, session_, config);
+    }
+    answer.utime = wall_clock_us();
+    answer.session = session_;
+    stream_->publish(std::move(answer));
+  } catch (const std::exception& error) {  // who asks again gets another; the map goes on
+    spdlog::error("an answer is not published: {}", error.what());
+  }
+}
+
+void QueryResponder::serve(const SessionMaps& maps) {
+  const auto query = next_query();
+  if (!query) return;
+  const std::vector<const SegmentMap*> all = maps.maps();
+  try {
+    const SegmentMap& map = *all[choose_map(identities(all), *query)];
+    if (!has_room_for(map)) return make_room(map.cloud().num_live());
+    update_copy(map);
+    begin(*query);
+  } catch (const std::exception& error) {
+    drop(*query);
+    publish([&] { return refusal(*query, error.what()); });
+  }
+}
+
+bool QueryResponder::has_room_for(const SegmentMap& map) const {
+  return copy_ && copy_->map.state.points_W.capacity() >= map.cloud().num_live();
+}
+
+// With some to spare: the map grows.
+void QueryResponder::make_room(std::size_t num_points) {
+  if (!copy_) copy_ = std::make_unique<Copy>();
+  copy_->version = -1;
+  {
+    const std::lock_guard lock(mutex_);
+    room_points_ = num_points + num_points / 4 + 1;
+  }
+  changed_.notify_all();
+}
+
+void QueryResponder::update_copy(const SegmentMap& map) {
+  copy_->last_used = Clock::now();
+  const bool is_same_map = copy_->map.state.map_session == map.map_session();
+  if (is_same_map && copy_->version == map.version()) return;
+  copy_->version = -1;  // should this throw
+  take_snapshot(map, copy_->map);
+  copy_->version = map.version();
+  const std::chrono::duration<double, std::milli> took = Clock::now() - copy_->last_used;
+  spdlog::debug("copied {} points for a query in {:.1f} ms", copy_->map.state.points_W.size(),
+                took.count());
+}
+
+void QueryResponder::begin(const SegmentQuery& query) {
+  {
+    const std::lock_guard lock(mutex_);
+    current_ = query;
+  }
+  drop(query);
+  changed_.notify_all();
+}
+
+void QueryResponder::drop(const SegmentQuery& query) {
+  const std::lock_guard lock(mutex_);
+  std::erase_if(waiting_, [&](const SegmentQuery& other) { return is_same(query, other); });
+}
+
+void QueryResponder::run() {
+  setpriority(PRIO_PROCESS, 0, kNiceness);  // of this thread alone
+  oneapi::tbb::task_arena one_core(1);
+  std::unique_lock lock(mutex_);
+  while (true) {
+    changed_.wait(lock, [this] { return is_ending_ || current_ || room_points_ > 0; });
+    if (is_ending_ && !current_) return;
+    const auto query = current_;
+    const std::size_t room_points = room_points_;
+    lock.unlock();
+    if (query) {
+      one_core.execute([&] { publish([&] { return answer(copy_->map, *query); }); });
+    } else {
+      touch_memory(copy_->map.state, room_points);
+    }
+    lock.lock();
+    current_.reset();
+    room_points_ = 0;
+  }
+}
+
+double QueryResponder::time_since_query_s() const {
+  const std::lock_guard lock(mutex_);
+  return std::chrono::duration<double>(Clock::now() - last_query_).count();
+}
+
+}  // namespace kintsugi::segmenter
