@@ -84,9 +84,8 @@ void describe_rows(const MapSnapshot& map) {
   row(fmt::format("which segments touch: {} pairs", graph.edges.size()), graph_ms,
       static_cast<double>(graph.edges.size() * sizeof(AdjacencyEdge)));
   std::vector<SegmentDescription> segments;
-  const double describe_ms = best_ms([&] {
-    segments = describe_segments(cloud, map.segments, map.state.last_changes, graph);
-  });
+  const double describe_ms = best_ms(
+      [&] { segments = describe_segments(cloud, map.segments, map.state.last_changes, graph); });
   row("every segment described, when that is known", describe_ms,
       static_cast<double>(segments.size() * sizeof(SegmentDescription)));
   for (const std::uint32_t num_points : {1000U, UINT32_MAX}) {
