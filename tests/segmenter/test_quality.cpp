@@ -27,7 +27,8 @@ class Quality : public ::testing::Test {
     add(4, 20);
     add(kNoInstance, 30);
     for (int i = 0; i < 1350; ++i) {
-      points_.push_back(testing::make_point(0.01 * (i % 50), 0.01 * (i / 50), 0.0, 0.0, 0.0, 1.0));
+      const int row = i / 50;
+      points_.push_back(testing::make_point(0.01 * (i % 50), 0.01 * row, 0.0, 0.0, 0.0, 1.0));
     }
   }
 

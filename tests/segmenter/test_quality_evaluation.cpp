@@ -42,7 +42,8 @@ void add_sheet(double x_m, bool is_upright, std::uint32_t instance, CloudSlice& 
                Truth& truth) {
   for (int i = 0; i < kSide * kSide; ++i) {
     const double u = kResolution_m * (i % kSide);
-    const double v = kResolution_m * (i / kSide + 1);
+    const int row = i / kSide;
+    const double v = kResolution_m * (row + 1);
     slice.points_W.push_back(is_upright ? testing::make_point(x_m, u, v, 1, 0, 0)
                                         : testing::make_point(x_m + v, u, 0, 0, 0, 1));
     truth.points_W.push_back(slice.points_W.back());
@@ -183,7 +184,7 @@ class QualityProgram : public ::testing::Test {
   }
   std::string path(const std::string& name) const { return (folder_ / name).string(); }
 
-  /// The room with one label too many: the box in two halves.
+  /// The room, labelled as it is but for the box, which is in two halves.
   void write_room(const std::string& name, const std::string& comments) {
     const Room room = make_room();
     std::ofstream out(path(name));

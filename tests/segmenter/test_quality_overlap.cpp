@@ -147,7 +147,8 @@ TEST(QualityOverlap, RandomLabellingsScoreAsTheDefinitionsSay) {
     for (std::size_t i = 0; i < num_points; ++i) {
       instances.push_back(static_cast<std::uint32_t>(generator() % num_labels));  // 0 among them
       const bool follows = generator() % 3 != 0;
-      segments.push_back(follows ? instances.back() * 3 : generator() % 6);
+      segments.push_back(follows ? 3 * instances.back()
+                                 : static_cast<std::uint32_t>(generator() % 6));
     }
     const SlowTruth slow(instances, segments);
     if (slow.num_points == 0.0) continue;
