@@ -26,10 +26,9 @@ void add_options(CLI::App& app, Options& options) {
   SegmenterProcess::Config& process = options.process;
   SliceProcessor::Config& processor = process.maps.processor;
   add_segmentation_options(app, process.maps.map);
-  app.add_option(
-         "--out", process.files.folder,
-         "folder for segments.ply, .json and .csv, written at the end, on SIGUSR1, and as "
-         "--write-every says")
+  app.add_option("--out", process.files.folder,
+                 "folder for segments.ply, .json and .csv, written at the end, on SIGUSR1, and as "
+                 "--write-every says")
       ->capture_default_str();
   app.add_option("--write-every", processor.write_every,
                  "also write them after so many slices; 0: do not")

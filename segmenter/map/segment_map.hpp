@@ -100,7 +100,7 @@ class SegmentMap {
   std::set<std::int32_t> slice_ids_;
   std::int32_t final_slice_id_ = -1;  // -1: not seen
   std::int64_t version_ = 0;
-  SequenceSet chunks_;                // of the slice stream that are in the map
+  SequenceSet chunks_;  // of the slice stream that are in the map
 };
 
 }  // namespace kintsugi::segmenter

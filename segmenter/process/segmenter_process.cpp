@@ -134,8 +134,8 @@ void SegmenterProcess::linger() {
   const double begin_s = clock_.now_s();
   Clock::time_point next_status{};
   while (!stop_requested() && !bus_thread_->failed()) {
-    const double quiet_s = std::min({clock_.now_s() - begin_s, updates_.time_since_request_s(),
-                                     queries_.time_since_query_s()});
+    const double quiet_s = std::min(
+        {clock_.now_s() - begin_s, updates_.time_since_request_s(), queries_.time_since_query_s()});
     if (has_limit && quiet_s >= limit_s) {
       break;
     }
