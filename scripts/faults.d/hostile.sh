@@ -22,8 +22,9 @@ hostile_row() {
   finish_played 10
   figure[seconds]="$(since_s "$since")"
   counted segmenter "$(sent CLOUD_SLICE HEARTBEAT RESEND_REQUEST SEGMENT_QUERY)"
-  # Of its two streams each counts a bad heartbeat.
-  counted viewer "$(sent CLOUD_SLICE SEGMENT_UPDATE CAMERA_POSE SEGMENTER_STATUS HEARTBEAT HEARTBEAT)"
+  # Of its three streams each counts a bad heartbeat.
+  counted viewer "$(sent CLOUD_SLICE SEGMENT_UPDATE SEGMENT_ANSWER CAMERA_POSE SEGMENTER_STATUS \
+    HEARTBEAT HEARTBEAT HEARTBEAT)"
   counts_match mapper "$(json_number faulty/player.json requests_bad)" "$(sent RESEND_REQUEST)"
   no_growth segmenter "$allowed_mb"
   no_growth viewer "$allowed_mb"
