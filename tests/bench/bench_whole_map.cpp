@@ -1,5 +1,6 @@
-// What it costs to tell, keep and go on with a whole map: a listener that comes late, --save-every
-// and --resume. Prints a Markdown table.
+// What it costs to tell, keep, describe, ask and go on with a whole map: a listener that comes
+// late,
+// --save-every, kintsugi-query and --resume. Prints a Markdown table.
 //
 //   bench_whole_map --points 4000000
 
@@ -22,6 +23,7 @@
 #include "segmenter/io/saved_map.hpp"
 #include "segmenter/io/segments_csv.hpp"
 #include "segmenter/map/map_snapshot.hpp"
+#include "segmenter/query/answer.hpp"
 #include "tests/bench/map_generator.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -109,6 +111,19 @@ void describe_rows(const MapSnapshot& map) {
                           std::filesystem::file_size(folder / "segments.csv")));
 }
 
+/// Of a copy of the map, as the segmenter answers while slices are added.
+void query_rows(const MapSnapshot& map) {
+  SegmentQuery query;
+  query.client = 1;
+  query.max_segments = 1;
+  row("a query for the largest segment (in the background)", best_ms([&] { answer(map, query); }),
+      0.0);
+  query.only_planar = true;
+  query.max_segments = 10;
+  row("a query for the ten largest that are planar (in the background)",
+      best_ms([&] { answer(map, query); }), 0.0);
+}
+
 void run(const MapConfig& config) {
   const Slices slices = generate_map(config);
   std::optional<SegmentMap> map;
@@ -139,6 +154,7 @@ void run(const MapConfig& config) {
   row("the copy written (in the background)", write_ms,
       static_cast<double>(std::filesystem::file_size(file)));
   describe_rows(*snapshot);
+  query_rows(*snapshot);
   snapshot.reset();
   map.reset();
   row("read, and gone on with", time_ms([&] { load_map(file); }), num_points * 36);
