@@ -88,7 +88,7 @@ TEST_F(Resume, KilledAtAnyMomentsTheSessionIsThatOfARunWithoutFaults) {
     std::this_thread::sleep_for(std::chrono::milliseconds(delay_ms));
     kills += mapper.crash() ? 1 : 0;
   }
-  EXPECT_GE(kills, 4);
+  EXPECT_GE(kills, 4) << said();
   EXPECT_EQ(run(flags("--resume")), 0) << said();
   const StoredRun resumed = read_stored_run(log_);
   EXPECT_EQ(resumed.slice_chunks, expected.slice_chunks);
