@@ -231,8 +231,8 @@ TEST_F(SegmenterProgram, GoesOnWithTheMapThatWasSavedAfterAnySlice) {
   write_log(path("all.lcm"), messages_of(slices));
   for (const std::string mode : {"exact", "batch", "voting"}) {
     // What `voting` would go on with is the segments after fragments have been joined.
-    const std::string preset = mode == "voting" ? "paper" : "objects";
-    const std::string options = " --mode " + mode + " --preset " + preset + " --out " + path("out");
+    std::string options = " --mode " + mode + " --out " + path("out");
+    options += mode == "voting" ? " --preset paper" : " --preset objects";
     EXPECT_EQ(run("--log " + path("all.lcm") + options).exit_code, 0);
     const auto expected = labels_in(path("out") + "/segments.ply");
     for (std::size_t count = 1; count <= slices.size(); ++count) {
