@@ -37,14 +37,15 @@ done
 wait "$mapper" || fail "$(cat mapper.log)"
 wait_for_file live/segments.json
 
-# The middle of the view half way along the camera's path.
-pose="$(sed -n 60p trajectory.txt | cut -d ' ' -f 2-8)"
+# What was in the middle of the view after a second is in the map.
+pose="$(sed -n 30p trajectory.txt | cut -d ' ' -f 2-8)"
 
 answers() {
   local name="$1"
   shift
   # shellcheck disable=SC2086 # seven numbers
-  query "$@" --pixel 319.5 239.5 --pose $pose --radius 0.2 --json >"$name.pixel.json" || fail "$name: --pixel"
+  query "$@" --pixel 319.5 239.5 --pose $pose --radius 0.05 --json >"$name.pixel.json" || fail "$name: --pixel"
+  [[ "$(field "$name.pixel.json" 'len(a["segments"])')" == 1 ]] || fail "$name: nothing in the middle of the view"
   query "$@" --largest 5 --json >"$name.json" || fail "$name: --largest"
   id="$(field "$name.json" 'a["segments"][0]["id"]')"
   at="$(field "$name.json" '" ".join(map(str, a["segments"][0]["centroid"]))')"
