@@ -9,7 +9,7 @@
 
 #include "segmenter/evaluation/evaluation.hpp"
 #include "segmenter/evaluation/recorded_session.hpp"
-#include "tests/segmenter/program.hpp"
+#include "tests/segmenter/evaluate_program.hpp"
 #include "tests/segmenter/session_log.hpp"
 #include "tests/segmenter/slice_session.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -115,13 +115,8 @@ TEST_F(SessionLog, TellsWhatIsMissing) {
                                      Contains(HasSubstr("before the final slice"))));
 }
 
-class EvaluateProgram : public ::testing::Test {
+class EvaluateProgram : public testing::EvaluateProgram {
  protected:
-  testing::ProgramResult run(const std::string& arguments) {
-    return testing::run_program("kintsugi-evaluate", arguments, folder_ / "output.txt");
-  }
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
-
   void write_session_log(int num_slices) {
     testing::LogMessages messages;
     testing::append_slices(testing::wavy_session(num_slices, 200), messages);
@@ -145,19 +140,7 @@ class EvaluateProgram : public ::testing::Test {
       }
     }
   }
-
-  std::vector<std::string> lines_of(const std::string& name) const {
-    std::ifstream in(folder_ / "out" / name);
-    std::vector<std::string> lines;
-    for (std::string line; std::getline(in, line);) lines.push_back(line);
-    return lines;
-  }
-
-  TemporaryFolder folder_;
 };
-
-// Figures need gnuplot; without it the program says so and ends with 1.
-int expected_exit_code() { return std::system("gnuplot --version > /dev/null 2>&1") == 0 ? 0 : 1; }
 
 TEST_F(EvaluateProgram, WritesTablesAndPageOfALog) {
   write_session_log(4);

@@ -13,14 +13,12 @@
 #include "segmenter/evaluation/quality_evaluation.hpp"
 #include "segmenter/evaluation/quality_plots.hpp"
 #include "segmenter/evaluation/quality_tables.hpp"
-#include "tests/segmenter/program.hpp"
+#include "tests/segmenter/evaluate_program.hpp"
 #include "tests/segmenter/random_clouds.hpp"
-#include "tests/support/temporary_folder.hpp"
 
 namespace kintsugi::segmenter {
 namespace {
 
-using kintsugi::testing::TemporaryFolder;
 using ::testing::AllOf;
 using ::testing::Each;
 using ::testing::ElementsAre;
@@ -177,13 +175,8 @@ TEST(QualityEvaluation, NamesWhatIsWrong) {
               ThrowsMessage<std::runtime_error>(HasSubstr("within reach of the truth")));
 }
 
-class QualityProgram : public ::testing::Test {
+class QualityProgram : public testing::EvaluateProgram {
  protected:
-  testing::ProgramResult run(const std::string& arguments) {
-    return testing::run_program("kintsugi-evaluate", arguments, folder_ / "output.txt");
-  }
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
-
   /// The room, labelled as it is but for the box, which is in two halves.
   void write_room(const std::string& name, const std::string& comments) {
     const Room room = make_room();
@@ -201,19 +194,7 @@ class QualityProgram : public ::testing::Test {
           << '\n';
     }
   }
-
-  std::vector<std::string> lines_of(const std::string& name) const {
-    std::ifstream in(folder_ / "out" / name);
-    std::vector<std::string> lines;
-    for (std::string line; std::getline(in, line);) lines.push_back(line);
-    return lines;
-  }
-
-  TemporaryFolder folder_;
 };
-
-// Figures need gnuplot; without it the program says so and ends with 1.
-int expected_exit_code() { return std::system("gnuplot --version > /dev/null 2>&1") == 0 ? 0 : 1; }
 
 TEST_F(QualityProgram, WritesTablesAndPage) {
   write_room("room.ply",
