@@ -3,7 +3,7 @@
 #include <ostream>
 
 #include "lcmtypes/atomic_file.hpp"
-#include "segmenter/io/number_text.hpp"
+#include "lcmtypes/number_text.hpp"
 
 namespace kintsugi::segmenter {
 namespace {

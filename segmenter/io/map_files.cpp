@@ -3,11 +3,9 @@
 #include <string_view>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 #include "lcmtypes/atomic_file.hpp"
+#include "lcmtypes/statistics_json.hpp"
 #include "segmenter/io/labelled_ply_writer.hpp"
-#include "segmenter/io/number_text.hpp"
 #include "segmenter/io/segments_csv.hpp"
 
 namespace kintsugi::segmenter {
@@ -45,23 +43,14 @@ Json neighbours_json(const std::vector<SegmentNeighbour>& neighbours) {
 }
 
 Json segment_json(const SegmentDescription& segment) {
-  const SegmentStatistics& s = segment.statistics;
-  return {{"id", s.segment_id},
-          {"points", s.num_points},
-          {"box_min", vector_json(s.box_min_W)},
-          {"box_max", vector_json(s.box_max_W)},
-          {"centroid", vector_json(s.centroid_W)},
-          {"mean_normal", vector_json(s.mean_normal_W)},
-          {"mean_color", {s.mean_color[0], s.mean_color[1], s.mean_color[2]}},
-          {"area", readable(s.area_m2)},
-          {"first_slice", s.first_slice},
-          {"last_slice", s.last_slice},
-          {"last_change",
-           {{"slice", segment.last_change.slice_id}, {"utime", segment.last_change.utime}}},
-          {"oriented_box", box_json(segment.shape.box)},
-          {"plane", plane_json(segment.shape.plane)},
-          {"planar", segment.shape.is_planar},
-          {"neighbours", neighbours_json(segment.neighbours)}};
+  Json json = statistics_json(segment.statistics);
+  json["last_change"] = {{"slice", segment.last_change.slice_id},
+                         {"utime", segment.last_change.utime}};
+  json["oriented_box"] = box_json(segment.shape.box);
+  json["plane"] = plane_json(segment.shape.plane);
+  json["planar"] = segment.shape.is_planar;
+  json["neighbours"] = neighbours_json(segment.neighbours);
+  return json;
 }
 
 std::string_view name_of(NeighbourSearch search) {

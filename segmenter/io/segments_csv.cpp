@@ -4,7 +4,7 @@
 #include <string>
 
 #include "lcmtypes/atomic_file.hpp"
-#include "segmenter/io/number_text.hpp"
+#include "lcmtypes/number_text.hpp"
 
 namespace kintsugi::segmenter {
 namespace {

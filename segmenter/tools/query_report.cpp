@@ -1,13 +1,14 @@
 #include "segmenter/tools/query_report.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <iterator>
 #include <span>
 #include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
+
+#include "lcmtypes/statistics_json.hpp"
 
 namespace kintsugi::segmenter {
 namespace {
@@ -77,17 +78,6 @@ std::span<const SegmentContact> contacts_of(const SegmentAnswer& answer, std::ui
   return {first, std::find_if_not(first, answer.contacts.end(), is_of)};
 }
 
-// The double with the shortest decimals that mean this float: 0.01 instead of 0.00999999977.
-double readable(float value) {
-  char text[32];
-  const auto end = std::to_chars(std::begin(text), std::end(text), value).ptr;
-  double result = 0.0;
-  std::from_chars(std::begin(text), end, result);
-  return result;
-}
-
-Json vector_json(const float (&v)[3]) { return {readable(v[0]), readable(v[1]), readable(v[2])}; }
-
 Json plane_json(const DescribedSegment& segment) {
   if (!has_plane(segment)) return nullptr;
   return {{"normal", vector_json(segment.plane_normal_W)},
@@ -97,31 +87,22 @@ Json plane_json(const DescribedSegment& segment) {
 }
 
 Json segment_json(const DescribedSegment& segment, std::span<const SegmentContact> contacts) {
-  const SegmentStatistics& s = segment.statistics;
   const auto& axes = segment.oriented_box_axes_W;
   Json neighbours = Json::array();
   for (const SegmentContact& contact : contacts) {
     neighbours.push_back({{"id", contact.neighbour_id}, {"pairs", contact.num_pairs}});
   }
-  return {{"id", s.segment_id},
-          {"points", s.num_points},
-          {"box_min", vector_json(s.box_min_W)},
-          {"box_max", vector_json(s.box_max_W)},
-          {"centroid", vector_json(s.centroid_W)},
-          {"mean_normal", vector_json(s.mean_normal_W)},
-          {"mean_color", {s.mean_color[0], s.mean_color[1], s.mean_color[2]}},
-          {"area", readable(s.area_m2)},
-          {"first_slice", s.first_slice},
-          {"last_slice", s.last_slice},
-          {"last_change", {{"utime", segment.last_change_utime}}},
-          {"oriented_box",
-           {{"center", vector_json(segment.oriented_box_center_W)},
-            {"size", vector_json(segment.oriented_box_size_m)},
-            {"axes", {vector_json(axes[0]), vector_json(axes[1]), vector_json(axes[2])}}}},
-          {"plane", plane_json(segment)},
-          {"planar", segment.is_planar != 0},
-          {"distance", readable(segment.distance_m)},
-          {"neighbours", std::move(neighbours)}};
+  Json json = statistics_json(segment.statistics);
+  json["last_change"] = {{"utime", segment.last_change_utime}};
+  json["oriented_box"] = {
+      {"center", vector_json(segment.oriented_box_center_W)},
+      {"size", vector_json(segment.oriented_box_size_m)},
+      {"axes", {vector_json(axes[0]), vector_json(axes[1]), vector_json(axes[2])}}};
+  json["plane"] = plane_json(segment);
+  json["planar"] = segment.is_planar != 0;
+  json["distance"] = readable(segment.distance_m);
+  json["neighbours"] = std::move(neighbours);
+  return json;
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 #include <iterator>
 #include <string>
 
-namespace kintsugi::segmenter {
+namespace kintsugi {
 
 /// The shortest decimals that mean this float: 0.01 instead of 0.00999999977.
 inline std::string shortest_text(float value) {
@@ -21,4 +21,4 @@ inline double readable(float value) {
   return result;
 }
 
-}  // namespace kintsugi::segmenter
+}  // namespace kintsugi
