@@ -7,7 +7,7 @@
 #include <spdlog/spdlog.h>
 #include <tbb/global_control.h>
 
-#include "lcmtypes/stop_signal.hpp"
+#include "lcmtypes/base/stop_signal.hpp"
 #include "mapper/process/options.hpp"
 #include "mapper/process/run_mapper.hpp"
 

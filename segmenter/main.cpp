@@ -6,8 +6,8 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
-#include "lcmtypes/stop_signal.hpp"
-#include "segmenter/options.hpp"
+#include "lcmtypes/base/stop_signal.hpp"
+#include "segmenter/process/options.hpp"
 #include "segmenter/process/segmenter_process.hpp"
 
 namespace kintsugi::segmenter {

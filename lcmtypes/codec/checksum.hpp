@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "lcmtypes/codec.hpp"
+#include "lcmtypes/codec/codec.hpp"
 
 namespace kintsugi::codec {
 

@@ -8,13 +8,13 @@
 
 #include <CLI/CLI.hpp>
 
-#include "lcmtypes/atomic_file.hpp"
-#include "lcmtypes/bus.hpp"
-#include "lcmtypes/log_reader.hpp"
-#include "lcmtypes/patient_clock.hpp"
-#include "lcmtypes/stop_signal.hpp"
-#include "lcmtypes/tools/segment_listener.hpp"
-#include "lcmtypes/tools/segment_table_text.hpp"
+#include "lcmtypes/base/atomic_file.hpp"
+#include "lcmtypes/base/patient_clock.hpp"
+#include "lcmtypes/base/stop_signal.hpp"
+#include "lcmtypes/bus/bus.hpp"
+#include "lcmtypes/client/segment_listener.hpp"
+#include "lcmtypes/client/segment_table_text.hpp"
+#include "lcmtypes/log/log_reader.hpp"
 
 namespace kintsugi {
 namespace {

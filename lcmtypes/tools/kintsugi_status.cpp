@@ -11,10 +11,10 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
-#include "lcmtypes/bus.hpp"
+#include "lcmtypes/base/stop_signal.hpp"
+#include "lcmtypes/bus/bus.hpp"
+#include "lcmtypes/bus/message_subscriber.hpp"
 #include "lcmtypes/channels.hpp"
-#include "lcmtypes/message_subscriber.hpp"
-#include "lcmtypes/stop_signal.hpp"
 #include "lcmtypes/tools/progress.hpp"
 #include "lcmtypes/tools/status_log.hpp"
 

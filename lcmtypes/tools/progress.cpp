@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lcmtypes/base/text_format.hpp"
 #include "lcmtypes/tools/status_text.hpp"
-#include "lcmtypes/tools/text_format.hpp"
 
 namespace kintsugi {
 namespace {

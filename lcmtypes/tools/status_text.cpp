@@ -1,6 +1,6 @@
 #include "lcmtypes/tools/status_text.hpp"
 
-#include "lcmtypes/tools/text_format.hpp"
+#include "lcmtypes/base/text_format.hpp"
 
 namespace kintsugi {
 namespace {

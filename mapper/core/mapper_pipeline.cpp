@@ -3,8 +3,8 @@
 #include <iterator>
 #include <utility>
 
-#include "mapper/core/check.hpp"
-#include "mapper/core/covered_share.hpp"
+#include "lcmtypes/base/argument_check.hpp"
+#include "mapper/core/tracking/covered_share.hpp"
 
 namespace kintsugi::mapper {
 namespace {

@@ -9,14 +9,14 @@
 
 #include "lcmtypes/messages.hpp"
 #include "lcmtypes/trajectory.hpp"
-#include "mapper/core/integrator.hpp"
-#include "mapper/core/raycaster.hpp"
-#include "mapper/core/relocalizer.hpp"
-#include "mapper/core/rgbd_frame.hpp"
-#include "mapper/core/slice_worker.hpp"
+#include "mapper/core/extraction/slice_worker.hpp"
+#include "mapper/core/frame/rgbd_frame.hpp"
+#include "mapper/core/fusion/integrator.hpp"
+#include "mapper/core/fusion/raycaster.hpp"
+#include "mapper/core/relocalization/relocalizer.hpp"
 #include "mapper/core/stage_times.hpp"
-#include "mapper/core/tracker.hpp"
-#include "mapper/core/tsdf_volume.hpp"
+#include "mapper/core/tracking/tracker.hpp"
+#include "mapper/core/volume/tsdf_volume.hpp"
 
 namespace kintsugi::mapper {
 

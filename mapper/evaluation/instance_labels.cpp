@@ -8,7 +8,7 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include "mapper/output/ply_file.hpp"
-#include "mapper/synthetic/scene.hpp"
+#include "mapper/synthetic/scene/scene.hpp"
 
 namespace kintsugi::mapper {
 namespace {

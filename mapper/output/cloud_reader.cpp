@@ -12,8 +12,8 @@
 #include <utility>
 
 #include "lcmtypes/channels.hpp"
-#include "lcmtypes/log_reader.hpp"
-#include "lcmtypes/stream_subscriber.hpp"
+#include "lcmtypes/log/log_reader.hpp"
+#include "lcmtypes/stream/stream_subscriber.hpp"
 
 namespace kintsugi::mapper {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "lcmtypes/messages.hpp"
-#include "mapper/core/mesh_extractor.hpp"
+#include "mapper/core/extraction/mesh_extractor.hpp"
 #include "mapper/output/ply_file.hpp"
 
 namespace kintsugi::mapper {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "lcmtypes/atomic_file.hpp"
+#include "lcmtypes/base/atomic_file.hpp"
 
 namespace kintsugi::mapper {
 

@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "mapper/core/rgbd_frame.hpp"
-#include "mapper/core/tracker.hpp"
+#include "mapper/core/frame/rgbd_frame.hpp"
+#include "mapper/core/tracking/tracker.hpp"
 #include "mapper/process/frame_timings.hpp"
 
 namespace kintsugi::mapper {

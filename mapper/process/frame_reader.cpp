@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "mapper/core/stopwatch.hpp"
+#include "lcmtypes/base/stopwatch.hpp"
 
 namespace kintsugi::mapper {
 

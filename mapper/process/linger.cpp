@@ -4,8 +4,8 @@
 #include <chrono>
 #include <thread>
 
-#include "lcmtypes/patient_clock.hpp"
-#include "lcmtypes/stop_signal.hpp"
+#include "lcmtypes/base/patient_clock.hpp"
+#include "lcmtypes/base/stop_signal.hpp"
 
 namespace kintsugi::mapper {
 namespace {

@@ -4,9 +4,9 @@
 #include <utility>
 
 #include "lcmtypes/channels.hpp"
-#include "mapper/process/mapping_options.hpp"
-#include "mapper/process/stored_stream.hpp"
-#include "mapper/source/rgbd_frame_encoder.hpp"
+#include "mapper/session/mapping_options.hpp"
+#include "mapper/session/stored_stream.hpp"
+#include "mapper/source/bus/rgbd_frame_encoder.hpp"
 
 namespace kintsugi::mapper {
 

@@ -6,13 +6,13 @@
 #include <string>
 #include <vector>
 
-#include "lcmtypes/bus.hpp"
-#include "lcmtypes/bus_thread.hpp"
+#include "lcmtypes/bus/bus.hpp"
+#include "lcmtypes/bus/bus_thread.hpp"
 #include "lcmtypes/messages.hpp"
-#include "lcmtypes/stream_publisher.hpp"
-#include "mapper/core/rgbd_frame.hpp"
+#include "lcmtypes/stream/stream_publisher.hpp"
+#include "mapper/core/frame/rgbd_frame.hpp"
 #include "mapper/process/options.hpp"
-#include "mapper/process/session_log.hpp"
+#include "mapper/session/session_log.hpp"
 
 namespace kintsugi::mapper {
 

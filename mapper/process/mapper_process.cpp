@@ -8,13 +8,13 @@
 
 #include <spdlog/spdlog.h>
 
-#include "lcmtypes/atomic_file.hpp"
+#include "lcmtypes/base/atomic_file.hpp"
+#include "lcmtypes/base/stop_signal.hpp"
 #include "lcmtypes/channels.hpp"
-#include "lcmtypes/stop_signal.hpp"
 #include "mapper/process/linger.hpp"
 #include "mapper/process/paced_source.hpp"
 #include "mapper/process/state_text.hpp"
-#include "mapper/source/lcm_source.hpp"
+#include "mapper/source/bus/lcm_source.hpp"
 
 namespace kintsugi::mapper {
 namespace {

@@ -3,17 +3,17 @@
 #include <optional>
 #include <vector>
 
+#include "lcmtypes/base/stopwatch.hpp"
 #include "lcmtypes/trajectory.hpp"
 #include "mapper/core/mapper_pipeline.hpp"
-#include "mapper/core/stopwatch.hpp"
 #include "mapper/process/frame_log.hpp"
 #include "mapper/process/frame_reader.hpp"
 #include "mapper/process/map_files.hpp"
 #include "mapper/process/map_publisher.hpp"
 #include "mapper/process/options.hpp"
-#include "mapper/process/resumption.hpp"
 #include "mapper/process/run_statistics.hpp"
-#include "mapper/process/stored_frames.hpp"
+#include "mapper/session/resumption.hpp"
+#include "mapper/session/stored_frames.hpp"
 
 namespace kintsugi::mapper {
 

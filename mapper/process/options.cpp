@@ -6,9 +6,9 @@
 
 #include <CLI/CLI.hpp>
 
-#include "lcmtypes/codec.hpp"
-#include "mapper/core/check.hpp"
-#include "mapper/source/device_listing.hpp"
+#include "lcmtypes/base/argument_check.hpp"
+#include "lcmtypes/codec/codec.hpp"
+#include "mapper/source/openni2/device_listing.hpp"
 
 namespace kintsugi::mapper {
 namespace {

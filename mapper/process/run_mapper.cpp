@@ -8,8 +8,8 @@
 #include "mapper/process/linger.hpp"
 #include "mapper/process/map_publisher.hpp"
 #include "mapper/process/mapper_process.hpp"
-#include "mapper/process/resumption.hpp"
-#include "mapper/process/session_log.hpp"
+#include "mapper/session/resumption.hpp"
+#include "mapper/session/session_log.hpp"
 
 namespace kintsugi::mapper {
 namespace {

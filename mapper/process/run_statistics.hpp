@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "lcmtypes/base/stopwatch.hpp"
 #include "lcmtypes/messages.hpp"
-#include "mapper/core/stopwatch.hpp"
-#include "mapper/core/tracker.hpp"
+#include "mapper/core/tracking/tracker.hpp"
 #include "mapper/process/frame_timings.hpp"
 
 namespace kintsugi::mapper {

@@ -3,7 +3,7 @@
 
 #include <string_view>
 
-#include "mapper/core/tracker.hpp"
+#include "mapper/core/tracking/tracker.hpp"
 
 namespace kintsugi::mapper {
 

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "mapper/source/device_mode.hpp"
-#include "mapper/source/lcm_source.hpp"
-#include "mapper/source/openni2_source.hpp"
+#include "mapper/source/bus/lcm_source.hpp"
+#include "mapper/source/openni2/device_mode.hpp"
+#include "mapper/source/openni2/openni2_source.hpp"
 
 namespace kintsugi::mapper {
 

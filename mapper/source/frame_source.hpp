@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "mapper/core/rgbd_frame.hpp"
+#include "mapper/core/frame/rgbd_frame.hpp"
 
 namespace kintsugi::mapper {
 

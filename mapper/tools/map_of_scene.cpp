@@ -4,9 +4,9 @@
 
 #include <CLI/CLI.hpp>
 
-#include "mapper/openni2_driver/recording_uri.hpp"
+#include "mapper/openni2_driver/recording/recording_uri.hpp"
 #include "mapper/output/cloud_reader.hpp"
-#include "mapper/synthetic/sequence.hpp"
+#include "mapper/synthetic/render/sequence.hpp"
 
 namespace kintsugi::mapper {
 

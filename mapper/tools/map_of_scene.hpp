@@ -6,7 +6,7 @@
 
 #include "lcmtypes/geometry.hpp"
 #include "lcmtypes/messages.hpp"
-#include "mapper/synthetic/scene.hpp"
+#include "mapper/synthetic/scene/scene.hpp"
 
 namespace CLI {
 class App;

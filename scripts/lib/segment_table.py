@@ -6,7 +6,7 @@ from segment_updates import CREATED, MERGED, RETIRED, SPLIT
 class SegmentTable:
     """The segments of one map, from updates in any order, each once or more often.
 
-    The rules are those of SegmentTable in lcmtypes/segment_table.hpp, which says why they hold: an
+    The rules are those of SegmentTable in lcmtypes/client/segment_table.hpp, which says why they hold: an
     id that is gone does not come back, of what is told of a segment the newest counts, and what an
     update that lists all segments does not list is gone.
     """

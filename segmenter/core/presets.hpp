@@ -4,7 +4,7 @@
 #include <span>
 #include <string_view>
 
-#include "segmenter/core/engine.hpp"
+#include "segmenter/core/engine/engine.hpp"
 
 namespace kintsugi::segmenter {
 

@@ -9,7 +9,7 @@
 #include <oneapi/tbb/enumerable_thread_specific.h>
 #include <oneapi/tbb/parallel_for.h>
 
-#include "segmenter/core/point_rows.hpp"
+#include "segmenter/core/points/point_rows.hpp"
 
 namespace kintsugi::segmenter {
 namespace {

@@ -7,7 +7,7 @@
 
 #include <oneapi/tbb/parallel_for.h>
 
-#include "segmenter/core/point_cloud.hpp"
+#include "segmenter/core/points/point_cloud.hpp"
 #include "segmenter/map/map_snapshot.hpp"
 #include "segmenter/map/segment_map.hpp"
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "lcmtypes/atomic_file.hpp"
+#include "lcmtypes/base/atomic_file.hpp"
 #include "lcmtypes/messages.hpp"
 
 namespace kintsugi::segmenter {

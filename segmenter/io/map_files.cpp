@@ -3,8 +3,8 @@
 #include <string_view>
 #include <vector>
 
-#include "lcmtypes/atomic_file.hpp"
-#include "lcmtypes/statistics_json.hpp"
+#include "lcmtypes/base/atomic_file.hpp"
+#include "lcmtypes/client/statistics_json.hpp"
 #include "segmenter/io/labelled_ply_writer.hpp"
 #include "segmenter/io/segments_csv.hpp"
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <type_traits>
 
-#include "lcmtypes/atomic_file.hpp"
+#include "lcmtypes/base/atomic_file.hpp"
 #include "segmenter/io/record_file.hpp"
 
 namespace kintsugi::segmenter {

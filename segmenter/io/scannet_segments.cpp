@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "lcmtypes/atomic_file.hpp"
+#include "lcmtypes/base/atomic_file.hpp"
 
 namespace kintsugi::segmenter {
 

@@ -3,8 +3,8 @@
 #include <ostream>
 #include <string>
 
-#include "lcmtypes/atomic_file.hpp"
-#include "lcmtypes/number_text.hpp"
+#include "lcmtypes/base/atomic_file.hpp"
+#include "lcmtypes/base/number_text.hpp"
 
 namespace kintsugi::segmenter {
 namespace {

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "segmenter/core/point_cloud.hpp"
+#include "segmenter/core/points/point_cloud.hpp"
 #include "segmenter/map/extent.hpp"
 
 namespace kintsugi::segmenter {

@@ -7,7 +7,7 @@
 #include <unordered_map>
 #include <utility>
 
-#include "segmenter/core/admission.hpp"
+#include "segmenter/core/points/admission.hpp"
 #include "segmenter/map/segment_sums.hpp"
 
 namespace kintsugi::segmenter {

@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "lcmtypes/messages.hpp"
-#include "lcmtypes/sequence_set.hpp"
-#include "segmenter/core/engine.hpp"
-#include "segmenter/core/point_cloud.hpp"
-#include "segmenter/core/segment_ids.hpp"
+#include "lcmtypes/stream/sequence_set.hpp"
+#include "segmenter/core/engine/engine.hpp"
+#include "segmenter/core/ids/segment_ids.hpp"
+#include "segmenter/core/points/point_cloud.hpp"
 #include "segmenter/map/segment_map_state.hpp"
 #include "segmenter/map/segment_statistics.hpp"
 

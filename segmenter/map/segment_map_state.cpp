@@ -8,7 +8,7 @@
 #include <span>
 #include <stdexcept>
 
-#include "lcmtypes/codec.hpp"
+#include "lcmtypes/codec/codec.hpp"
 #include "segmenter/map/segment_map.hpp"
 
 namespace kintsugi::segmenter {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "lcmtypes/messages.hpp"
-#include "segmenter/core/engine.hpp"
-#include "segmenter/core/point_cloud.hpp"
+#include "segmenter/core/engine/engine.hpp"
+#include "segmenter/core/points/point_cloud.hpp"
 #include "segmenter/map/last_change.hpp"
 
 namespace kintsugi::segmenter {

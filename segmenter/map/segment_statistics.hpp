@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "lcmtypes/messages.hpp"
-#include "segmenter/core/point_cloud.hpp"
-#include "segmenter/core/segment_ids.hpp"
+#include "segmenter/core/ids/segment_ids.hpp"
+#include "segmenter/core/points/point_cloud.hpp"
 #include "segmenter/map/block_extents.hpp"
 #include "segmenter/map/extent.hpp"
 #include "segmenter/map/last_change.hpp"

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "segmenter/core/admission.hpp"
-#include "segmenter/core/neighbour_index.hpp"
+#include "segmenter/core/graph/neighbour_index.hpp"
+#include "segmenter/core/points/admission.hpp"
 #include "segmenter/preprocess/nearest_neighbours.hpp"
 
 namespace kintsugi::segmenter {

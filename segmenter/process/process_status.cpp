@@ -4,7 +4,7 @@
 
 #include <unistd.h>
 
-#include "lcmtypes/bus.hpp"
+#include "lcmtypes/bus/bus.hpp"
 
 namespace kintsugi::segmenter {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "lcmtypes/messages.hpp"
-#include "lcmtypes/stream_subscriber.hpp"
+#include "lcmtypes/stream/stream_subscriber.hpp"
 #include "segmenter/process/session_maps.hpp"
 #include "segmenter/process/update_publisher.hpp"
 

@@ -9,8 +9,8 @@
 #include <spdlog/spdlog.h>
 #include <sys/resource.h>
 
+#include "lcmtypes/bus/message_subscriber.hpp"
 #include "lcmtypes/channels.hpp"
-#include "lcmtypes/message_subscriber.hpp"
 #include "segmenter/query/answer.hpp"
 #include "segmenter/query/choose_map.hpp"
 

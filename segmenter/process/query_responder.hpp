@@ -11,8 +11,8 @@
 #include <optional>
 #include <thread>
 
-#include "lcmtypes/bus.hpp"
-#include "lcmtypes/stream_publisher.hpp"
+#include "lcmtypes/bus/bus.hpp"
+#include "lcmtypes/stream/stream_publisher.hpp"
 #include "segmenter/map/map_snapshot.hpp"
 #include "segmenter/process/session_maps.hpp"
 

@@ -7,8 +7,8 @@
 
 #include <spdlog/spdlog.h>
 
+#include "lcmtypes/base/stop_signal.hpp"
 #include "lcmtypes/channels.hpp"
-#include "lcmtypes/stop_signal.hpp"
 #include "segmenter/process/map_stem.hpp"
 #include "segmenter/process/process_status.hpp"
 #include "segmenter/process/resumed_map.hpp"

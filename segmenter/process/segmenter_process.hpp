@@ -10,9 +10,9 @@
 #include <mutex>
 #include <string>
 
-#include "lcmtypes/bus.hpp"
-#include "lcmtypes/bus_thread.hpp"
-#include "lcmtypes/patient_clock.hpp"
+#include "lcmtypes/base/patient_clock.hpp"
+#include "lcmtypes/bus/bus.hpp"
+#include "lcmtypes/bus/bus_thread.hpp"
 #include "segmenter/process/map_writer.hpp"
 #include "segmenter/process/query_responder.hpp"
 #include "segmenter/process/session_maps.hpp"

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "lcmtypes/stream_session.hpp"
+#include "lcmtypes/stream/stream_session.hpp"
 #include "segmenter/map/slice_sequencer.hpp"
 
 namespace kintsugi::segmenter {

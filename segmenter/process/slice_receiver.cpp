@@ -10,7 +10,7 @@
 #include <spdlog/spdlog.h>
 
 #include "lcmtypes/channels.hpp"
-#include "lcmtypes/log_reader.hpp"
+#include "lcmtypes/log/log_reader.hpp"
 
 namespace kintsugi::segmenter {
 

@@ -10,8 +10,8 @@
 #include <string>
 #include <thread>
 
-#include "lcmtypes/bus.hpp"
-#include "lcmtypes/stream_subscriber.hpp"
+#include "lcmtypes/bus/bus.hpp"
+#include "lcmtypes/stream/stream_subscriber.hpp"
 #include "segmenter/map/segment_map.hpp"
 #include "segmenter/process/slice_queue.hpp"
 

@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "lcmtypes/bus.hpp"
-#include "lcmtypes/sent_store.hpp"
-#include "lcmtypes/stream_publisher.hpp"
+#include "lcmtypes/bus/bus.hpp"
+#include "lcmtypes/stream/sent_store.hpp"
+#include "lcmtypes/stream/stream_publisher.hpp"
 
 namespace kintsugi::segmenter {
 

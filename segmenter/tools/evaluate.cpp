@@ -10,13 +10,13 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
-#include "lcmtypes/atomic_file.hpp"
-#include "segmenter/evaluation/evaluation.hpp"
-#include "segmenter/evaluation/plot.hpp"
-#include "segmenter/evaluation/quality_report.hpp"
-#include "segmenter/evaluation/report.hpp"
-#include "segmenter/evaluation/result_tables.hpp"
-#include "segmenter/options.hpp"
+#include "lcmtypes/base/atomic_file.hpp"
+#include "segmenter/evaluation/paper/evaluation.hpp"
+#include "segmenter/evaluation/paper/report.hpp"
+#include "segmenter/evaluation/paper/result_tables.hpp"
+#include "segmenter/evaluation/quality/quality_report.hpp"
+#include "segmenter/evaluation/report/plot.hpp"
+#include "segmenter/process/options.hpp"
 #include "segmenter/tools/quality_evaluation.hpp"
 #include "segmenter/tools/trajectory_evaluation.hpp"
 

@@ -3,7 +3,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "segmenter/core/admission.hpp"
+#include "segmenter/core/points/admission.hpp"
 #include "segmenter/io/ply_reader.hpp"
 #include "segmenter/preprocess/nearest_neighbours.hpp"
 

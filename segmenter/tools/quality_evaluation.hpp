@@ -5,7 +5,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "segmenter/evaluation/quality_evaluation.hpp"
+#include "segmenter/evaluation/quality/quality_evaluation.hpp"
 
 namespace kintsugi::segmenter {
 

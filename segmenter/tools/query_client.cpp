@@ -7,8 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "lcmtypes/bus/message_subscriber.hpp"
 #include "lcmtypes/channels.hpp"
-#include "lcmtypes/message_subscriber.hpp"
 
 namespace kintsugi::segmenter {
 namespace {

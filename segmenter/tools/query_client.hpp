@@ -6,8 +6,8 @@
 #include <optional>
 #include <string>
 
-#include "lcmtypes/bus.hpp"
-#include "lcmtypes/stream_subscriber.hpp"
+#include "lcmtypes/bus/bus.hpp"
+#include "lcmtypes/stream/stream_subscriber.hpp"
 
 namespace kintsugi::segmenter {
 

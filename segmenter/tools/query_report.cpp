@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "lcmtypes/statistics_json.hpp"
+#include "lcmtypes/client/statistics_json.hpp"
 
 namespace kintsugi::segmenter {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "segmenter/io/labelled_ply_writer.hpp"
 #include "segmenter/io/map_files.hpp"
-#include "segmenter/options.hpp"
+#include "segmenter/process/options.hpp"
 #include "segmenter/tools/cloud_input.hpp"
 #include "segmenter/tools/cloud_slices.hpp"
 

@@ -4,9 +4,9 @@
 #include <map>
 
 #include "lcmtypes/trajectory.hpp"
-#include "segmenter/evaluation/table.hpp"
-#include "segmenter/evaluation/text_file.hpp"
-#include "segmenter/evaluation/trajectory_report.hpp"
+#include "segmenter/evaluation/report/table.hpp"
+#include "segmenter/evaluation/report/text_file.hpp"
+#include "segmenter/evaluation/trajectory/trajectory_report.hpp"
 
 namespace kintsugi::segmenter {
 namespace {

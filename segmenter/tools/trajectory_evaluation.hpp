@@ -6,7 +6,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "lcmtypes/relative_trajectory_error.hpp"
+#include "segmenter/evaluation/trajectory/relative_trajectory_error.hpp"
 
 namespace kintsugi::segmenter {
 

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string>
 
-#include "segmenter/core/engine.hpp"
+#include "segmenter/core/engine/engine.hpp"
 #include "tests/bench/map_generator_file.hpp"
 
 namespace kintsugi::segmenter::bench {

@@ -4,7 +4,7 @@
 #include <fstream>
 #include <iostream>
 
-#include "segmenter/core/segment_ids.hpp"
+#include "segmenter/core/ids/segment_ids.hpp"
 #include "segmenter/map/segment_statistics.hpp"
 #include "tests/bench/bench_exact_report.hpp"
 

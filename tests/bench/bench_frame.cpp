@@ -12,7 +12,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "mapper/core/instruction_set.hpp"
+#include "mapper/core/kernels/instruction_set.hpp"
 #include "tests/bench/frame_run.hpp"
 #include "tests/bench/frame_table.hpp"
 

@@ -8,9 +8,9 @@
 #include <benchmark/benchmark.h>
 
 #include "lcmtypes/channels.hpp"
-#include "lcmtypes/stream_publisher.hpp"
+#include "lcmtypes/stream/stream_publisher.hpp"
 #include "tests/support/temporary_folder.hpp"
-#include "tests/viewer/synthetic_room.hpp"
+#include "tests/viewer/support/synthetic_room.hpp"
 #include "viewer/process/receiver.hpp"
 #include "viewer/process/viewer.hpp"
 

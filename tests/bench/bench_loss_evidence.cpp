@@ -15,7 +15,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "mapper/core/surface_pyramid.hpp"
+#include "mapper/core/frame/surface_pyramid.hpp"
 #include "tests/bench/recovery_measures.hpp"
 
 namespace kintsugi::mapper::bench {

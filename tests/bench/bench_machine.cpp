@@ -10,7 +10,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include "mapper/core/instruction_set.hpp"
+#include "mapper/core/kernels/instruction_set.hpp"
 #include "tests/bench/machine_limits.hpp"
 
 namespace kintsugi::mapper::bench {

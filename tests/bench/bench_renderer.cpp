@@ -2,8 +2,8 @@
 
 #include <benchmark/benchmark.h>
 
-#include "tests/viewer/synthetic_room.hpp"
-#include "viewer/core/renderer.hpp"
+#include "tests/viewer/support/synthetic_room.hpp"
+#include "viewer/core/rendering/renderer.hpp"
 
 namespace kintsugi::viewer {
 namespace {

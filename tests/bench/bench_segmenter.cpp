@@ -18,12 +18,12 @@
 #include <malloc.h>
 #include <oneapi/tbb/global_control.h>
 
-#include "segmenter/core/engine.hpp"
-#include "segmenter/core/grid_index.hpp"
-#include "segmenter/core/point_rows.hpp"
-#include "segmenter/core/segment_ids.hpp"
+#include "segmenter/core/engine/engine.hpp"
+#include "segmenter/core/graph/grid_index.hpp"
+#include "segmenter/core/ids/segment_ids.hpp"
+#include "segmenter/core/points/point_rows.hpp"
 #include "tests/bench/map_generator.hpp"
-#include "tests/segmenter/random_clouds.hpp"
+#include "tests/segmenter/core/random_clouds.hpp"
 
 namespace kintsugi::segmenter {
 namespace {

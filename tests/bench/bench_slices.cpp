@@ -23,10 +23,10 @@
 
 #include "mapper/core/mapper_pipeline.hpp"
 #include "mapper/evaluation/surface_error.hpp"
-#include "mapper/openni2_driver/recording_uri.hpp"
+#include "mapper/openni2_driver/recording/recording_uri.hpp"
 #include "mapper/output/map_writers.hpp"
 #include "mapper/source/frame_source.hpp"
-#include "mapper/synthetic/sequence.hpp"
+#include "mapper/synthetic/render/sequence.hpp"
 
 namespace kintsugi::mapper::bench {
 namespace {

@@ -16,11 +16,11 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "lcmtypes/bus_thread.hpp"
+#include "lcmtypes/base/patient_clock.hpp"
+#include "lcmtypes/bus/bus_thread.hpp"
 #include "lcmtypes/channels.hpp"
-#include "lcmtypes/patient_clock.hpp"
-#include "lcmtypes/stream_publisher.hpp"
-#include "lcmtypes/stream_subscriber.hpp"
+#include "lcmtypes/stream/stream_publisher.hpp"
+#include "lcmtypes/stream/stream_subscriber.hpp"
 #include "tests/support/private_bus.hpp"
 
 namespace kintsugi {

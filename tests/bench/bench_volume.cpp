@@ -8,15 +8,15 @@
 #include <benchmark/benchmark.h>
 #include <oneapi/tbb/global_control.h>
 
-#include "mapper/core/instruction_set.hpp"
-#include "mapper/core/integrator.hpp"
-#include "mapper/core/raycaster.hpp"
-#include "mapper/core/rgbd_frame.hpp"
-#include "mapper/core/surface_extractor.hpp"
-#include "mapper/core/surface_pyramid.hpp"
-#include "mapper/core/tsdf_volume.hpp"
-#include "mapper/synthetic/renderer.hpp"
-#include "mapper/synthetic/scenes.hpp"
+#include "mapper/core/extraction/surface_extractor.hpp"
+#include "mapper/core/frame/rgbd_frame.hpp"
+#include "mapper/core/frame/surface_pyramid.hpp"
+#include "mapper/core/fusion/integrator.hpp"
+#include "mapper/core/fusion/raycaster.hpp"
+#include "mapper/core/kernels/instruction_set.hpp"
+#include "mapper/core/volume/tsdf_volume.hpp"
+#include "mapper/synthetic/render/renderer.hpp"
+#include "mapper/synthetic/rooms/scenes.hpp"
 
 namespace kintsugi::mapper {
 namespace {

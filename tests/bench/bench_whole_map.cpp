@@ -17,7 +17,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "lcmtypes/stream_publisher.hpp"
+#include "lcmtypes/stream/stream_publisher.hpp"
 #include "segmenter/description/segment_description.hpp"
 #include "segmenter/io/map_files.hpp"
 #include "segmenter/io/saved_map.hpp"

@@ -8,7 +8,7 @@
 
 #include <oneapi/tbb/global_control.h>
 
-#include "mapper/core/stopwatch.hpp"
+#include "lcmtypes/base/stopwatch.hpp"
 #include "mapper/source/frame_source.hpp"
 #include "tests/bench/frame_threads.hpp"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "mapper/synthetic/counter_random.hpp"
+#include "mapper/synthetic/scene/counter_random.hpp"
 
 namespace kintsugi::segmenter::bench {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "lcmtypes/messages.hpp"
-#include "mapper/synthetic/scene.hpp"
+#include "mapper/synthetic/scene/scene.hpp"
 
 namespace kintsugi::segmenter::bench {
 

@@ -1,7 +1,7 @@
 #include "tests/bench/map_generator_scene.hpp"
 
-#include "mapper/synthetic/room_shell.hpp"
-#include "mapper/synthetic/rooms.hpp"
+#include "mapper/synthetic/rooms/room_shell.hpp"
+#include "mapper/synthetic/rooms/rooms.hpp"
 
 namespace kintsugi::segmenter::bench {
 namespace {

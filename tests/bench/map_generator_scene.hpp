@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "mapper/synthetic/scene.hpp"
+#include "mapper/synthetic/scene/scene.hpp"
 
 namespace kintsugi::segmenter::bench {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "mapper/core/rgbd_frame.hpp"
+#include "mapper/core/frame/rgbd_frame.hpp"
 
 namespace kintsugi::mapper::bench {
 

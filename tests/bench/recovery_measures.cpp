@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "lcmtypes/trajectory_error.hpp"
+#include "segmenter/evaluation/trajectory/trajectory_error.hpp"
 
 namespace kintsugi::mapper::bench {
 namespace {

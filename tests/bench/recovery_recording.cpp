@@ -5,9 +5,9 @@
 #include <limits>
 #include <stdexcept>
 
-#include "mapper/openni2_driver/recording_uri.hpp"
+#include "mapper/openni2_driver/recording/recording_uri.hpp"
 #include "mapper/source/frame_source.hpp"
-#include "mapper/synthetic/sequence.hpp"
+#include "mapper/synthetic/render/sequence.hpp"
 
 namespace kintsugi::mapper::bench {
 namespace {

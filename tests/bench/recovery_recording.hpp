@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "lcmtypes/trajectory.hpp"
-#include "mapper/core/rgbd_frame.hpp"
+#include "mapper/core/frame/rgbd_frame.hpp"
 
 namespace kintsugi::mapper::bench {
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <unordered_set>
 
-#include "mapper/core/stopwatch.hpp"
+#include "lcmtypes/base/stopwatch.hpp"
 
 namespace kintsugi::mapper::bench {
 namespace {

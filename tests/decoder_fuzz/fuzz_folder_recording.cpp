@@ -8,7 +8,7 @@
 
 #include <opencv2/imgcodecs.hpp>
 
-#include "mapper/openni2_driver/folder_recording.hpp"
+#include "mapper/openni2_driver/recording/folder_recording.hpp"
 #include "tests/decoder_fuzz/input_file.hpp"
 #include "tests/decoder_fuzz/require.hpp"
 

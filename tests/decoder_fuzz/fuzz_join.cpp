@@ -1,6 +1,6 @@
 // Several chunks: those that decode are put together, whether they fit or not.
 
-#include "lcmtypes/codec.hpp"
+#include "lcmtypes/codec/codec.hpp"
 #include "tests/decoder_fuzz/log_events.hpp"
 #include "tests/decoder_fuzz/require.hpp"
 

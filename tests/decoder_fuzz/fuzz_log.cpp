@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "lcmtypes/log_reader.hpp"
+#include "lcmtypes/log/log_reader.hpp"
 #include "tests/decoder_fuzz/input_file.hpp"
 #include "tests/decoder_fuzz/require.hpp"
 

@@ -1,6 +1,6 @@
 // Every message of the contract, one at a time: what is accepted can be sent again as it is.
 
-#include "lcmtypes/codec.hpp"
+#include "lcmtypes/codec/codec.hpp"
 #include "tests/decoder_fuzz/require.hpp"
 
 namespace kintsugi {

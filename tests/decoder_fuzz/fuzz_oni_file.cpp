@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "mapper/source/oni_file.hpp"
+#include "mapper/source/openni2/oni_file.hpp"
 #include "tests/decoder_fuzz/input_file.hpp"
 #include "tests/decoder_fuzz/require.hpp"
 

@@ -2,8 +2,8 @@
 
 #include <stdexcept>
 
-#include "mapper/openni2_driver/recording_uri.hpp"
-#include "mapper/synthetic/sequence.hpp"
+#include "mapper/openni2_driver/recording/recording_uri.hpp"
+#include "mapper/synthetic/render/sequence.hpp"
 #include "tests/decoder_fuzz/input_file.hpp"
 #include "tests/decoder_fuzz/require.hpp"
 

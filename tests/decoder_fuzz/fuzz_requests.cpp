@@ -1,7 +1,7 @@
 // Requests for chunks, whatever they ask for: only what exists is sent again, each once.
 
-#include "lcmtypes/codec.hpp"
-#include "lcmtypes/resend_queue.hpp"
+#include "lcmtypes/codec/codec.hpp"
+#include "lcmtypes/stream/resend_queue.hpp"
 #include "tests/decoder_fuzz/log_events.hpp"
 #include "tests/decoder_fuzz/require.hpp"
 

@@ -3,9 +3,9 @@
 #include <stdexcept>
 
 #include "lcmtypes/channels.hpp"
-#include "lcmtypes/stream_subscriber.hpp"
-#include "mapper/openni2_driver/image_decoder.hpp"
-#include "mapper/source/frame_converter.hpp"
+#include "lcmtypes/stream/stream_subscriber.hpp"
+#include "mapper/openni2_driver/recording/image_decoder.hpp"
+#include "mapper/source/frames/frame_converter.hpp"
 #include "tests/decoder_fuzz/log_events.hpp"
 #include "tests/decoder_fuzz/require.hpp"
 

@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "mapper/process/stored_sessions.hpp"
+#include "mapper/session/stored_sessions.hpp"
 #include "tests/decoder_fuzz/log_events.hpp"
 #include "tests/decoder_fuzz/require.hpp"
 

@@ -1,7 +1,7 @@
 // Chunks and heartbeats in any order, whatever is in them: what a receiver of streams lives with.
 
 #include "lcmtypes/channels.hpp"
-#include "lcmtypes/stream_subscriber.hpp"
+#include "lcmtypes/stream/stream_subscriber.hpp"
 #include "tests/decoder_fuzz/log_events.hpp"
 #include "tests/decoder_fuzz/require.hpp"
 

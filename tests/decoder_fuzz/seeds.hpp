@@ -5,7 +5,7 @@
 #include <map>
 #include <string>
 
-#include "lcmtypes/codec.hpp"
+#include "lcmtypes/codec/codec.hpp"
 
 namespace kintsugi::fuzzing {
 

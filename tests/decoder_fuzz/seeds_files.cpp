@@ -10,7 +10,7 @@
 #include "segmenter/io/saved_map.hpp"
 #include "tests/decoder_fuzz/input_file.hpp"
 #include "tests/decoder_fuzz/seeds.hpp"
-#include "tests/segmenter/slice_session.hpp"
+#include "tests/segmenter/process/slice_session.hpp"
 #include "tests/support/example_messages.hpp"
 
 namespace kintsugi::fuzzing {

@@ -1,7 +1,7 @@
 // Messages and logs of them.
 
 #include "lcmtypes/channels.hpp"
-#include "mapper/process/stored_sessions.hpp"
+#include "mapper/session/stored_sessions.hpp"
 #include "tests/decoder_fuzz/log_events.hpp"
 #include "tests/decoder_fuzz/seeds.hpp"
 #include "tests/support/example_messages.hpp"

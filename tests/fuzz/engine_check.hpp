@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "segmenter/core/engine.hpp"
+#include "segmenter/core/engine/engine.hpp"
 
 namespace kintsugi::segmenter::fuzz {
 

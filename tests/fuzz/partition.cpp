@@ -1,6 +1,6 @@
 #include "tests/fuzz/partition.hpp"
 
-#include "segmenter/core/batch_engine.hpp"
+#include "segmenter/core/batch/batch_engine.hpp"
 
 namespace kintsugi::segmenter::fuzz {
 

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "segmenter/core/engine.hpp"
+#include "segmenter/core/engine/engine.hpp"
 
 namespace kintsugi::segmenter::fuzz {
 

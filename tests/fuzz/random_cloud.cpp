@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "tests/segmenter/random_clouds.hpp"
+#include "tests/segmenter/core/random_clouds.hpp"
 
 namespace kintsugi::segmenter::fuzz {
 namespace {

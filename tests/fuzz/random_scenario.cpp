@@ -4,10 +4,10 @@
 #include <cmath>
 #include <utility>
 
-#include "segmenter/core/neighbour_index.hpp"
+#include "segmenter/core/graph/neighbour_index.hpp"
 #include "tests/fuzz/random.hpp"
 #include "tests/fuzz/random_cloud.hpp"
-#include "tests/segmenter/random_clouds.hpp"
+#include "tests/segmenter/core/random_clouds.hpp"
 
 namespace kintsugi::segmenter::fuzz {
 namespace {

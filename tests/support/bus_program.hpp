@@ -10,7 +10,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include "lcmtypes/stop_signal.hpp"
+#include "lcmtypes/base/stop_signal.hpp"
 
 namespace kintsugi::testing {
 

@@ -10,7 +10,7 @@
 
 #include <poll.h>
 
-#include "lcmtypes/stop_signal.hpp"
+#include "lcmtypes/base/stop_signal.hpp"
 #include "tests/support/bus_program.hpp"
 #include "tests/support/faulty_path.hpp"
 #include "tests/support/multicast_port.hpp"

@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "lcmtypes/codec.hpp"
+#include "lcmtypes/codec/codec.hpp"
 
 namespace kintsugi::testing {
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "lcmtypes/codec.hpp"
+#include "lcmtypes/codec/codec.hpp"
 
 namespace kintsugi::testing {
 

@@ -5,9 +5,9 @@
 #include <string>
 #include <thread>
 
-#include "lcmtypes/bus.hpp"
+#include "lcmtypes/base/stop_signal.hpp"
+#include "lcmtypes/bus/bus.hpp"
 #include "lcmtypes/channels.hpp"
-#include "lcmtypes/stop_signal.hpp"
 #include "tests/support/bus_program.hpp"
 #include "tests/support/hostile_messages.hpp"
 

@@ -7,7 +7,7 @@
 
 #include <netinet/in.h>
 
-#include "lcmtypes/codec.hpp"
+#include "lcmtypes/codec/codec.hpp"
 
 namespace kintsugi::testing {
 

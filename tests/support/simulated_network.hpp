@@ -13,10 +13,10 @@
 #include <utility>
 #include <vector>
 
+#include "lcmtypes/base/patient_clock.hpp"
 #include "lcmtypes/channels.hpp"
-#include "lcmtypes/patient_clock.hpp"
-#include "lcmtypes/stream_sender.hpp"
-#include "lcmtypes/stream_subscriber.hpp"
+#include "lcmtypes/stream/stream_sender.hpp"
+#include "lcmtypes/stream/stream_subscriber.hpp"
 #include "tests/support/simulation.hpp"
 
 namespace kintsugi::testing {

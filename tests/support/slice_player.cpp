@@ -6,14 +6,14 @@
 #include <string>
 #include <thread>
 
-#include "lcmtypes/bus.hpp"
-#include "lcmtypes/bus_thread.hpp"
+#include "lcmtypes/base/stop_signal.hpp"
+#include "lcmtypes/bus/bus.hpp"
+#include "lcmtypes/bus/bus_thread.hpp"
 #include "lcmtypes/channels.hpp"
-#include "lcmtypes/stop_signal.hpp"
-#include "lcmtypes/stream_publisher.hpp"
+#include "lcmtypes/stream/stream_publisher.hpp"
 #include "mapper/process/run_statistics.hpp"
-#include "mapper/process/session_log.hpp"
-#include "mapper/process/stored_stream.hpp"
+#include "mapper/session/session_log.hpp"
+#include "mapper/session/stored_stream.hpp"
 #include "tests/support/bus_program.hpp"
 #include "tests/support/played_map.hpp"
 

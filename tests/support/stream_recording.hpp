@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "lcmtypes/channels.hpp"
-#include "lcmtypes/stream_publisher.hpp"
+#include "lcmtypes/stream/stream_publisher.hpp"
 #include "tests/support/example_messages.hpp"
 
 namespace kintsugi::testing {

@@ -17,9 +17,9 @@
 #include <lcm/lcm-cpp.hpp>
 
 #include "lcmtypes/channels.hpp"
-#include "lcmtypes/log_reader.hpp"
-#include "lcmtypes/stream_publisher.hpp"
-#include "lcmtypes/stream_subscriber.hpp"
+#include "lcmtypes/log/log_reader.hpp"
+#include "lcmtypes/stream/stream_publisher.hpp"
+#include "lcmtypes/stream/stream_subscriber.hpp"
 
 namespace kintsugi {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "viewer/core/colors.hpp"
+#include "viewer/core/drawing/colors.hpp"
 
 namespace kintsugi::viewer {
 namespace {

@@ -13,12 +13,12 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/videoio.hpp>
 
+#include "lcmtypes/bus/message_subscriber.hpp"
 #include "lcmtypes/channels.hpp"
-#include "lcmtypes/message_subscriber.hpp"
 #include "tests/support/private_bus.hpp"
 #include "tests/support/small_disk.hpp"
 #include "tests/support/temporary_folder.hpp"
-#include "tests/viewer/recorded_room.hpp"
+#include "tests/viewer/support/recorded_room.hpp"
 #include "tests/viewer/viewer_program.hpp"
 #include "viewer/process/video_recorder.hpp"
 

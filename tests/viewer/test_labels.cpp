@@ -6,10 +6,10 @@
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
 
-#include "tests/viewer/synthetic_room.hpp"
-#include "viewer/core/renderer.hpp"
-#include "viewer/core/segment_labels.hpp"
-#include "viewer/core/shade.hpp"
+#include "tests/viewer/support/synthetic_room.hpp"
+#include "viewer/core/rendering/renderer.hpp"
+#include "viewer/core/rendering/segment_labels.hpp"
+#include "viewer/core/rendering/shade.hpp"
 
 namespace kintsugi::viewer {
 namespace {

@@ -9,7 +9,7 @@
 #include <opencv2/videoio.hpp>
 
 #include "tests/support/temporary_folder.hpp"
-#include "tests/viewer/recorded_room.hpp"
+#include "tests/viewer/support/recorded_room.hpp"
 #include "tests/viewer/viewer_program.hpp"
 
 namespace kintsugi::viewer {

@@ -15,14 +15,14 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/videoio.hpp>
 
+#include "lcmtypes/bus/message_subscriber.hpp"
 #include "lcmtypes/channels.hpp"
-#include "lcmtypes/message_subscriber.hpp"
-#include "lcmtypes/stream_publisher.hpp"
-#include "lcmtypes/stream_subscriber.hpp"
+#include "lcmtypes/stream/stream_publisher.hpp"
+#include "lcmtypes/stream/stream_subscriber.hpp"
 #include "tests/support/private_bus.hpp"
 #include "tests/support/temporary_folder.hpp"
-#include "tests/viewer/recorded_room.hpp"
 #include "tests/viewer/stuck_file.hpp"
+#include "tests/viewer/support/recorded_room.hpp"
 #include "tests/viewer/viewer_program.hpp"
 
 namespace kintsugi::viewer {

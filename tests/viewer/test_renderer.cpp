@@ -3,10 +3,10 @@
 #include <gtest/gtest.h>
 #include <oneapi/tbb/global_control.h>
 
-#include "tests/viewer/synthetic_room.hpp"
-#include "viewer/core/axes.hpp"
-#include "viewer/core/chart.hpp"
-#include "viewer/core/renderer.hpp"
+#include "tests/viewer/support/synthetic_room.hpp"
+#include "viewer/core/charts/axes.hpp"
+#include "viewer/core/charts/chart.hpp"
+#include "viewer/core/rendering/renderer.hpp"
 
 namespace kintsugi::viewer {
 namespace {

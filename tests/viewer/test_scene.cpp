@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "viewer/core/scene.hpp"
+#include "viewer/core/scene/scene.hpp"
 
 namespace kintsugi::viewer {
 namespace {

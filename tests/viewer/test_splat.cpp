@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 #include <oneapi/tbb/global_control.h>
 
-#include "tests/viewer/synthetic_room.hpp"
-#include "viewer/core/splat.hpp"
+#include "tests/viewer/support/synthetic_room.hpp"
+#include "viewer/core/rendering/splat.hpp"
 
 namespace kintsugi::viewer {
 namespace {

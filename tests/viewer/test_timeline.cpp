@@ -8,10 +8,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "viewer/core/chip_lane.hpp"
-#include "viewer/core/colors.hpp"
-#include "viewer/core/segment_timeline.hpp"
-#include "viewer/core/timeline_chart.hpp"
+#include "viewer/core/charts/chip_lane.hpp"
+#include "viewer/core/charts/segment_timeline.hpp"
+#include "viewer/core/charts/timeline_chart.hpp"
+#include "viewer/core/drawing/colors.hpp"
 
 namespace kintsugi::viewer {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/viewer/synthetic_room.hpp"
-#include "viewer/core/view.hpp"
+#include "tests/viewer/support/synthetic_room.hpp"
+#include "viewer/core/rendering/view.hpp"
 
 namespace kintsugi::viewer {
 namespace {

@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/temporary_folder.hpp"
-#include "tests/viewer/synthetic_room.hpp"
+#include "tests/viewer/support/synthetic_room.hpp"
 #include "viewer/process/viewer.hpp"
 
 namespace kintsugi::viewer {

@@ -6,7 +6,7 @@
 #include <opencv2/core.hpp>
 #include <opencv2/videoio.hpp>
 
-#include "lcmtypes/atomic_file.hpp"
+#include "lcmtypes/base/atomic_file.hpp"
 
 namespace kintsugi::viewer {
 

@@ -5,8 +5,8 @@
 
 #include <opencv2/core.hpp>
 
-#include "lcmtypes/bus.hpp"
-#include "lcmtypes/stream_publisher.hpp"
+#include "lcmtypes/bus/bus.hpp"
+#include "lcmtypes/stream/stream_publisher.hpp"
 
 namespace kintsugi::viewer {
 

@@ -2,8 +2,8 @@
 
 #include <utility>
 
-#include "viewer/core/require.hpp"
-#include "viewer/core/timeline_chart.hpp"
+#include "lcmtypes/base/argument_check.hpp"
+#include "viewer/core/charts/timeline_chart.hpp"
 
 namespace kintsugi::viewer {
 

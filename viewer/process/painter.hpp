@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "viewer/core/renderer.hpp"
+#include "viewer/core/rendering/renderer.hpp"
 #include "viewer/process/session_scene.hpp"
 
 namespace kintsugi::viewer {

@@ -6,8 +6,8 @@
 #include <functional>
 #include <string>
 
-#include "lcmtypes/bus.hpp"
-#include "lcmtypes/stream_subscriber.hpp"
+#include "lcmtypes/bus/bus.hpp"
+#include "lcmtypes/stream/stream_subscriber.hpp"
 #include "viewer/process/map_choice.hpp"
 #include "viewer/process/message.hpp"
 

@@ -8,11 +8,11 @@
 
 #include <spdlog/spdlog.h>
 
-#include "lcmtypes/bus.hpp"
-#include "lcmtypes/bus_thread.hpp"
-#include "lcmtypes/log_reader.hpp"
-#include "lcmtypes/patient_clock.hpp"
-#include "lcmtypes/stop_signal.hpp"
+#include "lcmtypes/base/patient_clock.hpp"
+#include "lcmtypes/base/stop_signal.hpp"
+#include "lcmtypes/bus/bus.hpp"
+#include "lcmtypes/bus/bus_thread.hpp"
+#include "lcmtypes/log/log_reader.hpp"
 #include "viewer/process/announcer.hpp"
 #include "viewer/process/inbox.hpp"
 #include "viewer/process/receiver.hpp"

@@ -2,8 +2,8 @@
 
 #include <opencv2/core.hpp>
 
-#include "viewer/core/chart.hpp"
-#include "viewer/core/scene.hpp"
+#include "viewer/core/charts/chart.hpp"
+#include "viewer/core/scene/scene.hpp"
 
 namespace kintsugi::viewer {
 

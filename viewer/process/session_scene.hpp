@@ -4,10 +4,10 @@
 #include <optional>
 #include <string>
 
-#include "viewer/core/highlight.hpp"
-#include "viewer/core/scene.hpp"
-#include "viewer/core/update_log.hpp"
-#include "viewer/core/view.hpp"
+#include "viewer/core/rendering/highlight.hpp"
+#include "viewer/core/rendering/view.hpp"
+#include "viewer/core/scene/scene.hpp"
+#include "viewer/core/scene/update_log.hpp"
 #include "viewer/process/run_history.hpp"
 
 namespace kintsugi::viewer {

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include "viewer/core/require.hpp"
+#include "lcmtypes/base/argument_check.hpp"
 
 namespace kintsugi::viewer {
 void Viewer::Config::validate() const {

@@ -3,7 +3,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "mapper/core/instruction_set.hpp"
+#include "mapper/core/kernels/instruction_set.hpp"
 
 namespace kintsugi::mapper {
 

@@ -8,11 +8,11 @@
 #include <string>
 #include <utility>
 
-#include "mapper/openni2_driver/imitated_recording.hpp"
 #include "mapper/openni2_driver/plugin/camera_ports.hpp"
 #include "mapper/openni2_driver/plugin/oni_driver_api.hpp"
 #include "mapper/openni2_driver/plugin/recording_device.hpp"
-#include "mapper/openni2_driver/recording_uri.hpp"
+#include "mapper/openni2_driver/recording/imitated_recording.hpp"
+#include "mapper/openni2_driver/recording/recording_uri.hpp"
 
 namespace kintsugi::mapper {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <opencv2/core.hpp>
 
-#include "mapper/openni2_driver/camera_imitation.hpp"
 #include "mapper/openni2_driver/plugin/oni_driver_api.hpp"
+#include "mapper/openni2_driver/recording/camera_imitation.hpp"
 
 namespace kintsugi::mapper {
 

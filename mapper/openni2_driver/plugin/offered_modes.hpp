@@ -2,9 +2,9 @@
 
 #include <vector>
 
-#include "mapper/openni2_driver/camera_imitation.hpp"
 #include "mapper/openni2_driver/plugin/oni_driver_api.hpp"
-#include "mapper/openni2_driver/recording.hpp"
+#include "mapper/openni2_driver/recording/camera_imitation.hpp"
+#include "mapper/openni2_driver/recording/recording.hpp"
 
 namespace kintsugi::mapper {
 

@@ -11,7 +11,7 @@
 #include <thread>
 #include <vector>
 
-#include "mapper/openni2_driver/recording.hpp"
+#include "mapper/openni2_driver/recording/recording.hpp"
 
 namespace kintsugi::mapper {
 

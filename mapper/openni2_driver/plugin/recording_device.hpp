@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "mapper/openni2_driver/camera_imitation.hpp"
 #include "mapper/openni2_driver/plugin/oni_driver_api.hpp"
 #include "mapper/openni2_driver/plugin/playback.hpp"
 #include "mapper/openni2_driver/plugin/recording_stream.hpp"
+#include "mapper/openni2_driver/recording/camera_imitation.hpp"
 
 namespace kintsugi::mapper {
 

@@ -3,11 +3,11 @@
 #include <mutex>
 #include <vector>
 
-#include "mapper/openni2_driver/camera_imitation.hpp"
 #include "mapper/openni2_driver/plugin/camera_controls.hpp"
 #include "mapper/openni2_driver/plugin/oni_driver_api.hpp"
 #include "mapper/openni2_driver/plugin/playback.hpp"
 #include "mapper/openni2_driver/plugin/rate_filter.hpp"
+#include "mapper/openni2_driver/recording/camera_imitation.hpp"
 
 namespace kintsugi::mapper {
 

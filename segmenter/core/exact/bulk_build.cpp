@@ -7,7 +7,7 @@
 #include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/parallel_for.h>
 
-#include "segmenter/core/felzenszwalb.hpp"
+#include "segmenter/core/batch/felzenszwalb.hpp"
 
 namespace kintsugi::segmenter::exact {
 namespace {

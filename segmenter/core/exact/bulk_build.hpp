@@ -2,7 +2,7 @@
 
 #include <span>
 
-#include "segmenter/core/batch_segmentation.hpp"
+#include "segmenter/core/batch/batch_segmentation.hpp"
 #include "segmenter/core/exact/state.hpp"
 
 namespace kintsugi::segmenter::exact {

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "segmenter/core/engine.hpp"
+#include "segmenter/core/engine/engine.hpp"
 #include "segmenter/core/exact/join_forest.hpp"
 #include "segmenter/core/exact/vertex.hpp"
 

@@ -4,7 +4,7 @@
 #include <bit>
 #include <cstdint>
 
-#include "segmenter/core/point_cloud.hpp"
+#include "segmenter/core/points/point_cloud.hpp"
 
 namespace kintsugi::segmenter::exact {
 

@@ -5,10 +5,10 @@
 #include <span>
 #include <vector>
 
-#include "segmenter/core/engine.hpp"
+#include "segmenter/core/engine/engine.hpp"
 #include "segmenter/core/exact/edge_key.hpp"
-#include "segmenter/core/neighbour_index.hpp"
-#include "segmenter/core/point_cloud.hpp"
+#include "segmenter/core/graph/neighbour_index.hpp"
+#include "segmenter/core/points/point_cloud.hpp"
 
 namespace kintsugi::segmenter::exact {
 

@@ -1,12 +1,12 @@
 #pragma once
 
-#include "segmenter/core/edge_weight.hpp"
-#include "segmenter/core/engine.hpp"
+#include "segmenter/core/engine/engine.hpp"
 #include "segmenter/core/exact/join_forest.hpp"
 #include "segmenter/core/exact/tree_edges.hpp"
 #include "segmenter/core/exact/vertex.hpp"
 #include "segmenter/core/exact/watch_heaps.hpp"
-#include "segmenter/core/neighbour_index.hpp"
+#include "segmenter/core/graph/edge_weight.hpp"
+#include "segmenter/core/graph/neighbour_index.hpp"
 
 namespace kintsugi::segmenter::exact {
 

@@ -2,8 +2,8 @@
 
 #include <cstdint>
 
-#include "segmenter/core/growing_array.hpp"
-#include "segmenter/core/point_cloud.hpp"
+#include "lcmtypes/base/growing_array.hpp"
+#include "segmenter/core/points/point_cloud.hpp"
 
 namespace kintsugi::segmenter::exact {
 

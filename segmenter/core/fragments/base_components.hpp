@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "segmenter/core/engine.hpp"
-#include "segmenter/core/growing_array.hpp"
+#include "lcmtypes/base/growing_array.hpp"
+#include "segmenter/core/engine/engine.hpp"
 
 namespace kintsugi::segmenter {
 

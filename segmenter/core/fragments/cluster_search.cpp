@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "segmenter/core/edge_weight.hpp"
+#include "segmenter/core/graph/edge_weight.hpp"
 
 namespace kintsugi::segmenter {
 

@@ -5,11 +5,11 @@
 #include <span>
 #include <vector>
 
+#include "lcmtypes/base/growing_array.hpp"
 #include "segmenter/core/fragments/base_components.hpp"
 #include "segmenter/core/fragments/clusters.hpp"
 #include "segmenter/core/fragments/edge_order.hpp"
 #include "segmenter/core/fragments/neighbour_cursor.hpp"
-#include "segmenter/core/growing_array.hpp"
 
 namespace kintsugi::segmenter {
 

@@ -7,9 +7,9 @@
 #include <unordered_map>
 #include <vector>
 
-#include "segmenter/core/edge.hpp"
+#include "lcmtypes/base/growing_array.hpp"
 #include "segmenter/core/fragments/base_components.hpp"
-#include "segmenter/core/growing_array.hpp"
+#include "segmenter/core/graph/edge.hpp"
 
 namespace kintsugi::segmenter {
 

@@ -4,8 +4,8 @@
 #include <span>
 #include <utility>
 
-#include "segmenter/core/edge.hpp"
-#include "segmenter/core/point_cloud.hpp"
+#include "segmenter/core/graph/edge.hpp"
+#include "segmenter/core/points/point_cloud.hpp"
 
 namespace kintsugi::segmenter {
 

@@ -2,8 +2,8 @@
 
 #include <memory>
 
+#include "segmenter/core/engine/incremental_engine.hpp"
 #include "segmenter/core/fragments/fragment_layer.hpp"
-#include "segmenter/core/incremental_engine.hpp"
 
 namespace kintsugi::segmenter {
 

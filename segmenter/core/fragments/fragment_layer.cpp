@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "segmenter/core/edge_weight.hpp"
 #include "segmenter/core/fragments/fragment_step.hpp"
 #include "segmenter/core/fragments/rebuild_clusters.hpp"
+#include "segmenter/core/graph/edge_weight.hpp"
 
 namespace kintsugi::segmenter {
 

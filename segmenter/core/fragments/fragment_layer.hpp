@@ -5,11 +5,11 @@
 #include <span>
 #include <vector>
 
+#include "segmenter/core/engine/incremental_engine.hpp"
 #include "segmenter/core/fragments/base_components.hpp"
 #include "segmenter/core/fragments/cluster_search.hpp"
 #include "segmenter/core/fragments/clusters.hpp"
 #include "segmenter/core/fragments/edge_order.hpp"
-#include "segmenter/core/incremental_engine.hpp"
 
 namespace kintsugi::segmenter {
 

@@ -6,10 +6,10 @@
 #include <oneapi/tbb/enumerable_thread_specific.h>
 #include <oneapi/tbb/parallel_for.h>
 
-#include "segmenter/core/edge_buckets.hpp"
-#include "segmenter/core/edge_weight.hpp"
 #include "segmenter/core/fragments/edge_order.hpp"
-#include "segmenter/core/point_rows.hpp"
+#include "segmenter/core/graph/edge_buckets.hpp"
+#include "segmenter/core/graph/edge_weight.hpp"
+#include "segmenter/core/points/point_rows.hpp"
 
 namespace kintsugi::segmenter {
 namespace {

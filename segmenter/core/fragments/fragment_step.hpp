@@ -2,10 +2,10 @@
 
 #include <span>
 
-#include "segmenter/core/edge.hpp"
 #include "segmenter/core/fragments/fragment_forest.hpp"
-#include "segmenter/core/neighbour_index.hpp"
-#include "segmenter/core/point_cloud.hpp"
+#include "segmenter/core/graph/edge.hpp"
+#include "segmenter/core/graph/neighbour_index.hpp"
+#include "segmenter/core/points/point_cloud.hpp"
 
 namespace kintsugi::segmenter {
 

@@ -2,8 +2,8 @@
 
 #include <span>
 
-#include "segmenter/core/grid_index.hpp"
-#include "segmenter/core/neighbour_index.hpp"
+#include "segmenter/core/graph/grid_index.hpp"
+#include "segmenter/core/graph/neighbour_index.hpp"
 
 namespace kintsugi::segmenter {
 

@@ -4,7 +4,7 @@
 
 #include "segmenter/core/fragments/base_components.hpp"
 #include "segmenter/core/fragments/clusters.hpp"
-#include "segmenter/core/point_cloud.hpp"
+#include "segmenter/core/points/point_cloud.hpp"
 
 namespace kintsugi::segmenter {
 

@@ -1,0 +1,69 @@
+#include "lcmtypes/base/reserved_memory.hpp"
+
+#include <algorithm>
+#include <memory>
+#include <new>
+#include <utility>
+
+#include <sys/mman.h>
+
+namespace kintsugi {
+namespace {
+
+constexpr std::size_t kHugePageBytes = std::size_t{1} << 21;
+
+std::size_t round_up(std::size_t bytes) {
+  return (bytes + kHugePageBytes - 1) / kHugePageBytes * kHugePageBytes;
+}
+
+}  // namespace
+
+ReservedMemory::ReservedMemory(std::size_t reserved_bytes, HugePages huge_pages)
+    : range_bytes_(reserved_bytes + kHugePageBytes), reserved_bytes_(reserved_bytes) {
+  range_ =
+      ::mmap(nullptr, range_bytes_, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  if (range_ == MAP_FAILED) throw std::bad_alloc();
+  std::size_t space = range_bytes_;
+  void* start = range_;
+  data_ = static_cast<std::byte*>(std::align(kHugePageBytes, reserved_bytes, start, space));
+  // The advice is a wish: without huge pages everything works, only slower.
+  const std::size_t first = huge_pages == HugePages::kEverywhere ? 0 : kHugePageBytes;
+  if (first < reserved_bytes) ::madvise(data_ + first, reserved_bytes - first, MADV_HUGEPAGE);
+}
+
+ReservedMemory::ReservedMemory(ReservedMemory&& other) noexcept
+    : range_(std::exchange(other.range_, nullptr)),
+      range_bytes_(std::exchange(other.range_bytes_, 0)),
+      data_(std::exchange(other.data_, nullptr)),
+      reserved_bytes_(std::exchange(other.reserved_bytes_, 0)),
+      committed_bytes_(std::exchange(other.committed_bytes_, 0)) {}
+
+ReservedMemory& ReservedMemory::operator=(ReservedMemory&& other) noexcept {
+  std::swap(range_, other.range_);
+  std::swap(range_bytes_, other.range_bytes_);
+  std::swap(data_, other.data_);
+  std::swap(reserved_bytes_, other.reserved_bytes_);
+  std::swap(committed_bytes_, other.committed_bytes_);
+  return *this;
+}
+
+ReservedMemory::~ReservedMemory() {
+  if (range_ != nullptr) ::munmap(range_, range_bytes_);
+}
+
+void ReservedMemory::commit(std::size_t bytes) {
+  if (bytes <= committed_bytes_) return;
+  if (bytes > reserved_bytes_) throw std::bad_alloc();
+  const std::size_t usable = std::min(round_up(bytes), reserved_bytes_);
+  if (::mprotect(data_, usable, PROT_READ | PROT_WRITE) != 0) throw std::bad_alloc();
+  committed_bytes_ = usable;
+}
+
+void ReservedMemory::release() {
+  if (committed_bytes_ == 0) return;
+  ::madvise(data_, committed_bytes_, MADV_DONTNEED);
+  ::mprotect(data_, committed_bytes_, PROT_NONE);
+  committed_bytes_ = 0;
+}
+
+}  // namespace kintsugi

@@ -1,0 +1,157 @@
+#include "lcmtypes/bus/bus.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstdlib>
+#include <fstream>
+#include <stdexcept>
+#include <utility>
+
+#include <arpa/inet.h>
+#include <lcm/lcm.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+namespace kintsugi {
+namespace {
+
+// Holds 0.4 s of a stream at its default rate while the receiver is busy.
+constexpr int kReceiveBufferBytes = 4'194'304;
+constexpr char kGroup[] = "239.255.76.67";
+constexpr char kReceiveBufferLimit[] = "/proc/sys/net/core/rmem_max";
+
+bool is_datagrams(const std::string& url) { return url.starts_with("udpm://"); }
+
+/// LCM prints pages about a missing route and then fails without a reason; this asks first.
+/// Connecting a datagram socket sends nothing, and fails just when there is no route.
+bool has_multicast_route() {
+  const int socket = ::socket(AF_INET, SOCK_DGRAM, 0);
+  if (socket < 0) return true;  // let LCM say what is wrong
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(7667);
+  inet_pton(AF_INET, kGroup, &address.sin_addr);
+  const int result = connect(socket, reinterpret_cast<sockaddr*>(&address), sizeof(address));
+  const bool unreachable = result != 0 && errno == ENETUNREACH;
+  close(socket);
+  return !unreachable;
+}
+
+/// The URL to open for what the caller asked for.
+std::string complete_url(const std::string& asked) {
+  std::string url = asked.empty() ? default_bus_url() : asked;
+  if (!is_datagrams(url) || url.find("recv_buf_size=") != std::string::npos) return url;
+  const char separator = url.find('?') == std::string::npos ? '?' : '&';
+  return url + separator + "recv_buf_size=" + std::to_string(kReceiveBufferBytes);
+}
+
+/// The network may take the next datagram: a cable is out, an interface is down, a queue is full,
+/// a firewall drops some.
+bool passes_over(int error) {
+  constexpr std::array kPassing = {ENETDOWN, ENETUNREACH, EHOSTDOWN, EHOSTUNREACH,
+                                   ENOBUFS,  EAGAIN,      EPERM,     ECONNREFUSED};
+  return std::find(kPassing.begin(), kPassing.end(), error) != kPassing.end();
+}
+
+/// True when multicast goes further than this host: ttl > 0; LCM's default is 0.
+bool leaves_host(const std::string& url) {
+  const std::size_t option = url.find("ttl=");
+  return is_datagrams(url) && option != std::string::npos &&
+         std::strtol(url.c_str() + option + 4, nullptr, 10) > 0;
+}
+
+}  // namespace
+
+struct Bus::Subscriber {
+  Bus& bus;
+  Handler handler;
+
+  // Called by C code, which an exception must not cross: handle() throws it.
+  static void on_message(const lcm_recv_buf_t* buffer, const char* /*channel*/, void* user) {
+    auto* self = static_cast<Subscriber*>(user);
+    try {
+      self->handler({static_cast<const std::uint8_t*>(buffer->data), buffer->data_size});
+    } catch (...) {
+      if (!self->bus.failure_) self->bus.failure_ = std::current_exception();
+    }
+  }
+};
+
+std::int64_t wall_clock_us() {
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  return std::chrono::duration_cast<std::chrono::microseconds>(now).count();
+}
+
+std::int64_t new_session() { return wall_clock_us(); }
+
+std::string default_bus_url() {
+  const char* url = std::getenv("LCM_DEFAULT_URL");
+  if (url != nullptr && *url != '\0') return url;
+  return std::string("udpm://") + kGroup + ":7667?ttl=0";
+}
+
+std::optional<std::string> receive_buffer_advice() {
+  std::int64_t limit = 0;
+  if (!(std::ifstream(kReceiveBufferLimit) >> limit) || limit >= kReceiveBufferBytes) return {};
+  const std::string wanted = std::to_string(kReceiveBufferBytes);
+  return "the kernel limits receive buffers to " + std::to_string(limit) + " bytes, " + wanted +
+         " are wanted: bursts may be lost. One command cures it: sysctl -w net.core.rmem_max=" +
+         wanted;
+}
+
+Bus::Bus(const std::string& url) : url_(complete_url(url)), lcm_(nullptr, lcm_destroy) {
+  if (is_datagrams(url_) && !has_multicast_route()) {
+    throw std::runtime_error("cannot open the bus " + url_ +
+                             ": no route for 224.0.0.0/4. One command cures it: "
+                             "ip route add 224.0.0.0/4 dev lo");
+  }
+  lcm_.reset(lcm_create(url_.c_str()));
+  if (!lcm_) {
+    throw std::runtime_error("cannot open the bus " + url_ +
+                             ": expected an LCM URL such as udpm://" + kGroup + ":7667?ttl=0");
+  }
+}
+
+Bus::~Bus() = default;
+
+void Bus::publish(const std::string& channel, ByteView message) {
+  const auto size = static_cast<unsigned>(message.size());
+  errno = 0;
+  if (lcm_publish(lcm_.get(), channel.c_str(), message.data(), size) == 0) return;
+  if (is_datagrams(url_) && passes_over(errno)) {
+    ++messages_refused_;
+  } else {
+    throw std::runtime_error("cannot publish " + std::to_string(message.size()) + " bytes on " +
+                             channel + " of the bus " + url_);
+  }
+}
+
+std::size_t Bus::max_message_bytes() const {
+  return leaves_host(url_) ? kMinMaxChunkBytes : kDefaultMaxChunkBytes;
+}
+
+void Bus::subscribe(const std::string& channel, Handler handler) {
+  subscribers_.push_back(std::make_unique<Subscriber>(Subscriber{*this, std::move(handler)}));
+  lcm_subscription_t* subscription = lcm_subscribe(
+      lcm_.get(), channel.c_str(), &Subscriber::on_message, subscribers_.back().get());
+  if (subscription == nullptr) {
+    throw std::runtime_error("cannot subscribe to " + channel + " of the bus " + url_);
+  }
+  // Without limit; the default drops what is beyond 30 messages, in silence.
+  lcm_subscription_set_queue_capacity(subscription, 0);
+}
+
+bool Bus::handle(std::chrono::milliseconds timeout) {
+  errno = 0;
+  const int handled = lcm_handle_timeout(lcm_.get(), static_cast<int>(timeout.count()));
+  const bool interrupted = handled < 0 && errno == EINTR;  // by a signal
+  if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
+  if (handled < 0 && !interrupted) {
+    throw std::runtime_error("the connection to the bus " + url_ + " is gone");
+  }
+  return handled > 0;
+}
+
+}  // namespace kintsugi

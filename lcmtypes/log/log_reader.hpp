@@ -1,0 +1,55 @@
+#pragma once
+// An LCM log, event by event.
+
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <string>
+
+#include "lcmtypes/codec/codec.hpp"
+
+namespace kintsugi {
+
+/// One recorded message. `data` is valid until the next call of next().
+struct LogEvent {
+  std::int64_t index = 0;  ///< in the log
+  std::int64_t utime = 0;  ///< when it was received, wall clock, microseconds
+  std::string channel;
+  ByteView data;
+};
+
+/// Reads the format itself: lcm::LogFile allocates whatever an event claims to hold, searches for
+/// the next event after damage, and does not say where or why it ended.
+class LogReader {
+ public:
+  /// Throws std::runtime_error when `path` cannot be read, is empty or is no LCM log.
+  explicit LogReader(const std::filesystem::path& path);
+
+  /// The next event; nothing at the end of what can be read.
+  std::optional<LogEvent> next();
+
+  /// After next() returned nothing: where and how the log is damaged; nothing when it is whole.
+  const std::optional<std::string>& damage() const { return damage_; }
+
+  /// The damage is that the file ends before its last event does, as when a writer was killed.
+  bool is_cut_off() const { return is_cut_off_; }
+
+  /// Of the events that next() gave; the data of the last one ends here.
+  std::int64_t bytes_read() const { return position_; }
+  std::int64_t bytes_total() const { return size_; }
+
+ private:
+  std::nullopt_t stop(const std::string& what);
+
+  std::filesystem::path path_;
+  std::ifstream file_;
+  std::int64_t size_ = 0;
+  std::int64_t position_ = 0;  // of the next event
+  std::int64_t index_ = 0;
+  Bytes data_;  // of the last event
+  std::optional<std::string> damage_;
+  bool is_cut_off_ = false;
+};
+
+}  // namespace kintsugi

@@ -1,0 +1,94 @@
+#pragma once
+// The messages of one session whose chunks have not all come yet.
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "lcmtypes/codec/codec.hpp"
+
+namespace kintsugi {
+
+/// Puts chunks together, in whatever order they come. Memory is that of the chunks that came.
+template <BulkMessage Message>
+class MessageAssembler {
+ public:
+  using Chunks = std::vector<Chunk<Message>>;
+
+  /// Bytes that a chunk takes here.
+  static std::size_t bytes(const Chunk<Message>& chunk) {
+    return sizeof(chunk) + chunk.part.size() + chunk.identity.size();
+  }
+
+  /// A chunk with the number of this one that has come before, and belongs to another message: one
+  /// of the two is false. Nothing: `chunk` fits.
+  std::optional<std::int64_t> conflict(const Chunk<Message>& chunk) const {
+    const auto message = messages_.find(first_sequence(chunk));
+    if (message == messages_.end()) return std::nullopt;
+    const Chunk<Message>& other = message->second.front();
+    if (other.identity == chunk.identity) return std::nullopt;
+    return other.sequence;
+  }
+
+  /// Keeps a chunk that has not come before and fits. Returns all the chunks of its message, in
+  /// order, when it was the last one; empty: some are missing.
+  Chunks add(Chunk<Message> chunk) {
+    const std::int64_t first = first_sequence(chunk);
+    const auto count = static_cast<std::size_t>(chunk.count);
+    bytes_ += bytes(chunk);
+    Chunks& chunks = messages_[first];
+    chunks.push_back(std::move(chunk));
+    if (chunks.size() < count) return {};
+    Chunks complete = take(first);
+    std::sort(complete.begin(), complete.end(),
+              [](const auto& a, const auto& b) { return a.index < b.index; });
+    return complete;
+  }
+
+  /// Removes the message of the chunk, and returns the numbers of those of it that came.
+  std::vector<std::int64_t> drop(const Chunk<Message>& chunk) {
+    return numbers(take(first_sequence(chunk)));
+  }
+  /// Likewise every message that began before `sequence`.
+  std::vector<std::int64_t> drop_before(std::int64_t sequence) {
+    std::vector<std::int64_t> dropped;
+    while (!messages_.empty() && messages_.begin()->first < sequence) {
+      const auto more = numbers(take(messages_.begin()->first));
+      dropped.insert(dropped.end(), more.begin(), more.end());
+    }
+    return dropped;
+  }
+
+  std::size_t bytes() const { return bytes_; }
+
+ private:
+  /// Chunks of one message have consecutive numbers: that of the first one tells messages apart.
+  static std::int64_t first_sequence(const Chunk<Message>& chunk) {
+    return chunk.sequence - chunk.index;
+  }
+
+  static std::vector<std::int64_t> numbers(const Chunks& chunks) {
+    std::vector<std::int64_t> numbers;
+    numbers.reserve(chunks.size());
+    for (const Chunk<Message>& chunk : chunks) numbers.push_back(chunk.sequence);
+    return numbers;
+  }
+
+  Chunks take(std::int64_t first_sequence) {
+    const auto message = messages_.find(first_sequence);
+    Chunks chunks = std::move(message->second);
+    messages_.erase(message);
+    for (const Chunk<Message>& chunk : chunks) bytes_ -= bytes(chunk);
+    return chunks;
+  }
+
+  std::map<std::int64_t, Chunks> messages_;  // by first_sequence()
+  std::size_t bytes_ = 0;
+};
+
+}  // namespace kintsugi

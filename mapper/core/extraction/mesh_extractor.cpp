@@ -1,0 +1,294 @@
+#include "mapper/core/extraction/mesh_extractor.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdlib>
+#include <utility>
+
+#include "lcmtypes/base/argument_check.hpp"
+#include "mapper/core/extraction/block_points.hpp"
+#include "mapper/core/extraction/cube_triangles.hpp"
+#include "mapper/core/extraction/slice_blocks.hpp"
+
+namespace kintsugi::mapper {
+namespace {
+
+constexpr std::uint32_t kNoVertex = ~std::uint32_t{0};
+constexpr int kCornerSide = kBlockSide + 1;
+
+/// The voxels at the corners of the cubes that start in a block, 0 .. 8 along each axis.
+class CornerRows {
+ public:
+  /// `octant` are the blocks 0 and 1 further along each axis, x fastest; null: none.
+  CornerRows(const std::array<const VoxelBlock*, 8>& octant, int weight_threshold) {
+    static constexpr VoxelBlock kUnobserved{};
+    const Voxel threshold = (static_cast<Voxel>(weight_threshold) << 16U) | 0xFFFFU;
+    for (int z = 0; z < kCornerSide; ++z) {
+      for (int y = 0; y < kCornerSide; ++y) {
+        Row& row = rows_[z * kCornerSide + y];
+        for (int x = 0; x < kCornerSide; ++x) {
+          const int block = x / kBlockSide + 2 * (y / kBlockSide) + 4 * (z / kBlockSide);
+          const VoxelBlock& voxels = octant[block] == nullptr ? kUnobserved : *octant[block];
+          const Voxel voxel =
+              voxels.voxels[voxel_index(x % kBlockSide, y % kBlockSide, z % kBlockSide)];
+          row.observed |= static_cast<unsigned>(voxel > threshold) << x;
+          row.behind |= (voxel >> 15 & 1U) << x;
+        }
+      }
+    }
+  }
+
+  /// The cubes of a row, bit x is cube x, with all corners observed and not all on one side.
+  unsigned cubes_with_surface(int y, int z) const {
+    unsigned observed = ~0U;
+    unsigned all_behind = ~0U;
+    unsigned any_behind = 0;
+    for (const Row* row : rows_around(y, z)) {
+      observed &= row->observed & row->observed >> 1;
+      all_behind &= row->behind & row->behind >> 1;
+      any_behind |= row->behind | row->behind >> 1;
+    }
+    return observed & any_behind & ~all_behind & 0xFFU;
+  }
+
+  /// The corners of a cube that are behind the surface, as cube_triangles() wants them.
+  unsigned corners_behind(int x, int y, int z) const {
+    unsigned corners = 0;
+    int shift = 0;
+    for (const Row* row : rows_around(y, z)) {
+      corners |= (row->behind >> x & 3U) << shift;
+      shift += 2;
+    }
+    return corners;
+  }
+
+ private:
+  struct Row {
+    unsigned observed = 0;
+    unsigned behind = 0;
+  };
+
+  std::array<const Row*, 4> rows_around(int y, int z) const {
+    const Row* first = &rows_[z * kCornerSide + y];
+    return {first, first + 1, first + kCornerSide, first + kCornerSide + 1};
+  }
+
+  std::array<Row, std::size_t{kCornerSide} * kCornerSide> rows_{};
+};
+
+/// The colour at `share` of the way from one voxel to the next; where only one has a colour, that.
+std::array<std::uint8_t, 3> blend(VoxelColor from, VoxelColor to, double share) {
+  if (from >> 24 == 0) from = to;
+  if (to >> 24 == 0) to = from;
+  std::array<std::uint8_t, 3> color{};
+  for (int channel = 0; channel < 3; ++channel) {
+    const double a = from >> (8 * channel) & 0xFFU;
+    const double b = to >> (8 * channel) & 0xFFU;
+    color[channel] = static_cast<std::uint8_t>(std::lround(a + share * (b - a)));
+  }
+  return color;
+}
+
+}  // namespace
+
+/// The vertices on the lines that start at a block's voxels: 3 voxel + axis.
+struct MeshExtractor::BlockEdges {
+  std::array<std::uint32_t, 3 * std::size_t{kBlockVoxels}> vertices;
+
+  BlockEdges() { vertices.fill(kNoVertex); }
+};
+
+/// The extraction of one slice.
+class MeshExtractor::Pass {
+ public:
+  Pass(MeshExtractor& mesh, const DetachedBlocks& detached)
+      : mesh_(mesh),
+        detached_(detached),
+        rule_(mesh.config_.weight_threshold, mesh.config_.max_step_vox, detached),
+        blocks_(detached),
+        sides_(blocks_.size()),
+        edges_(blocks_.size()) {
+    for (std::size_t i = 0; i < blocks_.size(); ++i) {
+      sides_[i] = observed_sides(*blocks_[i].voxels, rule_.weight_threshold);
+      const auto known = mesh.borders_.extract(blocks_[i].coord);
+      // An own block of the same place left again: its vertices are new.
+      if (!known.empty() && !blocks_[i].is_own) edges_[i] = std::move(known.mapped());
+    }
+  }
+
+  MeshPiece run() {
+    NeighborWalk walk(blocks_);
+    std::size_t num_kept = 0;
+    for (std::size_t i = 0; i < blocks_.size(); ++i) {
+      for (; blocks_[num_kept].coord.z < blocks_[i].coord.z; ++num_kept) keep_border(num_kept);
+      mesh_block(walk.around(i));
+    }
+    for (; num_kept < blocks_.size(); ++num_kept) keep_border(num_kept);
+    return std::move(piece_);
+  }
+
+ private:
+  using Octant = std::array<int, 8>;  ///< the block itself and those further along each axis
+
+  void mesh_block(const BlockNeighbors& neighbors) {
+    Octant octant;
+    for (int k = 0; k < 8; ++k) octant[k] = neighbors[neighbor_index(k & 1, k >> 1 & 1, k >> 2)];
+    const std::array<bool, 8> is_due = due_cubes(octant);
+    if (!may_have_surface(octant)) return;
+    std::array<const VoxelBlock*, 8> voxels{};
+    for (int k = 0; k < 8; ++k) {
+      if (octant[k] != kNoNeighbor) voxels[k] = blocks_[octant[k]].voxels;
+    }
+    const CornerRows corners(voxels, mesh_.config_.weight_threshold);
+    for (int z = 0; z < kBlockSide; ++z) {
+      for (int y = 0; y < kBlockSide; ++y) {
+        for (unsigned left = corners.cubes_with_surface(y, z); left != 0; left &= left - 1) {
+          const int x = std::countr_zero(left);
+          const auto is_last = [](int c) { return c == kBlockSide - 1 ? 1 : 0; };
+          if (!is_due[is_last(x) + 2 * is_last(y) + 4 * is_last(z)]) continue;
+          mesh_cube(octant, {x, y, z}, corners.corners_behind(x, y, z));
+        }
+      }
+    }
+  }
+
+  /// By the sides at which a cube reaches into the next block: whether one of its blocks leaves now
+  /// and none stays.
+  std::array<bool, 8> due_cubes(const Octant& octant) const {
+    std::array<bool, 8> is_due{};
+    for (int sides = 0; sides < 8; ++sides) {
+      bool leaves = false;
+      bool stays = false;
+      for (int k = 0; k < 8; ++k) {
+        if ((k & ~sides) != 0 || octant[k] == kNoNeighbor) continue;
+        const SliceBlocks::Block& block = blocks_[octant[k]];
+        leaves |= block.is_own;
+        stays |= block.colors == nullptr;
+      }
+      is_due[sides] = leaves && !stays;
+    }
+    return is_due;
+  }
+
+  bool may_have_surface(const Octant& octant) const {
+    bool free_space = false;
+    bool behind = false;
+    for (const int block : octant) {
+      if (block == kNoNeighbor) continue;
+      free_space |= sides_[block].free_space;
+      behind |= sides_[block].behind;
+    }
+    return free_space && behind;
+  }
+
+  void mesh_cube(const Octant& octant, const std::array<int, 3>& cube, unsigned corners_behind) {
+    if (jumps(octant, cube, corners_behind)) return;
+    for (const auto& edges : cube_triangles(corners_behind)) {
+      piece_.triangles.push_back({vertex_on(octant, cube, kCubeEdges[edges[0]]),
+                                  vertex_on(octant, cube, kCubeEdges[edges[1]]),
+                                  vertex_on(octant, cube, kCubeEdges[edges[2]])});
+    }
+  }
+
+  struct Corner {
+    int block = kNoNeighbor;
+    std::array<int, 3> position_vox{};  ///< in the block
+    int voxel = 0;
+  };
+  static Corner corner_of(const Octant& octant, const std::array<int, 3>& cube, int corner) {
+    Corner result;
+    int side = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const int c = cube[axis] + (corner >> axis & 1);
+      side |= c / kBlockSide << axis;
+      result.position_vox[axis] = c % kBlockSide;
+    }
+    const auto& [x, y, z] = result.position_vox;
+    result.voxel = voxel_index(x, y, z);
+    result.block = octant[side];
+    return result;
+  }
+
+  /// Whether the distance jumps along one of the cube's edges with a crossing.
+  bool jumps(const Octant& octant, const std::array<int, 3>& cube, unsigned corners_behind) const {
+    std::array<int, 8> distances{};
+    for (int corner = 0; corner < 8; ++corner) {
+      const Corner c = corner_of(octant, cube, corner);
+      distances[corner] = voxel_distance_raw(blocks_[c.block].voxels->voxels[c.voxel]);
+    }
+    return std::any_of(kCubeEdges.begin(), kCubeEdges.end(), [&](const CubeEdge& edge) {
+      const bool crosses = ((corners_behind >> edge.from ^ corners_behind >> edge.to) & 1U) != 0;
+      return crosses && std::abs(distances[edge.from] - distances[edge.to]) > rule_.max_step_raw;
+    });
+  }
+
+  std::uint32_t vertex_on(const Octant& octant, const std::array<int, 3>& cube,
+                          const CubeEdge& edge) {
+    const Corner from = corner_of(octant, cube, edge.from);
+    auto& edges = edges_[from.block];
+    if (!edges) edges = std::make_unique<BlockEdges>();
+    std::uint32_t& vertex = edges->vertices[3 * from.voxel + edge.axis];
+    if (vertex == kNoVertex) {
+      vertex = mesh_.num_vertices_++;
+      piece_.vertices.push_back(make_vertex(from, corner_of(octant, cube, edge.to), edge.axis));
+    }
+    return vertex;
+  }
+
+  MeshPiece::Vertex make_vertex(const Corner& from, const Corner& to, int axis) const {
+    const SliceBlocks::Block& block = blocks_[from.block];
+    const SliceBlocks::Block& next = blocks_[to.block];
+    // Half a step of the distance's 65,535 on, no voxel lies on the surface and no two vertices
+    // coincide.
+    const double here = voxel_distance_raw(block.voxels->voxels[from.voxel]) + 0.5;
+    const double there = voxel_distance_raw(next.voxels->voxels[to.voxel]) + 0.5;
+    const double share = here / (here - there);
+    const std::array<int, 3> coord = {block.coord.x, block.coord.y, block.coord.z};
+    std::array<float, 3> p_W{};
+    for (int i = 0; i < 3; ++i) {
+      const double p_vox =
+          coord[i] * kBlockSide + from.position_vox[i] + 0.5 + (i == axis ? share : 0.0);
+      p_W[i] = static_cast<float>(p_vox * detached_.resolution_m);
+    }
+    return {p_W[0], p_W[1], p_W[2],
+            blend(block.colors->colors[from.voxel], next.colors->colors[to.voxel], share)};
+  }
+
+  /// Later slices come back to the vertices of blocks that touch what is left of the volume.
+  void keep_border(std::size_t i) {
+    const BlockCoord& coord = blocks_[i].coord;
+    if (edges_[i] && detached_.remaining.touches(coord)) {
+      mesh_.borders_[coord] = std::move(edges_[i]);
+    }
+    edges_[i].reset();
+  }
+
+  MeshExtractor& mesh_;
+  const DetachedBlocks& detached_;
+  const CrossingRule rule_;
+  const SliceBlocks blocks_;
+  std::vector<ObservedSides> sides_;
+  std::vector<std::unique_ptr<BlockEdges>> edges_;
+  MeshPiece piece_;
+};
+
+void MeshExtractor::Config::validate() const {
+  check_range("weight_threshold", weight_threshold, 0, 65534);
+  check_range("max_step_vox", max_step_vox, 1.0, 100.0);
+}
+
+MeshExtractor::MeshExtractor(const Config& config) : config_(config) { config_.validate(); }
+
+MeshExtractor::~MeshExtractor() = default;
+
+MeshPiece MeshExtractor::extract(const DetachedBlocks& detached) {
+  MeshPiece piece = Pass(*this, detached).run();
+  std::erase_if(borders_, [&](const auto& border) {
+    return !detached.remaining.touches(border.first) || detached.remaining.contains(border.first);
+  });
+  return piece;
+}
+
+}  // namespace kintsugi::mapper

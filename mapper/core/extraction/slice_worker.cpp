@@ -1,0 +1,116 @@
+#include "mapper/core/extraction/slice_worker.hpp"
+
+#include <utility>
+
+#include <sys/resource.h>
+
+#include "lcmtypes/base/argument_check.hpp"
+#include "lcmtypes/base/stopwatch.hpp"
+#include "mapper/core/volume/tsdf_block_pool.hpp"
+
+namespace kintsugi::mapper {
+namespace {
+
+/// The calling thread's alone. Where it cannot be set, extraction competes with tracking.
+void lower_priority_of_thread() {
+#ifdef __linux__
+  constexpr int kNice = 10;
+  setpriority(PRIO_PROCESS, 0, kNice);  // on Linux 0 is the thread
+#endif
+}
+
+}  // namespace
+
+void SliceWorker::Config::validate() const {
+  extractor.validate();
+  check_range<std::size_t>("max_queued_blocks", max_queued_blocks, 1, TsdfBlockPool::kMaxBlocks);
+}
+
+SliceWorker::SliceWorker(const Config& config)
+    : config_((config.validate(), config)),
+      extractor_(config.extractor),
+      mesh_extractor_({.weight_threshold = config.extractor.weight_threshold,
+                       .max_step_vox = config.extractor.max_step_vox}),
+      thread_([this] { run(); }) {}
+
+SliceWorker::~SliceWorker() {
+  {
+    const std::scoped_lock lock(mutex_);
+    stop_ = true;
+  }
+  work_.notify_all();
+  thread_.join();
+}
+
+void SliceWorker::submit(DetachedBlocks blocks, std::int64_t utime, const Pose& X_WC) {
+  std::unique_lock lock(mutex_);
+  const std::size_t num_blocks = blocks.coords.size();
+  done_.wait(lock, [&] {
+    return failure_ || queue_.empty() || queued_blocks_ + num_blocks <= config_.max_queued_blocks;
+  });
+  if (failure_) std::rethrow_exception(failure_);
+  queued_blocks_ += num_blocks;
+  CloudSlice slice;
+  slice.utime = utime;
+  slice.id = next_id_++;
+  slice.kind = blocks.kind;
+  slice.resolution_m = blocks.resolution_m;
+  slice.X_WC = X_WC;
+  queue_.push_back({std::move(blocks), std::move(slice)});
+  work_.notify_one();
+}
+
+std::vector<CloudSlice> SliceWorker::take_finished() {
+  std::unique_lock lock(mutex_);
+  return take(lock);
+}
+
+std::vector<CloudSlice> SliceWorker::drain() {
+  std::unique_lock lock(mutex_);
+  done_.wait(lock, [this] { return failure_ || queue_.empty(); });
+  return take(lock);
+}
+
+double SliceWorker::busy_ms() const {
+  const std::scoped_lock lock(mutex_);
+  return busy_ms_;
+}
+
+std::vector<CloudSlice> SliceWorker::take(std::unique_lock<std::mutex>& /*held*/) {
+  if (failure_) std::rethrow_exception(failure_);
+  return std::exchange(finished_, {});
+}
+
+void SliceWorker::run() {
+  lower_priority_of_thread();
+  std::unique_lock lock(mutex_);
+  while (true) {
+    work_.wait(lock, [this] { return stop_ || !queue_.empty(); });
+    if (stop_) return;
+    Job& job = queue_.front();  // others only append: the reference stays
+    lock.unlock();
+    const Stopwatch stopwatch;
+    std::exception_ptr failure;
+    try {
+      work_on(job);
+    } catch (...) {
+      failure = std::current_exception();
+    }
+    const double elapsed_ms = stopwatch.elapsed_ms();
+    lock.lock();
+    busy_ms_ += elapsed_ms;
+    failure_ = failure;
+    if (!failure_) finished_.push_back(std::move(job.slice));
+    queued_blocks_ -= job.blocks.coords.size();
+    queue_.pop_front();
+    done_.notify_all();
+    if (failure_) return;
+  }
+}
+
+void SliceWorker::work_on(Job& job) {
+  job.slice.points_W = extractor_.extract(job.blocks);
+  if (config_.on_mesh) config_.on_mesh(mesh_extractor_.extract(job.blocks));
+}
+
+}  // namespace kintsugi::mapper

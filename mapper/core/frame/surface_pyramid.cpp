@@ -1,0 +1,111 @@
+#include "mapper/core/frame/surface_pyramid.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include "mapper/core/volume/kernel_arguments.hpp"
+
+namespace kintsugi::mapper {
+namespace {
+
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+constexpr int kMinPixelsPerTask = 16384;  ///< for fewer it is not worth to wake a thread
+
+template <typename Row>
+void for_each_row(cv::Size size, const Row& row) {
+  const int grain = 1 + kMinPixelsPerTask / std::max(1, size.width);
+  tbb::parallel_for(tbb::blocked_range<int>(0, size.height, grain),
+                    [&](const tbb::blocked_range<int>& range) {
+                      for (int v = range.begin(); v != range.end(); ++v) row(v);
+                    });
+}
+
+void check_size(const cv::Mat_<float>& depth_m, const Intrinsics& intrinsics) {
+  if (depth_m.cols == intrinsics.width && depth_m.rows == intrinsics.height) return;
+  throw std::invalid_argument("depth image is " + std::to_string(depth_m.cols) + "x" +
+                              std::to_string(depth_m.rows) + ", its intrinsics are for " +
+                              std::to_string(intrinsics.width) + "x" +
+                              std::to_string(intrinsics.height));
+}
+
+/// The surface of a depth image, which it keeps.
+SurfaceMap surface_of(cv::Mat_<float> depth_m, const Intrinsics& intrinsics,
+                      const Kernels& kernels) {
+  SurfaceMap surface(intrinsics);
+  surface.depth_m = std::move(depth_m);
+  const MutableSurfacePlanes planes = planes_of(surface);
+  for_each_row(surface.depth_m.size(), [&](int v) { kernels.normals_row(planes, v); });
+  return surface;
+}
+
+SurfaceMap half_size_surface(const SurfaceMap& fine, const Kernels& kernels) {
+  SurfaceMap half(half_size(fine.intrinsics));
+  const SurfacePlanes from = planes_of(fine);
+  const MutableSurfacePlanes to = planes_of(half);
+  for_each_row(half.depth_m.size(), [&](int v) { kernels.halve_surface_row(from, v, to); });
+  return half;
+}
+
+}  // namespace
+
+Intrinsics half_size(const Intrinsics& intrinsics) {
+  Intrinsics half = intrinsics;
+  half.fx /= 2.0;
+  half.fy /= 2.0;
+  half.cx = (intrinsics.cx + 0.5) / 2.0 - 0.5;
+  half.cy = (intrinsics.cy + 0.5) / 2.0 - 0.5;
+  half.width /= 2;
+  half.height /= 2;
+  return half;
+}
+
+cv::Mat_<float> half_size(const cv::Mat_<float>& depth_m, float max_depth_m,
+                          const Kernels& kernels) {
+  cv::Mat_<float> half(depth_m.rows / 2, depth_m.cols / 2);
+  for_each_row(half.size(), [&](int v) {
+    kernels.halve_depth_row(depth_m[2 * v], depth_m[2 * v + 1], max_depth_m, half.cols, half[v]);
+  });
+  return half;
+}
+
+SurfaceMap surface_from_depth(const cv::Mat_<float>& depth_m, const Intrinsics& intrinsics,
+                              const Kernels& kernels) {
+  check_size(depth_m, intrinsics);
+  return surface_of(depth_m.clone(), intrinsics, kernels);
+}
+
+SurfacePyramid pyramid_from_depth(const cv::Mat_<float>& depth_m, const Intrinsics& intrinsics,
+                                  int skip, int levels, float max_depth_m, const Kernels& kernels) {
+  check_size(depth_m, intrinsics);
+  cv::Mat_<float> depth = depth_m;
+  Intrinsics camera = intrinsics;
+  if (skip == 0) {
+    depth = depth_m.clone();
+    depth.setTo(kNaN, depth > max_depth_m);
+  }
+  SurfacePyramid pyramid;
+  for (int level = 0; level < skip + levels; ++level) {
+    if (level > 0) {
+      depth = half_size(depth, max_depth_m, kernels);
+      camera = half_size(camera);
+    }
+    if (level >= skip) pyramid.push_back(surface_of(depth, camera, kernels));
+  }
+  return pyramid;
+}
+
+SurfacePyramid pyramid_from_surface(SurfaceMap finest, int levels, const Kernels& kernels) {
+  SurfacePyramid pyramid{std::move(finest)};
+  while (static_cast<int>(pyramid.size()) < levels) {
+    pyramid.push_back(half_size_surface(pyramid.back(), kernels));
+  }
+  return pyramid;
+}
+
+}  // namespace kintsugi::mapper

@@ -1,0 +1,50 @@
+#pragma once
+// Surfaces from depth images, at several levels of detail.
+
+#include <limits>
+#include <vector>
+
+#include <opencv2/core.hpp>
+
+#include "lcmtypes/geometry.hpp"
+#include "mapper/core/frame/surface_map.hpp"
+#include "mapper/core/kernels/kernels.hpp"
+
+namespace kintsugi::mapper {
+
+/// One surface at several sizes, finest first; each level has half the width and height of the one
+/// before it.
+using SurfacePyramid = std::vector<SurfaceMap>;
+
+/// The camera of an image half the size (rounded down): one pixel covers 2x2 of the larger image,
+/// so its centre lies between theirs, cx' = (cx + 1/2) / 2 - 1/2.
+Intrinsics half_size(const Intrinsics& intrinsics);
+
+/// Halves a depth image (metres, invalid is NaN): each pixel is the mean of those of its 2x2 that
+/// lie within 5 cm of the nearest, so that no pixel hangs in the air between two surfaces. Depths
+/// beyond `max_depth_m` are invalid.
+cv::Mat_<float> half_size(const cv::Mat_<float>& depth_m,
+                          float max_depth_m = std::numeric_limits<float>::infinity(),
+                          const Kernels& kernels = best_kernels());
+
+/// Back-projects a depth image (metres along C's z, invalid is NaN; `intrinsics` without distortion
+/// and of the image's size) and takes normals from central differences. A pixel at the border, or
+/// with a neighbour that is invalid or more than 10 cm away in depth, keeps its depth but has no
+/// normal (NaN).
+/// @throws std::invalid_argument if the size of the image is not that of the intrinsics
+SurfaceMap surface_from_depth(const cv::Mat_<float>& depth_m, const Intrinsics& intrinsics,
+                              const Kernels& kernels = best_kernels());
+
+/// The pyramid of a measured depth image: `skip` halvings (1: a 640x480 image starts at 320x240),
+/// then `levels` surfaces. Depths beyond `max_depth_m` are invalid.
+/// @throws std::invalid_argument if the size of the image is not that of the intrinsics
+SurfacePyramid pyramid_from_depth(const cv::Mat_<float>& depth_m, const Intrinsics& intrinsics,
+                                  int skip, int levels, float max_depth_m,
+                                  const Kernels& kernels = best_kernels());
+
+/// The pyramid below a raycast surface: depths and normals are averaged over those of 2x2 pixels
+/// that lie within 5 cm in depth of the nearest.
+SurfacePyramid pyramid_from_surface(SurfaceMap finest, int levels,
+                                    const Kernels& kernels = best_kernels());
+
+}  // namespace kintsugi::mapper

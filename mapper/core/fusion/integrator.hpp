@@ -1,0 +1,43 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "lcmtypes/geometry.hpp"
+#include "mapper/core/frame/rgbd_frame.hpp"
+#include "mapper/core/kernels/instruction_set.hpp"
+#include "mapper/core/volume/tsdf_volume.hpp"
+
+namespace kintsugi::mapper {
+
+/// Fuses depth and colour images into the volume: a weighted running mean of the truncated
+/// distance along the camera's z, for each voxel that a frame sees (Curless and Levoy 1996;
+/// Newcombe et al. 2011, equations 6 to 13).
+class Integrator {
+ public:
+  struct Config {
+    double min_depth_m = 0.3;                            ///< nearer measurements are ignored
+    double max_depth_m = 5.0;                            ///< farther measurements are ignored
+    std::optional<InstructionSet> instruction_set = {};  ///< none: best_instruction_set()
+
+    /// @throws std::invalid_argument naming the field, its value and the bound.
+    void validate() const;
+  };
+
+  explicit Integrator(const Config& config);
+
+  /// Allocates blocks along the rays of valid pixels within the truncation distance of their depth,
+  /// inside the cube, and updates these and every other block in view. Pixels whose depth is NaN,
+  /// infinite or outside [min_depth_m, max_depth_m] change nothing. Colour is fused within the
+  /// truncation distance; a frame without colour leaves colours as they are. The result does not
+  /// depend on the number of threads.
+  /// @throws std::invalid_argument where images and intrinsics disagree in size, the focal length
+  /// is not positive, there is lens distortion or X_WC is not finite; the volume is unchanged then.
+  void integrate(const RgbdFrame& frame, const Pose& X_WC, TsdfVolume& volume) const;
+
+ private:
+  Config config_;
+  InstructionSet instruction_set_;
+};
+
+}  // namespace kintsugi::mapper

@@ -1,0 +1,107 @@
+#include "mapper/core/relocalization/keyframe_map.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "lcmtypes/base/argument_check.hpp"
+#include "lcmtypes/trajectory.hpp"
+#include "mapper/core/frame/surface_pyramid.hpp"
+
+namespace kintsugi::mapper {
+namespace {
+
+constexpr double kRawPerMetre = 4000.0;
+
+cv::Mat_<std::uint16_t> raw_from(cv::Mat_<float> depth_m) {
+  depth_m = depth_m.clone();
+  cv::patchNaNs(depth_m, 0.0);
+  cv::Mat_<std::uint16_t> raw;
+  depth_m.convertTo(raw, CV_16U, kRawPerMetre);  // beyond 16.4 m: the largest number
+  return raw;
+}
+
+/// The numbers of the smallest keys, smallest first; of equal ones the lower number.
+std::vector<int> smallest(std::vector<std::pair<double, int>> keys, int count) {
+  const auto end =
+      keys.begin() + std::min<std::ptrdiff_t>(count, static_cast<std::ptrdiff_t>(keys.size()));
+  std::partial_sort(keys.begin(), end, keys.end());
+  std::vector<int> numbers;
+  for (auto key = keys.begin(); key != end; ++key) numbers.push_back(key->second);
+  return numbers;
+}
+
+}  // namespace
+
+SurfaceMap Place::surface() const {
+  cv::Mat_<float> depth_m;
+  depth_raw.convertTo(depth_m, CV_32F, 1.0 / kRawPerMetre);
+  depth_m.setTo(std::numeric_limits<float>::quiet_NaN(), depth_raw == 0);
+  return surface_from_depth(depth_m, camera);
+}
+
+void KeyframeMap::Config::validate() const {
+  check_range("spacing_m", spacing_m, 1e-3, 100.0);
+  check_range("spacing_rad", spacing_rad, 1e-3, 3.2);
+  check_range("max_features", max_features, 0, 100'000);
+  check_range("max_by_features", max_by_features, 0, 1000);
+  check_range("min_shared_features", min_shared_features, 1, 100'000);
+  check_range("max_by_depth", max_by_depth, 0, 1000);
+}
+
+KeyframeMap::KeyframeMap(const Config& config) : config_((config.validate(), config)) {}
+
+bool KeyframeMap::is_due(const Pose& X_WC) const {
+  return std::none_of(keyframes_.begin(), keyframes_.end(), [&](const Place& keyframe) {
+    const Pose X_KC = keyframe.X_WC.inverse() * X_WC;
+    return X_KC.translation().norm() < config_.spacing_m &&
+           rotation_angle_rad(X_KC) < config_.spacing_rad;
+  });
+}
+
+void KeyframeMap::add(const Pose& X_WC, const TrackingInput& frame, const SurfaceMap& surface_C) {
+  finish_last();
+  keyframes_.push_back({X_WC, {}, surface_C.intrinsics, raw_from(surface_C.depth_m)});
+  view_of_last_ = std::async(std::launch::async, [frame, max_features = config_.max_features] {
+    return view_of(frame, max_features);
+  });
+}
+
+std::vector<int> KeyframeMap::similar_to(const PlaceView& view) {
+  finish_last();
+  std::vector<int> numbers = by_features(view);
+  for (const int number : by_depth(view)) {
+    if (std::find(numbers.begin(), numbers.end(), number) == numbers.end()) {
+      numbers.push_back(number);
+    }
+  }
+  return numbers;
+}
+
+void KeyframeMap::finish_last() {
+  if (!view_of_last_.valid()) return;
+  keyframes_.back().view = view_of_last_.get();
+  index_.add(keyframes_.back().view.features.descriptors);
+}
+
+std::vector<int> KeyframeMap::by_features(const PlaceView& view) const {
+  const std::vector<int> shared = index_.count_matches(view.features.descriptors);
+  std::vector<std::pair<double, int>> keys;
+  for (int i = 0; i < size(); ++i) {
+    if (shared[i] >= config_.min_shared_features) keys.emplace_back(-shared[i], i);
+  }
+  return smallest(std::move(keys), config_.max_by_features);
+}
+
+std::vector<int> KeyframeMap::by_depth(const PlaceView& view) const {
+  std::vector<std::pair<double, int>> keys;
+  for (int i = 0; i < size(); ++i) {
+    const double difference =
+        thumbnail_difference(view.thumbnail_m, keyframes_[i].view.thumbnail_m);
+    if (std::isfinite(difference)) keys.emplace_back(difference, i);
+  }
+  return smallest(std::move(keys), config_.max_by_depth);
+}
+
+}  // namespace kintsugi::mapper

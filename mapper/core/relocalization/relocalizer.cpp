@@ -1,0 +1,102 @@
+#include "mapper/core/relocalization/relocalizer.hpp"
+
+#include <algorithm>
+
+#include "lcmtypes/base/argument_check.hpp"
+#include "lcmtypes/trajectory.hpp"
+#include "mapper/core/relocalization/feature_pose.hpp"
+#include "mapper/core/tracking/intensity_agreement.hpp"
+
+namespace kintsugi::mapper {
+namespace {
+
+/// The level that a PlaceView's intensities belong to.
+const SurfaceMap& coarse(const SurfacePyramid& pyramid) {
+  return pyramid[std::min<std::size_t>(1, pyramid.size() - 1)];
+}
+
+std::optional<double> correlation_between(const Place& keyframe, const SurfaceMap& surface_K,
+                                          const PlaceView& view, const TrackingInput& frame,
+                                          const Pose& X_WC) {
+  if (view.intensity.empty() || keyframe.view.intensity.empty()) return std::nullopt;
+  return intensity_agreement(coarse(frame.surface_C), view.intensity, surface_K,
+                             keyframe.view.intensity, keyframe.X_WC.inverse() * X_WC);
+}
+
+}  // namespace
+
+void Relocalizer::Config::validate() const {
+  keyframes.validate();
+  check_range("min_overlap_share", min_overlap_share, 0.0, 1.0);
+  check_range("min_correlation", min_correlation, -1.0, 1.0);
+  check_range("witness_distance_m", witness_distance_m, 0.0, 100.0);
+  check_range("witness_angle_rad", witness_angle_rad, 0.0, 3.2);
+  with_witness.validate("with_witness");
+}
+
+Relocalizer::Relocalizer(const Config& config)
+    : config_((config.validate(), config)), keyframes_(config.keyframes) {}
+
+void Relocalizer::remember(const TrackingInput& frame, const Model& model) {
+  turn_ = 0;
+  if (keyframes_.is_due(model.X_WV)) keyframes_.add(model.X_WV, frame, coarse(model.surface_V));
+}
+
+std::optional<TrackingResult> Relocalizer::find(const TrackingInput& frame, const Tracker& tracker,
+                                                const MapView& map_from) {
+  const PlaceView view = view_of(frame, config_.keyframes.max_features);
+  const std::vector<int> candidates = keyframes_.similar_to(view);
+  if (candidates.empty()) return std::nullopt;
+  auto found = try_keyframe(keyframes_[candidates.front()], view, frame, tracker, map_from);
+  if (!found && candidates.size() > 1) {
+    const int other = candidates[1 + turn_++ % (candidates.size() - 1)];
+    found = try_keyframe(keyframes_[other], view, frame, tracker, map_from);
+  }
+  return found;
+}
+
+std::optional<TrackingResult> Relocalizer::try_keyframe(const Place& keyframe,
+                                                        const PlaceView& view,
+                                                        const TrackingInput& frame,
+                                                        const Tracker& tracker,
+                                                        const MapView& map_from) const {
+  std::optional<Pose> X_WC_features;
+  if (const auto X_KC = pose_from_features(keyframe.view.features, view.features)) {
+    X_WC_features = keyframe.X_WC * *X_KC;
+  }
+  const int levels = static_cast<int>(frame.surface_C.size());
+  const Model seen_then{pyramid_from_surface(keyframe.surface(), levels), keyframe.X_WC};
+  const TrackingResult near =
+      tracker.register_anew(frame, seen_then, X_WC_features.value_or(keyframe.X_WC));
+  if (near.quality.overlap_share < config_.min_overlap_share) return std::nullopt;
+
+  const TrackingResult in_map = tracker.register_anew(frame, map_from(near.X_WC), near.X_WC);
+  const bool map_reaches = in_map.quality.overlap_share >= config_.min_overlap_share;
+  TrackingResult result = map_reaches ? in_map : near;
+  const auto correlation =
+      correlation_between(keyframe, seen_then.surface_V.front(), view, frame, result.X_WC);
+  // With the keyframe's own surface the frame must agree; with the map it may be off by the drift.
+  const bool may_disagree = map_reaches && X_WC_features;
+  if (!is_believed(result, may_disagree ? X_WC_features : std::nullopt, correlation)) {
+    return std::nullopt;
+  }
+  result.state = TrackingState::kTracking;
+  result.loss_reason.reset();
+  return result;
+}
+
+bool Relocalizer::is_believed(const TrackingResult& result,
+                              const std::optional<Pose>& X_WC_features,
+                              std::optional<double> correlation) const {
+  // A small piece of a view may fit in many places.
+  if (result.quality.overlap_share < config_.with_witness.min_overlap_share) return false;
+  if (correlation && *correlation < config_.min_correlation) return false;
+  if (result.state == TrackingState::kTracking) return true;
+  if (!X_WC_features) return false;
+  const Pose X_FC = X_WC_features->inverse() * result.X_WC;  // F: where the features put the camera
+  return X_FC.translation().norm() < config_.witness_distance_m &&
+         rotation_angle_rad(X_FC) < config_.witness_angle_rad &&
+         !find_fault(result.quality, config_.with_witness);
+}
+
+}  // namespace kintsugi::mapper

@@ -1,0 +1,89 @@
+#include "mapper/core/tracking/loss_rule.hpp"
+
+#include <algorithm>
+
+#include "lcmtypes/base/argument_check.hpp"
+
+namespace kintsugi::mapper {
+void Evidence::validate(const std::string& name) const {
+  check_range(name + ".min_overlap_share", min_overlap_share, 0.0, 1.0);
+  check_range(name + ".min_inlier_share", min_inlier_share, 0.0, 1.0);
+  check_range(name + ".max_behind_share", max_behind_share, 0.0, 1.0);
+  check_range(name + ".max_in_front_share", max_in_front_share, 0.0, 1.0);
+  check_range(name + ".max_rms_m", max_rms_m, 1e-6, 1.0);
+  check_range(name + ".max_sigma_m", max_sigma_m, 1e-6, 1e6);
+}
+
+std::optional<LossReason> find_fault(const RegistrationQuality& quality, const Evidence& needed) {
+  if (!quality.solved) return LossReason::kNotSolved;
+  if (quality.overlap_share < needed.min_overlap_share) return LossReason::kTooLittleOverlap;
+  if (quality.inlier_share < needed.min_inlier_share) return LossReason::kTooFewInliers;
+  if (quality.behind_share > needed.max_behind_share) return LossReason::kThroughSurface;
+  if (quality.in_front_share > needed.max_in_front_share) return LossReason::kBeforeSurface;
+  if (quality.rms_m > needed.max_rms_m) return LossReason::kLargeResidual;
+  if (quality.undetermined > 0) return LossReason::kUndetermined;
+  if (quality.sigma_m > needed.max_sigma_m) return LossReason::kUncertain;
+  return std::nullopt;
+}
+
+void LossRule::Config::validate() const {
+  check_range("min_covered_share", min_covered_share, 0.0, 1.0);
+  check_range("max_covered_drop", max_covered_drop, 0.0, 1.0);
+  check_range("recent_view_decay", recent_view_decay, 0.0, 1.0);
+  following.validate("following");
+  found_anew.validate("found_anew");
+  check_range("grace_frames", grace_frames, 0, 1'000'000);
+}
+
+std::string_view to_string(LossReason reason) {
+  switch (reason) {
+    case LossReason::kTooFewPixels:
+      return "too few pixels with a depth in the volume";
+    case LossReason::kViewCutOff:
+      return "most of the view vanished";
+    case LossReason::kNotSolved:
+      return "registration has no solution";
+    case LossReason::kTooLittleOverlap:
+      return "too little of the view shows the map";
+    case LossReason::kTooFewInliers:
+      return "too little of the view fits the map";
+    case LossReason::kThroughSurface:
+      return "the view looks through surfaces of the map";
+    case LossReason::kBeforeSurface:
+      return "too much stands before the map";
+    case LossReason::kLargeResidual:
+      return "residuals too large";
+    case LossReason::kUncertain:
+      return "the view does not determine the pose well enough";
+    case LossReason::kUndetermined:
+      return "the view does not tell where along it the camera is";
+  }
+  return "unknown";
+}
+
+LossRule::LossRule(const Config& config) : config_(config) { config_.validate(); }
+
+std::optional<LossReason> LossRule::judge(const RegistrationQuality& quality) const {
+  if (quality.covered_share < config_.min_covered_share) return LossReason::kTooFewPixels;
+  if (is_cut_off(quality)) return LossReason::kViewCutOff;
+  Evidence needed = config_.following;
+  if (believed_frames_ < config_.grace_frames) needed.min_inlier_share = 0.0;
+  return find_fault(quality, needed);
+}
+
+std::optional<LossReason> LossRule::judge_found_anew(const RegistrationQuality& quality) const {
+  if (quality.covered_share < config_.min_covered_share) return LossReason::kTooFewPixels;
+  return find_fault(quality, config_.found_anew);
+}
+
+void LossRule::remember(double covered_share, bool believed) {
+  recent_covered_share_ =
+      std::max(covered_share, config_.recent_view_decay * recent_covered_share_);
+  if (believed) ++believed_frames_;
+}
+
+bool LossRule::is_cut_off(const RegistrationQuality& quality) const {
+  return quality.covered_share < (1.0 - config_.max_covered_drop) * recent_covered_share_;
+}
+
+}  // namespace kintsugi::mapper

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "mapper/openni2_driver/recording/camera_imitation.hpp"
+#include "mapper/openni2_driver/recording/recording.hpp"
+
+namespace kintsugi::mapper {
+
+/// A recording as an imitated camera sees it: images that never come, clocks that disagree or jump,
+/// and, after the camera was away, only what is left.
+class ImitatedRecording : public Recording {
+ public:
+  /// @param resume_utime what was before this time of the recording has passed while the camera was
+  /// away; absent: it was not.
+  ImitatedRecording(std::unique_ptr<Recording> recording, const CameraImitation& imitation,
+                    std::optional<std::int64_t> resume_utime);
+
+  [[nodiscard]] std::string name() const override { return recording_->name(); }
+  [[nodiscard]] const Intrinsics& intrinsics() const override { return recording_->intrinsics(); }
+  [[nodiscard]] int frame_rate_hz() const override { return recording_->frame_rate_hz(); }
+  [[nodiscard]] DepthUnit finest_depth_unit() const override {
+    return recording_->finest_depth_unit();
+  }
+  [[nodiscard]] int num_depth_frames() const override { return static_cast<int>(depths_.size()); }
+  [[nodiscard]] int num_color_frames() const override { return static_cast<int>(colors_.size()); }
+  [[nodiscard]] std::int64_t depth_utime(int index) const override;
+  [[nodiscard]] std::int64_t color_utime(int index) const override;
+  [[nodiscard]] std::int64_t depth_stamp(int index) const override;
+  [[nodiscard]] std::int64_t color_stamp(int index) const override;
+  [[nodiscard]] std::int64_t color_delay_us() const override { return imitation_.color_delay_us; }
+  [[nodiscard]] cv::Mat_<std::uint16_t> depth(int index, DepthUnit unit) override;
+  [[nodiscard]] cv::Mat_<cv::Vec3b> color(int index) override;
+  [[nodiscard]] std::optional<Pose> depth_X_WC(int index) const override;
+
+ private:
+  [[nodiscard]] bool color_comes(int index) const;
+  [[nodiscard]] std::int64_t clock(std::int64_t utime) const;
+
+  std::unique_ptr<Recording> recording_;
+  CameraImitation imitation_;
+  std::vector<int> depths_;  ///< indices of the images that come
+  std::vector<int> colors_;
+  std::int64_t clock_zero_ = 0;                   ///< time of the recording at which the clock is 0
+  std::optional<std::int64_t> clock_jump_utime_;  ///< of the recording; absent: no jump
+};
+
+}  // namespace kintsugi::mapper

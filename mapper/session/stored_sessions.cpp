@@ -1,0 +1,98 @@
+#include "mapper/session/stored_sessions.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string_view>
+
+#include <nlohmann/json.hpp>
+
+#include "lcmtypes/channels.hpp"
+
+namespace kintsugi::mapper {
+namespace {
+
+StoredSession read_options(ByteView data) {
+  try {
+    const auto json = nlohmann::json::parse(data.begin(), data.end());
+    const auto& number = json.at("session");
+    if (!number.is_number_integer()) throw std::runtime_error("session is no whole number");
+    StoredSession session;
+    session.session = number.get<std::int64_t>();
+    session.options = json.at("options").get<MappingOptions>();
+    return session;
+  } catch (const std::exception& error) {
+    throw std::runtime_error(std::string("its ") + kOptionsChannel +
+                             " cannot be read: " + error.what());
+  }
+}
+
+}  // namespace
+
+Bytes encode_options(std::int64_t session, const MappingOptions& options) {
+  const std::string text = nlohmann::json{{"session", session}, {"options", options}}.dump();
+  return {text.begin(), text.end()};
+}
+
+std::optional<StoredChunk> StoredSessionReader::read(const LogEvent& event) {
+  if (event.channel == kOptionsChannel) {
+    begin_session(event);
+    return {};
+  }
+  if (sessions_.empty()) {
+    throw std::runtime_error("it begins with channel '" + event.channel +
+                             "': no log that a mapper made with --store");
+  }
+  sessions_.back().last_event_utime = event.utime;
+  if (event.channel == channels::kCloudSlice) return read_slice_chunk(event);
+  if (event.channel == channels::kRgbdFrame) return read_frame_chunk(event);
+  if (event.channel == channels::kCameraPose) {
+    const auto pose = decode<CameraPose>(event.data);
+    auto& utimes = session(pose.session).mapped_utimes;
+    if (utimes.empty() || pose.utime > utimes.back()) utimes.push_back(pose.utime);
+  } else if (event.channel == channels::kMapperStatus) {
+    auto status = decode<MapperStatus>(event.data);
+    session(status.session).last_status = std::move(status);
+  }
+  return {};
+}
+
+void StoredSessionReader::begin_session(const LogEvent& event) {
+  StoredSession session = read_options(event.data);
+  session.last_event_utime = event.utime;
+  const auto same = [&](const StoredSession& other) { return other.session == session.session; };
+  if (std::ranges::any_of(sessions_, same)) {
+    throw std::runtime_error("session " + std::to_string(session.session) + " begins again");
+  }
+  sessions_.push_back(std::move(session));
+}
+
+StoredSession& StoredSessionReader::session(std::int64_t number) {
+  const auto found = std::ranges::find(sessions_, number, &StoredSession::session);
+  if (found == sessions_.end()) {
+    throw std::runtime_error("a message of session " + std::to_string(number) +
+                             ", which did not begin in this log");
+  }
+  return *found;
+}
+
+StoredChunk StoredSessionReader::read_slice_chunk(const LogEvent& event) {
+  const auto chunk = decode_chunk<CloudSlice>(event.data);
+  StoredSession& of = session(chunk.header.session);
+  if (chunk.header.kind == SliceKind::kFinal) {
+    of.final_slice_begun = true;
+    of.slice_chunks_end = chunk.sequence - chunk.index + chunk.count;
+  }
+  return {event.channel, of.session, chunk.sequence};
+}
+
+StoredChunk StoredSessionReader::read_frame_chunk(const LogEvent& event) {
+  const auto chunk = decode_chunk<RgbdFrameMessage>(event.data);
+  StoredSession& of = session(chunk.header.session);
+  if (chunk.index + 1 == chunk.count) {
+    of.frame_chunks_end = chunk.sequence + 1;
+    of.last_frame_utime = chunk.header.utime;
+  }
+  return {event.channel, of.session, chunk.sequence};
+}
+
+}  // namespace kintsugi::mapper

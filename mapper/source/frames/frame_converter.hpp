@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+
+#include <opencv2/core.hpp>
+
+#include "mapper/core/frame/rgbd_frame.hpp"
+#include "mapper/source/frames/undistorter.hpp"
+
+namespace kintsugi::mapper {
+
+/// Depth and colour of one moment, as a device gave them.
+struct RawFrame {
+  std::int64_t utime = 0;        ///< of the depth image, microseconds
+  std::int64_t frame_index = 0;  ///< of the depth image
+  cv::Mat_<std::uint16_t> depth_raw;
+  cv::Mat_<cv::Vec3b> color_rgb;  ///< or empty
+};
+
+/// Raw depth to metres along C's z; raw 0, raw 65535 and what lies beyond `max_range_m` is NaN.
+cv::Mat_<float> depth_to_metres(const cv::Mat_<std::uint16_t>& depth_raw, double units_per_m,
+                                double max_range_m);
+
+/// The one place where raw images become what the mapper works on: depth in metres, the lens's
+/// distortion removed.
+class FrameConverter {
+ public:
+  /// @throws std::invalid_argument when the intrinsics, the unit or the range are not positive.
+  FrameConverter(const Intrinsics& intrinsics, double depth_units_per_m, double max_range_m);
+
+  /// Images must have the size of the calibration, else std::invalid_argument.
+  [[nodiscard]] RgbdFrame convert(const RawFrame& raw) const;
+
+ private:
+  Undistorter undistorter_;
+  double depth_units_per_m_;
+  double max_range_m_;
+};
+
+}  // namespace kintsugi::mapper

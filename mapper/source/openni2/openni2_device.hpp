@@ -1,0 +1,78 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <opencv2/core.hpp>
+
+#include "mapper/source/frame_source.hpp"
+#include "mapper/source/openni2/device_state.hpp"
+
+namespace kintsugi::mapper {
+
+/// A depth or a colour image of a device, whole and not mirrored.
+struct DeviceImage {
+  bool is_depth = true;
+  std::int64_t utime = 0;  ///< device time, microseconds
+  std::int64_t index = 0;  ///< as the device counts, in its own stream
+  cv::Mat_<std::uint16_t> depth_raw;
+  cv::Mat_<cv::Vec3b> color_rgb;  ///< on the depth image's pixels
+};
+
+/// An OpenNI2 device with its depth and, where it has one that is aligned with depth, colour
+/// stream, started.
+///
+/// Registers depth to colour where the device can, takes the depth unit that suits the range, and
+/// undoes mirroring and cropping. One thread at a time. OpenNI2 itself is initialised with the
+/// first device of the process and shut down with the last.
+class OpenNi2Device {
+ public:
+  /// @param uri as OpenNI2 has it; empty: the first camera.
+  /// @throws std::runtime_error with the device and what OpenNI2 says.
+  OpenNi2Device(const std::string& uri, const SourceConfig& config);
+  ~OpenNi2Device();
+  OpenNi2Device(const OpenNi2Device&) = delete;
+  OpenNi2Device& operator=(const OpenNi2Device&) = delete;
+
+  /// The next image, oldest first; nullopt when none came in `timeout`.
+  /// @throws std::runtime_error for an image that cannot be used.
+  std::optional<DeviceImage> wait(std::chrono::milliseconds timeout);
+
+  /// Exposure and white balance of the colour camera stay as they are now.
+  /// @return false when the device has no such settings.
+  bool lock_exposure();
+
+  /// Nothing more is read. The streams stop at once, not only with this object's end: OpenNI2's
+  /// file driver keeps a core busy from the end of a file until then.
+  void stop();
+
+  /// What the device has said; images from before may still be there to be read.
+  [[nodiscard]] DeviceState state() const;
+
+  /// Why state() is kFailed, where the device told.
+  [[nodiscard]] std::string failure() const;
+
+  [[nodiscard]] std::string name() const;
+  [[nodiscard]] std::string uri() const;
+  [[nodiscard]] std::string serial_number() const;  ///< empty where the device has none
+  [[nodiscard]] bool is_recording() const;
+  [[nodiscard]] bool has_color() const;
+  [[nodiscard]] std::optional<int> num_depth_frames() const;  ///< of a recording
+  [[nodiscard]] double depth_units_per_m() const;
+  [[nodiscard]] int depth_rate_hz() const;  ///< nominal, at least 1
+  [[nodiscard]] cv::Size image_size() const;
+
+  /// With the lens's distortion when the device is ours; otherwise from the field of view alone
+  /// (of the colour camera where depth is registered to it), the principal point in the middle.
+  /// @throws std::runtime_error when the device tells none.
+  [[nodiscard]] Intrinsics intrinsics() const;
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace kintsugi::mapper

@@ -1,0 +1,64 @@
+#include "mapper/source/openni2/openni2_runtime.hpp"
+
+#include <algorithm>
+#include <mutex>
+#include <stdexcept>
+#include <utility>
+
+namespace kintsugi::mapper {
+
+OpenNi2Runtime::OpenNi2Runtime() {
+  if (openni::OpenNI::initialize() != openni::STATUS_OK) {
+    throw std::runtime_error("OpenNI2 cannot be initialised: " + openni2_error());
+  }
+}
+
+OpenNi2Runtime::~OpenNi2Runtime() { openni::OpenNI::shutdown(); }
+
+std::shared_ptr<OpenNi2Runtime> OpenNi2Runtime::shared() {
+  static std::mutex mutex;
+  static std::weak_ptr<OpenNi2Runtime> current;
+  const std::lock_guard lock(mutex);
+  auto runtime = current.lock();
+  if (!runtime) current = runtime = std::make_shared<OpenNi2Runtime>();
+  return runtime;
+}
+
+std::string openni2_error() {
+  std::string text = openni::OpenNI::getExtendedError();
+  std::ranges::replace(text, '\n', ' ');
+  text.erase(text.find_last_not_of(" \t\r") + 1);
+  return text.empty() ? "OpenNI2 gives no reason" : text;
+}
+
+std::vector<openni::DeviceInfo> plugged_in_cameras() {
+  openni::Array<openni::DeviceInfo> listed;
+  openni::OpenNI::enumerateDevices(&listed);
+  std::vector<openni::DeviceInfo> cameras;
+  cameras.reserve(static_cast<std::size_t>(listed.getSize()));
+  for (int i = 0; i < listed.getSize(); ++i) cameras.push_back(listed[i]);
+  return cameras;
+}
+
+DeviceListener::DeviceListener(std::string uri) : uri_(std::move(uri)) {
+  openni::OpenNI::addDeviceStateChangedListener(this);
+  openni::OpenNI::addDeviceDisconnectedListener(this);
+}
+
+DeviceListener::~DeviceListener() {
+  openni::OpenNI::removeDeviceDisconnectedListener(this);
+  openni::OpenNI::removeDeviceStateChangedListener(this);
+}
+
+void DeviceListener::onDeviceStateChanged(const openni::DeviceInfo* info,
+                                          openni::DeviceState state) {
+  if (info == nullptr || uri_ != info->getUri()) return;
+  if (state == openni::DEVICE_STATE_EOF) state_ = DeviceState::kEnded;
+  if (state == openni::DEVICE_STATE_ERROR) state_ = DeviceState::kFailed;
+}
+
+void DeviceListener::onDeviceDisconnected(const openni::DeviceInfo* info) {
+  if (info != nullptr && uri_ == info->getUri()) state_ = DeviceState::kGone;
+}
+
+}  // namespace kintsugi::mapper

@@ -1,0 +1,189 @@
+#include "mapper/source/openni2/openni2_source.hpp"
+
+#include <array>
+#include <cstdio>
+#include <stdexcept>
+#include <utility>
+
+#include "lcmtypes/base/stopwatch.hpp"
+#include "mapper/source/openni2/openni2_opening.hpp"
+
+namespace kintsugi::mapper {
+namespace {
+
+constexpr auto kPoll = std::chrono::milliseconds(100);
+constexpr double kMaxSilenceOfRecording_s = 10.0;
+
+std::int64_t depth_period_us(const OpenNi2Device& device) {
+  return 1'000'000 / device.depth_rate_hz();
+}
+
+std::string in_seconds(double seconds) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.1f s", seconds);
+  return text.data();
+}
+
+}  // namespace
+
+OpenNi2Source::OpenNi2Source(const SourceConfig& config)
+    : config_(config),
+      device_(open_device(config, damage_)),
+      name_(device_->name()),
+      clock_(!device_->is_recording(), depth_period_us(*device_)),
+      color_clock_(depth_period_us(*device_)),
+      pairer_(device_->has_color(), depth_period_us(*device_)),
+      last_depth_s_(patience_.now_s()) {
+  converter_.emplace(find_intrinsics(config, *device_), device_->depth_units_per_m(),
+                     config.max_range_m);
+  frames_total_ = device_->num_depth_frames().value_or(-1);
+}
+
+std::optional<RgbdFrame> OpenNi2Source::next() {
+  for (;;) {
+    if (const auto raw = pairer_.take()) {
+      ++counts_.frames_delivered;
+      const Stopwatch stopwatch;
+      RgbdFrame frame = converter_->convert(*raw);
+      counts_.convert_ms += stopwatch.elapsed_ms();
+      return frame;
+    }
+    if (!end_reason_.empty()) return std::nullopt;
+    if (config_.stop_requested()) {
+      end(true, "stopped on request");
+    } else if (device_) {
+      read_image();
+    } else {
+      wait_for_camera();
+    }
+  }
+}
+
+SourceCounts OpenNi2Source::counts() const {
+  SourceCounts counts = counts_;
+  counts.depth_unpaired = pairer_.depth_unpaired();
+  counts.color_unpaired = pairer_.color_unpaired();
+  return counts;
+}
+
+void OpenNi2Source::read_image() {
+  const DeviceState state_before = device_->state();
+  try {
+    if (auto image = device_->wait(kPoll)) {
+      add(std::move(*image));
+    } else {
+      check_for_end(state_before);
+    }
+  } catch (const std::runtime_error& refusal) {
+    ++counts_.frames_bad;
+    last_refusal_ = refusal.what();
+  }
+  if (device_) check_for_silence();
+}
+
+void OpenNi2Source::add(DeviceImage image) {
+  lock_exposure_when_due(image.utime);
+  const auto stream = image.is_depth ? DeviceClock::Stream::kDepth : DeviceClock::Stream::kColor;
+  const std::int64_t utime = clock_.time_of(stream, image.utime, Clock::now());
+  if (!image.is_depth) {
+    return pairer_.add_color(color_clock_.add_color(utime), std::move(image.color_rgb));
+  }
+  last_depth_s_ = patience_.now_s();
+  compare_clocks(utime);
+  pairer_.add_depth(utime, continuous_index(image.index), std::move(image.depth_raw));
+}
+
+void OpenNi2Source::compare_clocks(std::int64_t depth_utime) {
+  const std::int64_t known_us = color_clock_.ahead_us();
+  color_clock_.add_depth(depth_utime);
+  if (color_clock_.ahead_us() == known_us) return;
+  config_.notify({SourceNotice::Kind::kInformation,
+                  "the clock of the colour images is ahead of that of the depth images by " +
+                      in_seconds(1e-6 * static_cast<double>(color_clock_.ahead_us())) +
+                      ": taken into account"});
+}
+
+/// Counts on when the device begins anew, and counts what it left out.
+std::int64_t OpenNi2Source::continuous_index(std::int64_t index) {
+  const std::int64_t step = device_index_ && index > *device_index_ ? index - *device_index_ : 1;
+  device_index_ = index;
+  counts_.frames_dropped += step - 1;
+  frame_index_ = frame_index_ ? *frame_index_ + step : index;
+  return *frame_index_;
+}
+
+void OpenNi2Source::lock_exposure_when_due(std::int64_t stamp_us) {
+  if (!config_.lock_exposure_after_s || exposure_locked_) return;
+  if (!first_stamp_us_) first_stamp_us_ = stamp_us;
+  const double elapsed_s = 1e-6 * static_cast<double>(stamp_us - *first_stamp_us_);
+  if (elapsed_s < *config_.lock_exposure_after_s) return;
+  exposure_locked_ = true;
+  if (device_->lock_exposure()) return;
+  config_.notify({SourceNotice::Kind::kWarning,
+                  "exposure cannot be locked: the device has no such camera settings"});
+}
+
+/// Nothing came. OpenNI2 itself only lets the wait time out when a recording is over.
+/// @param state_before from before the wait: what the device had played by then has been read.
+void OpenNi2Source::check_for_end(DeviceState state_before) {
+  switch (state_before) {
+    case DeviceState::kPlaying:
+      return;
+    case DeviceState::kEnded:
+      if (!damage_.empty()) return end(false, "ended after " + damage_);
+      return end(true, "end of the recording");
+    case DeviceState::kFailed:
+      if (device_->is_recording()) return end(false, device_->failure());
+      return interrupt(device_->failure());
+    case DeviceState::kGone:
+      return interrupt("it was disconnected");
+  }
+}
+
+void OpenNi2Source::check_for_silence() {
+  const double silence_s = patience_.now_s() - last_depth_s_;
+  const bool is_recording = device_->is_recording();
+  if (silence_s < (is_recording ? kMaxSilenceOfRecording_s : config_.device_silence_s)) return;
+  std::string reason = "no depth image came for " + in_seconds(silence_s);
+  if (!last_refusal_.empty()) reason += ", the last image was refused: " + last_refusal_;
+  if (is_recording) return end(false, reason);
+  interrupt(reason);
+}
+
+void OpenNi2Source::interrupt(const std::string& reason) {
+  ++counts_.interruptions;
+  config_.notify({SourceNotice::Kind::kInterrupted,
+                  "device '" + name_ + "' is gone: " + reason + "; waiting for it"});
+  return_.emplace(config_, *device_);
+  device_.reset();
+  pairer_.finish();
+  clock_.interrupt();
+}
+
+void OpenNi2Source::wait_for_camera() {
+  device_ = return_->wait(kPoll);
+  const double away_s = return_->seconds_away();
+  if (!device_) {
+    if (config_.reconnect_s == 0.0 || away_s < config_.reconnect_s) return;
+    return end(false, "device '" + name_ + "' did not come back in " + in_seconds(away_s) + ": " +
+                          return_->last_error());
+  }
+  return_.reset();
+  pairer_.resume(device_->has_color());
+  device_index_.reset();
+  first_stamp_us_.reset();
+  exposure_locked_ = false;
+  last_refusal_.clear();
+  last_depth_s_ = patience_.now_s();
+  config_.notify(
+      {SourceNotice::Kind::kResumed, "device '" + name_ + "' is back after " + in_seconds(away_s)});
+}
+
+void OpenNi2Source::end(bool well, const std::string& reason) {
+  ended_well_ = well;
+  end_reason_ = reason;
+  if (device_) device_->stop();
+  pairer_.finish();
+}
+
+}  // namespace kintsugi::mapper

@@ -1,0 +1,69 @@
+#pragma once
+// What a camera records in a synthetic scene, frame by frame.
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+
+#include <opencv2/core.hpp>
+
+#include "mapper/synthetic/render/renderer.hpp"
+#include "mapper/synthetic/render/sensor_model.hpp"
+#include "mapper/synthetic/rooms/scenes.hpp"
+
+namespace kintsugi::synthetic {
+
+/// Depth, colour and ground truth of a scene along its path. Any frame may be asked for in any
+/// order, and is always the same; the frame rendered last is kept.
+class Sequence {
+ public:
+  struct Config {
+    std::string scene = "office";  ///< one of scene_names()
+    bool noise = true;             ///< of the depth sensor
+    std::uint32_t seed = 1;        ///< of the sensor's noise and of the hand's shake
+    int start = 0;                 ///< first frame of the path, >= 0 and on the path
+    std::optional<int> frames;     ///< how many, >= 1 and on the path; absent: to the path's end
+    std::string ground_truth;      ///< folder to write the truth to; empty: nowhere
+
+    /// From the options of a `synthetic://scene?key=value&...` address: noise=on|off, seed=N,
+    /// start=N, frames=N, ground_truth=FOLDER.
+    /// @throws std::invalid_argument naming a bad key or value and what there is instead.
+    static Config parse(const std::string& scene,
+                        const std::map<std::string, std::string>& options);
+  };
+
+  /// Writes the ground truth, if asked to (see ground_truth.hpp).
+  /// @throws std::invalid_argument naming scene or field, value and bound; std::system_error if
+  /// the ground truth cannot be written.
+  explicit Sequence(const Config& config);
+
+  const Config& config() const { return config_; }
+  const Scene& scene() const { return content_.scene; }
+  const Intrinsics& intrinsics() const { return intrinsics_; }
+  int num_frames() const { return num_frames_; }
+
+  /// Time since the start of the path, microseconds; frame 0 is at frame `start` of the path.
+  std::int64_t utime(int frame) const { return frame_utime(config_.start + frame); }
+
+  /// True pose in the scene's frame (see Scene).
+  Pose X_WC(int frame) const;
+
+  const RenderedFrame& truth(int frame);  ///< valid until the next call
+
+  /// As the sensor sees it, millimetres, 0 is invalid.
+  cv::Mat_<std::uint16_t> depth_mm(int frame);
+
+ private:
+  void check_index(int frame) const;
+
+  Config config_;
+  SceneWithPath content_;
+  SensorModel sensor_;
+  Intrinsics intrinsics_ = default_intrinsics();
+  int num_frames_ = 0;
+  int rendered_ = -1;
+  RenderedFrame last_;
+};
+
+}  // namespace kintsugi::synthetic

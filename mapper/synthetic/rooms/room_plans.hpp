@@ -1,0 +1,22 @@
+#pragma once
+// One function per scene of scenes.hpp.
+
+#include <cstdint>
+
+#include "mapper/synthetic/rooms/scenes.hpp"
+
+namespace kintsugi::synthetic {
+
+SceneWithPath sphere_scene(std::uint32_t seed);
+SceneWithPath plane_scene(std::uint32_t seed);
+SceneWithPath box_room_scene(std::uint32_t seed);
+SceneWithPath office_scene(std::uint32_t seed);
+SceneWithPath loop_scene(std::uint32_t seed);
+SceneWithPath two_floors_scene(std::uint32_t seed);
+
+SceneWithPath wall_scene(bool is_textured, std::uint32_t seed);
+SceneWithPath floor_scene(bool is_textured, std::uint32_t seed);
+SceneWithPath corridor_scene(bool is_textured, std::uint32_t seed);
+SceneWithPath wall_visit_scene(bool is_textured, std::uint32_t seed);
+
+}  // namespace kintsugi::synthetic

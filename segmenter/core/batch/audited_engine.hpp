@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <stdexcept>
+
+#include "segmenter/core/batch/batch_engine.hpp"
+#include "segmenter/core/engine/engine.hpp"
+
+namespace kintsugi::segmenter {
+
+/// An engine is not in agreement with batch.
+class AuditError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Holds an engine against batch: after each update every label and every theta must be the same,
+/// to the bit, with fragments joined and before that. Costs a batch run an update.
+class AuditedEngine final : public SegmentationEngine {
+ public:
+  AuditedEngine(std::unique_ptr<SegmentationEngine> engine, const PointCloud& cloud,
+                const EngineConfig& config);
+
+  /// Throws AuditError, naming the first point that differs.
+  RunStatistics update(const CloudChange& change) override;
+  void look_ahead(std::span<const CloudPoint> slice_W) override { engine_->look_ahead(slice_W); }
+  std::span<const ComponentId> components() const override { return engine_->components(); }
+  std::span<const ComponentId> unmerged_components() const override {
+    return engine_->unmerged_components();
+  }
+  std::span<const PointIndex> changed() const override { return engine_->changed(); }
+  double theta(ComponentId component) const override { return engine_->theta(component); }
+  std::size_t bytes() const override { return engine_->bytes() + reference_.bytes(); }
+
+ private:
+  void compare(std::span<const ComponentId> components,
+               std::span<const ComponentId> expected) const;
+
+  std::unique_ptr<SegmentationEngine> engine_;
+  const PointCloud& cloud_;
+  BatchEngine reference_;
+  std::int64_t num_updates_ = 0;
+};
+
+}  // namespace kintsugi::segmenter

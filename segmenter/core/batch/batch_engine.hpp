@@ -1,0 +1,42 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "segmenter/core/batch/batch_segmentation.hpp"
+#include "segmenter/core/batch/segment_forest.hpp"
+#include "segmenter/core/engine/engine.hpp"
+
+namespace kintsugi::segmenter {
+
+/// Mode `batch`: Algorithm 1 and the fragment step, if there is one, over all points there are,
+/// from scratch at each update. The reference.
+class BatchEngine final : public SegmentationEngine {
+ public:
+  BatchEngine(const PointCloud& cloud, const EngineConfig& config);
+
+  RunStatistics update(const CloudChange& change) override;
+  std::span<const ComponentId> components() const override {
+    return joins_fragments() ? joined_ : components_;
+  }
+  std::span<const ComponentId> unmerged_components() const override { return components_; }
+  std::span<const PointIndex> changed() const override { return changed_; }
+  double theta(ComponentId component) const override;
+  std::size_t bytes() const override;
+
+ private:
+  std::vector<ComponentId> take_over(const CloudChange& change);
+  BatchStatistics segment(std::span<const PointIndex> points);
+  bool joins_fragments() const { return config_.fragment_limit() > 0; }
+  void join_fragments_of(std::span<const PointIndex> points);
+
+  const PointCloud& cloud_;
+  EngineConfig config_;
+  std::unique_ptr<NeighbourIndex> index_;  ///< none for the grid: all neighbours are found at once
+  SegmentForest forest_;
+  std::vector<ComponentId> components_;  ///< by the smallest point of each
+  std::vector<ComponentId> joined_;  ///< the same with fragments joined; none where they are not
+  std::vector<PointIndex> changed_;
+};
+
+}  // namespace kintsugi::segmenter

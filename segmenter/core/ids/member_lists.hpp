@@ -1,0 +1,96 @@
+#pragma once
+
+#include <cstddef>
+#include <iterator>
+
+#include "lcmtypes/base/growing_array.hpp"
+#include "segmenter/core/points/point_cloud.hpp"
+
+namespace kintsugi::segmenter {
+
+/// Which points belong together: circular doubly linked lists through arrays by point. Joining and
+/// leaving takes no allocation and no search, however large the list.
+///
+/// A list is known by any of its points; each operation returns the one to know it by from now on.
+class MemberLists {
+ public:
+  static constexpr PointIndex kEmpty = UINT32_MAX;
+
+  void resize(PointIndex num_points) { links_.resize(num_points); }
+  std::size_t bytes() const { return links_.bytes(); }
+
+  /// Puts `point`, which is in no list, into the list of `head` (kEmpty: a new one).
+  PointIndex insert(PointIndex head, PointIndex point) {
+    if (head == kEmpty) {
+      links_[point] = {point, point};
+      return point;
+    }
+    const PointIndex last = links_[head].previous;
+    links_[point] = {last, head};
+    links_[last].next = point;
+    links_[head].previous = point;
+    return head;
+  }
+
+  /// Takes `point` out of its list, which is that of `head`.
+  PointIndex erase(PointIndex head, PointIndex point) {
+    const Link link = links_[point];
+    links_[link.previous].next = link.next;
+    links_[link.next].previous = link.previous;
+    if (head != point) return head;
+    return link.next == point ? kEmpty : link.next;
+  }
+
+  /// The points of one list, in no particular order. Valid while the lists do not change.
+  class List {
+   public:
+    class Iterator {
+     public:
+      using iterator_category = std::forward_iterator_tag;
+      using value_type = PointIndex;
+      using difference_type = std::ptrdiff_t;
+      using pointer = const PointIndex*;
+      using reference = PointIndex;
+
+      Iterator() = default;
+      Iterator(const MemberLists* lists, PointIndex head, PointIndex at)
+          : lists_(lists), head_(head), at_(at) {}
+      PointIndex operator*() const { return at_; }
+      Iterator& operator++() {
+        at_ = lists_->links_[at_].next;
+        if (at_ == head_) at_ = kEmpty;
+        return *this;
+      }
+      Iterator operator++(int) {
+        const Iterator before = *this;
+        ++*this;
+        return before;
+      }
+      bool operator==(const Iterator& other) const { return at_ == other.at_; }
+
+     private:
+      const MemberLists* lists_ = nullptr;
+      PointIndex head_ = kEmpty;
+      PointIndex at_ = kEmpty;
+    };
+
+    List(const MemberLists& lists, PointIndex head) : lists_(&lists), head_(head) {}
+    Iterator begin() const { return {lists_, head_, head_}; }
+    Iterator end() const { return {lists_, head_, kEmpty}; }
+    bool empty() const { return head_ == kEmpty; }
+
+   private:
+    const MemberLists* lists_;
+    PointIndex head_;
+  };
+  List list(PointIndex head) const { return {*this, head}; }
+
+ private:
+  struct Link {
+    PointIndex previous;
+    PointIndex next;
+  };
+  GrowingArray<Link> links_;
+};
+
+}  // namespace kintsugi::segmenter

@@ -1,0 +1,64 @@
+#pragma once
+// Everything the paper measures, over one recorded session.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "segmenter/evaluation/agreement/agreement.hpp"
+#include "segmenter/evaluation/agreement/theta_history.hpp"
+#include "segmenter/evaluation/session/recorded_session.hpp"
+#include "segmenter/evaluation/times/lag.hpp"
+#include "segmenter/evaluation/times/replay.hpp"
+
+namespace kintsugi::segmenter {
+
+/// The modes there are: the incremental ones first, `batch` last.
+std::vector<std::string> evaluation_modes();
+
+struct EvaluationConfig {
+  std::vector<std::string> modes = evaluation_modes();  ///< at least one, each once
+  EngineConfig engine;           ///< its resolution_m is replaced by that of the session
+  int batch_every = 0;           ///< mode `batch` runs after every so many steps; 0: see next
+  double batch_budget_s = 60.0;  ///< then as often as fits into this time, > 0
+  std::vector<int> segments = {1, 2, 3};  ///< whose theta is shown, by rank: 1 is the largest
+
+  /// Throws std::invalid_argument naming field, value and bound.
+  void validate() const;
+};
+
+/// Of a segment that theta is shown for.
+struct ChosenSegment {
+  int rank = 0;
+  ThetaHistory history;
+};
+
+/// One mode over the session.
+struct ModeResult {
+  Replay replay;
+  bool is_complete = true;                  ///< ran after every step; else it was sampled (`batch`)
+  std::vector<std::int64_t> slices_behind;  ///< of each step; empty: no times, or sampled
+  std::vector<SegmentAgreement> agreements;  ///< with batch, on the final map
+};
+
+struct Evaluation {
+  EvaluationConfig config;
+  RecordedSession session;
+  std::int64_t num_vertices = 0;  ///< points of the final map
+  std::int64_t num_segments = 0;  ///< of batch
+  std::vector<ModeResult> modes;
+  std::vector<ChosenSegment> thetas;
+  double batch_final_ms = 0.0;      ///< batch once over the final map
+  int batch_every = 1;              ///< as it was done
+  std::int64_t resident_bytes = 0;  ///< memory of the process at the end
+  std::int64_t peak_resident_bytes = 0;
+};
+
+/// Segments the final map with batch, which is the reference, then replays the session in each
+/// mode.
+/// @throws std::invalid_argument for an invalid config
+Evaluation evaluate(RecordedSession session, EvaluationConfig config,
+                    const OnReplayProgress& on_progress = {});
+
+}  // namespace kintsugi::segmenter

@@ -1,0 +1,137 @@
+#include "segmenter/evaluation/quality/quality_evaluation.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <stdexcept>
+#include <utility>
+
+#include "segmenter/core/points/point_cloud.hpp"
+#include "segmenter/core/presets.hpp"
+
+namespace kintsugi::segmenter {
+namespace {
+
+using Labels = std::vector<std::uint32_t>;
+
+void require(bool holds, const std::string& what) {
+  if (!holds) throw std::invalid_argument(what);
+}
+
+/// The final map: its points in order of slice and index, and what each belongs to.
+class KnownMap {
+ public:
+  KnownMap(const RecordedSession& session, const Truth& truth,
+           const QualityEvaluationConfig& config)
+      : quality_(config.quality), objects_(truth.objects()) {
+    for (const CloudSlice* slice : session.newest_slices()) {
+      cloud_.add_slice(slice->id, slice->points_W);
+    }
+    const double resolution_m = session.resolution_m();
+    instances_ = instances_at(cloud_.points_W(), truth, config.match_distance_vox * resolution_m);
+    quality_.boundary = {.radius_m = config.boundary_radius_vox * resolution_m,
+                         .tolerance_m = config.boundary_tolerance_vox * resolution_m};
+  }
+
+  [[nodiscard]] const PointCloud& cloud() const { return cloud_; }
+
+  /// @param given the segment_id of the points of each slice, rejected ones included
+  [[nodiscard]] Labels accepted(const std::vector<Labels>& given) const {
+    Labels labels;
+    for (std::size_t s = 0; s < given.size(); ++s) {
+      const SliceRecord& slice = cloud_.slices()[s];
+      for (PointIndex k = 0; k < slice.count; ++k) {
+        labels.push_back(given[s][static_cast<std::size_t>(slice.index_of(k))]);
+      }
+    }
+    return labels;
+  }
+
+  /// Fills in time and quality.
+  void segment(QualityResult& result) const {
+    const CloudChange everything = cloud_.everything();
+    const auto begin = std::chrono::steady_clock::now();
+    const auto engine = make_engine("batch", cloud_, result.variant.engine);
+    engine->update(everything);
+    const std::chrono::duration<double, std::milli> time = std::chrono::steady_clock::now() - begin;
+    result.segmentation_ms = time.count();
+    Labels labels(engine->components().begin(), engine->components().end());
+    for (std::uint32_t& label : labels) ++label;  // above kNoSegment
+    assess(labels, result);
+  }
+
+  void assess(const Labels& labels, QualityResult& result) const {
+    result.quality = assess_quality(cloud_.points_W(), instances_, labels, objects_, quality_);
+    if (result.quality.num_points == 0) {
+      throw std::runtime_error(
+          "no point of the map is within reach of the truth: do the two share "
+          "a frame?");
+    }
+  }
+
+ private:
+  PointCloud cloud_;
+  Labels instances_;
+  QualityConfig quality_;
+  std::set<std::uint32_t> objects_;
+};
+
+QualityVariant variant_of(const std::string& name, const QualityEvaluationConfig& config) {
+  if (name == kGivenLabels) return {.name = name, .engine = {}, .parameter = ""};
+  return {
+      .name = name, .engine = name == kGivenEngine ? config.engine : preset(name), .parameter = ""};
+}
+
+}  // namespace
+
+void QualityEvaluationConfig::validate() const {
+  require(!presets.empty(), "presets is empty, must name at least one");
+  for (const std::string& name : presets) {
+    require(std::ranges::count(presets, name) == 1,
+            std::string("presets names '").append(name).append("' twice"));
+    if (name != kGivenLabels && name != kGivenEngine) preset(name);  // throws
+  }
+  engine.validate();
+  require(match_distance_vox > 0.0,
+          "match_distance_vox is " + std::to_string(match_distance_vox) + ", must be > 0");
+  QualityConfig in_voxels = quality;
+  in_voxels.boundary = {.radius_m = boundary_radius_vox, .tolerance_m = boundary_tolerance_vox};
+  in_voxels.validate();
+}
+
+QualityEvaluation evaluate_quality(const RecordedSession& session, const Truth& truth,
+                                   const QualityEvaluationConfig& config,
+                                   const OnQualityResult& on_result) {
+  config.validate();
+  const bool wants_labels = std::ranges::count(config.presets, kGivenLabels) > 0;
+  require(!wants_labels || !session.segment_ids.empty(),
+          "presets names 'labels', but " + session.source + " has no segment_id");
+  QualityEvaluation evaluation;
+  evaluation.config = config;
+  evaluation.source = session.source;
+  evaluation.truth_source = truth.source;
+  evaluation.resolution_m = session.resolution_m();
+  evaluation.instances = truth.instances;
+  evaluation.remarks = session.remarks;
+  const KnownMap map(session, truth, config);
+  evaluation.num_points = map.cloud().num_live();
+  evaluation.num_rejected = map.cloud().num_rejected();
+
+  const auto sweep = config.sweep ? sweep_around(preset("objects")) : std::vector<QualityVariant>{};
+  const std::size_t num_results = config.presets.size() + sweep.size();
+  const auto add = [&](QualityVariant variant, std::vector<QualityResult>& results) {
+    QualityResult& result = results.emplace_back();
+    result.variant = std::move(variant);
+    result.variant.engine.resolution_m = evaluation.resolution_m;
+    if (result.variant.name == kGivenLabels) {
+      map.assess(map.accepted(session.segment_ids), result);
+    } else {
+      map.segment(result);
+    }
+    if (on_result) on_result(result, num_results);
+  };
+  for (const std::string& name : config.presets) add(variant_of(name, config), evaluation.presets);
+  for (const QualityVariant& variant : sweep) add(variant, evaluation.sweep);
+  return evaluation;
+}
+
+}  // namespace kintsugi::segmenter

@@ -1,0 +1,72 @@
+#include <cstdint>
+#include <cstring>
+#include <new>
+#include <utility>
+
+#include <gtest/gtest.h>
+
+#include "lcmtypes/base/reserved_memory.hpp"
+#include "mapper/core/volume/tsdf_block_pool.hpp"
+
+namespace kintsugi::mapper {
+namespace {
+
+TEST(ReservedMemory, GrowsInPlaceAndStartsAtZero) {
+  ReservedMemory memory(std::size_t{1} << 33);
+  EXPECT_EQ(memory.committed_bytes(), 0U);
+  EXPECT_EQ(reinterpret_cast<std::uintptr_t>(memory.data()) % (1U << 21), 0U);
+  memory.commit(1);
+  std::byte* const start = memory.data();
+  start[0] = std::byte{7};
+  memory.commit(10'000'000);
+  EXPECT_EQ(memory.data(), start);
+  EXPECT_EQ(start[0], std::byte{7});
+  EXPECT_EQ(start[9'999'999], std::byte{0});
+  EXPECT_GE(memory.committed_bytes(), 10'000'000U);
+}
+
+TEST(ReservedMemory, GivesMemoryBackAndStartsAnew) {
+  ReservedMemory memory(std::size_t{1} << 24);
+  memory.commit(1000);
+  std::memset(memory.data(), 0xFF, 1000);
+  memory.release();
+  EXPECT_EQ(memory.committed_bytes(), 0U);
+  memory.commit(1000);
+  EXPECT_EQ(memory.data()[999], std::byte{0});
+}
+
+TEST(ReservedMemory, EndsWhereItWasReserved) {
+  ReservedMemory memory(5000);
+  memory.commit(5000);
+  EXPECT_EQ(memory.committed_bytes(), 5000U);
+  EXPECT_THROW(memory.commit(5001), std::bad_alloc);
+}
+
+TEST(ReservedMemory, CanBeMoved) {
+  ReservedMemory memory(5000);
+  memory.commit(10);
+  memory.data()[3] = std::byte{9};
+  ReservedMemory moved(std::move(memory));
+  EXPECT_EQ(moved.data()[3], std::byte{9});
+  ReservedMemory assigned(100);
+  assigned = std::move(moved);
+  EXPECT_EQ(assigned.data()[3], std::byte{9});
+}
+
+TEST(TsdfBlockPool, KeepsBlocksOneAfterTheOther) {
+  TsdfBlockPool pool;
+  for (int i = 0; i < 3000; ++i) {
+    const BlockSlot slot = pool.take(make_block_coord(i, 0, 0));
+    ASSERT_EQ(&pool.voxels(slot), &pool.voxels(0) + slot);
+    pool.voxels(slot).voxels[0] = static_cast<Voxel>(i);
+  }
+  for (BlockSlot slot = 0; slot < pool.end(); ++slot) {
+    ASSERT_EQ(pool.voxels(slot).voxels[0], static_cast<Voxel>(slot));
+  }
+  pool.give_back(1234);
+  EXPECT_EQ(pool.take({}), 1234);
+  EXPECT_EQ(pool.voxels(1234).voxels[0], 0U) << "a recycled block is empty";
+}
+
+}  // namespace
+}  // namespace kintsugi::mapper

@@ -1,0 +1,313 @@
+#include <cmath>
+#include <cstring>
+#include <functional>
+#include <limits>
+#include <random>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "lcmtypes/codec/checksum.hpp"
+#include "lcmtypes/codec/codec.hpp"
+#include "tests/support/allocation_limit.hpp"
+#include "tests/support/example_messages.hpp"
+
+namespace kintsugi {
+namespace {
+
+using namespace testing;  // NOLINT: the examples
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+// A decoder keeps the message a few times over (LCM's struct, ours, the identity) and builds a
+// text when it refuses; a count that is believed would take megabytes.
+std::size_t allocation_limit(std::size_t message_bytes) { return 8 * message_bytes + 16'384; }
+
+struct Subject {
+  const char* name;
+  Bytes message;
+  std::function<void(ByteView)> decode;
+};
+
+template <SmallMessage Message>
+Subject small(const char* name, const Message& message) {
+  return {name, encode(message), [](ByteView data) { (void)decode<Message>(data); }};
+}
+
+template <BulkMessage Message>
+Subject bulk(const char* name, const Message& message) {
+  return {name, encode_chunk(message, 0, 0, kDefaultMaxChunkBytes),
+          [](ByteView data) { (void)join(std::vector{decode_chunk<Message>(data)}); }};
+}
+
+std::vector<Subject> subjects() {
+  return {small("camera_pose", example_camera_pose()),
+          small("mapper_status", example_mapper_status()),
+          small("segmenter_status", example_segmenter_status()),
+          small("viewer_status", example_viewer_status()),
+          small("heartbeat", example_heartbeat()),
+          small("resend_request", example_resend_request()),
+          small("segment_query", example_query()),
+          bulk("cloud_slice", example_slice(10)),
+          bulk("segment_update", example_update(12)),
+          bulk("segment_answer", example_answer(4)),
+          bulk("rgbd_frame", example_frame(40, 30)),
+          bulk("snapshot", example_snapshot(50))};
+}
+
+/// As a sender would make it that means harm: what the message says is false, its checksum right.
+Bytes with_checksum(Bytes message) {
+  if (message.size() >= codec::kChecksumEnd) codec::set_checksum(message);
+  return message;
+}
+
+/// True when `data` decodes. Anything but a DecodeError, or a large allocation, fails the test.
+bool decodes(const Subject& subject, ByteView data) {
+  bool valid = false;
+  const std::size_t allocated = allocated_by([&] {
+    try {
+      subject.decode(data);
+      valid = true;
+    } catch (const DecodeError&) {
+    }
+  });
+  EXPECT_LE(allocated, allocation_limit(data.size())) << subject.name;
+  return valid;
+}
+
+TEST(CodecHostile, EveryTruncationIsRefused) {
+  for (const Subject& subject : subjects()) {
+    ASSERT_TRUE(decodes(subject, subject.message)) << subject.name;
+    for (std::size_t size = 0; size < subject.message.size(); ++size) {
+      const Bytes cut(subject.message.begin(), subject.message.begin() + static_cast<int>(size));
+      EXPECT_FALSE(decodes(subject, cut)) << subject.name << " cut to " << size;
+      EXPECT_FALSE(decodes(subject, with_checksum(cut))) << subject.name << " cut to " << size;
+    }
+  }
+}
+
+TEST(CodecHostile, TrailingBytesAreRefused) {
+  for (const Subject& subject : subjects()) {
+    Bytes longer = subject.message;
+    longer.push_back(0);
+    EXPECT_FALSE(decodes(subject, longer)) << subject.name;
+    EXPECT_FALSE(decodes(subject, with_checksum(longer))) << subject.name;
+  }
+}
+
+TEST(CodecHostile, OtherTypesAreRefused) {
+  for (const Subject& subject : subjects()) {
+    for (const Subject& other : subjects()) {
+      if (&subject.message == &other.message || subject.message == other.message) continue;
+      EXPECT_FALSE(decodes(subject, other.message)) << other.name << " as " << subject.name;
+    }
+  }
+}
+
+TEST(CodecHostile, AChangedByteAnywhereIsRefused) {
+  for (const Subject& subject : subjects()) {
+    for (std::size_t place = 0; place < subject.message.size(); ++place) {
+      for (const int change : {0x01, 0x80, 0xFF}) {
+        Bytes mutated = subject.message;
+        mutated[place] = static_cast<std::uint8_t>(mutated[place] ^ change);
+        EXPECT_FALSE(decodes(subject, mutated)) << subject.name << ", byte " << place;
+      }
+    }
+  }
+}
+
+TEST(CodecHostile, OnlyRawFramesMayComeWithoutAChecksum) {
+  for (const Subject& subject : subjects()) {
+    Bytes message = subject.message;
+    std::fill_n(message.begin() + codec::kChecksumPlace, 4, std::uint8_t{0});
+    EXPECT_EQ(decodes(subject, message), subject.name == std::string("rgbd_frame")) << subject.name;
+  }
+}
+
+TEST(CodecHostile, MutationsDecodeOrAreRefusedAndNothingElse) {
+  std::mt19937 random(1);
+  for (const Subject& subject : subjects()) {
+    int valid = 0;
+    for (int trial = 0; trial < 4'000; ++trial) {
+      Bytes mutated = subject.message;
+      for (int i = 1 + static_cast<int>(random() % 4); i > 0; --i) {
+        mutated[random() % mutated.size()] = static_cast<std::uint8_t>(random());
+      }
+      valid += decodes(subject, with_checksum(mutated)) ? 1 : 0;
+    }
+    // The fields without bounds (times, points) may change freely; the others must be caught.
+    EXPECT_GT(valid, 0) << subject.name;
+    EXPECT_LT(valid, 4'000) << subject.name;
+  }
+}
+
+TEST(CodecHostile, EveryFourBytesMayClaimToBeAHugeCount) {
+  for (const Subject& subject : subjects()) {
+    for (const std::uint32_t claim : {0x7FFFFFFFU, 0x77359400U, 0x80000000U, 0xFFFFFFFFU, 0U}) {
+      for (std::size_t place = codec::kChecksumEnd; place + 4 <= subject.message.size(); ++place) {
+        Bytes mutated = subject.message;
+        for (int i = 0; i < 4; ++i) {
+          mutated[place + static_cast<std::size_t>(i)] =
+              static_cast<std::uint8_t>(claim >> (24 - 8 * i));
+        }
+        decodes(subject, with_checksum(mutated));
+      }
+    }
+  }
+}
+
+TEST(CodecHostile, RandomBytesAreRefused) {
+  std::mt19937 random(2);
+  for (const Subject& subject : subjects()) {
+    for (int trial = 0; trial < 200; ++trial) {
+      Bytes noise(random() % 400);
+      for (auto& byte : noise) byte = static_cast<std::uint8_t>(random());
+      // With the right fingerprint, so that more than the fingerprint is tried.
+      if (noise.size() >= 8 && trial % 2 == 0) {
+        std::copy_n(subject.message.begin(), 8, noise.begin());
+      }
+      EXPECT_FALSE(decodes(subject, with_checksum(noise))) << subject.name;
+    }
+  }
+}
+
+template <class Message, class Change>
+std::string refusal(Message message, const Change& change) {
+  change(message);
+  try {
+    if constexpr (BulkMessage<Message>) {
+      (void)num_chunks(message, kDefaultMaxChunkBytes);
+    } else {
+      (void)encode(message);
+    }
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(CodecBounds, NameTypeFieldValueAndBound) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THAT(refusal(example_slice(1), [](CloudSlice& s) { s.resolution_m = 0; }),
+              AllOf(HasSubstr("cloud_slice_t.resolution_m"), HasSubstr("is 0,"), HasSubstr("..")));
+  EXPECT_THAT(refusal(example_slice(1), [](CloudSlice& s) { s.session = 0; }),
+              HasSubstr("cloud_slice_t.session is 0, expected > 0"));
+  EXPECT_THAT(refusal(example_slice(1), [](CloudSlice& s) { s.id = -1; }), HasSubstr("slice_id"));
+  EXPECT_THAT(refusal(example_slice(1), [](CloudSlice& s) { s.kind = SliceKind{7}; }),
+              HasSubstr("kind is 7"));
+  EXPECT_THAT(refusal(example_slice(1), [](CloudSlice& s) { s.X_WC.linear() *= 1.001; }),
+              AllOf(HasSubstr("X_WC"), HasSubstr("a rotation")));
+  EXPECT_THAT(refusal(example_slice(1), [](CloudSlice& s) { s.X_WC.linear().col(0) *= -1.0; }),
+              HasSubstr("determinant"));
+  EXPECT_THAT(refusal(example_slice(1), [&](CloudSlice& s) { s.X_WC.translation().x() = nan; }),
+              HasSubstr("X_WC is nan"));
+  EXPECT_THAT(refusal(example_slice(1), [&](CloudSlice& s) { s.X_WC.linear()(1, 1) = nan; }),
+              HasSubstr("X_WC is nan"));
+  EXPECT_THAT(refusal(example_slice(1), [](CloudSlice& s) { s.map_name = std::string(1025, 'a'); }),
+              HasSubstr("map_name is 1025 bytes long"));
+  EXPECT_THAT(refusal(example_slice(1), [](CloudSlice& s) { s.map_name = "\x1b[2J"; }),
+              HasSubstr("control"));
+  EXPECT_THAT(refusal(example_slice(1), [](CloudSlice& s) { s.map_name = std::string("a\0b", 3); }),
+              HasSubstr("control"));
+  EXPECT_THAT(refusal(example_update(1),
+                      [](SegmentUpdate& u) {
+                        u.runs = {{0, 0, 0, 1}};
+                      }),
+              HasSubstr("run count is 0"));
+  EXPECT_THAT(refusal(example_update(1), [](SegmentUpdate& u) { u.runs[0].slice_revision = -1; }),
+              HasSubstr("run slice_revision is -1"));
+  EXPECT_THAT(refusal(example_update(1),
+                      [](SegmentUpdate& u) {
+                        u.events = {{SegmentEventType{5}, 1, 0}};
+                      }),
+              HasSubstr("event type is 5"));
+  EXPECT_THAT(refusal(example_update(1),
+                      [&](SegmentUpdate& u) { u.statistics[0].area_m2 = std::nanf(""); }),
+              HasSubstr("area_m2 is nan"));
+  EXPECT_THAT(refusal(example_query(), [](SegmentQuery& q) { q.place = QueryPlace{5}; }),
+              HasSubstr("segment_query_t.place is 5, expected 0 .. 4"));
+  EXPECT_THAT(refusal(example_query(), [](SegmentQuery& q) { q.client = 0; }),
+              HasSubstr("client is 0, expected > 0"));
+  EXPECT_THAT(refusal(example_query(), [](SegmentQuery& q) { q.direction_W[0] = 0.01; }),
+              AllOf(HasSubstr("direction_W"), HasSubstr("a unit vector")));
+  EXPECT_THAT(refusal(example_query(), [&](SegmentQuery& q) { q.point_W[2] = nan; }),
+              HasSubstr("point_W is nan"));
+  EXPECT_THAT(refusal(example_query(), [&](SegmentQuery& q) { q.radius_m = nan; }),
+              HasSubstr("radius_m is nan"));
+  EXPECT_THAT(refusal(example_query(),
+                      [](SegmentQuery& q) {
+                        q.place = QueryPlace::kBox;
+                        q.box_max_W[1] = -3.0;
+                      }),
+              HasSubstr("box_max_W is -3, expected at least box_min_W"));
+  EXPECT_THAT(refusal(example_query(), [](SegmentQuery& q) { q.segment_ids.resize(4'097); }),
+              HasSubstr("num_ids is 4097, expected 0 .. 4096"));
+  EXPECT_THAT(refusal(example_answer(1), [](SegmentAnswer& a) { a.num_matching = 0; }),
+              HasSubstr("num_matching is 0, expected 1 .. 321000"));
+  EXPECT_THAT(refusal(example_answer(0), [](SegmentAnswer& a) { a.problem = "\x1b[2J"; }),
+              HasSubstr("control"));
+  EXPECT_THAT(refusal(example_answer(1), [](SegmentAnswer& a) { a.segments[0].is_planar = 2; }),
+              HasSubstr("is_planar is 2"));
+  EXPECT_THAT(refusal(example_answer(1),
+                      [](SegmentAnswer& a) { a.segments[0].oriented_box_axes_W[1][1] = 1.001F; }),
+              AllOf(HasSubstr("oriented_box_axes_W"), HasSubstr("a unit vector")));
+  EXPECT_THAT(refusal(example_answer(1), [](SegmentAnswer& a) { a.contacts[0].num_pairs = 0; }),
+              HasSubstr("num_pairs is 0"));
+  EXPECT_THAT(refusal(example_frame(1, 1), [](RgbdFrameMessage& f) { f.intrinsics.fx = 0; }),
+              HasSubstr("rgbd_frame_t.fx is 0"));
+  EXPECT_THAT(refusal(example_frame(1, 1), [](RgbdFrameMessage& f) { f.intrinsics.height = 0; }),
+              HasSubstr("height is 0"));
+  EXPECT_THAT(refusal(example_frame(0, 1), [](RgbdFrameMessage&) {}),
+              HasSubstr("depth_bytes is 0"));
+  EXPECT_THAT(refusal(example_mapper_status(), [&](MapperStatus& s) { s.track_ms = nan; }),
+              HasSubstr("mapper_status_t.track_ms is nan, expected a finite number"));
+  EXPECT_THAT(refusal(example_mapper_status(), [](MapperStatus& s) { s.frames_total = -2; }),
+              HasSubstr("frames_total is -2, expected >= -1"));
+  EXPECT_THAT(refusal(example_mapper_status(), [](MapperStatus& s) { s.undetermined = 7; }),
+              HasSubstr("undetermined is 7, expected 0 .. 6"));
+  EXPECT_THAT(refusal(example_heartbeat(), [](Heartbeat& h) { h.first_sequence = 18; }),
+              HasSubstr("first_sequence is 18, expected 0 .. 17"));
+  EXPECT_THAT(refusal(example_heartbeat(), [](Heartbeat& h) { h.state_sequence = 18; }),
+              HasSubstr("state_sequence is 18, expected 0 .. 17"));
+  EXPECT_THAT(refusal(example_heartbeat(), [](Heartbeat& h) { h.state_sequence = -1; }),
+              HasSubstr("state_sequence is -1"));
+  EXPECT_THAT(refusal(example_mapper_status(), [](MapperStatus& s) { s.store_bytes = -1; }),
+              HasSubstr("mapper_status_t.store_bytes is -1, expected >= 0"));
+  EXPECT_THAT(refusal(example_segmenter_status(), [](SegmenterStatus& s) { s.problem = "a\nb"; }),
+              HasSubstr("segmenter_status_t.problem is a text with byte 10"));
+  EXPECT_THAT(refusal(example_resend_request(),
+                      [](ResendRequest& r) {
+                        r.ranges = {{5, 4}};
+                      }),
+              HasSubstr("last is 4"));
+}
+
+TEST(CodecBounds, AMessageThatLiesInOneFieldIsRefusedWithThatField) {
+  Bytes message = encode(example_camera_pose());
+  message[8 + 4 + 24] = 9;  // state: after fingerprint, checksum, utime, session, frame_index
+  try {
+    (void)decode<CameraPose>(with_checksum(message));
+    FAIL() << "accepted";
+  } catch (const DecodeError& error) {
+    EXPECT_STREQ(error.what(), "camera_pose_t.state is 9, expected 0 .. 3");
+  }
+}
+
+TEST(CodecBounds, AnyTextCanBeMadeToFit) {
+  SegmenterStatus status = example_segmenter_status();
+  status.problem = fitting_text("cannot write:\n\tno space" + std::string(2'000, '!'));
+  const SegmenterStatus received = decode<SegmenterStatus>(encode(status));
+  EXPECT_EQ(received.problem.substr(0, 23), "cannot write:  no space");
+  EXPECT_EQ(received.problem.size(), kMaxStringBytes);
+}
+
+TEST(CodecBounds, TwentyBytesThatClaimTwoBillionPointsTakeNothing) {
+  Bytes message = encode_chunk(example_slice(1), 0, 0, kDefaultMaxChunkBytes);
+  message.resize(20);
+  const std::size_t allocated =
+      allocated_by([&] { EXPECT_THROW((void)decode_chunk<CloudSlice>(message), DecodeError); });
+  EXPECT_LT(allocated, 4'096U);  // the text of the error
+}
+
+}  // namespace
+}  // namespace kintsugi

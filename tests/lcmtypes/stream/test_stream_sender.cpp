@@ -1,0 +1,210 @@
+// What a publisher does, step by step, without its thread.
+
+#include <optional>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "lcmtypes/channels.hpp"
+#include "lcmtypes/stream/stream_sender.hpp"
+
+namespace kintsugi {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+constexpr std::size_t kChunkBytes = 1'000;
+
+/// A sender of chunks that are their own number, and all that it sends.
+struct Sending {
+  std::vector<std::int64_t> sequences;
+  std::vector<double> times_s;
+  std::vector<Heartbeat> heartbeats;
+  double now_s = 0.0;
+  StreamSender sender;
+
+  explicit Sending(SentStore* store, const StreamPublisherConfig& config = fast())
+      : sender([this](const std::string& channel, ByteView bytes) { note(channel, bytes); },
+               channels::kCloudSlice, 42, config, store) {}
+
+  static StreamPublisherConfig fast() {
+    StreamPublisherConfig config;
+    config.rate_bytes_per_s = 1e12;
+    return config;
+  }
+
+  static Bytes chunk(std::int64_t sequence, std::uint8_t text = 0) {
+    Bytes bytes(kChunkBytes, text);
+    bytes[0] = static_cast<std::uint8_t>(sequence);
+    return bytes;
+  }
+  void push(int num_chunks, bool starts_state = false, std::uint8_t text = 0) {
+    sender.push({num_chunks, kChunkBytes * static_cast<std::size_t>(num_chunks), starts_state,
+                 [text](std::int64_t sequence, std::int32_t) { return chunk(sequence, text); }});
+  }
+  void note(const std::string& channel, ByteView bytes) {
+    if (channel == channels::kHeartbeat) {
+      heartbeats.push_back(decode<Heartbeat>(bytes));
+    } else {
+      sequences.push_back(bytes[0]);
+      times_s.push_back(now_s);
+    }
+  }
+  void ask(std::vector<SequenceRange> ranges) {
+    sender.request({0, 42, channels::kCloudSlice, 1, std::move(ranges)}, now_s);
+  }
+  void run_until(double time_s) {
+    while (now_s < time_s) {
+      const double wait_s = sender.step(now_s);
+      if (wait_s > 0.0) now_s = std::min(now_s + wait_s, time_s);
+    }
+  }
+};
+
+TEST(StreamSender, SendsNumberedChunksAndHeartbeatsFiveTimesASecond) {
+  RecentChunks store(1'000'000);
+  Sending sending(&store);
+  sending.push(3);
+  sending.push(2);
+  EXPECT_EQ(sending.sender.queued_bytes(), 5 * kChunkBytes);
+  sending.run_until(2.05);
+  EXPECT_THAT(sending.sequences, ElementsAre(0, 1, 2, 3, 4));
+  EXPECT_EQ(sending.heartbeats.size(), 11U);
+  EXPECT_EQ(sending.heartbeats.back().next_sequence, 5);
+  EXPECT_EQ(sending.heartbeats.back().first_sequence, 0);
+  EXPECT_TRUE(sending.sender.is_done());
+  EXPECT_EQ(sending.sender.queued_bytes(), 0U);
+}
+
+TEST(StreamSender, ResendsFromItsStoreOnly) {
+  RecentChunks store(3 * kChunkBytes);
+  Sending sending(&store);
+  sending.push(10);
+  sending.run_until(1.0);
+  sending.sequences.clear();
+  sending.ask({{0, kMaxSequence}});
+  sending.run_until(1.1);
+  EXPECT_THAT(sending.sequences, ElementsAre(7, 8, 9));
+  EXPECT_EQ(sending.sender.counts().chunks_resent, 3);
+  EXPECT_EQ(sending.heartbeats.back().first_sequence, 7);
+
+  Sending without(nullptr);
+  without.push(10);
+  without.run_until(1.0);
+  without.sequences.clear();
+  without.ask({{0, 9}});
+  without.run_until(2.0);
+  EXPECT_THAT(without.sequences, IsEmpty());
+  EXPECT_EQ(without.heartbeats.back().first_sequence, 10);
+}
+
+TEST(StreamSender, PassesOverWhatItsStoreHasLost) {
+  struct Holed : RecentChunks {
+    using RecentChunks::RecentChunks;
+    std::optional<Bytes> find(std::int64_t sequence) const override {
+      return sequence < 90 ? std::nullopt : RecentChunks::find(sequence);
+    }
+  } store(1'000'000);
+  Sending sending(&store);
+  sending.push(100);
+  sending.run_until(1.0);
+  sending.sequences.clear();
+  sending.ask({{0, 92}});
+  sending.run_until(1.01);  // at once, without a wait for each hole
+  EXPECT_THAT(sending.sequences, ElementsAre(90, 91, 92));
+
+  sending.sequences.clear();
+  sending.ask({{0, 7}});
+  sending.push(80);
+  sending.run_until(1.02);
+  EXPECT_EQ(sending.sequences.size(), 80U);
+}
+
+TEST(StreamSender, PacesNewChunksAndResendsTogether) {
+  RecentChunks store(1'000'000);
+  StreamPublisherConfig config;
+  config.rate_bytes_per_s = 50.0 * kChunkBytes;
+  config.burst_bytes = 2 * kChunkBytes;
+  Sending sending(&store, config);
+  sending.push(200);
+  sending.run_until(1.0);
+  sending.ask({{0, 30}});
+  sending.run_until(3.0);
+  // The burst, and the rate of 50 a second for 3 s.
+  EXPECT_NEAR(static_cast<double>(sending.sequences.size()), 152.0, 2.0);
+  EXPECT_NEAR(static_cast<double>(sending.sender.counts().chunks_resent), 100.0 / 8.0, 1.0);
+  for (std::size_t i = 3; i < sending.times_s.size(); ++i) {
+    ASSERT_GE(sending.times_s[i] - sending.times_s[i - 3], 0.019) << i;  // three in 20 ms
+  }
+}
+
+TEST(StreamSender, GoesOnWithAStoredSessionAndSendsNothingTwice) {
+  RecentChunks store(1'000'000);
+  for (std::int64_t sequence = 0; sequence < 5; ++sequence) {
+    store.add(sequence, Sending::chunk(sequence));
+  }
+  Sending sending(&store);
+  EXPECT_EQ(sending.sender.next_sequence(), 5);
+  sending.run_until(0.1);
+  EXPECT_EQ(sending.heartbeats.back().next_sequence, 5);  // served before anything is made again
+  sending.ask({{1, 2}});
+  sending.push(3);
+  sending.push(4);
+  sending.run_until(1.0);
+  EXPECT_THAT(sending.sequences, ::testing::UnorderedElementsAre(1, 2, 5, 6));
+  EXPECT_EQ(sending.sender.counts().chunks_compared, 5);
+  EXPECT_EQ(sending.sender.counts().chunks_sent, 2);
+  EXPECT_EQ(store.next_sequence(), 7);
+}
+
+TEST(StreamSender, TellsASessionThatIsMadeAgainDifferently) {
+  RecentChunks store(1'000'000);
+  for (std::int64_t sequence = 0; sequence < 5; ++sequence) {
+    store.add(sequence, Sending::chunk(sequence));
+  }
+  Sending sending(&store);
+  sending.push(2);
+  sending.push(1, false, 99);
+  try {
+    sending.run_until(1.0);
+    FAIL() << "not noticed";
+  } catch (const std::runtime_error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("CLOUD_SLICE, sequence 2: differs from what was sent"));
+    EXPECT_THAT(error.what(), HasSubstr("same device and options"));
+  }
+}
+
+TEST(StreamSender, AStateSupersedesWhatWentBefore) {
+  RecentChunks store(1'000'000);
+  StreamPublisherConfig config = Sending::fast();
+  int states_wanted = 0;
+  config.on_state_wanted = [&] { ++states_wanted; };
+  Sending sending(&store, config);
+  sending.push(5);
+  sending.push(3, true);
+  sending.push(2);
+  sending.run_until(1.0);
+  EXPECT_EQ(sending.heartbeats.back().state_sequence, 5);
+  EXPECT_EQ(sending.heartbeats.back().next_sequence, 10);
+  sending.sequences.clear();
+  sending.ask({{0, 5}});  // by somebody who has not heard of it
+  sending.run_until(1.1);
+  EXPECT_THAT(sending.sequences, ElementsAre(5));
+  EXPECT_EQ(states_wanted, 0);
+
+  store.set_max_bytes(3 * kChunkBytes);
+  sending.push(1);
+  sending.run_until(1.2);
+  sending.ask({{0, 4}});
+  EXPECT_EQ(states_wanted, 0);
+  sending.ask({{8, kMaxSequence}});
+  EXPECT_EQ(states_wanted, 0);
+  sending.ask({{6, 6}});  // gone from the store, and of the state
+  EXPECT_EQ(states_wanted, 1);
+}
+
+}  // namespace
+}  // namespace kintsugi

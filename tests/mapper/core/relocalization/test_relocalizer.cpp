@@ -1,0 +1,183 @@
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "lcmtypes/trajectory.hpp"
+#include "mapper/core/fusion/integrator.hpp"
+#include "mapper/core/fusion/raycaster.hpp"
+#include "mapper/core/relocalization/relocalizer.hpp"
+#include "tests/mapper/core/synthetic_frames.hpp"
+
+namespace kintsugi::mapper {
+namespace {
+
+using testing::synthetic_run;
+using testing::SyntheticRun;
+
+TrackingInput input_from(const RgbdFrame& frame, bool with_color = true) {
+  TrackingInput input{
+      frame.utime, pyramid_from_depth(frame.depth_m, frame.intrinsics, 0, 3, 6.0F), {}};
+  if (with_color) input.color_rgb = frame.color_rgb;
+  return input;
+}
+
+TsdfVolume::Config volume_config() {
+  TsdfVolume::Config config;
+  config.resolution_m = 0.015;
+  return config;
+}
+
+/// The office seen along a part of its path, every fourth frame, at known poses.
+class OfficeMap {
+ public:
+  explicit OfficeMap(bool with_color)
+      : volume_(volume_config(), office().true_path.front().X_WC.translation()) {
+    for (std::size_t i = 0; i < kSeen; i += 2) {
+      const Pose& X_WC = office().true_path[i].X_WC;
+      integrator_.integrate(office().frames[i], X_WC, volume_);
+      relocalizer.remember(input_from(office().frames[i], with_color), seen_from(X_WC));
+    }
+  }
+
+  /// The map is made of every other frame.
+  static const SyntheticRun& office() {
+    static const SyntheticRun run = synthetic_run("office", 40, true, 4);
+    return run;
+  }
+  static constexpr std::size_t kSeen = 40;
+
+  Model seen_from(const Pose& X_WV) const {
+    return {
+        pyramid_from_surface(raycaster_.raycast(volume_, X_WV, office().frames[0].intrinsics), 3),
+        X_WV};
+  }
+  std::optional<TrackingResult> find(const TrackingInput& frame) {
+    return relocalizer.find(frame, tracker_, [&](const Pose& X_WV) { return seen_from(X_WV); });
+  }
+  /// As often as there may be candidates.
+  std::optional<TrackingResult> find_at_last(const TrackingInput& frame) {
+    for (int i = 0; i < 9; ++i) {
+      if (auto found = find(frame)) return found;
+    }
+    return std::nullopt;
+  }
+
+  Relocalizer relocalizer{Relocalizer::Config{}};
+
+ private:
+  TsdfVolume volume_;
+  Integrator integrator_{Integrator::Config{}};
+  Raycaster raycaster_{Raycaster::Config{}};
+  Tracker tracker_{Tracker::Config{}};
+};
+
+/// Noise of a single frame and a map of 15 mm voxels leave a few millimetres; a wrong place is off
+/// by far more.
+constexpr double kFound_m = 0.01;
+constexpr double kFound_rad = 0.01;
+
+class RelocalizerWithAndWithoutColor : public ::testing::TestWithParam<bool> {};
+
+TEST_P(RelocalizerWithAndWithoutColor, FindsPlacesSeenBeforeWithinACentimetre) {
+  OfficeMap map(GetParam());
+  for (std::size_t i = 1; i < OfficeMap::kSeen; i += 8) {  // between the frames of the map
+    const auto found = map.find_at_last(input_from(OfficeMap::office().frames[i], GetParam()));
+    ASSERT_TRUE(found) << i;
+    EXPECT_EQ(found->state, TrackingState::kTracking);
+    EXPECT_FALSE(found->loss_reason);
+    const Pose X_difference = OfficeMap::office().true_path[i].X_WC.inverse() * found->X_WC;
+    EXPECT_LT(X_difference.translation().norm(), kFound_m) << i;
+    EXPECT_LT(rotation_angle_rad(X_difference), kFound_rad) << i;
+  }
+}
+
+TEST_P(RelocalizerWithAndWithoutColor, RefusesAPlaceNeverSeen) {
+  OfficeMap map(GetParam());
+  const SyntheticRun elsewhere = synthetic_run("loop", 2, true, 40);
+  for (const RgbdFrame& frame : elsewhere.frames) {
+    EXPECT_FALSE(map.find_at_last(input_from(frame, GetParam())));
+  }
+}
+
+TEST_P(RelocalizerWithAndWithoutColor, RefusesTheMirrorImage) {
+  OfficeMap map(GetParam());
+  for (std::size_t i = 1; i < OfficeMap::kSeen; i += 20) {
+    const RgbdFrame& frame = OfficeMap::office().frames[i];
+    RgbdFrame mirrored = frame;
+    mirrored.depth_m.release();  // not into the frame itself
+    mirrored.color_rgb.release();
+    cv::flip(frame.depth_m, mirrored.depth_m, 1);
+    cv::flip(frame.color_rgb, mirrored.color_rgb, 1);
+    EXPECT_FALSE(map.find_at_last(input_from(mirrored, GetParam()))) << i;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Color, RelocalizerWithAndWithoutColor, ::testing::Bool());
+
+TEST(Relocalizer, TellsPlacesOfTheSameShapeApartByTheirColor) {
+  OfficeMap map(true);
+  RgbdFrame repainted = OfficeMap::office().frames[1];
+  ASSERT_TRUE(map.find_at_last(input_from(repainted)));
+  cv::Mat upside_down;
+  cv::flip(repainted.color_rgb, upside_down, 0);
+  repainted.color_rgb = upside_down;
+  EXPECT_FALSE(map.find_at_last(input_from(repainted)));
+}
+
+TEST(Relocalizer, GivesTheSamePosesForTheSameFrames) {
+  const auto poses = [] {
+    OfficeMap map(true);
+    std::vector<Pose> X_WC;
+    for (std::size_t i = 1; i < OfficeMap::kSeen; i += 8) {
+      const auto found = map.find(input_from(OfficeMap::office().frames[i]));
+      X_WC.push_back(found ? found->X_WC : Pose::Identity());
+    }
+    return X_WC;
+  };
+  const std::vector<Pose> once = poses();
+  const std::vector<Pose> again = poses();
+  for (std::size_t i = 0; i < once.size(); ++i) EXPECT_EQ(once[i].matrix(), again[i].matrix());
+}
+
+/// What is found where the volume holds nothing: against the keyframes' own surfaces.
+std::optional<TrackingResult> find_without_volume(OfficeMap& map, const RgbdFrame& frame) {
+  const Tracker tracker{Tracker::Config{}};
+  const Raycaster raycaster{Raycaster::Config{}};
+  const TsdfVolume empty(volume_config());
+  const auto nothing = [&](const Pose& X_WV) {
+    return Model{pyramid_from_surface(raycaster.raycast(empty, X_WV, frame.intrinsics), 3), X_WV};
+  };
+  for (int i = 0; i < 9; ++i) {
+    if (auto found = map.relocalizer.find(input_from(frame), tracker, nothing)) return found;
+  }
+  return std::nullopt;
+}
+
+TEST(Relocalizer, FindsAPlaceThatTheVolumeHasLeft) {
+  OfficeMap map(true);
+  const auto found = find_without_volume(map, OfficeMap::office().frames[9]);
+  ASSERT_TRUE(found);
+  const Pose& X_WC_true = OfficeMap::office().true_path[9].X_WC;
+  EXPECT_LT((found->X_WC.translation() - X_WC_true.translation()).norm(), kFound_m);
+}
+
+// Things of one kind look alike wherever they stand: features alone do not make a place.
+TEST(Relocalizer, RefusesAPlaceThatLooksTheSameAndHasAnotherShape) {
+  OfficeMap map(true);
+  RgbdFrame frame = OfficeMap::office().frames[9];
+  frame.depth_m = frame.depth_m.clone();
+  const int width = frame.depth_m.cols;
+  cv::Mat farther = frame.depth_m.colRange(width - width / 7, width);
+  farther += 0.2;  // 13 % of the overlap lies behind what the keyframe saw
+  EXPECT_FALSE(find_without_volume(map, frame));
+}
+
+TEST(Relocalizer, FindsNothingWithoutKeyframes) {
+  Relocalizer relocalizer{Relocalizer::Config{}};
+  const Tracker tracker{Tracker::Config{}};
+  EXPECT_FALSE(relocalizer.find(input_from(OfficeMap::office().frames[0]), tracker,
+                                [](const Pose&) { return Model{}; }));
+}
+
+}  // namespace
+}  // namespace kintsugi::mapper

@@ -1,0 +1,66 @@
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <thread>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "mapper/core/volume/tsdf_block_pool.hpp"
+
+namespace kintsugi::mapper {
+namespace {
+
+BlockCoord at(int x) { return make_block_coord(x, 0, 0); }
+
+TEST(TsdfBlockPool, RecyclesASlotWhenAllHaveGivenItBack) {
+  TsdfBlockPool pool;
+  const BlockSlot slot = pool.take(at(1));
+  pool.voxels(slot).voxels[7] = 5;
+  pool.hold(slot);
+  pool.give_back(slot);
+  EXPECT_NE(pool.take(at(2)), slot) << "still held";
+  pool.give_back(slot);
+  EXPECT_EQ(pool.take(at(3)), slot);
+  EXPECT_EQ(pool.coord(slot), at(3));
+  EXPECT_EQ(pool.voxels(slot).voxels[7], 0U);
+  EXPECT_EQ(pool.end(), 2);
+}
+
+TEST(TsdfBlockPool, CopiesVoxels) {
+  TsdfBlockPool pool;
+  const BlockSlot slot = pool.take(at(4));
+  pool.voxels(slot).voxels.fill(9);
+  const BlockSlot copy = pool.take_copy_of_voxels(slot);
+  pool.voxels(slot).voxels.fill(8);
+  EXPECT_NE(copy, slot);
+  EXPECT_EQ(pool.coord(copy), at(4));
+  EXPECT_EQ(pool.voxels(copy).voxels[511], 9U);
+}
+
+TEST(TsdfBlockPool, KeepsWhatIsLentUntilTheLoanEndsOnAnyThread) {
+  TsdfBlockPool pool;
+  std::vector<BlockSlot> slots(10);
+  for (int i = 0; i < 10; ++i) slots[i] = pool.take(at(i));
+  std::shared_ptr<const void> loan = pool.lend(slots);
+  EXPECT_EQ(pool.take(at(20)), 10) << "nothing is free";
+  std::thread([&loan] { loan.reset(); }).join();
+  std::vector<BlockSlot> again(10);
+  for (int i = 0; i < 10; ++i) again[i] = pool.take(at(30 + i));
+  std::sort(again.begin(), again.end());
+  EXPECT_EQ(again, slots);
+  EXPECT_EQ(pool.end(), 11);
+}
+
+TEST(TsdfBlockPool, LeavesTheMemoryOfLoansThatOutliveIt) {
+  std::optional<TsdfBlockPool> pool(std::in_place);
+  const BlockSlot slot = pool->take(at(0));
+  const VoxelBlock* voxels = &pool->voxels(slot);
+  pool->voxels(slot).voxels[3] = 77;
+  const std::shared_ptr<const void> loan = pool->lend({slot});
+  pool.reset();
+  EXPECT_EQ(voxels->voxels[3], 77U);
+}
+
+}  // namespace
+}  // namespace kintsugi::mapper

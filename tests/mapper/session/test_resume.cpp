@@ -1,0 +1,241 @@
+// The built program, killed and resumed: in the end the log holds what a run without faults leaves.
+
+#include <algorithm>
+#include <random>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/mapper/process/mapper_program.hpp"
+#include "tests/mapper/process/stored_run.hpp"
+#include "tests/support/private_bus.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace kintsugi::mapper {
+namespace {
+
+using testing::brisk_walk;
+using ::testing::HasSubstr;
+using testing::Listener;
+using testing::MapperProgram;
+using testing::read_stored_run;
+using testing::StoredRun;
+
+using Flags = std::vector<std::string>;
+constexpr int kNumFrames = 40;
+
+std::string text_of(const std::filesystem::path& path) {
+  std::ifstream in(path);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+class Resume : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    static const auto why_not = kintsugi::testing::enter_private_bus();
+    if (why_not) GTEST_SKIP() << *why_not;
+  }
+
+  Flags flags(const std::string& store_or_resume, const Flags& more = {"--replay"}) const {
+    Flags flags = brisk_walk(folder_.path(), kNumFrames);
+    flags.insert(flags.end(), {store_or_resume, log_});
+    flags.insert(flags.end(), more.begin(), more.end());
+    return flags;
+  }
+
+  int run(const Flags& flags) const { return MapperProgram(flags, folder_ / "said.txt").wait(); }
+  std::string said() const { return text_of(folder_ / "said.txt"); }
+
+  /// What a run without faults leaves.
+  StoredRun undisturbed() const {
+    const std::filesystem::path log = folder_ / "undisturbed.lcm";
+    Flags flags = brisk_walk(folder_.path(), kNumFrames);
+    flags.insert(flags.end(), {"--store", log, "--replay"});
+    EXPECT_EQ(run(flags), 0);
+    StoredRun run = read_stored_run(log);
+    EXPECT_GT(run.slice_chunks.size(), 10U) << "a run that is worth killing";
+    return run;
+  }
+
+  /// Kills a run once it has logged so many slice chunks, up to 8. A replay needs 10 s for all of
+  /// them, because it waits for the bus: so there is time to see when.
+  void kill_after(Flags flags, std::size_t num_chunks) const {
+    flags.insert(flags.end(), {"--rate", "0.01"});
+    MapperProgram mapper(flags, folder_ / "said.txt");
+    EXPECT_TRUE(Listener::wait_until([&] {
+      std::error_code ignored;
+      return std::filesystem::file_size(log_, ignored) > 0 && !ignored &&
+             read_stored_run(log_).slice_chunks.size() >= num_chunks;
+    }));
+    EXPECT_TRUE(mapper.crash());
+  }
+
+  const kintsugi::testing::TemporaryFolder folder_;
+  const std::string log_ = folder_ / "run.lcm";
+};
+
+TEST_F(Resume, KilledAtAnyMomentsTheSessionIsThatOfARunWithoutFaults) {
+  const StoredRun expected = undisturbed();
+  std::mt19937 random(5);
+  std::uniform_int_distribution<int> early_ms(20, 300);  // before any machine has mapped 40 frames
+  std::uniform_int_distribution<int> any_ms(20, 1'500);
+  int kills = 0;
+  for (int i = 0; i < 8; ++i) {
+    const bool begun = std::filesystem::exists(log_);
+    MapperProgram mapper(flags(begun ? "--resume" : "--store", {"--replay", "--rate", "0.002"}),
+                         folder_ / "said.txt");
+    const int delay_ms = i < 5 ? early_ms(random) : any_ms(random);
+    std::this_thread::sleep_for(std::chrono::milliseconds(delay_ms));
+    kills += mapper.crash() ? 1 : 0;
+  }
+  EXPECT_GE(kills, 4) << said();
+  EXPECT_EQ(run(flags("--resume")), 0) << said();
+  const StoredRun resumed = read_stored_run(log_);
+  EXPECT_EQ(resumed.slice_chunks, expected.slice_chunks);
+  EXPECT_EQ(resumed.pose_utimes, expected.pose_utimes);
+  EXPECT_TRUE(resumed.statuses.back().finished);
+}
+
+TEST_F(Resume, MapsTheFramesAgainThatWereMappedThenAndNoOthers) {
+  const auto at_own_pace = [this](const std::string& store_or_resume) {
+    Flags flags = this->flags(store_or_resume, {});
+    flags[1] = "synthetic://office?frames=120";  // 4 s: it is killed before
+    return flags;
+  };
+  kill_after(at_own_pace("--store"), 3);
+  const StoredRun before = read_stored_run(log_);
+  EXPECT_EQ(run(at_own_pace("--resume")), 0) << said();
+  const StoredRun after = read_stored_run(log_);
+  ASSERT_GE(after.pose_utimes.size(), before.pose_utimes.size());
+  EXPECT_TRUE(std::ranges::is_sorted(after.pose_utimes, std::ranges::less_equal()))
+      << "no frame is mapped that was dropped before";
+  for (const auto& [key, chunk] : before.slice_chunks) {
+    EXPECT_EQ(after.slice_chunks.at(key), chunk);
+  }
+  EXPECT_TRUE(after.has_final_slice);
+  EXPECT_EQ(after.statuses.back().frames_resumed,
+            static_cast<std::int64_t>(before.pose_utimes.size()))
+      << said();
+}
+
+TEST_F(Resume, StoppedBeforeItHasCaughtUpLeavesTheSessionOpen) {
+  const StoredRun expected = undisturbed();
+  kill_after(flags("--store"), 8);
+  {
+    const Listener listener;
+    MapperProgram mapper(flags("--resume"), folder_ / "said.txt");
+    ASSERT_TRUE(Listener::wait_until([&] { return !listener.statuses().empty(); }));
+    mapper.interrupt();
+    EXPECT_EQ(mapper.wait(), 0) << said();
+    EXPECT_THAT(said(), HasSubstr("resume once more"));
+    EXPECT_FALSE(listener.statuses().back().finished);
+  }
+  EXPECT_FALSE(read_stored_run(log_).has_final_slice);
+  EXPECT_EQ(run(flags("--resume")), 0) << said();
+  EXPECT_EQ(read_stored_run(log_).slice_chunks, expected.slice_chunks);
+}
+
+TEST_F(Resume, ServesASessionThatHasEndedToWhoComesLate) {
+  ASSERT_EQ(run(flags("--store")), 0);
+  const StoredRun stored = read_stored_run(log_);
+  const Listener listener;
+  Flags late = flags("--resume");
+  *(std::ranges::find(late, "--linger") + 1) = "1";
+  EXPECT_EQ(run(late), 0) << said();
+  ASSERT_TRUE(Listener::wait_until([&] { return listener.heard_the_end(); }));
+  ASSERT_FALSE(listener.slices().empty());
+  std::vector<int> ids;
+  for (const CloudSlice& slice : listener.slices()) ids.push_back(slice.id);
+  std::ranges::sort(ids);
+  for (std::size_t i = 0; i < ids.size(); ++i) EXPECT_EQ(ids[i], static_cast<int>(i));
+  EXPECT_EQ(listener.slices().back().session, 7);
+  const MapperStatus status = listener.statuses().back();
+  EXPECT_TRUE(status.lingering);
+  EXPECT_EQ(status.slices_published, static_cast<std::int64_t>(ids.size()));
+  EXPECT_GE(status.chunks_resent, static_cast<std::int64_t>(stored.slice_chunks.size()));
+  EXPECT_EQ(read_stored_run(log_).slice_chunks, stored.slice_chunks);
+}
+
+TEST_F(Resume, RefusesOtherOptionsAndAnotherDeviceAndSaysWhich) {
+  kill_after(flags("--store"), 2);
+  const auto size = std::filesystem::file_size(log_);
+  for (const auto& [flag, value] : {std::pair{"--resolution", "0.03"},
+                                    {"--min-weight", "2"},
+                                    {"--device", "synthetic://office?frames=41"}}) {
+    Flags other = flags("--resume");
+    *(std::ranges::find(other, flag) + 1) = value;
+    EXPECT_EQ(run(other), 1);
+    EXPECT_THAT(said(), HasSubstr(std::string(flag) + " is '" + value + "', was '"));
+  }
+  Flags other = flags("--resume");
+  *(std::ranges::find(other, "--session") + 1) = "8";
+  EXPECT_EQ(run(other), 1);
+  EXPECT_THAT(said(), HasSubstr("the session to resume is 7"));
+  EXPECT_EQ(std::filesystem::file_size(log_), size) << "nothing was written";
+}
+
+TEST_F(Resume, FindsOutThatTheDeviceShowsSomethingElse) {
+  kill_after(flags("--store"), 4);
+  // The same command line, but another walk in the file that it names.
+  Flags other = flags("--resume");
+  std::ofstream walk(folder_ / "walk.txt");
+  for (int i = 0; i < 200; ++i) {
+    walk << 1.0 / 30.0 * i << ' ' << 0.15 * i << " 0 0 0 0 0 1\n";
+  }
+  walk.close();
+  EXPECT_EQ(run(other), 1);
+  EXPECT_THAT(said(), HasSubstr("differs from what was sent before"));
+}
+
+TEST_F(Resume, BeginsANewSessionBesideTheOldOneForALiveCamera) {
+  const auto live = [this](const std::string& store_or_resume) {
+    Flags flags = this->flags(store_or_resume, {});
+    flags[1] = "synthetic://office?frames=60&camera=on";
+    return flags;
+  };
+  kill_after(live("--store"), 3);
+  const StoredRun before = read_stored_run(log_);
+  const Listener listener;
+  MapperProgram mapper(live("--resume"), folder_ / "said.txt");
+  ASSERT_TRUE(Listener::wait_until([&] {
+    const auto slices = listener.slices();
+    const auto of_old = std::ranges::count(slices, 7, &CloudSlice::session);
+    return of_old >= 2 && slices.size() > static_cast<std::size_t>(of_old);
+  })) << "slices of the old session and of the new one";
+  mapper.interrupt();
+  EXPECT_EQ(mapper.wait(), 0) << said();
+  EXPECT_THAT(said(), HasSubstr("a new session begins"));
+  const StoredRun after = read_stored_run(log_);
+  EXPECT_GT(after.slice_chunks.size(), before.slice_chunks.size());
+  EXPECT_GT(after.slice_chunks.rbegin()->first.first, 7);
+}
+
+TEST_F(Resume, GoesOnWithALiveCameraWhenTheLogHasItsFrames) {
+  const auto live = [this](const std::string& store_or_resume) {
+    Flags flags = this->flags(store_or_resume, {"--store-frames"});
+    flags[1] = "synthetic://office?frames=60&camera=on";
+    return flags;
+  };
+  kill_after(live("--store"), 3);
+  const StoredRun before = read_stored_run(log_);
+  const Listener listener;
+  MapperProgram mapper(live("--resume"), folder_ / "said.txt");
+  ASSERT_TRUE(Listener::wait_until([&] {
+    return read_stored_run(log_).pose_utimes.size() > before.pose_utimes.size() + 5;
+  })) << said();
+  mapper.interrupt();
+  EXPECT_EQ(mapper.wait(), 0) << said();
+  const StoredRun after = read_stored_run(log_);
+  EXPECT_EQ(after.slice_chunks.rbegin()->first.first, 7) << "the same session";
+  for (const auto& [key, chunk] : before.slice_chunks) {
+    EXPECT_EQ(after.slice_chunks.at(key), chunk);
+  }
+  EXPECT_TRUE(after.has_final_slice);
+  EXPECT_TRUE(std::ranges::is_sorted(after.pose_utimes, std::ranges::less_equal()))
+      << "times go on";
+  EXPECT_EQ(after.statuses.back().frames_resumed,
+            static_cast<std::int64_t>(before.pose_utimes.size()));
+}
+
+}  // namespace
+}  // namespace kintsugi::mapper

@@ -1,0 +1,182 @@
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <thread>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "mapper/source/frame_source.hpp"
+#include "tests/mapper/openni2_driver/recording_folder.hpp"
+
+namespace kintsugi::mapper {
+namespace {
+
+namespace fs = std::filesystem;
+using test::error_of;
+using test::kNumFrames;
+using test::RecordingFolder;
+using testing::AllOf;
+using testing::HasSubstr;
+
+SourceConfig replay(const std::string& device) {
+  SourceConfig config;
+  config.device = device;
+  config.replay = true;
+  return config;
+}
+
+std::vector<RgbdFrame> read_all(FrameSource& source) {
+  std::vector<RgbdFrame> frames;
+  while (auto frame = source.next()) frames.push_back(std::move(*frame));
+  return frames;
+}
+
+TEST(OpenNi2Source, ReadsEveryFrameOfAFolder) {
+  const RecordingFolder folder;
+  const auto source = open_frame_source(replay(folder.uri()));
+  EXPECT_EQ(source->frames_total(), kNumFrames);
+  const auto frames = read_all(*source);
+  ASSERT_EQ(frames.size(), kNumFrames);
+  for (int i = 0; i < kNumFrames; ++i) {
+    const RgbdFrame& frame = frames[static_cast<std::size_t>(i)];
+    EXPECT_EQ(frame.utime, RecordingFolder::depth_utime(i));
+    EXPECT_EQ(frame.frame_index, i + 1);
+    EXPECT_EQ(frame.intrinsics.cx, 31.5);
+    EXPECT_EQ(cv::norm(frame.color_rgb, test::color_image(i), cv::NORM_INF), 0.0);
+    EXPECT_TRUE(std::isnan(frame.depth_m(0, (11 - i) % 11)));
+    EXPECT_EQ(frame.depth_m(5, 9), static_cast<float>(test::raw_depth(i, 9, 5) * 0.001));
+  }
+  EXPECT_TRUE(source->ended_well());
+  EXPECT_EQ(source->counts().frames_delivered, kNumFrames);
+  EXPECT_EQ(source->counts().frames_dropped, 0);
+  EXPECT_FALSE(source->next()) << "and stays at its end";
+}
+
+TEST(OpenNi2Source, KeepsFinerDepthWithinItsReach) {
+  const RecordingFolder folder("50 51 31.5 23.5 64 48 5000\n");
+  SourceConfig config = replay(folder.uri());
+  config.max_range_m = 6.5;
+  const auto fine = open_frame_source(config)->next();
+  EXPECT_EQ(fine->depth_m(5, 9), static_cast<float>(test::raw_depth(0, 9, 5) * 2 * 0.0001));
+  config.max_range_m = 10.0;
+  const auto coarse = open_frame_source(config)->next();
+  EXPECT_NEAR(coarse->depth_m(5, 9), fine->depth_m(5, 9), 0.0005F) << "to a millimetre";
+}
+
+TEST(OpenNi2Source, PlaysALiveDeviceDroppingTheOldest) {
+  const RecordingFolder folder;
+  SourceConfig config = replay(folder.uri());
+  config.replay = false;
+  const auto source = open_frame_source(config);
+  std::this_thread::sleep_for(std::chrono::milliseconds(400));  // longer than the recording
+  const auto frames = read_all(*source);
+  const SourceCounts counts = source->counts();
+  ASSERT_FALSE(frames.empty());
+  EXPECT_EQ(frames.back().frame_index, kNumFrames) << "the newest is kept";
+  EXPECT_EQ(counts.frames_delivered, static_cast<std::int64_t>(frames.size()));
+  EXPECT_TRUE(source->ended_well());
+}
+
+TEST(OpenNi2Source, CountsWhatALateReaderMissed) {
+  const RecordingFolder folder;
+  SourceConfig config = replay(folder.uri());
+  config.replay = false;
+  const auto source = open_frame_source(config);
+  const auto first = source->next();
+  ASSERT_TRUE(first);
+  std::this_thread::sleep_for(std::chrono::milliseconds(400));
+  const auto rest = read_all(*source);
+  EXPECT_EQ(source->counts().frames_delivered + source->counts().frames_dropped,
+            kNumFrames - (first->frame_index - 1))
+      << "counting begins with the first frame seen: a camera may begin with any number";
+}
+
+TEST(OpenNi2Source, DeliversDepthWithoutAPartner) {
+  const RecordingFolder folder;
+  test::write_text(folder.path() / "rgb.txt", RecordingFolder::color_time(2) + " rgb/2.png\n");
+  const auto source = open_frame_source(replay(folder.uri()));
+  const auto frames = read_all(*source);
+  ASSERT_EQ(frames.size(), kNumFrames);
+  for (int i = 0; i < kNumFrames; ++i) {
+    EXPECT_EQ(frames[static_cast<std::size_t>(i)].color_rgb.empty(), i != 2) << i;
+  }
+  EXPECT_EQ(source->counts().depth_unpaired, kNumFrames - 1);
+}
+
+TEST(OpenNi2Source, TakesTheCalibrationFileItIsGiven) {
+  const RecordingFolder folder;
+  const fs::path file = folder.path() / "other.txt";
+  SourceConfig config = replay(folder.uri());
+  config.calibration_file = file.string();
+  test::write_text(file, "60 61 30 20 64 48 1000 0.1 0 0 0 0\n");
+  const auto frame = open_frame_source(config)->next();
+  EXPECT_EQ(frame->intrinsics.fx, 60.0);
+  EXPECT_EQ(frame->intrinsics.distortion, (std::array<double, 5>{}));
+  test::write_text(file, "60 61 30 20 640 480 1000\n");
+  EXPECT_THAT(error_of<std::runtime_error>([&] { open_frame_source(config); }),
+              AllOf(HasSubstr("other.txt"), HasSubstr("640x480"), HasSubstr("64x48")));
+}
+
+TEST(OpenNi2Source, EndsWhereAnImageCannotBeRead) {
+  const RecordingFolder folder;
+  fs::resize_file(folder.path() / "rgb/3.png", 40);
+  const auto source = open_frame_source(replay(folder.uri()));
+  EXPECT_EQ(read_all(*source).size(), 3U);
+  EXPECT_FALSE(source->ended_well());
+  EXPECT_THAT(source->end_reason(), HasSubstr("rgb/3.png: is cut off"));
+}
+
+TEST(OpenNi2Source, StopsOnRequest) {
+  const RecordingFolder folder;
+  bool stop = false;
+  SourceConfig config = replay(folder.uri());
+  config.stop_requested = [&] { return stop; };
+  const auto source = open_frame_source(config);
+  ASSERT_TRUE(source->next());
+  stop = true;
+  EXPECT_LE(read_all(*source).size(), 1U) << "at most what had been read already";
+  EXPECT_EQ(source->end_reason(), "stopped on request");
+}
+
+TEST(OpenNi2Source, SaysWhyItCannotOpen) {
+  const RecordingFolder folder;
+  const auto error = [](const std::string& device) {
+    return error_of<std::runtime_error>([&] { open_frame_source(replay(device)); });
+  };
+  EXPECT_THAT(error("/no/such/file.oni"), HasSubstr("/no/such/file.oni: no such file"));
+  EXPECT_THAT(error(folder.path().string()), HasSubstr("folder://"));
+  EXPECT_THAT(error("folder:///no/such/folder"), HasSubstr("no such folder"));
+  EXPECT_THAT(error("synthetic://no-such-room"), HasSubstr("no-such-room"));
+  EXPECT_THAT(error("1d27/0601@9/99"), HasSubstr("cannot open device '1d27/0601@9/99'"));
+  EXPECT_THAT(error("folder://" + std::string(300, 'x')), HasSubstr("255"));
+  SourceConfig config = replay(folder.uri());
+  config.max_range_m = -1.0;
+  EXPECT_THROW(open_frame_source(config), std::invalid_argument);
+}
+
+// Two files that other people recorded, with other versions of OpenNI. They are not part of the
+// project: KINTSUGI_DATA names the folder that holds oni_small/.
+TEST(OpenNi2Source, ReadsRealOniFiles) {
+  const char* data = std::getenv("KINTSUGI_DATA");
+  if (data == nullptr) GTEST_SKIP() << "KINTSUGI_DATA is not set";
+  const fs::path folder = fs::path(data) / "oni_small";
+  if (!fs::exists(folder)) GTEST_SKIP() << folder << " is not there";
+  const auto read = [&](const char* name) {
+    const auto source = open_frame_source(replay((folder / name).string()));
+    auto frames = read_all(*source);
+    EXPECT_TRUE(source->ended_well()) << source->end_reason();
+    EXPECT_EQ(source->counts().frames_dropped, 0);
+    EXPECT_EQ(source->frames_total(), static_cast<std::int64_t>(frames.size()));
+    for (const RgbdFrame& frame : frames) {
+      const double valid = cv::countNonZero(frame.depth_m == frame.depth_m);
+      EXPECT_GT(valid, 0.3 * static_cast<double>(frame.depth_m.total()));
+    }
+    return frames;
+  };
+  EXPECT_EQ(read("3DJ_test.oni").size(), 12U);
+  EXPECT_EQ(read("eranws_1.oni").size(), 24U);
+}
+
+}  // namespace
+}  // namespace kintsugi::mapper

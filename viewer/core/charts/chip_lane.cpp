@@ -1,0 +1,98 @@
+#include "viewer/core/charts/chip_lane.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include <opencv2/imgproc.hpp>
+
+#include "viewer/core/drawing/text.hpp"
+
+namespace kintsugi::viewer {
+namespace {
+
+constexpr double kTextScale = 0.45;
+constexpr int kPadding_px = 6;
+constexpr int kGap_px = 4;  ///< between boxes, and between a box and a line
+
+const cv::Scalar kInk(40, 40, 40);
+const cv::Scalar kLightInk(255, 255, 255);
+const cv::Scalar kLine(150, 150, 150);
+
+/// Whichever of dark and light is legible on the colour (brightness as in ITU-R BT.601).
+const cv::Scalar& ink_on(const Color& color) {
+  const double brightness = 0.114 * color[0] + 0.587 * color[1] + 0.299 * color[2];
+  return brightness > 130.0 ? kInk : kLightInk;
+}
+
+bool is_over(const ChipLane::Place& place, int x_px) {
+  return x_px > place.left_px - kGap_px && x_px < place.left_px + place.width_px + kGap_px;
+}
+
+bool stand_side_by_side(const ChipLane::Place& a, const ChipLane::Place& b) {
+  return a.left_px + a.width_px + kGap_px <= b.left_px ||
+         b.left_px + b.width_px + kGap_px <= a.left_px;
+}
+
+}  // namespace
+
+ChipLane::ChipLane(std::vector<Chip> chips, int left_px, int right_px, int max_rows)
+    : chips_(std::move(chips)) {
+  for (std::size_t i = 0; i < chips_.size(); ++i) find_place(i, left_px, right_px, max_rows);
+}
+
+bool ChipLane::find_place(std::size_t chip, int left_px, int right_px, int max_rows) {
+  // Where along its width the line leaves a box.
+  constexpr std::array kAlignments{0.5, 0.15, 0.85};
+  const int width_px = text_size(chips_[chip].text, kTextScale).width + 2 * kPadding_px;
+  for (int row = 0; row < max_rows; ++row) {
+    for (const double alignment : kAlignments) {
+      const int left = chips_[chip].x_px - static_cast<int>(std::lround(alignment * width_px));
+      const Place place{
+          chip, row, std::clamp(left, left_px, std::max(left_px, right_px - width_px)), width_px};
+      if (!is_free(place)) continue;
+      places_.push_back(place);
+      return true;
+    }
+  }
+  return false;
+}
+
+bool ChipLane::is_free(const Place& place) const {
+  return std::ranges::all_of(places_, [&](const Place& other) {
+    if (place.row == other.row) return stand_side_by_side(place, other);
+    const int x_px = chips_[place.chip].x_px;
+    const int other_x_px = chips_[other.chip].x_px;
+    if (x_px == other_x_px) return true;
+    return place.row < other.row ? !is_over(place, other_x_px) : !is_over(other, x_px);
+  });
+}
+
+int ChipLane::num_rows() const {
+  int rows = 0;
+  for (const Place& place : places_) rows = std::max(rows, place.row + 1);
+  return rows;
+}
+
+void ChipLane::draw(cv::Mat3b& image, Side side, int first_row_px, int chart_px) const {
+  const auto box_of = [&](const Place& place) {
+    const int rows_up = side == Side::kAboveChart ? place.row + 1 : -place.row;
+    return cv::Rect(place.left_px, first_row_px - rows_up * kRow_px, place.width_px,
+                    kRow_px - kGap_px);
+  };
+  for (const Place& place : places_) {
+    const int x_px = chips_[place.chip].x_px;
+    cv::line(image, {x_px, box_of(place).y}, {x_px, chart_px}, kLine);
+  }
+  for (const Place& place : places_) {
+    const Chip& chip = chips_[place.chip];
+    const cv::Rect box = box_of(place);
+    cv::rectangle(image, box, chip.color, cv::FILLED);
+    cv::rectangle(image, box, kInk);
+    draw_text(image, chip.text, box.tl() + cv::Point(kPadding_px, 13), kTextScale,
+              ink_on(chip.color));
+  }
+}
+
+}  // namespace kintsugi::viewer

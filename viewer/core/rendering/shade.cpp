@@ -1,0 +1,70 @@
+#include "viewer/core/rendering/shade.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <oneapi/tbb/parallel_for.h>
+
+namespace kintsugi::viewer {
+namespace {
+
+struct Light {
+  float ambient = 0.0F;  ///< share of a colour that a surface seen edge-on keeps
+  float edge = 0.0F;     ///< strength of the darkening at edges in depth
+};
+
+/// True colour carries the light of the room already.
+Light light_of(Coloring coloring) {
+  return coloring == Coloring::kTrue ? Light{0.75F, 4.0F} : Light{0.45F, 6.0F};
+}
+
+/// How far the surroundings stand in front of this pixel: mean of max(0, log z - log z') over the
+/// four neighbours two pixels away, limited so that a far background is outlined, not blackened.
+float occlusion(const VisibilityImage& visible, int u, int v) {
+  constexpr float kLimit = 0.1F;
+  constexpr std::array<std::array<int, 2>, 4> kNeighbours{{{-2, 0}, {2, 0}, {0, -2}, {0, 2}}};
+  const float depth_m = visible.depth_m(u, v);
+  float sum = 0.0F;
+  for (const auto& [du, dv] : kNeighbours) {
+    const int x = std::clamp(u + du, 0, visible.width() - 1);
+    const int y = std::clamp(v + dv, 0, visible.height() - 1);
+    if (visible.empty(x, y)) continue;
+    sum += std::clamp(std::log2(depth_m / visible.depth_m(x, y)), 0.0F, kLimit);
+  }
+  return 0.25F * sum;
+}
+
+/// Cosine between a point's normal and the ray back to the eye; 1 without a normal.
+float facing(const CloudPoint& p, const Eigen::Vector3f& eye_W) {
+  const Eigen::Vector3f normal_W(p.nx, p.ny, p.nz);
+  const Eigen::Vector3f to_eye_W = eye_W - Eigen::Vector3f(p.x, p.y, p.z);
+  const float length = normal_W.norm() * to_eye_W.norm();
+  return length > 0.0F ? std::abs(normal_W.dot(to_eye_W)) / length : 1.0F;
+}
+
+}  // namespace
+
+cv::Mat3b shade(const VisibilityImage& visible, std::span<const PointChunk> chunks,
+                const VirtualCamera& camera, Coloring coloring, const Highlight& highlight) {
+  cv::Mat3b image(visible.height(), visible.width(), kBackground);
+  const Eigen::Vector3f eye_W = camera.X_WV.translation().cast<float>();
+  const Light light = light_of(coloring);
+  tbb::parallel_for(0, visible.height(), [&](int v) {
+    for (int u = 0; u < visible.width(); ++u) {
+      if (visible.empty(u, v)) continue;
+      const PointChunk& chunk = chunks[visible.chunk(u, v)];
+      const std::size_t index = visible.point(u, v);
+      const CloudPoint& point = chunk.points_W[index];
+      const float brightness = (light.ambient + (1.0F - light.ambient) * facing(point, eye_W)) *
+                               std::exp(-light.edge * occlusion(visible, u, v));
+      const std::uint32_t id = chunk.labels[index];
+      const Color color = coloring == Coloring::kTrue ? true_color(point) : segment_color(id);
+      const Color lit = cv::Vec3f(color) * brightness;
+      image(v, u) = highlight.empty() || highlight.contains(id) ? lit : dimmed(lit);
+    }
+  });
+  return image;
+}
+
+}  // namespace kintsugi::viewer
