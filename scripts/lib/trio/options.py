@@ -35,7 +35,7 @@ TRIO_OPTIONS = (
      "publish the raw frames too, so that the log can be replayed into a mapper"),
     ("--no-log", None, STORE, False, "do not record the bus"),
     ("--only", "NAMES", STORE, ",".join(PROCESSES),
-     "run only these of %(default)s; the others run on other hosts (README.md, More than one host)"),
+     "run only these of %(default)s; the others run on other hosts"),
     ("--private", None, STORE, False, "run in a private network that no other program hears"),
     ("--mapper", "'ARGS'", SPLIT, "mapper", "further options of kintsugi-mapper, quoted as in a shell"),
     ("--segmenter", "'ARGS'", SPLIT, "segmenter", "further options of kintsugi-segmenter"),
