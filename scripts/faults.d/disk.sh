@@ -1,16 +1,16 @@
-# The disk that everything is written to is full: the mapper's log, the segmenter's saved map, the viewer's snapshots.
+# The disk of the run is full: the mapper's log, the segmenter's saved map and the viewer's snapshots cannot be written.
 
 fault_row disk-full "disk full in the middle of a run, until all three have said so" disk_full_row
 fault_row disk-full-end "disk full from the middle of a run on; then space, and scripts/trio --resume" disk_full_end_row
 
-# small_disk: the folder `faulty` becomes a disk of its own. What is on it is copied to `kept` by keep_disk.
+# small_disk: mounts a disk of 64 MB at the folder `faulty`. keep_disk copies its files to the folder `kept`.
 small_disk() {
   mkdir faulty
   mount -t tmpfs -o size=64m kintsugi-faults faulty 2>/dev/null || skip_row "mounting a tmpfs is not permitted"
 }
 keep_disk() { cp -r faulty kept; }
 
-# fill_disk: until free_disk; what others give free is taken at once.
+# fill_disk: keeps the disk full until free_disk; space that others free is taken at once.
 fill_disk() {
   (while :; do
     cat /dev/zero >>faulty/ballast 2>/dev/null || true
@@ -23,17 +23,17 @@ free_disk() {
   rm faulty/ballast
 }
 
-# watch_statuses: into a file that is not on the small disk.
+# watch_statuses: records the statuses in a file that is not on the small disk.
 watch_statuses() {
   "$KINTSUGI_BIN/kintsugi-status" --log statuses.csv >/dev/null 2>&1 &
   watcher=$!
 }
 unwatch_statuses() { kill "$watcher" && wait "$watcher" || true; }
 
-# said_problem PROCESS FIELD: that its status named the full disk.
+# said_problem PROCESS FIELD: whether a status of the process named the full disk.
 said_problem() { grep -qE "^[0-9]+,$1,$2,.*No space" statuses.csv; }
 
-# problems_are_said [SECONDS]: by all three, or will be in so long.
+# problems_are_said [SECONDS]: all three statuses have to name the full disk, within so many seconds (default 0).
 problems_are_said() {
   local i
   for ((i = 0; i < 10 * ${1:-0}; ++i)); do
@@ -45,8 +45,8 @@ problems_are_said() {
   must "the viewer does not say that its pictures cannot be written" said_problem viewer problem
 }
 
-# fill_disk_in_a_run: starts the run, with a snapshot and a saved map at each slice, so that all writers meet the full
-# disk; after a third of the time that the reference took, it is full.
+# fill_disk_in_a_run: starts the run with a snapshot and a saved map at each slice, so that all writers meet the full disk,
+# and fills the disk after a third of the time that the reference took.
 fill_disk_in_a_run() {
   local snapshot_every=1
   choose_scene

@@ -1,4 +1,4 @@
-# Mapper on one host, segmenter and viewer on another, joined by a cable that loses frames.
+# The mapper on one host, segmenter and viewer on another, connected by a cable that loses frames.
 
 source "$kintsugi_root/scripts/lib/played_run.sh"
 source "$kintsugi_root/scripts/lib/two_hosts.sh"

@@ -1,12 +1,12 @@
-# A process is killed (SIGKILL) at a random moment of a run, and started again by scripts/trio. KINTSUGI_KILL_RUNS: how
-# many runs a row makes, each with moments of its own (20, with --quick 2).
+# A process is killed (SIGKILL) at a random moment of a run, and scripts/trio starts it again. KINTSUGI_KILL_RUNS: the number
+# of runs in a row, each with other random moments (default 20, with --quick 2).
 
 for process in segmenter viewer mapper; do
   fault_row "kill-$process" "$process killed at a random moment of each run" kill_row "$process"
 done
 fault_row kill-all "all three killed, each at a random moment of its own in each run" kill_row segmenter viewer mapper
 
-# kill_at MOMENT PROCESS: seconds after the start of the faulty run; without effect when it has ended by then.
+# kill_at MOMENT PROCESS: kills it so many seconds after the start of the faulty run, unless it has ended by then.
 kill_at() {
   local wait_s pid
   wait_s="$(calculate "$1 - $(since_s "$faulty_since")")"
@@ -14,7 +14,7 @@ kill_at() {
   pid="$(pid_of "$2")" && kill -KILL "$pid" 2>/dev/null || true
 }
 
-# A random number of seconds within a run like the reference, which has something left to do by then.
+# A random number of seconds, in which the reference had not yet finished.
 random_moment() { calculate "0.95 * ${figure[reference_s]} * $RANDOM / 32768" 2; }
 
 kill_row() {

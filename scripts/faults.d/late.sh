@@ -1,4 +1,4 @@
-# A segmenter or a viewer that starts when a part of a large map has been published.
+# A segmenter or a viewer that starts after a part of a large map has been published.
 
 for process in segmenter viewer; do
   for percent in 10 50 100; do
@@ -7,7 +7,7 @@ for process in segmenter viewer; do
   done
 done
 
-# The map is published within a minute.
+# A map that takes about a minute to publish.
 choose_large() {
   choose_played
   played=(--session=7 --points=4000000 --speed=8)
@@ -37,7 +37,7 @@ $(status_last faulty segmenter state_bytes)" 1) MB"
   same_map
 }
 
-# wait_for_points N: until so many are published, 200 s at most.
+# wait_for_points N: waits at most 200 s until so many points are published.
 wait_for_points() {
   local i
   for ((i = 0; i < 1000; i++)); do
@@ -47,8 +47,8 @@ wait_for_points() {
   return 1
 }
 
-# full_state_s PROCESS JOINED_US: from then until it had what was published, labels and all, but for two slices that may
-# be under way.
+# full_state_s PROCESS JOINED_US: seconds from then until it had all published points with their labels, except for two
+# slices that may be on the way.
 full_state_s() {
   awk -F, -v process="$1" -v joined="$2" '
     $2 == "mapper" && $3 == "points_published" { published = $4 }

@@ -1,10 +1,11 @@
-# Datagrams dropped on loopback, with the receive buffer of a stock machine.
+# Datagrams are dropped on loopback, with the default receive buffer of Linux.
 
 for percent in 0 1 5 10; do
   fault_row "loss-$percent" "$percent % of datagrams dropped on loopback, stock receive buffer" loss_row "$percent"
 done
 
-# drop_datagrams PERCENT: of those on the bus, from now on; sent_and_lost_datagrams counts them. Every receiver misses the same.
+# drop_datagrams PERCENT: from now on so many of the datagrams on the bus are dropped, for all receivers alike;
+# sent_and_lost_datagrams counts all and the dropped ones.
 drop_datagrams() {
   command -v nft >/dev/null || skip_row "nftables is not installed"
   nft -f - <<NFT || skip_row "nftables are not permitted"
@@ -21,7 +22,7 @@ sent_and_lost_datagrams() { nft list table ip kintsugi | grep -oP 'counter packe
 
 loss_row() {
   local percent="$1" ttl=0 sent
-  # Chunks of one MTU, so that a small map is enough of them for some to be lost.
+  # With a ttl above 0 chunks are smaller, so that a small map has enough of them for some to be lost.
   if_quick && ttl=1
   export LCM_DEFAULT_URL="udpm://239.255.76.67:7667?ttl=$ttl&recv_buf_size=212992"
   choose_scene

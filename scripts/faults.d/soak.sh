@@ -1,8 +1,8 @@
-# Three times the normal rate of slices, for long. KINTSUGI_SOAK_S: how many seconds.
+# Three times the normal rate of slices, for a long time. KINTSUGI_SOAK_S: how many seconds.
 
 fault_row soak "three times the normal rate of slices for ${KINTSUGI_SOAK_S:-1800} s" soak_row
 
-# The map grows to 4 million points in 170 s; then its slices come again, corrected, at the same rate.
+# The map grows to 4 million points in 170 s; then its slices are corrected, at the same rate.
 soak_row() {
   local seconds="${KINTSUGI_SOAK_S:-1800}" process since
   if_quick && seconds=8
@@ -25,7 +25,7 @@ soak_row() {
   must "slices are missing" test "$(status_last faulty segmenter slices_missing)" -eq 0
 }
 
-# memory_at PROCESS SHARE SECONDS: MB, the most in the tenth of the time that ends there.
+# memory_at PROCESS SHARE SECONDS: peak memory in MB, in the tenth of the time that ends at this share of it.
 memory_at() {
   awk -F, -v process="$1" -v share="$2" -v seconds="$3" '
     !start && $2 == "mapper" && $3 == "points_published" && $4 > 0 { start = $1 }
@@ -40,7 +40,7 @@ memory_over_time() {
   note "$1, MB in each tenth:$line"
 }
 
-# From the middle to the end by a twentieth and 16 MB at most: what an allocator keeps comes and goes.
+# Memory may grow by a twentieth and 16 MB from the middle to the end: what an allocator keeps varies.
 is_flat() {
   local middle end
   middle="$(memory_at "$1" 0.6 "$2")" end="$(memory_at "$1" 1.0 "$2")"

@@ -1,4 +1,4 @@
-# A process is stopped for a while (SIGSTOP, as by a debugger, a suspended machine or one that swaps).
+# A process is stopped for a while (SIGSTOP), as by a debugger, by a suspended machine or by swapping.
 
 for process in segmenter viewer mapper; do
   for seconds in 0.5 10; do
@@ -6,15 +6,16 @@ for process in segmenter viewer mapper; do
   done
 done
 
-# mapper_rate RUN: how the mapper fared.
+# mapper_rate RUN: the mean frame rate and the dropped frames.
 mapper_rate() {
   awk -F, '$2 == "mapper" && $3 == "frame_rate_hz" && $4 > 0 { sum += $4; ++n }
            $2 == "mapper" && $3 == "frames_dropped" { dropped = $4 }
            END { printf "%.1f Hz and %d frames dropped", n ? sum / n : 0, dropped }' "$1/status.csv"
 }
 
-# At the camera's pace, where a mapper that waits would drop frames, out of a recording, for rendering takes cores; the
-# mapper itself is stopped where no frame is dropped, for then its map would be another.
+# At the camera's rate a mapper that waited for the others would drop frames. The frames come from a recording, because
+# rendering takes processor time. Where the mapper itself is stopped, the run is one without dropped frames (--replay), so
+# that the maps can be compared.
 choose_live_scene() {
   local recording="$runs/recording"
   [[ -e "$recording/done" ]] || {

@@ -1,20 +1,18 @@
-# Sourced by bench: how its sections run programs and read what they wrote. Everything is written to the current
-# directory.
+# Sourced by bench: running the programs and reading their output. All files are written to the current folder.
 
-bench_root="$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)"
-bin="${KINTSUGI_BIN:-$bench_root/build/release/bin}"
-programs="$bench_root/build/release/bench"
+source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+programs="$kintsugi_root/build/release/bench"
 
 # table HEADER...: begins a Markdown table; row CELL...: a line of it.
 row() { local cell; for cell in "$@"; do printf '| %s ' "$cell"; done; printf '|\n'; }
 table() { row "$@"; row "${@//*/---}"; }
 
-# csv_value FILE COLUMN: of the first line under the header.
+# csv_value FILE COLUMN: the value in the first line under the header.
 csv_value() {
   awk -F, -v name="$2" 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i == name) c = i } NR == 2 && c { print $c }' "$1"
 }
 
-# csv_column FILE COLUMN
+# csv_column FILE COLUMN: the values of a column, one a line.
 csv_column() {
   awk -F, -v name="$2" 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i == name) c = i } NR > 1 && c { print $c }' "$1"
 }
@@ -33,7 +31,7 @@ figure_png() {
   sed "1s/.*/set terminal pngcairo size 800,340 font 'sans-serif,10' noenhanced/" "$1" | gnuplot >"${1%.gp}.png"
 }
 
-# quantile SHARE: of the numbers on standard input.
+# quantile SHARE: quantile of the numbers on standard input.
 quantile() {
   sort -g | awk -v share="$1" '{ v[NR] = $1 } END { r = int(share * NR); if (r < share * NR) ++r
                                                     if (r < 1) r = 1; printf "%.1f", v[r] }'
@@ -46,35 +44,35 @@ calculate() { awk "BEGIN { printf \"%.2f\", $1 }"; }
 input_device() { [[ "$1" == */* ]] && echo "folder://$1" || echo "synthetic://$1"; }
 input_name() { basename "$1"; }
 
-# true_path INPUT: the file that holds the camera's true path; a synthetic room writes it first.
+# true_path INPUT: the file with the camera's true path; for a synthetic room it is written first.
 true_path() {
   [[ "$1" == */* ]] && { echo "$1/groundtruth.txt"; return; }
   if [[ ! -e "truth_$1/groundtruth.txt" ]]; then
-    "$bench_root/scripts/private_bus" "$bin/kintsugi-mapper" --device "synthetic://$1" --replay --max-frames 1 \
+    "$kintsugi_root/scripts/private_bus" "$KINTSUGI_BIN/kintsugi-mapper" --device "synthetic://$1" --replay --max-frames 1 \
       --ground-truth "truth_$1" >/dev/null 2>&1
   fi
   echo "truth_$1/groundtruth.txt"
 }
 
-# map_alone NAME INPUT FLAGS...: the mapper alone over every frame; NAME.log, NAME.txt (its path), NAME.csv (a line a
-# frame).
+# map_alone NAME INPUT FLAGS...: runs only the mapper, over every frame; writes NAME.log, NAME.txt (the camera's path) and
+# NAME.csv (a line a frame).
 map_alone() {
   local name="$1" input="$2"
   shift 2
-  "$bench_root/scripts/private_bus" "$bin/kintsugi-mapper" --device "$(input_device "$input")" --replay \
+  "$kintsugi_root/scripts/private_bus" "$KINTSUGI_BIN/kintsugi-mapper" --device "$(input_device "$input")" --replay \
     --output-trajectory "$name.txt" --timings "$name.csv" "${frame_limit[@]}" "$@" >"$name.log" 2>&1 ||
     { tail -n 3 "$name.log" >&2; return 1; }
 }
 
-# trio_over NAME INPUT OPTIONS...: the three programs over an input; the folder NAME with their logs, NAME.txt.
+# trio_over NAME INPUT OPTIONS...: runs scripts/trio over an input, in the folder NAME; its output is in NAME.txt.
 trio_over() {
   local name="$1" input="$2"
   shift 2
-  "$bench_root/scripts/trio" --private --device "$(input_device "$input")" --out "$name" "${frame_limit[@]}" "$@" \
+  "$kintsugi_root/scripts/trio" --private --device "$(input_device "$input")" --out "$name" "${frame_limit[@]}" "$@" \
     >"$name.txt" 2>&1 || { tail -n 5 "$name.txt" >&2; return 1; }
 }
 
-# google_bench NAME FLAGS...: medians of three repetitions.
+# google_bench NAME FLAGS...: runs a benchmark program and prints the medians of three repetitions.
 google_bench() {
   "$programs/bench_$1" --benchmark_repetitions=3 --benchmark_report_aggregates_only "${@:2}" 2>/dev/null |
     grep -E '^Benchmark|_median'

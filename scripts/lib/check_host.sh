@@ -1,16 +1,15 @@
 # Sourced by check_host: the checks, for $mode (alone or several), $interface, $peer and $out. Each prints a line.
 
+source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+
 group=239.255.76.67 port=7667
-# Ethernet's MTU; a datagram of ours is 1,451 bytes at most where it leaves the host.
+# Ethernet's MTU. A datagram that leaves the host has at most 1,451 bytes.
 ethernet_mtu=1500
 receive_buffer=4194304
 unfit=0
 
-say() { printf '%s: %s\n' "$(basename "$0")" "$*" >&2; }
-value() { (($# > 1)) && printf '%s' "$2" || { say "$1 needs a value"; exit 2; }; }
-
 fine() { printf 'ok     %s\n' "$*"; }
-# note WHAT [COMMAND...], unfit WHAT [COMMAND...]: with the commands that cure it.
+# note WHAT [COMMAND...], unfit WHAT [COMMAND...]: with the commands that correct it.
 note() { printf 'note   %s\n' "$1"; cures "${@:2}"; }
 unfit() { printf 'UNFIT  %s\n' "$1"; cures "${@:2}"; unfit=1; }
 cures() { (($#)) && printf '         %s\n' "$@" || true; }
@@ -23,7 +22,7 @@ conclude() {
   return "$unfit"
 }
 
-# The word after WORD in what `ip route get ADDRESS` says.
+# route_word ADDRESS WORD: the word after WORD in the output of `ip route get ADDRESS`.
 route_word() { ip -4 route get "$1" 2>/dev/null | grep -oP "(^| )$2 \K\S+" || true; }
 
 link_of() { ip -o link show dev "$1" 2>/dev/null || true; }
@@ -84,7 +83,8 @@ check_interface() {
 multicast at its lowest speed and does not repeat what is lost: use a cable, or --rate 0.5" || true
 }
 
-# What comes from the peer has to come where the way back to it goes: the kernel checks that (rp_filter).
+# With strict reverse path filtering (rp_filter 1) the kernel drops a packet unless the route back to its sender goes by the
+# interface on which it came.
 check_peer() {
   local device gateway strict
   [[ "$mode" == several ]] || return 0
@@ -106,7 +106,7 @@ check_peer() {
   fi
 }
 
-# firewall_faults: of the rules on standard input (nft list ruleset), what keeps the bus out, a line each.
+# firewall_faults: the rules on standard input (nft list ruleset) that keep messages of the bus out, a line each.
 firewall_faults() {
   awk -v port="$port" -v mode="$mode" -v interface="$interface" '
     /^table /   { table = $2 " " $3 }
@@ -137,7 +137,7 @@ check_firewall() {
   done <<<"$faults"
 }
 
-# What this machine says on the bus it hears itself: a message that nobody else knows, by LCM's own programs.
+# This machine has to receive its own messages: LCM's own programs send one on a channel of its own.
 check_hearing() {
   local folder logger i url="${LCM_DEFAULT_URL:-udpm://$group:$port?ttl=0}"
   ((unfit)) && return
@@ -169,7 +169,7 @@ check_receive_buffer() {
       "sudo sysctl -w net.core.rmem_max=$receive_buffer"
 }
 
-# A log grows by 0.3 MB a second of a camera's walk.
+# The log of a run with a camera grows by 0.3 MB a second.
 check_disk() {
   local folder="$out" free_MB
   while [[ ! -d "$folder" ]]; do folder="$(dirname "$folder")"; done

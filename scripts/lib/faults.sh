@@ -1,12 +1,14 @@
-# Sourced by faults: the rows, how a run with a fault is made and compared with one without, and how it is printed.
+# Sourced by faults: the rows of the table, a run with a fault and one without, their comparison, and the output.
 #
 # A row is a line in a file of scripts/faults.d,
 #     fault_row NAME "WHAT IS DONE" FUNCTION [ARGUMENT...]
-# and its FUNCTION, which is called in an empty folder, in a network and with mounts of its own, as (perhaps mapped)
-# root, with $quick 0 or 1 and RANDOM seeded. It calls what is below: reference, faulty and the fault; must for whatever
-# has to hold; and sets figure[COLUMN]. A row without figures of its own needs only reference, faulty and same_map.
+# and its FUNCTION. This is called in an empty folder, in a private network and a mount namespace of its own, as root
+# (perhaps a mapped one), with $quick 0 or 1 and a seeded RANDOM. It calls the functions below: `reference`, `faulty` and
+# the fault; `must` for each condition that has to hold. It may set figure[COLUMN]. The shortest row calls `reference`,
+# `faulty` and `same_map`.
 
-source "$(dirname "${BASH_SOURCE[0]}")/trio.sh"
+source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+source "$(dirname "${BASH_SOURCE[0]}")/processes.sh"
 
 declare -A row_what=() row_call=()
 row_names=()
@@ -35,21 +37,23 @@ print_header() {
   printf '|%s\n' "$(printf -- '---|%.0s' row fault holds "${columns[@]}" notes)"
 }
 
-# note TEXT: into the row's last column. must TEXT COMMAND...: what has to hold; TEXT says what does not.
+# note TEXT: adds TEXT to the row's last column.
+# must TEXT COMMAND...: the row does not hold unless COMMAND succeeds; TEXT says what is wrong then.
 note() { notes+=("$*"); }
 must() {
   local what="$1"
   shift
   "$@" || failures+=("$what")
 }
-# skip_row WHY: this machine does not permit it.
+# skip_row WHY: ends the row, because this machine does not permit it.
 skip_row() {
   say "$row_name skipped: $*"
   exit 77
 }
 joined() { printf '%s' "${1:-}"; (($# < 2)) || printf '; %s' "${@:2}"; }
 
-# run_row OUT NAME: inside its network. Prints its line, adds it to faults.csv, fails when something does not hold.
+# run_row OUT NAME: runs a row inside its network, prints its line and adds it to faults.csv. Fails when something does not
+# hold.
 run_row() {
   local column cells=() holds=yes
   runs="$1" row_name="$2"
@@ -69,8 +73,8 @@ run_row() {
   ((${#failures[@]} == 0))
 }
 
-# What the trio maps in most rows: the session is fixed, for the map names it; every frame is mapped, so that two runs
-# give the same slices. The small one is for tests.
+# What the trio maps in most rows. The session number is fixed, because it is part of the map; every frame is mapped, so
+# that two runs give the same slices. With --quick the map is small.
 scene=(--replay --no-log)
 if_quick() { ((quick)); }
 choose_scene() {
@@ -86,8 +90,8 @@ now_s() { printf '%s' "$EPOCHREALTIME"; }
 since_s() { awk -v a="$1" -v b="$EPOCHREALTIME" 'BEGIN { printf "%.1f", b - a }'; }
 calculate() { awk "BEGIN { printf \"%.${2:-2}f\", ($1) }"; }
 
-# run_to_end NAME COMMAND...: scripts/trio with options, into the folder NAME; NAME.txt has what it said, NAME/seconds
-# how long it took. Fails as it fails.
+# run_to_end NAME OPTION...: runs scripts/trio in the folder NAME; its output is in NAME.txt, the time it took in
+# NAME/seconds. Fails if it fails.
 run_to_end() {
   local name="$1" start="$EPOCHREALTIME"
   shift
@@ -95,8 +99,8 @@ run_to_end() {
   since_s "$start" >"$name/seconds"
 }
 
-# reference [OPTION...]: the folder $reference with the run that nothing befell: of this row's scene and these further
-# options. Rows with the same share one.
+# reference [OPTION...]: the run without a fault, of this row's scene and these further options; sets $reference, its
+# folder. Rows with the same scene and options share one.
 reference() {
   local key
   key="$(printf '%s\n' "$quick" "${LCM_DEFAULT_URL}" "${scene[@]}" "$@" | cksum | cut -d' ' -f1)"
@@ -111,8 +115,9 @@ reference() {
   figure[reference_s]="$(<"$reference/seconds")"
 }
 
-# faulty_start [OPTION...]: the run that something shall befall, in the background, in the folder `faulty`.
-# faulty_wait [CODE]: until its end, with this exit code, 0 unless given. faulty: both. end_faulty: whatever still runs of it.
+# faulty_start [OPTION...]: starts the run with a fault in the background, in the folder `faulty`.
+# faulty_wait [CODE]: waits for its end, which has to be with this exit code (default 0).
+# faulty [OPTION...]: both. end_faulty: ends what is left of it.
 faulty_start() {
   faulty_since="$EPOCHREALTIME"
   "$kintsugi_root/scripts/trio" --out faulty "${scene[@]}" "$@" >faulty.txt 2>&1 &
@@ -126,7 +131,7 @@ faulty_wait() {
   ((code == ${1:-0})) || { failures+=("trio ended with exit code $code, see $PWD/faulty.txt"); tail -n 20 faulty.txt >&2; }
   read_figures faulty
 }
-# faulty_fails: waits for its end, which has to be one with an error.
+# faulty_fails: waits for its end; fails unless that was with an error.
 faulty_fails() {
   local code=0
   wait "$faulty_pid" || code=$?
@@ -141,7 +146,7 @@ end_faulty() {
   kill -TERM "$faulty_pid" 2>/dev/null && wait "$faulty_pid" || true
 }
 
-# pid_of NAME: of a process of the faulty run; waits for it 20 s at most.
+# pid_of NAME: the number of a process of the faulty run; waits at most 20 s for it.
 pid_of() {
   local i
   for ((i = 0; i < 200; i++)); do
@@ -151,13 +156,14 @@ pid_of() {
   return 1
 }
 
-# status_last RUN PROCESS FIELD, status_most ...: out of what the processes of a run said about themselves; 0: nothing.
+# status_last RUN PROCESS FIELD, status_most ...: the last and the largest value of a field in the statuses of a run; 0 if
+# there is none.
 status_last() { awk -F, -v p="$2" -v f="$3" '$2 == p && $3 == f { v = $4 } END { print v + 0 }' "$1/status.csv"; }
 status_most() {
   awk -F, -v p="$2" -v f="$3" '$2 == p && $3 == f && $4 > v { v = $4 } END { print v + 0 }' "$1/status.csv"
 }
 
-# read_figures RUN: what trio and its statuses tell.
+# read_figures RUN: sets the figures that scripts/trio printed or the statuses hold.
 read_figures() {
   local process
   for process in mapper segmenter viewer; do
@@ -168,7 +174,7 @@ read_figures() {
   figure[requested]=$(($(status_most "$1" segmenter requests_sent) + $(status_most "$1" viewer requests_sent)))
   figure[resent]=$(($(status_most "$1" mapper chunks_resent) + $(status_most "$1" segmenter chunks_resent)))
 }
-# peak_memory_mb RUN PROCESS: as scripts/trio says it; of a run without trio, the most that a status said.
+# peak_memory_mb RUN PROCESS: as scripts/trio printed it; of a run without scripts/trio, the largest value in a status.
 peak_memory_mb() {
   if [[ -e "$1.txt" ]]; then
     sed -nE "s/^ *memory at most:.* $2 ([0-9]+) MB.*/\1/p" "$1.txt"
@@ -177,7 +183,8 @@ peak_memory_mb() {
   fi
 }
 
-# same_map [RUN]: the map of the faulty run, and its pictures, are those of the reference, byte for byte.
+# same_map [RUN]: the map and the pictures of the run (default: the faulty one) have to be those of the reference, byte for
+# byte.
 same_map() {
   local run="${1:-faulty}" file
   for file in segments.ply map_final.png segments_final.png; do
@@ -187,9 +194,3 @@ same_map() {
 }
 no_partial_files() { ! compgen -G "$1/*.partial*" >/dev/null; }
 
-# the_usual [OPTION...]: the row whose fault is already there.
-the_usual() {
-  reference "$@"
-  faulty "$@"
-  same_map
-}

@@ -1,12 +1,12 @@
-# Sourced by rows whose mapper is slice_player: it publishes a generated map of any size through the mapper's own
-# stream and store.
+# Sourced by rows whose mapper is the test program slice_player. It publishes a generated map of any size through the
+# mapper's own stream and log.
 
 player="${KINTSUGI_TEST_BIN:-$kintsugi_root/build/release/tests}/slice_player"
-played=()                # what it is told
+played=()                # options of slice_player
 viewer_ends=(--exit-on-final)
-mapper_at=() others_at=() # what is put before the commands of the mapper, and of the others: another host, another bus
+mapper_at=() others_at=() # prefixes of the commands of the mapper and of the others, for another host or another bus
 
-# The same map in all rows but those of late joiners; the small one is for tests.
+# The same map in all rows but those of late joiners. With --quick it is small.
 choose_played() {
   [[ -x "$player" ]] || skip_row "slice_player is not built (scripts/build)"
   played=(--session=7 --points=1000000 --speed=0)
@@ -14,38 +14,38 @@ choose_played() {
   return 0
 }
 
-# start_played PROCESS...: mapper, segmenter, viewer, or log: every number of the statuses into $out/status.csv.
+# start_played PROCESS...: starts mapper, segmenter, viewer or log, which writes all statuses to $out/status.csv.
 start_played() {
   local name
   mkdir -p "$out"
   for name in "$@"; do
     case "$name" in
-      mapper) trio_start mapper "${mapper_at[@]}" "$player" --linger=-1 --report="$out/player.json" "${played[@]}" ;;
-      segmenter) trio_start segmenter "${others_at[@]}" "$KINTSUGI_BIN/kintsugi-segmenter" --out="$out" --linger=-1 ;;
-      viewer) trio_start viewer "${others_at[@]}" "$KINTSUGI_BIN/kintsugi-viewer" --out="$out" "${viewer_ends[@]}" \
+      mapper) process_start mapper "${mapper_at[@]}" "$player" --linger=-1 --report="$out/player.json" "${played[@]}" ;;
+      segmenter) process_start segmenter "${others_at[@]}" "$KINTSUGI_BIN/kintsugi-segmenter" --out="$out" --linger=-1 ;;
+      viewer) process_start viewer "${others_at[@]}" "$KINTSUGI_BIN/kintsugi-viewer" --out="$out" "${viewer_ends[@]}" \
         --every=1000000 ;;
-      log) trio_start log "${others_at[@]}" "$KINTSUGI_BIN/kintsugi-status" --log "$out/status.csv" ;;
+      log) process_start log "${others_at[@]}" "$KINTSUGI_BIN/kintsugi-status" --log "$out/status.csv" ;;
     esac
   done
 }
 
-# finish_played SECONDS: until the viewer has drawn the whole map, so long at most; then ends all.
+# finish_played SECONDS: waits at most so long until the viewer has drawn the whole map; then ends all.
 finish_played() {
   local deadline=$((SECONDS + $1)) name code
-  while trio_alive viewer && trio_alive segmenter && trio_alive mapper && ((SECONDS < deadline)); do sleep 0.1; done
+  while process_alive viewer && process_alive segmenter && process_alive mapper && ((SECONDS < deadline)); do sleep 0.1; done
   must "the viewer has not drawn the whole map within $1 s, or the others ended before it" not_alive viewer
   for name in viewer segmenter mapper log; do
-    trio_stop TERM 60 "$name" || failures+=("$name did not stop")
+    process_stop 60 "$name" || failures+=("$name did not stop")
     code=0
-    wait "${trio_pid[$name]}" 2>/dev/null || code=$?
+    process_wait "$name" || code=$?
     ((code == 0 || code == 143)) || [[ "$name" == log ]] ||
       failures+=("$name ended with code $code, see $out/$name.log")
   done
   read_figures "$out"
 }
-not_alive() { ! trio_alive "$1"; }
+not_alive() { ! process_alive "$1"; }
 
-# played_run RUN: from the start to the end, all three there from the start.
+# played_run RUN: a whole run, in which all processes are there from the start.
 played_run() {
   local since="$EPOCHREALTIME"
   out="$PWD/$1"
@@ -54,7 +54,7 @@ played_run() {
   figure[seconds]="$(since_s "$since")"
 }
 
-# played_reference: the folder $reference with the run that nothing befell. Rows that play the same share one.
+# played_reference: the run without a fault; sets $reference, its folder. Rows that play the same map share one.
 played_reference() {
   local key
   key="$(printf '%s\n' "${played[@]}" | cksum | cut -d' ' -f1)"
@@ -69,5 +69,5 @@ played_reference() {
   figure[reference_s]="$(<"$reference/seconds")"
 }
 
-# json_number FILE NAME: of a report.
+# json_number FILE NAME: the value of a field in a report.
 json_number() { grep -m1 -oP "\"$2\": \K[0-9.]+" "$1" || echo 0; }

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Everything is killed in the middle of a run, as when the power fails; scripts/trio --resume goes on with it, and ends
-# with the map of a run that was never interrupted.
+# Everything, or only the script, is killed in the middle of a run; scripts/trio --resume continues it, and ends with the
+# map of a run that was never interrupted.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.sh"
 
 run_trio "${small_room[@]}" --replay --no-log --out quiet
@@ -19,6 +19,21 @@ kill -KILL "$trio"
   fail "scripts/trio --resume"
 }
 for file in segments.ply map_final.png segments_final.png trajectory.txt; do expect_same "quiet/$file" "run/$file"; done
+
+# Only the script is killed: its processes end too, and the mapper's session is not over.
+"$root/scripts/trio" "${small_room[@]}" --replay --no-log --out orphaned >trio.txt 2>&1 &
+trio=$!
+for file in mapper.pid mapper.lcm; do wait_for_file "orphaned/$file"; done
+kill -KILL "$trio"
+{ wait "$trio"; } 2>/dev/null && fail "the script was not killed"
+for process in mapper segmenter viewer; do
+  timeout 60 tail --pid="$(<"orphaned/$process.pid")" -f /dev/null || fail "the $process is still there"
+done
+"$root/scripts/trio" --resume --out orphaned >resumed.txt 2>&1 || {
+  cat resumed.txt
+  fail "scripts/trio --resume after the script was killed"
+}
+for file in segments.ply map_final.png segments_final.png trajectory.txt; do expect_same "quiet/$file" "orphaned/$file"; done
 
 # What the mapper keeps is a log like another.
 "$root/scripts/replay" run/mapper.lcm --private --speed 4 --out replay >replay.txt 2>&1 || {

@@ -1,0 +1,188 @@
+"""scripts/trio and scripts/replay: from the command line to the exit code."""
+
+import contextlib
+import os
+import signal
+import sys
+
+from . import network, options
+from .messages import Problem, os_error_text, say
+from .process import Process, stop
+from .programs import check_programs, program
+from .run_folder import RunFolder
+from .status import Status
+from .summary import show_summary
+from .supervisor import Supervisor
+
+LINGER_S = 60  # where no viewer tells when all is drawn: until nobody has asked for anything for so long
+UNTIL_TOLD = -1
+READY_TIMEOUT_S = 20
+INTERRUPTED = 130  # exit code, as shells have it
+# What the mapper said: the recorded segmenter would contradict the one that listens now.
+REPLAYED_CHANNELS = "^(CLOUD_SLICE|CAMERA_POSE|MAPPER_STATUS)$"
+
+
+def run_command(command):
+    """Calls command(arguments) and returns the exit code: that of the command, 1 after a foreseeable error,
+    2 after a wrong option."""
+    try:
+        return command(sys.argv[1:])
+    except Problem as problem:
+        say(str(problem))
+        return problem.exit_code
+    except OSError as error:
+        say(os_error_text(error))
+        return 1
+
+
+def this_command():
+    return [os.path.abspath(sys.argv[0]), *sys.argv[1:]]
+
+
+def trio(arguments):
+    choice = options.parse_trio(arguments)
+    check_programs([*choice.only, "status"], ["setpriv"] if choice.no_log else ["setpriv", "lcm-logger"])
+    if choice.resume:
+        choice = recalled(choice.out, arguments)
+    network.choose_network(choice.private, this_command())
+    folder = RunFolder(choice.out)
+    folder.create()
+    folder.lock()
+    if choice.resume:
+        os.chdir(choice.started_in)
+    else:
+        folder.keep_earlier_run()
+        folder.remember_options(arguments)
+    return run_trio(choice, folder)
+
+
+def recalled(out, arguments):
+    """The options that the run in the folder `out` was started with; those given now count instead of the same
+    ones then. Relative paths are those of the folder in which the run was started."""
+    started_in, saved = RunFolder(out).recall_options()
+    if not os.path.isdir(started_in):
+        raise Problem(f"{started_in}, in which the run was started, is not there any more")
+    choice = options.parse_trio([*saved, *arguments])
+    choice.out, choice.started_in = os.path.realpath(out), started_in
+    return choice
+
+
+def run_trio(choice, folder):
+    processes = {"mapper": lambda: mapper_process(choice, folder), "segmenter": lambda: segmenter_process(choice, folder),
+                 "viewer": lambda: viewer_process(choice, folder)}
+    watched = [processes[name]() for name in choice.only]
+    logger = None if choice.no_log else logger_process(folder)
+    with supervised(folder, watched, logger) as supervisor:
+        if logger:
+            logger.start()
+        for process in [*watched[1:], watched[0]] if "mapper" in choice.only else watched:
+            process.start()
+        good = supervisor.watch()
+        if logger:
+            good = end_recording(logger, folder) and good
+        show_summary(folder, watched)
+    return 0 if good else 1
+
+
+@contextlib.contextmanager
+def supervised(folder, processes, logger=None):
+    """A supervisor that handles signals; however the block ends, its processes end."""
+    supervisor = Supervisor(folder, Status(folder.file("status.csv")), processes, logger)
+    supervisor.install_signal_handlers()
+    try:
+        yield supervisor
+    finally:
+        supervisor.end()
+
+
+def linger_s(choice):
+    return UNTIL_TOLD if "viewer" in choice.only else LINGER_S
+
+
+def mapper_process(choice, folder):
+    def command(resume):
+        log_option = "--resume" if resume and folder.has("mapper.lcm") else "--store"
+        return [program("mapper"), "--output-trajectory=" + folder.file("trajectory.txt"),
+                f"--linger={linger_s(choice)}", f"{log_option}={folder.file('mapper.lcm')}", *choice.mapper]
+
+    # One SIGTERM does not end a mapper: it ends the session and goes on answering. When this supervisor is killed
+    # the session shall be interrupted, so that --resume goes on with it.
+    return Process("mapper", command(choice.resume), folder, restart_command=lambda: command(True), death_signal="KILL")
+
+
+def segmenter_process(choice, folder):
+    return Process("segmenter", [program("segmenter"), f"--out={choice.out}", "--exit-on-final",
+                                 f"--linger={linger_s(choice)}", "--save=" + folder.file("segmenter.map"),
+                                 "--save-every=5", "--resume-if-saved", *choice.segmenter], folder)
+
+
+def viewer_process(choice, folder):
+    video = ["--video=" + folder.file("run.mp4")] if choice.video else []
+    return Process("viewer", [program("viewer"), f"--out={choice.out}", "--exit-on-final", *choice.viewer, *video], folder)
+
+
+def logger_process(folder):
+    url = os.environ.get("LCM_DEFAULT_URL")
+    return Process("logger", ["lcm-logger", "-q", "-a", *([f"--lcm-url={url}"] if url else []),
+                              folder.file("run.lcm.partial")], folder)
+
+
+def end_recording(logger, folder):
+    """The log of the bus gets its name when it is complete. Returns whether there is one."""
+    stop([logger], signal.SIGINT, 10)
+    try:
+        os.replace(folder.file("run.lcm.partial"), folder.file("run.lcm"))
+    except OSError as error:
+        say(f"{folder.file('run.lcm')} is not written: {error.strerror}")
+        return False
+    return True
+
+
+def replay(arguments):
+    choice = options.parse_replay(arguments)
+    if not (os.access(choice.log, os.R_OK) and os.path.getsize(choice.log)):
+        raise Problem(f"{choice.log}: no such log, or it is empty")
+    check_programs(["segmenter", "viewer", "status"], ["setpriv", "lcm-logplayer"])
+    network.choose_network(choice.private, this_command())
+    folder = RunFolder(choice.out)
+    folder.create()
+    folder.lock()
+    for name in ("segmenter.log", "viewer.log", "player.log", "status.csv"):
+        with contextlib.suppress(FileNotFoundError):
+            os.remove(folder.file(name))
+    return run_replay(choice, folder)
+
+
+def run_replay(choice, folder):
+    url = os.environ.get("LCM_DEFAULT_URL")
+    player = Process("player", ["lcm-logplayer", *(["-l", url] if url else []), "-s", choice.speed,
+                                "-e", REPLAYED_CHANNELS, choice.log], folder)
+    listeners = [
+        Process("segmenter", [program("segmenter"), f"--out={choice.out}", "--exit-on-final", f"--linger={UNTIL_TOLD}",
+                              *choice.segmenter], folder),
+        Process("viewer", [program("viewer"), f"--out={choice.out}", "--exit-on-final", *choice.viewer], folder)]
+    with supervised(folder, [player, *listeners]) as supervisor:
+        for process in listeners:
+            process.start()
+        wait_until_ready(supervisor, listeners)
+        player.start()
+        good = supervisor.watch()
+        show_summary(folder, listeners)
+    return 0 if good else 1
+
+
+def wait_until_ready(supervisor, processes):
+    """While a log is played nobody sends its slices again: all have to listen before."""
+    names = [process.name for process in processes]
+
+    def give_up():
+        return supervisor.num_stop_requests or not all(process.running for process in processes)
+
+    if supervisor.status.hears(names, READY_TIMEOUT_S, give_up):
+        return
+    if supervisor.num_stop_requests:
+        raise Problem("stopped before the log was played", INTERRUPTED)
+    say(f"{','.join(names)} did not come up:")
+    for process in processes:
+        process.show_last_words()
+    raise Problem("the log was not played")

@@ -1,0 +1,59 @@
+"""Whether LCM can work on this machine, and the private network where it cannot."""
+
+import os
+import socket
+
+from .messages import say
+from .programs import ROOT
+
+LCM_GROUP = ("239.255.76.67", 7667)  # LCM's default
+RECEIVE_BUFFER = 4194304  # bytes
+SMALL_RECEIVE_BUFFER = 2097152
+RMEM_MAX = "/proc/sys/net/core/rmem_max"
+CURE_FOR_ROUTE = "sudo ip link set lo up && sudo ip route add 224.0.0.0/4 dev lo"
+
+
+def choose_network(private, command):
+    """Returns where LCM can work. Replaces this process by `command` in a private network when
+    `private` asks for one or LCM has no route here."""
+    if private:
+        enter_private_network(command)
+    elif not os.environ.get("LCM_DEFAULT_URL") and not has_multicast_route():
+        say("this machine has no route for multicast, so LCM cannot work on it. To add one:")
+        say("  " + CURE_FOR_ROUTE)
+        say("until then: running in a private network")
+        enter_private_network(command)
+    note_receive_buffer()
+
+
+def enter_private_network(command):
+    """Does nothing in a private network: the environment says whether this is one."""
+    if os.environ.get("KINTSUGI_PRIVATE_BUS"):
+        return
+    os.environ["KINTSUGI_PRIVATE_BUS"] = "1"
+    private_bus = os.path.join(ROOT, "scripts", "private_bus")
+    os.execv(private_bus, [private_bus, *command])
+
+
+def has_multicast_route():
+    """connect() of a UDP socket sends nothing; it fails where the kernel knows no route."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        try:
+            probe.connect(LCM_GROUP)
+        except OSError:
+            return False
+    return True
+
+
+def note_receive_buffer():
+    """A small receive buffer only costs time: what is lost is sent again. In a private network some
+    kernels do not show the limit."""
+    try:
+        with open(RMEM_MAX, encoding="ascii") as file:
+            size = int(file.read())
+    except (OSError, ValueError):
+        return
+    if size < SMALL_RECEIVE_BUFFER:
+        say(f"note: a receive buffer has at most {size} bytes here. What is lost is sent again, which takes time."
+            " To enlarge it:")
+        say(f"  sudo sysctl -w net.core.rmem_max={RECEIVE_BUFFER}")

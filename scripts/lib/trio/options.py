@@ -1,0 +1,166 @@
+"""The command lines of scripts/trio and scripts/replay. One table each: parser and --help are made
+from it."""
+
+import argparse
+import shlex
+
+from .messages import Problem
+
+PROCESSES = ("mapper", "segmenter", "viewer")
+
+PASS_ON = "pass on"  # FLAG or FLAG=VALUE is passed to one process
+SPLIT = "split"  # the value is split into further options for one process
+STORE = "store"  # for the command itself
+
+# Flag, metavar (None: a switch), what is done with it, for which process or with which default, help.
+TRIO_OPTIONS = (
+    ("--device", "URI", PASS_ON, "mapper",
+     "where frames come from: FILE.oni, folder://PATH, synthetic://office|loop|two-floors, or a camera's URI; "
+     "empty or not given: the first camera"),
+    ("--out", "DIR", STORE, "out/trio",
+     "folder of the run (default %(default)s); files of an earlier run in it are moved to DIR/earlier"),
+    ("--resume", None, STORE, False,
+     "continue the interrupted run in DIR (after a reboot, say) with the options that it was started with"),
+    ("--mode", "MODE", PASS_ON, "segmenter", "segmentation mode (default: the segmenter's own)"),
+    ("--preset", "NAME", PASS_ON, "segmenter", "parameters of the segmenter: objects (default) or paper"),
+    ("--resolution", "M", PASS_ON, "mapper", "side of a voxel in metres"),
+    ("--volume-size", "M", PASS_ON, "mapper", "side of the moving volume in metres"),
+    ("--calibration", "FILE", PASS_ON, "mapper", "camera.txt of the camera"),
+    ("--replay", None, PASS_ON, "mapper",
+     "map every frame, as fast as processing allows (recordings and synthetic rooms)"),
+    ("--max-frames", "N", PASS_ON, "mapper", "stop after N frames"),
+    ("--every", "N", PASS_ON, "viewer", "write a snapshot every N slices"),
+    ("--video", None, STORE, False, "write a video of the run too"),
+    ("--publish-frames", None, PASS_ON, "mapper",
+     "publish the raw frames too, so that the log can be replayed into a mapper"),
+    ("--no-log", None, STORE, False, "do not record the bus"),
+    ("--only", "NAMES", STORE, ",".join(PROCESSES),
+     "run only these of %(default)s; the others run on other hosts"),
+    ("--private", None, STORE, False, "run in a private network that no other program hears"),
+    ("--mapper", "'ARGS'", SPLIT, "mapper", "further options of kintsugi-mapper, quoted as in a shell"),
+    ("--segmenter", "'ARGS'", SPLIT, "segmenter", "further options of kintsugi-segmenter"),
+    ("--viewer", "'ARGS'", SPLIT, "viewer", "further options of kintsugi-viewer"),
+)
+
+REPLAY_OPTIONS = (
+    ("--out", "DIR", STORE, "out/replay", "folder of the run (default %(default)s)"),
+    ("--speed", "X", STORE, "1", "times real time (default %(default)s)"),
+    ("--mode", "MODE", PASS_ON, "segmenter", "segmentation mode (default: the segmenter's own)"),
+    ("--preset", "NAME", PASS_ON, "segmenter", "parameters of the segmenter: objects (default) or paper"),
+    ("--every", "N", PASS_ON, "viewer", "write a snapshot every N slices"),
+    ("--private", None, STORE, False, "run in a private network that no other program hears"),
+    ("--segmenter", "'ARGS'", SPLIT, "segmenter", "further options of kintsugi-segmenter, quoted as in a shell"),
+    ("--viewer", "'ARGS'", SPLIT, "viewer", "further options of kintsugi-viewer"),
+)
+
+MAY_BE_EMPTY = {"--device", "--mapper", "--segmenter", "--viewer"}
+
+
+def parse_trio(arguments):
+    """Namespace with out, resume, video, no_log, private; only (list of names); and the options of
+    each process as lists: mapper, segmenter, viewer. Of an option given twice the last one counts."""
+    parser = Parser("scripts/trio", TRIO_OPTIONS, description=(
+        "Runs mapper, segmenter and viewer over LCM with one set of options, restarts what is killed, and stops at "
+        "the end of the device or at Ctrl-C with everything written (Ctrl-C twice: without waiting for the rest of "
+        "the map to be drawn)."))
+    options = parser.parse(arguments)
+    options.only = chosen_processes(options.only)
+    return options
+
+
+def parse_replay(arguments):
+    """Namespace with log, out, speed, private, and the lists segmenter and viewer."""
+    parser = Parser("scripts/replay", REPLAY_OPTIONS, usage="scripts/replay LOG [options]",
+                    description="Plays a recorded log through lcm-logplayer into a segmenter and a viewer.")
+    parser.add_argument("log", metavar="LOG", nargs="?", help="run.lcm or mapper.lcm of a run, or another LCM log")
+    options = parser.parse(arguments)
+    if not options.log:
+        raise Problem("which log? see scripts/replay --help", 2)
+    return options
+
+
+def chosen_processes(names):
+    given = names.split(",")
+    if not set(given) <= set(PROCESSES):
+        raise Problem(f"--only {names}: expected one or more of {','.join(PROCESSES)}", 2)
+    return [name for name in PROCESSES if name in given]
+
+
+class Parser(argparse.ArgumentParser):
+    """Made from a table as above. A wrong command line raises Problem with exit code 2."""
+
+    def __init__(self, command, table, usage=None, description=None):
+        super().__init__(prog=command, usage=usage or f"{command} [options]", description=description,
+                         allow_abbrev=False)
+        self._with_value = {flag for flag, metavar, *_ in table if metavar}
+        for flag, metavar, kind, target, text in table:
+            self._add(flag, metavar, kind, target, text)
+
+    def parse(self, arguments):
+        options, rest = self.parse_known_args(self._join_values(arguments))
+        if rest:
+            raise Problem(f"unknown option {rest[0]}; see {self.prog} --help", 2)
+        for name in PROCESSES:
+            flags = getattr(options, flags_of(name), {})
+            setattr(options, name, [*flags.values(), *getattr(options, name, [])])
+        return options
+
+    def error(self, message):
+        raise Problem(f"{message}; see {self.prog} --help", 2)
+
+    def _add(self, flag, metavar, kind, target, text):
+        if kind == STORE:
+            action = {"action": "store", "metavar": metavar} if metavar else {"action": "store_true"}
+            self.add_argument(flag, default=target, help=text, **action)
+            return
+        value = {"metavar": metavar} if metavar else {"nargs": 0}
+        if kind == PASS_ON:
+            self.add_argument(flag, action=PassOn, dest=flags_of(target), default={}, help=text, **value)
+        else:
+            self.add_argument(flag, action=Split, dest=target, default=[], help=text, **value)
+
+    def _join_values(self, arguments):
+        """FLAG VALUE as FLAG=VALUE: argparse takes a separate value that begins with a dash, as in
+        `--mapper --session=7`, for another option."""
+        joined = []
+        rest = iter(arguments)
+        for argument in rest:
+            flag, is_joined, value = argument.partition("=")
+            if flag not in self._with_value:
+                joined.append(argument)
+                continue
+            if not is_joined:
+                value = next(rest, None)
+            if value is None or (not value and flag not in MAY_BE_EMPTY):
+                raise Problem(f"{flag} needs a value", 2)
+            joined.append(f"{flag}={value}")
+        return joined
+
+
+def flags_of(name):
+    """The attribute in which PassOn collects what is passed to a process."""
+    return name + "_flags"
+
+
+class PassOn(argparse.Action):
+    """Collects FLAG=VALUE for a process. Given again, a flag replaces what it said before; an empty
+    value stands for the process's own default."""
+
+    def __call__(self, parser, namespace, values, option_string=None):
+        flags = {flag: word for flag, word in getattr(namespace, self.dest).items() if flag != option_string}
+        if self.nargs == 0:
+            flags[option_string] = option_string
+        elif values:
+            flags[option_string] = f"{option_string}={values}"
+        setattr(namespace, self.dest, flags)
+
+
+class Split(argparse.Action):
+    """Splits further options for a process into words, as a shell does."""
+
+    def __call__(self, parser, namespace, values, option_string=None):
+        try:
+            words = shlex.split(values)
+        except ValueError as error:
+            raise Problem(f"{option_string} {values}: {error}", 2) from error
+        setattr(namespace, self.dest, getattr(namespace, self.dest) + words)

@@ -1,0 +1,141 @@
+"""The folder of a run. One run at a time writes into it, an earlier run in it is kept, and it
+remembers the options of its run for --resume."""
+
+import contextlib
+import fcntl
+import os
+import time
+from pathlib import Path
+
+from .messages import Problem, command_name, say
+
+LOCK_TIMEOUT_S = 3.0  # the processes of a supervisor that was killed end soon
+
+# All that a run writes. Other files in the folder belong to the user.
+RUN_FILES = (
+    "mapper.lcm", "mapper.*.lcm", "segmenter.map", "run.lcm", "run.lcm.partial", "segments*.ply", "segments*.json",
+    "final.png", "map_final*.png", "segments_final*.png", "final_*.png", "snapshot_*.png", "run.mp4", "trajectory.txt",
+    "status.csv", "mapper.log", "segmenter.log", "viewer.log", "logger.log", "trio.options")
+PROCESSES_WITH_PID_FILE = ("mapper", "segmenter", "viewer", "logger", "player")
+
+
+class RunFolder:
+    """`path` as the user gave it; the files in it are what RUN_FILES names."""
+
+    def __init__(self, path):
+        self.path = Path(path)
+        self.lock_descriptor = None
+
+    def file(self, name):
+        return str(self.path / name)
+
+    def has(self, name):
+        """Whether the file exists and is not empty."""
+        file = self.path / name
+        return file.is_file() and file.stat().st_size > 0
+
+    def create(self):
+        self.path.mkdir(parents=True, exist_ok=True)
+
+    def lock(self):
+        """For as long as this process lives, or one of its children that inherits `lock_descriptor`.
+        Raises Problem when another run holds the folder."""
+        descriptor = os.open(self.file(".lock"), os.O_RDWR | os.O_CREAT, 0o666)
+        deadline = time.monotonic() + LOCK_TIMEOUT_S
+        while not try_lock(descriptor):
+            if time.monotonic() > deadline:
+                raise Problem(self._held_by(os.pread(descriptor, 32, 0)))
+            time.sleep(0.1)
+        self.lock_descriptor = descriptor
+        with contextlib.suppress(OSError):  # on a full disk the message of _held_by lacks the number
+            os.ftruncate(descriptor, 0)
+            os.pwrite(descriptor, str(os.getpid()).encode(), 0)
+
+    def _held_by(self, recorded):
+        pid = int(recorded) if recorded.isdigit() else None
+        left = {name: its_pid for name in PROCESSES_WITH_PID_FILE if is_alive(its_pid := self.read_pid(name))}
+        if left and not is_alive(pid):
+            names = ", ".join(f"{name} (pid {its_pid})" for name, its_pid in left.items())
+            return f"processes of an earlier run still work in {self.path}: {names}; wait until they have ended"
+        holder = f" (pid {pid})" if is_alive(pid) else ""
+        return (f"another scripts/{command_name()} is at work in {self.path}{holder}; "
+                "choose another folder with --out")
+
+    def keep_earlier_run(self):
+        """Moves the files of a run that is there into earlier/DATE."""
+        found = [file for pattern in RUN_FILES for file in sorted(self.path.glob(pattern))]
+        if not found:
+            return
+        date = time.strftime("%Y%m%d-%H%M%S", time.localtime(found[0].stat().st_mtime))
+        kept = self.path / "earlier" / date
+        while kept.exists():
+            kept = kept.with_name(kept.name + "x")
+        kept.mkdir(parents=True)
+        for file in found:
+            file.rename(kept / file.name)
+        say(f"{self.path} held an earlier run; it is now in {kept}")
+
+    def remember_options(self, arguments):
+        """The current folder, for relative paths among the arguments, and the arguments; each ends with a
+        zero byte. A partial file gets its name when it is complete."""
+        text = "".join(word + "\0" for word in (os.getcwd(), *arguments))
+        file = self.path / "trio.options"
+        partial = self.path / "trio.options.partial"
+        try:
+            partial.write_bytes(os.fsencode(text))
+            partial.rename(file)
+        except OSError as error:  # write() does not name the file
+            partial.unlink(missing_ok=True)
+            raise Problem(f"{file}: {error.strerror}") from error
+
+    def recall_options(self):
+        """What remember_options wrote: the folder in which the run was started, and its arguments."""
+        if not self.has("trio.options"):
+            raise Problem(f"{self.path} holds no run to go on with")
+        words = os.fsdecode((self.path / "trio.options").read_bytes()).split("\0")[:-1]
+        return words[0], words[1:]
+
+    def write_pid(self, name, pid):
+        """For people and tests; the run does not depend on it, so a full disk is no error."""
+        with contextlib.suppress(OSError):
+            (self.path / f"{name}.pid").write_text(f"{pid}\n", encoding="ascii")
+
+    def read_pid(self, name):
+        try:
+            return int((self.path / f"{name}.pid").read_text(encoding="ascii"))
+        except (OSError, ValueError):
+            return None
+
+    def remove_pid_files(self):
+        for name in PROCESSES_WITH_PID_FILE:
+            with contextlib.suppress(OSError):
+                (self.path / f"{name}.pid").unlink()
+
+    def is_disk_full(self):
+        """Whether there is less than 1 MB of space, which is too little for most of what a run writes."""
+        try:
+            disk = os.statvfs(self.path)
+        except OSError:
+            return False
+        return disk.f_bavail * disk.f_frsize < 1_000_000
+
+
+def try_lock(descriptor):
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return False
+    return True
+
+
+def is_alive(pid):
+    """Whether there is a process with this number; None: no."""
+    if pid is None:
+        return False
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return False
+    except PermissionError:
+        pass
+    return True

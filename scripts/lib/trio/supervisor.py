@@ -1,0 +1,156 @@
+"""The rules of a run: what is started again, what ends it, and in which order the processes end."""
+
+import signal
+import time
+
+from .messages import say
+from .process import stop
+
+PERIOD_S = 0.2
+IDLE_S = 60  # no progress for so long: the rest of the map will not come
+IDLE_AFTER_ERROR_S = 5  # the others may finish what there is, but need not
+STOP_TIMEOUT_S = 60
+LEADING_PROCESSES = ("mapper", "player")
+
+
+class Supervisor:
+    """Watches `processes`, in order: first the leader (the mapper, or the player of a log), which the
+    others ask for what they miss, so it ends last; last the one that decides when the run is complete,
+    the viewer where there is one. `logger` records the bus beside them; None: nothing does."""
+
+    def __init__(self, folder, status, processes, logger=None):
+        self.folder = folder
+        self.status = status
+        self.processes = processes
+        self.logger = logger
+        self.failed = False
+        self.num_stop_requests = 0
+        self._disk_was_full = False
+
+    @property
+    def leader(self):
+        return self.processes[0]
+
+    @property
+    def last(self):
+        return self.processes[-1]
+
+    def install_signal_handlers(self):
+        """Ctrl-C, SIGTERM, and SIGHUP of a terminal that was closed; what was ignored from the start, as
+        with nohup, is ignored."""
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+            if signal.getsignal(number) != signal.SIG_IGN:
+                signal.signal(number, lambda *_: self.request_stop())
+
+    def request_stop(self):
+        """Once: the map so far is finished. Twice, or where nothing here leads the run: at once."""
+        self.num_stop_requests += 1 if self.leader.name in LEADING_PROCESSES else 2
+
+    def watch(self):
+        """Until the run is complete and all its processes have ended. Returns whether all went well."""
+        self.status.show_progress(IDLE_S)
+        stop_announced = False
+        while self.last.started:
+            time.sleep(PERIOD_S)
+            self._note_disk()
+            self._check_logger()
+            for process in self.processes:
+                process.measure()
+                self._check(process)
+            if not self.last.started:
+                break
+            if self.num_stop_requests and not stop_announced:
+                stop_announced = True
+                self._begin_to_stop()
+            if self.num_stop_requests > 1 or self._stands_still():
+                self._stop(self.last)
+        for process in [*self.processes[1:], self.leader]:
+            self.close(process)
+        self.status.end()
+        return not self.failed
+
+    def end(self):
+        """Ends what still runs, at the latest after 10 s, for example after an exception."""
+        self.status.end()
+        processes = self.processes + ([self.logger] if self.logger else [])
+        stop(processes, signal.SIGTERM, 10)
+        self.folder.remove_pid_files()
+
+    def _check(self, process):
+        """Sees to a process that has ended. One that a signal killed is started again, unless it dies
+        soon after each start; an error ends the run."""
+        killed_here = process.killed
+        code = process.take_exit_code()
+        if code in (None, 0, -signal.SIGTERM) or killed_here:
+            return
+        if code < 0 and not self.num_stop_requests and process.may_restart():
+            say(f"{process.name} was killed (signal {-code}); starting it again")
+            process.restart()
+            return
+        self.failed = True
+        self.num_stop_requests = max(1, self.num_stop_requests)
+        how = f"was ended by signal {-code}" if code < 0 else f"ended with an error (exit code {code})"
+        say(f"{process.name} {how}:")
+        process.show_last_words()
+        if self.folder.is_disk_full():
+            say(f"{self.folder.path}: no space left on device; when there is space, "
+                f"scripts/trio --resume --out {self.folder.path} goes on with the run")
+        self.status.show_progress(IDLE_AFTER_ERROR_S)
+
+    def _check_logger(self):
+        """Without the log of the bus the run goes on, but it is not a success."""
+        if not self.logger:
+            return
+        code = self.logger.take_exit_code()
+        if code is not None:
+            self.failed = True
+            say(f"lcm-logger ended early (exit code {code}); run.lcm lacks what is on the bus from now on:")
+            self.logger.show_last_words()
+
+    def _note_disk(self):
+        is_full = self.folder.is_disk_full()
+        if is_full and not self._disk_was_full:
+            say(f"{self.folder.path}: no space left on device; status.csv and the logs may lack what is said from now "
+                "on, the map and the pictures are written when there is space")
+        self._disk_was_full = is_full
+
+    def _begin_to_stop(self):
+        say("stopping; the map so far is published, segmented, drawn and written (Ctrl-C again: stop at once)")
+        if self.leader.name == "player":  # nobody completes the map of a log that was not played to its end
+            self.leader.tell_to_stop()
+            self.status.show_progress(IDLE_AFTER_ERROR_S)
+        elif self.leader.name == "mapper" and self.status.shows_progress and not self.status.mapper_lingers():
+            self.leader.tell_to_stop()
+
+    def _stands_still(self):
+        """Everything is mapped, or nothing more will be, and yet the last process does not get on. A camera
+        that is silent may come back."""
+        result = self.status.take_result()
+        if result is None or result:
+            return False
+        if not self.leader.running or self.status.mapper_has_finished():
+            return True
+        self.status.show_progress(IDLE_S)
+        return False
+
+    def _stop(self, process):
+        if not stop([process], signal.SIGTERM, STOP_TIMEOUT_S):
+            self.failed = True
+
+    def close(self, process):
+        """Ends a process that has done all it has to. One that is killed by somebody at this moment is
+        started again, and finishes first."""
+        while process.started:
+            if process.name == "mapper":
+                self._let_mapper_finish(process)
+            self._stop(process)
+            self._check(process)
+            if process.running:
+                self.status.hears_end_of_map(IDLE_S, give_up=lambda: not process.running)
+
+    def _let_mapper_finish(self, mapper):
+        """Until it stays only to send again what others miss; one that still maps is told to stop."""
+        if not mapper.running or self.status.hears_lingering_mapper(2):
+            return
+        mapper.tell_to_stop()
+        self.status.hears_lingering_mapper(STOP_TIMEOUT_S, give_up=lambda: not mapper.running)

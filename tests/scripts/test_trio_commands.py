@@ -1,0 +1,209 @@
+"""scripts/trio and scripts/replay from the outside, with fake programs: exit codes, messages, the command lines
+of the processes, and what happens when the supervisor is stopped or killed."""
+
+import os
+import shlex
+import signal
+import subprocess
+import unittest
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from trio_fakes import ROOT, UNTIL_TERM, environment, process_is_gone, wait_until, write_program
+
+# Each program notes how it was called. The display of the progress lasts until it is ended; questions are
+# answered at once.
+NOTE = 'echo "$@" >>"$CALLS/$(basename "$0")"; '
+FINISHES = NOTE + "sleep 0.2"
+LASTS = NOTE + UNTIL_TERM
+STATUS = f'case "$*" in *--viewer*) {UNTIL_TERM} ;; esac'
+LOGGER = 'for file; do :; done; echo a log >"$file"; trap "exit 0" INT; while :; do sleep 0.02; done'
+
+
+class CommandTest(unittest.TestCase):
+    def setUp(self):
+        temporary = TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.work = Path(temporary.name)
+        self.programs = self.work / "bin"
+        self.calls = self.work / "calls"
+        for folder in (self.programs, self.calls):
+            folder.mkdir()
+        self.program("mapper", LASTS)
+        self.program("segmenter", LASTS)
+        self.program("viewer", FINISHES)
+        self.program("status", STATUS)
+        write_program(self.programs / "lcm-logger", LOGGER)
+        write_program(self.programs / "lcm-logplayer", FINISHES)
+
+    def program(self, name, script):
+        write_program(self.programs / f"kintsugi-{name}", script)
+
+    def start(self, command, *arguments):
+        process = subprocess.Popen([ROOT / "scripts" / command, *arguments], cwd=self.work, text=True,
+                                   env={**environment(self.programs), "CALLS": str(self.calls)},
+                                   stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+        self.addCleanup(process.stdout.close)
+        self.addCleanup(process.wait)
+        self.addCleanup(process.kill)
+        return process
+
+    def run_command(self, command, *arguments):
+        """Exit code and what was said; never a traceback."""
+        process = self.start(command, *arguments)
+        said = process.communicate()[0]
+        self.assertNotIn("Traceback", said)
+        return process.returncode, said
+
+    def expect(self, exit_code, command, *arguments):
+        code, said = self.run_command(command, *arguments)
+        self.assertEqual(code, exit_code, said)
+        return said
+
+    def call(self, name, number=-1):
+        """The words with which a program was called."""
+        return shlex.split((self.calls / name).read_text().splitlines()[number])
+
+    def size(self, file):
+        path = self.work / file
+        return path.stat().st_size if path.exists() else 0
+
+    def pids(self, out):
+        return [int((self.work / out / f"{name}.pid").read_text()) for name in ("mapper", "segmenter", "viewer")]
+
+
+class Trio(CommandTest):
+    def test_a_run_names_what_it_wrote(self):
+        said = self.expect(0, "trio", "--out", "run", "--every", "3")
+        self.assertIn("trio: written:", said)
+        self.assertIn("run/run.lcm", said)
+        self.assertIn("0 pictures of the run", said)
+        self.assertEqual((self.work / "run/run.lcm").read_text(), "a log\n")
+        self.assertFalse((self.work / "run/run.lcm.partial").exists())
+        self.assertEqual(list((self.work / "run").glob("*.pid")), [])
+
+    def test_each_process_gets_its_options(self):
+        self.expect(0, "trio", "--out", "run", "--no-log", "--device", "", "--mapper", "--session=7", "--video",
+                    "--mode", "batch")
+        self.assertEqual(self.call("kintsugi-mapper"), ["--output-trajectory=run/trajectory.txt", "--linger=-1",
+                                                        "--store=run/mapper.lcm", "--session=7"])
+        self.assertEqual(self.call("kintsugi-segmenter"), [
+            "--out=run", "--exit-on-final", "--linger=-1", "--save=run/segmenter.map", "--save-every=5",
+            "--resume-if-saved", "--mode=batch"])
+        self.assertEqual(self.call("kintsugi-viewer"), ["--out=run", "--exit-on-final", "--video=run/run.mp4"])
+
+    def test_without_a_viewer_the_others_linger_for_a_minute(self):
+        self.program("segmenter", FINISHES)
+        self.expect(0, "trio", "--only", "mapper,segmenter", "--out", "run", "--no-log")
+        self.assertIn("--linger=60", self.call("kintsugi-mapper"))
+        self.assertFalse((self.calls / "kintsugi-viewer").exists())
+
+    def test_resume_recalls_the_options(self):
+        self.expect(0, "trio", "--out", "run", "--no-log", "--resolution", "0.02", "--max-frames", "5")
+        (self.work / "run/mapper.lcm").write_text("slices")
+        self.expect(0, "trio", "--resume", "--out", "run", "--max-frames", "9")
+        call = self.call("kintsugi-mapper")
+        self.assertIn("--resolution=0.02", call)
+        self.assertIn("--max-frames=9", call)
+        self.assertNotIn("--max-frames=5", call)
+        self.assertIn(f"--resume={self.work.resolve()}/run/mapper.lcm", call)
+
+    def test_resume_without_slices_starts_from_the_beginning(self):
+        self.expect(0, "trio", "--out", "run", "--no-log")
+        self.expect(0, "trio", "--resume", "--out", "run")
+        self.assertIn(f"--store={self.work.resolve()}/run/mapper.lcm", self.call("kintsugi-mapper"))
+
+    def test_a_mapper_that_was_killed_resumes_its_log(self):
+        self.program("mapper", NOTE + 'case "$*" in *--store*) echo slices >run/mapper.lcm; kill -KILL $$ ;; esac; '
+                     + UNTIL_TERM)
+        self.program("viewer", 'until grep -q -e --resume "$CALLS/kintsugi-mapper"; do sleep 0.02; done')
+        said = self.expect(0, "trio", "--out", "run", "--no-log")
+        self.assertIn("mapper was killed (signal 9); starting it again", said)
+        self.assertEqual(len((self.calls / "kintsugi-mapper").read_text().splitlines()), 2)
+
+    def test_an_error_is_told_with_its_reason(self):
+        self.program("viewer", "echo no folder; exit 3")
+        said = self.expect(1, "trio", "--out", "run", "--no-log")
+        self.assertIn("viewer ended with an error (exit code 3):\n  viewer: no folder\n", said)
+
+    def test_wrong_options_end_with_2(self):
+        self.assertIn("trio: unknown option --nonsense", self.expect(2, "trio", "--nonsense"))
+        self.assertIn("trio: --only painter", self.expect(2, "trio", "--only", "painter"))
+
+    def test_programs_that_are_missing_are_named(self):
+        (self.programs / "kintsugi-viewer").unlink()
+        self.assertIn("no kintsugi-viewer", self.expect(1, "trio", "--out", "run"))
+
+    def test_a_folder_that_cannot_be_made_is_named(self):
+        (self.work / "file").touch()
+        self.assertIn("trio: file/run: Not a directory", self.expect(1, "trio", "--out", "file/run"))
+
+    def test_a_full_disk_is_named(self):
+        (self.work / "run").mkdir()
+        os.symlink("/dev/full", self.work / "run/trio.options.partial")
+        self.assertIn("trio: run/trio.options: No space left on device", self.expect(1, "trio", "--out", "run"))
+        self.expect(0, "trio", "--out", "run")
+
+    def test_nothing_to_resume_is_told(self):
+        self.assertIn("holds no run to go on with", self.expect(1, "trio", "--resume", "--out", "nothing"))
+
+    def test_one_signal_finishes_the_run(self):
+        self.program("viewer", UNTIL_TERM)
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+            out = f"run{number}"
+            self.program("mapper", f"trap 'kill $(cat {out}/viewer.pid); exit 0' TERM; echo up; "
+                         "while :; do sleep 0.02; done")
+            trio = self.start("trio", "--out", out)
+            self.assertTrue(wait_until(lambda: self.size(f"{out}/mapper.log")))
+            trio.send_signal(number)
+            said = trio.communicate()[0]
+            self.assertEqual(trio.returncode, 0, said)
+            self.assertIn("stopping; the map so far", said)
+
+    def test_all_processes_end_with_a_supervisor_that_is_killed(self):
+        self.program("viewer", UNTIL_TERM)
+        self.program("mapper", "trap '' TERM; while :; do sleep 0.02; done")  # one SIGTERM does not end it
+        trio = self.start("trio", "--out", "run")
+        self.assertTrue(wait_until(lambda: (self.work / "run/mapper.pid").exists()))
+        pids = self.pids("run")
+        self.assertTrue(wait_until(lambda: all("kintsugi" in command_line(pid) for pid in pids)))
+        trio.kill()
+        self.assertTrue(wait_until(lambda: all(process_is_gone(pid) for pid in pids)))
+        self.program("viewer", FINISHES)
+        self.program("mapper", LASTS)
+        self.expect(0, "trio", "--resume", "--out", "run")
+
+
+class Replay(CommandTest):
+    def setUp(self):
+        super().setUp()
+        (self.work / "run.lcm").write_text("a log")
+
+    def test_the_log_is_played_for_those_who_listen(self):
+        self.expect(0, "replay", "run.lcm", "--speed", "4", "--out", "again", "--preset", "paper")
+        call = self.call("lcm-logplayer")
+        self.assertEqual((call[call.index("-s") + 1], call[-1]), ("4", "run.lcm"))
+        self.assertIn("--preset=paper", self.call("kintsugi-segmenter"))
+
+    def test_a_log_that_is_missing_or_empty_is_told(self):
+        (self.work / "empty.lcm").touch()
+        for log in ("missing.lcm", "empty.lcm"):
+            self.assertIn(f"{log}: no such log, or it is empty", self.expect(1, "replay", log))
+
+    def test_who_does_not_come_up_is_told(self):
+        self.program("viewer", "echo no screen; exit 1")
+        self.program("status", 'case "$*" in *--until-ready*) sleep 1000 ;; esac')
+        said = self.expect(1, "replay", "run.lcm", "--out", "again")
+        self.assertIn("segmenter,viewer did not come up", said)
+        self.assertIn("viewer: no screen", said)
+
+
+def command_line(pid):
+    try:
+        return Path(f"/proc/{pid}/cmdline").read_bytes().decode().split("\0")[1]
+    except (OSError, IndexError):
+        return ""
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,94 @@
+"""The command lines of scripts/trio and scripts/replay."""
+
+import unittest
+
+from trio_fakes import ROOT  # noqa: F401  (sets the import path)
+
+from trio.messages import Problem
+from trio.options import REPLAY_OPTIONS, TRIO_OPTIONS, Parser, parse_replay, parse_trio
+
+
+class TrioOptions(unittest.TestCase):
+    def expect_problem(self, arguments, text, parse=parse_trio):
+        with self.assertRaises(Problem) as caught:
+            parse(arguments)
+        self.assertIn(text, str(caught.exception))
+        self.assertEqual(caught.exception.exit_code, 2)
+
+    def test_help_shows_every_option(self):
+        for table in (TRIO_OPTIONS, REPLAY_OPTIONS):
+            shown = Parser("command", table).format_help()
+            for flag, metavar, *_ in table:
+                self.assertIn(f"{flag} {metavar}" if metavar else flag, shown)
+
+    def test_options_reach_their_processes(self):
+        options = parse_trio(["--device", "synthetic://office", "--resolution=0.02", "--replay", "--preset", "paper",
+                              "--every", "2"])
+        self.assertEqual(options.mapper, ["--device=synthetic://office", "--resolution=0.02", "--replay"])
+        self.assertEqual(options.segmenter, ["--preset=paper"])
+        self.assertEqual(options.viewer, ["--every=2"])
+
+    def test_the_last_of_two_equal_options_counts(self):
+        options = parse_trio(["--device", "a.oni", "--replay", "--out", "one", "--device", "b.oni", "--replay",
+                              "--out", "two"])
+        self.assertCountEqual(options.mapper, ["--device=b.oni", "--replay"])
+        self.assertEqual(options.out, "two")
+
+    def test_an_empty_device_is_the_first_camera(self):
+        self.assertEqual(parse_trio(["--device", ""]).mapper, [])
+        self.assertEqual(parse_trio(["--device="]).mapper, [])
+        self.assertEqual(parse_trio(["--device", "synthetic://office", "--device", ""]).mapper, [])
+
+    def test_further_options_are_split_as_in_a_shell(self):
+        options = parse_trio(["--mapper", "--session=7 --cloud '/a b/c.ply'", "--viewer", "--view \"1,2, 3\"",
+                              "--mapper", r"--mesh d\ e.ply", "--segmenter", ""])
+        self.assertEqual(options.mapper, ["--session=7", "--cloud", "/a b/c.ply", "--mesh", "d e.ply"])
+        self.assertEqual(options.viewer, ["--view", "1,2, 3"])
+        self.assertEqual(options.segmenter, [])
+
+    def test_a_value_may_begin_with_a_dash(self):
+        self.assertEqual(parse_trio(["--mapper", "--session=7", "--no-log"]).mapper, ["--session=7"])
+
+    def test_further_options_are_never_replaced(self):
+        options = parse_trio(["--mapper", "--device x", "--device", "y"])
+        self.assertEqual(options.mapper, ["--device=y", "--device", "x"])
+
+    def test_a_quote_that_is_not_closed_is_an_error(self):
+        self.expect_problem(["--mapper", "--cloud 'a b"], "--mapper --cloud 'a b: No closing quotation")
+
+    def test_wrong_options_are_named(self):
+        self.expect_problem(["--nonsense"], "unknown option --nonsense")
+        self.expect_problem(["--res", "1"], "unknown option --res")
+        self.expect_problem(["stray"], "unknown option stray")
+        self.expect_problem(["--out"], "--out needs a value")
+        self.expect_problem(["--resolution", ""], "--resolution needs a value")
+        self.expect_problem(["--private=yes"], "--private")
+
+    def test_only_names_processes_in_any_order(self):
+        self.assertEqual(parse_trio([]).only, ["mapper", "segmenter", "viewer"])
+        self.assertEqual(parse_trio(["--only", "viewer,segmenter"]).only, ["segmenter", "viewer"])
+        self.expect_problem(["--only", "painter"], "--only painter")
+        self.expect_problem(["--only", "mapper,"], "--only mapper,")
+
+    def test_two_command_lines_share_nothing(self):
+        parse_trio(["--mapper", "--session=7", "--device", "a.oni"])
+        self.assertEqual(parse_trio([]).mapper, [])
+
+
+class ReplayOptions(unittest.TestCase):
+    def test_the_log_may_stand_anywhere(self):
+        for arguments in (["run.lcm", "--speed", "4"], ["--speed", "4", "run.lcm"]):
+            options = parse_replay(arguments)
+            self.assertEqual((options.log, options.speed, options.out), ("run.lcm", "4", "out/replay"))
+
+    def test_a_log_is_needed(self):
+        with self.assertRaisesRegex(Problem, "which log"):
+            parse_replay([])
+
+    def test_there_is_no_mapper(self):
+        with self.assertRaisesRegex(Problem, "unknown option --mapper"):
+            parse_replay(["run.lcm", "--mapper", "x"])
+
+
+if __name__ == "__main__":
+    unittest.main()
