@@ -41,9 +41,9 @@ def this_command():
 
 def trio(arguments):
     choice = options.parse_trio(arguments)
-    check_programs([*choice.only, "status"], ["setpriv"] if choice.no_log else ["setpriv", "lcm-logger"])
     if choice.resume:
         choice = recalled(choice.out, arguments)
+    check_programs([*choice.only, "status"], ["setpriv"] if choice.no_log else ["setpriv", "lcm-logger"])
     network.choose_network(choice.private, this_command())
     folder = RunFolder(choice.out)
     folder.create()
