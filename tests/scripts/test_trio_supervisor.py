@@ -1,6 +1,5 @@
 """The rules of a run, with small processes in place of the real ones."""
 
-import os
 import signal
 import unittest
 from unittest import mock
@@ -186,9 +185,9 @@ class SupervisorTest(FolderTest):
         segmenter = self.once("segmenter", "kill -KILL $$", "echo finished; " + UNTIL_TERM)
         supervisor = self.supervisor(self.shell("mapper", UNTIL_TERM), segmenter)
         self.assertTrue(wait_until(lambda: not segmenter.running))
-        with mock.patch.object(self.status, "hears_end_of_map", side_effect=lambda *_, **__: self.up(segmenter)) as hears:
-            supervisor.close(segmenter)
-        hears.assert_called_once()
+        self.status.hears_end_of_map = mock.Mock(side_effect=lambda *_, **__: self.up(segmenter))
+        supervisor.close(segmenter)
+        self.status.hears_end_of_map.assert_called_once()
         self.assertFalse(supervisor.failed)
 
     def test_a_run_whose_logger_ended_goes_on_but_is_no_success(self):
@@ -244,7 +243,7 @@ class StatusTest(FolderTest):
     def test_statuses_that_cannot_be_recorded_are_shown_all_the_same(self):
         status = self.status_of('case "$*" in *--log*) exit 1 ;; *) exit 0 ;; esac')
         self.assertIsNone(self.result(status))
-        self.assertIn("status.csv: the statuses are not recorded any more", self.said)
+        self.assertIn("status.csv: the statuses are no longer recorded", self.said)
         self.assertTrue(wait_until(lambda: not status.shows_progress))
         self.assertIs(status.take_result(), True)
 

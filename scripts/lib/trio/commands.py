@@ -14,11 +14,11 @@ from .status import Status
 from .summary import show_summary
 from .supervisor import Supervisor
 
-LINGER_S = 60  # where no viewer tells when all is drawn: until nobody has asked for anything for so long
+LINGER_S = 60  # without a viewer, which knows when all is drawn: until there has been no request for so long
 UNTIL_TOLD = -1
 READY_TIMEOUT_S = 20
 INTERRUPTED = 130  # exit code, as shells have it
-# What the mapper said: the recorded segmenter would contradict the one that listens now.
+# What the mapper published. Messages of the recorded segmenter would contradict those of the one that listens now.
 REPLAYED_CHANNELS = "^(CLOUD_SLICE|CAMERA_POSE|MAPPER_STATUS)$"
 
 
@@ -41,9 +41,9 @@ def this_command():
 
 def trio(arguments):
     choice = options.parse_trio(arguments)
-    check_programs([*choice.only, "status"], ["setpriv"] if choice.no_log else ["setpriv", "lcm-logger"])
     if choice.resume:
         choice = recalled(choice.out, arguments)
+    check_programs([*choice.only, "status"], ["setpriv"] if choice.no_log else ["setpriv", "lcm-logger"])
     network.choose_network(choice.private, this_command())
     folder = RunFolder(choice.out)
     folder.create()
@@ -57,8 +57,8 @@ def trio(arguments):
 
 
 def recalled(out, arguments):
-    """The options that the run in the folder `out` was started with; those given now count instead of the same
-    ones then. Relative paths are those of the folder in which the run was started."""
+    """The options that the run in the folder `out` was started with; options given now replace the remembered
+    ones. Relative paths are relative to the folder in which the run was started."""
     started_in, saved = RunFolder(out).recall_options()
     if not os.path.isdir(started_in):
         raise Problem(f"{started_in}, in which the run was started, is not there any more")
@@ -68,9 +68,8 @@ def recalled(out, arguments):
 
 
 def run_trio(choice, folder):
-    processes = {"mapper": lambda: mapper_process(choice, folder), "segmenter": lambda: segmenter_process(choice, folder),
-                 "viewer": lambda: viewer_process(choice, folder)}
-    watched = [processes[name]() for name in choice.only]
+    make = {"mapper": mapper_process, "segmenter": segmenter_process, "viewer": viewer_process}
+    watched = [make[name](choice, folder) for name in choice.only]
     logger = None if choice.no_log else logger_process(folder)
     with supervised(folder, watched, logger) as supervisor:
         if logger:
@@ -86,7 +85,7 @@ def run_trio(choice, folder):
 
 @contextlib.contextmanager
 def supervised(folder, processes, logger=None):
-    """A supervisor that handles signals; however the block ends, its processes end."""
+    """Yields a supervisor that handles signals. When the block ends, for whatever reason, its processes are ended."""
     supervisor = Supervisor(folder, Status(folder.file("status.csv")), processes, logger)
     supervisor.install_signal_handlers()
     try:
@@ -105,8 +104,8 @@ def mapper_process(choice, folder):
         return [program("mapper"), "--output-trajectory=" + folder.file("trajectory.txt"),
                 f"--linger={linger_s(choice)}", f"{log_option}={folder.file('mapper.lcm')}", *choice.mapper]
 
-    # One SIGTERM does not end a mapper: it ends the session and goes on answering. When this supervisor is killed
-    # the session shall be interrupted, so that --resume goes on with it.
+    # A mapper that gets SIGTERM finishes its session, and answers requests until it gets another one. When this
+    # supervisor is killed the session must remain unfinished, so that --resume can continue it.
     return Process("mapper", command(choice.resume), folder, restart_command=lambda: command(True), death_signal="KILL")
 
 
@@ -118,7 +117,8 @@ def segmenter_process(choice, folder):
 
 def viewer_process(choice, folder):
     video = ["--video=" + folder.file("run.mp4")] if choice.video else []
-    return Process("viewer", [program("viewer"), f"--out={choice.out}", "--exit-on-final", *choice.viewer, *video], folder)
+    return Process("viewer", [program("viewer"), f"--out={choice.out}", "--exit-on-final", *choice.viewer, *video],
+                   folder)
 
 
 def logger_process(folder):
@@ -128,7 +128,7 @@ def logger_process(folder):
 
 
 def end_recording(logger, folder):
-    """The log of the bus gets its name when it is complete. Returns whether there is one."""
+    """Stops the logger; the log of the bus gets its name when it is complete. Returns whether that worked."""
     stop([logger], signal.SIGINT, 10)
     try:
         os.replace(folder.file("run.lcm.partial"), folder.file("run.lcm"))
@@ -172,7 +172,7 @@ def run_replay(choice, folder):
 
 
 def wait_until_ready(supervisor, processes):
-    """While a log is played nobody sends its slices again: all have to listen before."""
+    """All have to listen before a log is played, because nobody sends its slices again."""
     names = [process.name for process in processes]
 
     def give_up():

@@ -14,8 +14,8 @@ CURE_FOR_ROUTE = "sudo ip link set lo up && sudo ip route add 224.0.0.0/4 dev lo
 
 
 def choose_network(private, command):
-    """Returns where LCM can work. Replaces this process by `command` in a private network when
-    `private` asks for one or LCM has no route here."""
+    """Returns if LCM can work here. If `private`, or if there is no route for multicast, replaces this process by
+    `command` in a private network."""
     if private:
         enter_private_network(command)
     elif not os.environ.get("LCM_DEFAULT_URL") and not has_multicast_route():
@@ -27,7 +27,7 @@ def choose_network(private, command):
 
 
 def enter_private_network(command):
-    """Does nothing in a private network: the environment says whether this is one."""
+    """Replaces this process by `command` there, unless the environment says that it is there already."""
     if os.environ.get("KINTSUGI_PRIVATE_BUS"):
         return
     os.environ["KINTSUGI_PRIVATE_BUS"] = "1"

@@ -87,8 +87,8 @@ class Process:
             self.send(signal.SIGTERM)
 
     def take_exit_code(self):
-        """None while it runs. Once it has ended: its exit code, negative for the signal that killed it;
-        from then on the process counts as not started."""
+        """None while it runs. Once it has ended: its exit code, or the negative number of the signal that killed
+        it; from then on the process counts as not started."""
         if not self.started or self.running:
             return None
         code = self._popen.returncode
@@ -96,7 +96,7 @@ class Process:
         return code
 
     def may_restart(self):
-        """To be asked once for each time that a signal killed it."""
+        """Whether it has not died too often soon after its start. To be asked once after each death."""
         quick = time.monotonic() - self._start_s < QUICK_DEATH_S
         self._quick_deaths = self._quick_deaths + 1 if quick else 0
         return self._quick_deaths < MAX_QUICK_DEATHS
@@ -143,8 +143,8 @@ def last_lines(path):
 
 
 def stop(processes, signal_number, timeout_s):
-    """Sends a signal to those that run and waits for their end. Kills what does not end in time; returns
-    whether that was not necessary."""
+    """Sends a signal to those that run and waits for their end. Kills those that do not end in time; returns
+    whether all ended by themselves."""
     for process in processes:
         process.send(signal_number)
     deadline = time.monotonic() + timeout_s

@@ -38,8 +38,8 @@ class RunFolder:
         self.path.mkdir(parents=True, exist_ok=True)
 
     def lock(self):
-        """For as long as this process lives, or one of its children that inherits `lock_descriptor`.
-        Raises Problem when another run holds the folder."""
+        """Locks the folder until this process and its children, which inherit `lock_descriptor`, have ended.
+        Raises Problem if another run holds the lock."""
         descriptor = os.open(self.file(".lock"), os.O_RDWR | os.O_CREAT, 0o666)
         deadline = time.monotonic() + LOCK_TIMEOUT_S
         while not try_lock(descriptor):
@@ -76,8 +76,8 @@ class RunFolder:
         say(f"{self.path} held an earlier run; it is now in {kept}")
 
     def remember_options(self, arguments):
-        """The current folder, for relative paths among the arguments, and the arguments; each ends with a
-        zero byte. A partial file gets its name when it is complete."""
+        """Writes the current folder, for relative paths among the arguments, and the arguments, each with a zero
+        byte at its end. The file gets its name when it is complete."""
         text = "".join(word + "\0" for word in (os.getcwd(), *arguments))
         file = self.path / "trio.options"
         partial = self.path / "trio.options.partial"
@@ -112,7 +112,7 @@ class RunFolder:
                 (self.path / f"{name}.pid").unlink()
 
     def is_disk_full(self):
-        """Whether there is less than 1 MB of space, which is too little for most of what a run writes."""
+        """Whether less than 1 MB is free, which is too little for most files of a run."""
         try:
             disk = os.statvfs(self.path)
         except OSError:

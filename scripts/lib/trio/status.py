@@ -25,7 +25,7 @@ class Status:
         self._display = None
 
     def show_progress(self, idle_s):
-        """Until mapper, segmenter and viewer have finished, or nothing has moved for `idle_s` seconds."""
+        """Until mapper, segmenter and viewer have finished, or there has been no progress for `idle_s` seconds."""
         self.end()
         log = ["--log", self._csv_file] if self._records else []
         self._display = spawn([program("status"), "--until-finished", "--viewer", "--timeout", str(idle_s), *log])
@@ -35,8 +35,8 @@ class Status:
         return self._display is not None and self._display.poll() is None
 
     def take_result(self):
-        """True once all have finished, False once nothing has moved for too long; None at other times.
-        When the statuses cannot be recorded the display goes on without."""
+        """When the display has ended: True if all have finished, False if there was no progress for too long. None
+        at other times. If the statuses cannot be recorded the display goes on without recording."""
         if self._display is None or self.shows_progress:
             return None
         code = self._display.returncode
@@ -44,7 +44,7 @@ class Status:
         if code == FAILED and not self._records:
             raise Problem("kintsugi-status cannot watch the run, see the message above")
         if code == FAILED:
-            say(f"{self._csv_file}: the statuses are not recorded any more, see the message above")
+            say(f"{self._csv_file}: the statuses are no longer recorded, see the message above")
             self._records = False
             self.show_progress(60)
             return None
@@ -73,7 +73,7 @@ class Status:
         return value
 
     def mapper_lingers(self):
-        """It has said that all is published, and stays only to send again what others miss."""
+        """Whether the mapper has published everything and only answers requests."""
         return self.last("mapper", "lingering") == "1"
 
     def mapper_has_finished(self):

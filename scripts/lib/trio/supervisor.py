@@ -8,15 +8,15 @@ from .process import stop
 
 PERIOD_S = 0.2
 IDLE_S = 60  # no progress for so long: the rest of the map will not come
-IDLE_AFTER_ERROR_S = 5  # the others may finish what there is, but need not
+IDLE_AFTER_ERROR_S = 5  # the same after an error, when the others may be unable to finish
 STOP_TIMEOUT_S = 60
 LEADING_PROCESSES = ("mapper", "player")
 
 
 class Supervisor:
-    """Watches `processes`, in order: first the leader (the mapper, or the player of a log), which the
-    others ask for what they miss, so it ends last; last the one that decides when the run is complete,
-    the viewer where there is one. `logger` records the bus beside them; None: nothing does."""
+    """Watches the processes of a run. The first of `processes` is the leader, the mapper or the player of a
+    log: it is stopped last, because the others ask it for what they miss. The last one, the viewer if there
+    is one, knows when the run is complete: it exits by itself. `logger` records the bus; may be None."""
 
     def __init__(self, folder, status, processes, logger=None):
         self.folder = folder
@@ -36,14 +36,15 @@ class Supervisor:
         return self.processes[-1]
 
     def install_signal_handlers(self):
-        """Ctrl-C, SIGTERM, and SIGHUP of a terminal that was closed; what was ignored from the start, as
-        with nohup, is ignored."""
+        """For Ctrl-C, SIGTERM, and SIGHUP (the terminal was closed). A signal that was ignored from the start, as
+        with nohup, remains ignored."""
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
             if signal.getsignal(number) != signal.SIG_IGN:
                 signal.signal(number, lambda *_: self.request_stop())
 
     def request_stop(self):
-        """Once: the map so far is finished. Twice, or where nothing here leads the run: at once."""
+        """The first request finishes the map so far; the second stops at once, and so does the first if neither a
+        mapper nor a player runs here."""
         self.num_stop_requests += 1 if self.leader.name in LEADING_PROCESSES else 2
 
     def watch(self):
@@ -70,15 +71,15 @@ class Supervisor:
         return not self.failed
 
     def end(self):
-        """Ends what still runs, at the latest after 10 s, for example after an exception."""
+        """Ends what still runs, for example after an exception, within 10 s."""
         self.status.end()
         processes = self.processes + ([self.logger] if self.logger else [])
         stop(processes, signal.SIGTERM, 10)
         self.folder.remove_pid_files()
 
     def _check(self, process):
-        """Sees to a process that has ended. One that a signal killed is started again, unless it dies
-        soon after each start; an error ends the run."""
+        """If the process has ended: starts it again if it was killed by a signal, unless it dies soon after each
+        start; ends the run if there was an error."""
         killed_here = process.killed
         code = process.take_exit_code()
         if code in (None, 0, -signal.SIGTERM) or killed_here:
@@ -98,7 +99,7 @@ class Supervisor:
         self.status.show_progress(IDLE_AFTER_ERROR_S)
 
     def _check_logger(self):
-        """Without the log of the bus the run goes on, but it is not a success."""
+        """Without the logger the run goes on, but it has failed."""
         if not self.logger:
             return
         code = self.logger.take_exit_code()
@@ -110,8 +111,8 @@ class Supervisor:
     def _note_disk(self):
         is_full = self.folder.is_disk_full()
         if is_full and not self._disk_was_full:
-            say(f"{self.folder.path}: no space left on device; status.csv and the logs may lack what is said from now "
-                "on, the map and the pictures are written when there is space")
+            say(f"{self.folder.path}: no space left on device; status.csv and the logs may be incomplete, the map and "
+                "the pictures are written when there is space")
         self._disk_was_full = is_full
 
     def _begin_to_stop(self):
@@ -123,8 +124,8 @@ class Supervisor:
             self.leader.tell_to_stop()
 
     def _stands_still(self):
-        """Everything is mapped, or nothing more will be, and yet the last process does not get on. A camera
-        that is silent may come back."""
+        """Whether the last process makes no progress any more although no more of the map will come. While the
+        mapper waits for a silent camera, more may come."""
         result = self.status.take_result()
         if result is None or result:
             return False
@@ -138,8 +139,8 @@ class Supervisor:
             self.failed = True
 
     def close(self, process):
-        """Ends a process that has done all it has to. One that is killed by somebody at this moment is
-        started again, and finishes first."""
+        """Stops a process that has nothing left to do. If somebody kills it at this moment, it is started again
+        and finishes first."""
         while process.started:
             if process.name == "mapper":
                 self._let_mapper_finish(process)
@@ -149,7 +150,8 @@ class Supervisor:
                 self.status.hears_end_of_map(IDLE_S, give_up=lambda: not process.running)
 
     def _let_mapper_finish(self, mapper):
-        """Until it stays only to send again what others miss; one that still maps is told to stop."""
+        """Waits until the mapper has published everything and only answers requests; one that still maps is
+        stopped first."""
         if not mapper.running or self.status.hears_lingering_mapper(2):
             return
         mapper.tell_to_stop()
