@@ -9,6 +9,7 @@
 #include "lcmtypes/base/run_main.hpp"
 #include "mapper/openni2_driver/recording/recording_uri.hpp"
 #include "mapper/synthetic/render/folder_writer.hpp"
+#include "mapper/synthetic/render/ground_truth.hpp"
 
 namespace {
 
@@ -16,13 +17,16 @@ using kintsugi::mapper::RecordingUri;
 using kintsugi::synthetic::FolderWriter;
 using kintsugi::synthetic::FrameRange;
 using kintsugi::synthetic::Sequence;
+using kintsugi::synthetic::write_ground_truth;
 
 void render(const std::string& address, const std::string& folder, const std::string& frames) {
   const auto uri = kintsugi::mapper::parse_recording_uri(address);
   if (!uri || uri->scheme != RecordingUri::Scheme::kSynthetic) {
     throw std::invalid_argument("'" + address + "': expected synthetic://NAME?key=value&...");
   }
-  Sequence sequence(Sequence::Config::parse(uri->path, uri->options));
+  const auto config = Sequence::Config::parse(uri->path, uri->options);
+  Sequence sequence(config);
+  if (!config.ground_truth.empty()) write_ground_truth(sequence, config.ground_truth);
   const FrameRange range = FrameRange::parse(frames, sequence.num_frames());
   FolderWriter writer(sequence, folder);
   for (int frame = range.first; frame < range.end; frame += range.step) {
