@@ -12,7 +12,7 @@
 #include "lcmtypes/stream/stream_publisher.hpp"
 #include "mapper/core/frame/rgbd_frame.hpp"
 #include "mapper/process/options.hpp"
-#include "mapper/session/session_log.hpp"
+#include "mapper/session/session_store.hpp"
 
 namespace kintsugi::mapper {
 
@@ -35,7 +35,7 @@ class MapPublisher {
   };
 
   /// @throws std::runtime_error when the bus cannot be opened, with the cure
-  MapPublisher(const Config& config, SessionLog& log);
+  MapPublisher(const Config& config, SessionStore& store);
 
   void publish_slices(std::vector<CloudSlice> slices);
   void publish_pose(CameraPose pose);
@@ -70,7 +70,7 @@ class MapPublisher {
   void publish(const std::string& channel, const Message& message);
 
   Config config_;
-  SessionLog& log_;
+  SessionStore& store_;
   Bus bus_;
   Stream slice_stream_;
   Stream frame_stream_;                   ///< null: frames are not published

@@ -22,7 +22,7 @@ class MapperProcess {
  public:
   /// Opens the device and the bus. `log` and `resumption` must outlive this.
   /// @throws std::runtime_error when either cannot be opened
-  MapperProcess(const Options& options, SessionLog& log, Resumption& resumption);
+  MapperProcess(const Options& options, SessionStore& store, Resumption& resumption);
 
   /// Until the device ends, max_frames, or a stop signal. Then the final slice is published and
   /// everything sent, and the files asked for written; then it stays to answer requests. Stopped

@@ -11,23 +11,23 @@
 #include "mapper/process/map_publisher.hpp"
 #include "mapper/process/mapper_process.hpp"
 #include "mapper/session/resumption.hpp"
-#include "mapper/session/session_log.hpp"
+#include "mapper/session/session_store.hpp"
 
 namespace kintsugi::mapper {
 namespace {
 
-SessionLog::Config log_config(const Options& options) {
-  SessionLog::Config config;
+SessionStore::Config store_config(const Options& options) {
+  SessionStore::Config config;
   config.resume = !options.resume_file.empty();
   config.path = config.resume ? options.resume_file : options.store_file;
   config.max_file_bytes = static_cast<std::int64_t>(1e6 * options.store_file_size_mb);
   return config;
 }
 
-/// Nothing to map: who missed something gets it.
-void serve(const Options& options, SessionLog& log, const StoredSession& ended) {
-  spdlog::info("session {} has ended: it is only served", ended.session);
-  MapPublisher publisher(publisher_config(options, ended.session), log);
+/// For a session that is complete: answers requests for its slices.
+void resend_only(const Options& options, SessionStore& store, const StoredSession& ended) {
+  spdlog::info("session {} is complete: its slices are only sent again", ended.session);
+  MapPublisher publisher(publisher_config(options, ended.session), store);
   MapperStatus status = ended.last_status.value_or(MapperStatus());
   status.device = options.source.device;
   status.finished = true;
@@ -35,13 +35,13 @@ void serve(const Options& options, SessionLog& log, const StoredSession& ended) 
   linger(publisher, options.linger_s, [&] { publisher.publish_status(status); });
 }
 
-/// What could be written by now is written.
-void expect_complete(const SessionLog& log) {
-  const SessionLog::Report report = log.report();
+/// @throws std::runtime_error unless everything that was published is in the log
+void expect_complete(const SessionStore& store) {
+  const BufferedLog::Report report = store.report();
   if (report.waiting_bytes == 0 && report.lost_chunks == 0) return;
   throw std::runtime_error(
-      "the log lacks what was published: " + std::to_string(report.waiting_bytes) + " bytes and " +
-      std::to_string(report.lost_chunks) + " chunks had no room; see above");
+      "the log is incomplete, see above: " + std::to_string(report.waiting_bytes) + " bytes and " +
+      std::to_string(report.lost_chunks) + " chunks could not be written");
 }
 
 }  // namespace
@@ -52,15 +52,17 @@ void run(const Options& options) {
     thread_limit = std::make_unique<tbb::global_control>(
         tbb::global_control::max_allowed_parallelism, options.threads);
   }
-  SessionLog log(log_config(options));
-  Resumption resumption(log, options);
+  SessionStore store(store_config(options));
+  Resumption resumption(store, {.options = mapping_options(options),
+                                .session = options.session,
+                                .max_range_m = options.source.max_range_m});
   if (const StoredSession* ended = resumption.ended_session()) {
-    serve(options, log, *ended);
+    resend_only(options, store, *ended);
   } else {
-    MapperProcess(options, log, resumption).run();
+    MapperProcess(options, store, resumption).run();
   }
-  log.retry();
-  if (!options.store_file.empty() || !options.resume_file.empty()) expect_complete(log);
+  store.retry();
+  if (!options.store_file.empty() || !options.resume_file.empty()) expect_complete(store);
 }
 
 }  // namespace kintsugi::mapper

@@ -8,7 +8,8 @@
 
 #include <opencv2/core.hpp>
 
-#include "mapper/source/frame_source.hpp"
+#include "lcmtypes/geometry.hpp"
+#include "mapper/source/frames/source_config.hpp"
 #include "mapper/source/openni2/device_state.hpp"
 
 namespace kintsugi::mapper {

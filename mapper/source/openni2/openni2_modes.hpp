@@ -6,7 +6,7 @@
 
 #include <OpenNI.h>
 
-#include "mapper/source/openni2/device_mode.hpp"
+#include "mapper/source/frames/device_mode.hpp"
 
 namespace kintsugi::mapper {
 

@@ -7,11 +7,11 @@
 #include <string>
 
 #include "lcmtypes/base/patient_clock.hpp"
-#include "mapper/source/frame_source.hpp"
 #include "mapper/source/frames/color_clock.hpp"
 #include "mapper/source/frames/device_clock.hpp"
 #include "mapper/source/frames/frame_converter.hpp"
 #include "mapper/source/frames/frame_pairer.hpp"
+#include "mapper/source/frames/frame_source.hpp"
 #include "mapper/source/openni2/camera_return.hpp"
 #include "mapper/source/openni2/openni2_device.hpp"
 
@@ -29,11 +29,7 @@ class OpenNi2Source : public FrameSource {
   explicit OpenNi2Source(const SourceConfig& config);
 
   std::optional<RgbdFrame> next() override;
-  [[nodiscard]] std::int64_t frames_total() const override { return frames_total_; }
-  [[nodiscard]] std::string name() const override { return name_; }
-  [[nodiscard]] SourceCounts counts() const override;
-  [[nodiscard]] std::string end_reason() const override { return end_reason_; }
-  [[nodiscard]] bool ended_well() const override { return ended_well_; }
+  [[nodiscard]] SourceStatus status() const override;
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -53,12 +49,10 @@ class OpenNi2Source : public FrameSource {
   std::string damage_;                     ///< of a .oni file; empty: none
   std::unique_ptr<OpenNi2Device> device_;  ///< null while the camera is away
   std::optional<CameraReturn> return_;     ///< while it is away
-  std::string name_;
   std::optional<FrameConverter> converter_;
   DeviceClock clock_;
   ColorClock color_clock_;
   FramePairer pairer_;
-  std::int64_t frames_total_ = -1;
   std::optional<std::int64_t> device_index_;    ///< of the last depth image, since it was opened
   std::optional<std::int64_t> frame_index_;     ///< ... in our count
   std::optional<std::int64_t> first_stamp_us_;  ///< since it was opened
@@ -66,9 +60,7 @@ class OpenNi2Source : public FrameSource {
   PatientClock patience_;
   double last_depth_s_;       ///< of patience_
   std::string last_refusal_;  ///< why the last bad image was refused
-  SourceCounts counts_;
-  std::string end_reason_;
-  bool ended_well_ = true;
+  SourceStatus status_;
 };
 
 }  // namespace kintsugi::mapper
