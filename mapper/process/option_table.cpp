@@ -7,7 +7,6 @@
 #include <spdlog/fmt/fmt.h>
 
 #include "lcmtypes/base/argument_check.hpp"
-#include "mapper/process/options.hpp"
 #include "mapper/session/mapping_options.hpp"
 
 namespace kintsugi::mapper {

@@ -7,7 +7,6 @@
 #include <CLI/CLI.hpp>
 
 #include "lcmtypes/codec/codec.hpp"
-#include "mapper/process/option_table.hpp"
 #include "mapper/source/openni2/device_listing.hpp"
 
 namespace kintsugi::mapper {
@@ -47,6 +46,29 @@ void pass_ground_truth_to_device(Options& options) {
   device += "ground_truth=" + options.ground_truth_dir;
 }
 
+/// @throws std::invalid_argument naming the flag or field, its value and its bound
+void validate(const Options& options) {
+  options.source.validate();
+  options.pipeline.validate();
+  Options copy = options;  // the table points to members that can be written
+  for (const OptionGroup& group : option_table(copy)) {
+    for (const MapperOption& option : group.options) option.check_bounds();
+  }
+  if (!options.store_file.empty() && !options.resume_file.empty() &&
+      options.store_file != options.resume_file) {
+    throw std::invalid_argument("--store is '" + options.store_file + "' and --resume is '" +
+                                options.resume_file +
+                                "': a resumed session is continued in the same log");
+  }
+  if (!options.cloud_file.empty() && options.cloud_file == options.mesh_file) {
+    throw std::invalid_argument("--cloud and --mesh are both '" + options.cloud_file + "'");
+  }
+  if (options.map_name.empty() || options.map_name.size() > kMaxStringBytes) {
+    throw std::invalid_argument("--map-name has " + std::to_string(options.map_name.size()) +
+                                " bytes, must have 1 to " + std::to_string(kMaxStringBytes));
+  }
+}
+
 /// Checks the flags and sets what follows from them.
 void complete(Options& options) {
   auto& volume = options.pipeline.volume;
@@ -58,7 +80,7 @@ void complete(Options& options) {
   if (options.lock_exposure_s >= 0.0) {
     options.source.lock_exposure_after_s = options.lock_exposure_s;
   }
-  options.validate();
+  validate(options);
   pass_ground_truth_to_device(options);
   if (!options.given_path_file.empty()) {
     options.pipeline.given_path = read_tum_file(options.given_path_file);
@@ -66,26 +88,6 @@ void complete(Options& options) {
 }
 
 }  // namespace
-
-void Options::validate() const {
-  source.validate();
-  pipeline.validate();
-  Options copy = *this;  // the table points to members that can be written
-  for (const OptionGroup& group : option_table(copy)) {
-    for (const MapperOption& option : group.options) option.check_bounds();
-  }
-  if (!store_file.empty() && !resume_file.empty() && store_file != resume_file) {
-    throw std::invalid_argument("--store is '" + store_file + "' and --resume is '" + resume_file +
-                                "': a resumed session is continued in the same log");
-  }
-  if (!cloud_file.empty() && cloud_file == mesh_file) {
-    throw std::invalid_argument("--cloud and --mesh are both '" + cloud_file + "'");
-  }
-  if (map_name.empty() || map_name.size() > kMaxStringBytes) {
-    throw std::invalid_argument("--map-name has " + std::to_string(map_name.size()) +
-                                " bytes, must have 1 to " + std::to_string(kMaxStringBytes));
-  }
-}
 
 MappingOptions mapping_options(const Options& options) {
   Options copy = options;  // the table points to members that can be written
