@@ -13,7 +13,8 @@ namespace kintsugi::mapper {
 MapPublisher::MapPublisher(const Config& config, SessionStore& store)
     : config_(config), store_(store), bus_(config.lcm_url) {
   const auto send = [this](const std::string& channel, ByteView message) {
-    if (channel == channels::kHeartbeat) store_.add(channel, message);  // chunks are there already
+    if (channel == channels::kHeartbeat)
+      store_.add(channel, message);  // streams store their chunks themselves
     bus_.publish(channel, message);
   };
   slice_stream_ = std::make_unique<StreamPublisher>(
@@ -73,7 +74,8 @@ void MapPublisher::publish_status(MapperStatus status) {
   status.utime = wall_clock_us();
   status.session = config_.session;
   status.map_name = config_.map_name;
-  status.slices_published += slices_published_;  // of an ended session there are some
+  status.slices_published +=
+      slices_published_;  // those of a completed session were published earlier
   status.points_published += points_published_;
   status.chunks_published = chunks_published();
   status.queue_bytes = static_cast<std::int64_t>(queued_bytes());

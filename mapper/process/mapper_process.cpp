@@ -21,7 +21,7 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr double kStatusPeriod_ms = 300.0;
-constexpr milliseconds kFrameWait{100};  ///< how long a status may be late
+constexpr milliseconds kFrameWait{100};  ///< the longest delay of a status
 constexpr milliseconds kRoomWait{5};
 
 void log_notice(const SourceNotice& notice) {
@@ -137,7 +137,7 @@ void MapperProcess::publish_slices(std::vector<CloudSlice> slices) {
   publisher_.publish_slices(std::move(slices));
 }
 
-/// What other threads did meanwhile.
+/// Fills in the times of the other threads.
 void MapperProcess::measure(const TimedFrame& read, FrameTimings& timings) {
   timings.read_ms = read.read_ms;
   timings.convert_ms = read.convert_ms;
@@ -152,7 +152,8 @@ void MapperProcess::publish_rest() {
   if (finished_) {
     publish_slices(pipeline_.finish());
   } else {
-    spdlog::warn("stopped before all was made again that had been mapped: resume once more");
+    spdlog::warn(
+        "stopped before all frames that were mapped before are mapped again: resume once more");
   }
   publisher_.flush();
   publish_status();
@@ -168,7 +169,7 @@ void MapperProcess::write_path() {
 void MapperProcess::publish_status() {
   MapperStatus status;
   statistics_.report(status);
-  // Nobody knows where a camera is that is not there.
+  // The pose of a disconnected camera is unknown.
   said_interrupted_ = reader_.interrupted();
   if (said_interrupted_) status.state = TrackingState::kLost;
   status.device = options_.source.device;
@@ -185,7 +186,7 @@ void MapperProcess::publish_status() {
   status_clock_ = Stopwatch();
 }
 
-/// Now and then, and at once when the camera goes or comes.
+/// Periodically, and at once when the camera is disconnected or comes back.
 void MapperProcess::publish_status_when_due() {
   const bool is_news = reader_.interrupted() != said_interrupted_;
   if (is_news || status_clock_.elapsed_ms() >= kStatusPeriod_ms) publish_status();
@@ -242,7 +243,8 @@ void MapperProcess::throw_failures() const {
                              source.end_reason);
   }
   if (map_files_.failed()) {
-    throw std::runtime_error("a file of the map is missing, all else is done; see above");
+    throw std::runtime_error(
+        "a file of the map could not be written, see above; everything else is complete");
   }
 }
 

@@ -103,7 +103,7 @@ void OpenNi2Source::compare_clocks(std::int64_t depth_utime) {
                       ": taken into account"});
 }
 
-/// Counts on when the device begins anew, and counts what it left out.
+/// Continues the count when the device starts again from 0, and counts skipped images as dropped.
 std::int64_t OpenNi2Source::continuous_index(std::int64_t index) {
   const std::int64_t step = device_index_ && index > *device_index_ ? index - *device_index_ : 1;
   device_index_ = index;
@@ -123,8 +123,8 @@ void OpenNi2Source::lock_exposure_when_due(std::int64_t stamp_us) {
                   "exposure cannot be locked: the device has no such camera settings"});
 }
 
-/// Nothing came. OpenNI2 itself only lets the wait time out when a recording is over.
-/// @param state_before from before the wait: what the device had played by then has been read.
+/// Called when no image arrived. For recordings, OpenNI2 times out only after the last image.
+/// @param state_before state before the wait: images that were played by then have been read
 void OpenNi2Source::check_for_end(DeviceState state_before) {
   switch (state_before) {
     case DeviceState::kPlaying:
