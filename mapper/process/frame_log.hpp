@@ -10,17 +10,17 @@
 
 namespace kintsugi::mapper {
 
-/// A CSV file with a line for each frame: what became of it and what it cost.
+/// A CSV file with a line for each frame: its tracking result and its times.
 ///
-/// Lines are written as frames come, so that a crash loses none. When one cannot be written (a full
-/// disk), that is logged, the file stays as it is, and the run goes on without it.
+/// Each line is written at once, so that a crash loses none. When a line cannot be written (full
+/// disk), an error is logged, the file keeps the lines before it, and no more lines are written.
 class FrameLog {
  public:
-  /// Empties the file and writes the header.
-  /// @throws std::runtime_error naming file and reason when that is not possible
+  /// Creates or truncates the file and writes the header.
+  /// @throws std::runtime_error naming the file and the reason when it cannot be written
   explicit FrameLog(const std::filesystem::path& path);
 
-  /// @param num_slices handed out with this frame
+  /// @param num_slices published with this frame
   void append(const RgbdFrame& frame, const TrackingResult& tracking, std::size_t num_slices,
               const FrameTimings& timings);
 

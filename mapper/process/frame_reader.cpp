@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "lcmtypes/base/stopwatch.hpp"
+#include "mapper/source/open_source.hpp"
 
 namespace kintsugi::mapper {
 
@@ -17,16 +18,12 @@ FrameReader::FrameReader(SourceConfig config, const Attach& attach) {
   };
   source_ = open_frame_source(config);
   if (attach) source_ = attach(std::move(source_));
-  name_ = source_->name();
-  frames_total_ = source_->frames_total();
+  status_ = source_->status();
   thread_ = std::thread([this] { run(); });
 }
 
 FrameReader::FrameReader(std::unique_ptr<FrameSource> source)
-    : source_(std::move(source)),
-      name_(source_->name()),
-      frames_total_(source_->frames_total()),
-      thread_([this] { run(); }) {}
+    : source_(std::move(source)), status_(source_->status()), thread_([this] { run(); }) {}
 
 FrameReader::~FrameReader() {
   stop_ = true;
@@ -52,19 +49,9 @@ void FrameReader::rethrow_failure() const {
   if (failure_) std::rethrow_exception(failure_);
 }
 
-SourceCounts FrameReader::counts() const {
+SourceStatus FrameReader::status() const {
   const std::scoped_lock lock(mutex_);
-  return counts_;
-}
-
-std::string FrameReader::end_reason() const {
-  const std::scoped_lock lock(mutex_);
-  return end_reason_;
-}
-
-bool FrameReader::ended_well() const {
-  const std::scoped_lock lock(mutex_);
-  return ended_well_;
+  return status_;
 }
 
 std::optional<TimedFrame> FrameReader::read() {
@@ -85,18 +72,17 @@ void FrameReader::run() {
       failure = std::current_exception();
     }
     std::unique_lock lock(mutex_);
-    counts_ = source_->counts();
+    status_ = source_->status();
     if (!frame) {
       ended_ = true;
-      ended_well_ = !failure && source_->ended_well();
-      end_reason_ = source_->end_reason();
+      if (failure) status_.ended_well = false;
       failure_ = failure;
       changed_.notify_all();
       return;
     }
     frame_ = std::move(frame);
     changed_.notify_all();
-    // stop_ is set without the lock: look at it again now and then.
+    // stop_ is set without the lock, so its notification may come before this wait begins.
     while (frame_ && !stop_) changed_.wait_for(lock, std::chrono::milliseconds(100));
     if (stop_) return;
   }

@@ -12,27 +12,27 @@
 #include <string>
 #include <thread>
 
-#include "mapper/source/frame_source.hpp"
+#include "mapper/source/frames/frame_source.hpp"
+#include "mapper/source/frames/source_config.hpp"
 
 namespace kintsugi::mapper {
 
-/// A frame and what reading it took, milliseconds.
+/// A frame and how long reading it took, milliseconds.
 struct TimedFrame {
   RgbdFrame frame;
-  double read_ms = 0.0;     ///< wall, waiting for the device included
-  double convert_ms = 0.0;  ///< CPU of the reading thread: conversion, undistortion
+  double read_ms = 0.0;     ///< wall time, including waiting for the device
+  double convert_ms = 0.0;  ///< CPU time of the reading thread: conversion, undistortion
 };
 
-/// Reads one frame ahead on a thread of its own: the next frame is decoded while this one is
-/// mapped.
+/// Reads frames in its own thread, one ahead: the next frame is decoded while this one is mapped.
 class FrameReader {
  public:
   using Attach = std::function<std::unique_ptr<FrameSource>(std::unique_ptr<FrameSource>)>;
 
-  /// Opens the source, and reads from what `attach` (may be empty) makes of it.
+  /// Opens the source and reads from what `attach` returns for it; without `attach`, from itself.
   /// @throws as open_frame_source() and `attach`
   explicit FrameReader(SourceConfig config, const Attach& attach = {});
-  /// Reads from a source that is open already; `config.stop_requested` cannot reach it.
+  /// Reads from a source that is open already. The destructor waits for its next() to return.
   explicit FrameReader(std::unique_ptr<FrameSource> source);
   ~FrameReader();
   FrameReader(const FrameReader&) = delete;
@@ -41,21 +41,17 @@ class FrameReader {
   /// The next frame if it comes within `timeout`.
   std::optional<TimedFrame> next(std::chrono::milliseconds timeout);
 
-  /// No frame will come any more.
+  /// True when next() will return no more frames.
   bool finished() const;
 
-  /// Throws what reading threw, if it did.
+  /// Throws the exception that ended reading, if there was one.
   void rethrow_failure() const;
 
-  /// The camera is gone and waited for.
+  /// True while the camera is disconnected and waited for.
   bool interrupted() const { return interrupted_; }
 
-  const std::string& device_name() const { return name_; }
-  std::int64_t frames_total() const { return frames_total_; }
-  SourceCounts counts() const;
-  /// Of the source, once finished().
-  std::string end_reason() const;
-  bool ended_well() const;
+  /// Of the source, after the frame that was read last. After an exception ended_well is false.
+  SourceStatus status() const;
 
  private:
   void run();
@@ -64,17 +60,13 @@ class FrameReader {
   std::atomic<bool> stop_ = false;
   std::atomic<bool> interrupted_ = false;
   std::unique_ptr<FrameSource> source_;
-  std::string name_;
-  std::int64_t frames_total_ = -1;
 
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   std::optional<TimedFrame> frame_;
   bool ended_ = false;
-  bool ended_well_ = true;
-  std::string end_reason_;
   std::exception_ptr failure_;
-  SourceCounts counts_;
+  SourceStatus status_;
   std::thread thread_;
 };
 

@@ -4,15 +4,15 @@
 
 namespace kintsugi::mapper {
 
-/// What one frame cost, milliseconds.
+/// Times of one frame, milliseconds.
 struct FrameTimings {
-  double read_ms = 0.0;     ///< wall, waiting for the device included; while others work
+  double read_ms = 0.0;     ///< wall, including waiting for the device; parallel to the stages
   double convert_ms = 0.0;  ///< CPU of the reading thread: conversion, undistortion
   StageTimes stages;        ///< wall
-  double extract_ms = 0.0;  ///< wall, of slices since the frame before; while others work
+  double extract_ms = 0.0;  ///< wall, of the slices since the last frame; parallel to the stages
   double publish_ms = 0.0;  ///< wall
-  double frame_ms = 0.0;    ///< wall, from the frame taken to its messages sent
-  double cpu_ms = 0.0;      ///< of all threads of the process since the frame before
+  double frame_ms = 0.0;    ///< wall, from taking the frame to sending its messages
+  double cpu_ms = 0.0;      ///< of all threads of the process since the last frame
 
   FrameTimings& operator+=(const FrameTimings& other) {
     read_ms += other.read_ms;

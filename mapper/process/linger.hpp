@@ -6,8 +6,8 @@
 
 namespace kintsugi::mapper {
 
-/// Stays until nobody has asked for anything for `linger_s` seconds, or until a stop signal;
-/// negative: until a stop signal that comes from now on. Says now and then that it is there.
+/// Waits until there was no request for `linger_s` seconds, or for a stop signal; if negative, for
+/// a stop signal after this call. Calls `publish_status` several times a second.
 void linger(const MapPublisher& publisher, double linger_s,
             const std::function<void()>& publish_status);
 

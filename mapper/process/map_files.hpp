@@ -11,22 +11,23 @@
 
 namespace kintsugi::mapper {
 
-/// The map of a run as PLY files, for those that were asked for.
+/// The map of a run as PLY files.
 ///
-/// Mapping does not end with a file that cannot be written (a full disk): the first failure is
-/// logged, nothing remains of that file, and failed() says so in the end.
+/// Mapping continues when a file cannot be written (full disk): the first error is logged, nothing
+/// remains of that file, and failed() returns true.
 class MapFiles {
  public:
-  /// Empty names: no such file. @throws std::system_error when one cannot be written
+  /// Empty names: no such file.
+  /// @throws std::system_error when a file cannot be written
   MapFiles(const std::string& cloud, const std::string& mesh);
 
   void add(const std::vector<CloudSlice>& slices);
 
-  /// To be called from one thread, which may be another than that of add(); empty when no mesh is
-  /// wanted.
+  /// Takes pieces of the mesh; empty when there is no mesh file. To be called from one thread,
+  /// which may differ from that of add().
   std::function<void(const MeshPiece&)> mesh_sink();
 
-  /// When nothing more is added: the files are there then, and whole.
+  /// Completes the files; nothing can be added afterwards.
   void commit();
 
   bool failed() const { return cloud_.failed || mesh_.failed; }

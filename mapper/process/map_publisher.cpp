@@ -10,22 +10,23 @@
 
 namespace kintsugi::mapper {
 
-MapPublisher::MapPublisher(const Config& config, SessionLog& log)
-    : config_(config), log_(log), bus_(config.lcm_url) {
+MapPublisher::MapPublisher(const Config& config, SessionStore& store)
+    : config_(config), store_(store), bus_(config.lcm_url) {
   const auto send = [this](const std::string& channel, ByteView message) {
-    if (channel == channels::kHeartbeat) log_.add(channel, message);  // chunks are there already
+    if (channel == channels::kHeartbeat)
+      store_.add(channel, message);  // streams store their chunks themselves
     bus_.publish(channel, message);
   };
   slice_stream_ = std::make_unique<StreamPublisher>(
       send, channels::kCloudSlice, config_.session, stream_config(config_.map_name),
-      &log_.stream(channels::kCloudSlice, config_.session));
+      &store_.stream(channels::kCloudSlice, config_.session));
   slice_stream_->subscribe(bus_);
   if (config_.publish_frames) {
     frame_stream_ = std::make_unique<StreamPublisher>(bus_, channels::kRgbdFrame, config_.session,
                                                       stream_config(config_.map_name));
   }
   serve_earlier_sessions();
-  bus_thread_.emplace(bus_, [this] { log_.retry(); });
+  bus_thread_.emplace(bus_, [this] { store_.retry(); });
 }
 
 StreamPublisher::Config MapPublisher::stream_config(const std::string& map_name) const {
@@ -36,13 +37,13 @@ StreamPublisher::Config MapPublisher::stream_config(const std::string& map_name)
 }
 
 void MapPublisher::serve_earlier_sessions() {
-  for (const StoredSession& earlier : log_.sessions()) {
+  for (const StoredSession& earlier : store_.sessions()) {
     if (earlier.session == config_.session) continue;
     const auto name = earlier.options.find(kMapNameOption);
     earlier_sessions_.push_back(std::make_unique<StreamPublisher>(
         bus_, channels::kCloudSlice, earlier.session,
         stream_config(name == earlier.options.end() ? "" : name->second),
-        &log_.stream(channels::kCloudSlice, earlier.session)));
+        &store_.stream(channels::kCloudSlice, earlier.session)));
     earlier_sessions_.back()->subscribe(bus_);
   }
 }
@@ -50,7 +51,7 @@ void MapPublisher::serve_earlier_sessions() {
 template <SmallMessage Message>
 void MapPublisher::publish(const std::string& channel, const Message& message) {
   const Bytes bytes = encode(message);
-  log_.add(channel, bytes);
+  store_.add(channel, bytes);
   bus_.publish(channel, bytes);
 }
 
@@ -73,7 +74,8 @@ void MapPublisher::publish_status(MapperStatus status) {
   status.utime = wall_clock_us();
   status.session = config_.session;
   status.map_name = config_.map_name;
-  status.slices_published += slices_published_;  // of an ended session there are some
+  status.slices_published +=
+      slices_published_;  // those of a completed session were published earlier
   status.points_published += points_published_;
   status.chunks_published = chunks_published();
   status.queue_bytes = static_cast<std::int64_t>(queued_bytes());
@@ -84,7 +86,7 @@ void MapPublisher::publish_status(MapperStatus status) {
   };
   add_counts(*slice_stream_);
   for (const Stream& earlier : earlier_sessions_) add_counts(*earlier);
-  const SessionLog::Report report = log_.report();
+  const BufferedLog::Report report = store_.report();
   status.store_bytes = report.size_bytes;
   status.store_waiting_bytes = report.waiting_bytes;
   status.store_lost_chunks = report.lost_chunks;

@@ -12,16 +12,16 @@
 #include "lcmtypes/stream/stream_publisher.hpp"
 #include "mapper/core/frame/rgbd_frame.hpp"
 #include "mapper/process/options.hpp"
-#include "mapper/session/session_log.hpp"
+#include "mapper/session/session_store.hpp"
 
 namespace kintsugi::mapper {
 
-/// Everything the mapper says on the bus, and in its log before that; and the answers to those who
-/// missed something. The bulk streams are paced and drop nothing: who publishes faster than they
-/// flow looks at has_room() and waits.
+/// Publishes the messages of the mapper on the bus, after storing them in its log, and answers
+/// requests for lost chunks. Slices and frames are sent at a limited rate and never dropped: the
+/// caller waits while has_room() is false.
 ///
-/// Of a session that goes on, the slices must be published again from the first one: what the log
-/// has is compared with it and not sent. Sessions that ended earlier in the log are served too.
+/// In a resumed session all slices must be published again from the first one: those in the log are
+/// compared with it and not sent. Requests for earlier sessions in the log are answered, too.
 class MapPublisher {
  public:
   struct Config {
@@ -29,13 +29,14 @@ class MapPublisher {
     std::string map_name;
     std::int64_t session = 0;
     bool publish_frames = false;
-    int jpeg_quality = 90;           ///< of published frames
-    StreamPublisher::Config stream;  ///< chunks are as large as the bus takes them
-    double max_queue_s = 3.2;        ///< per stream, at its rate; no room above this
+    int jpeg_quality = 90;  ///< of published frames
+    StreamPublisher::Config
+        stream;                ///< its chunk size is replaced by the largest that the bus takes
+    double max_queue_s = 3.2;  ///< limit for has_room(): queued bytes of a stream over its rate
   };
 
-  /// @throws std::runtime_error when the bus cannot be opened, with the cure
-  MapPublisher(const Config& config, SessionLog& log);
+  /// @throws std::runtime_error when the bus cannot be opened, with a remedy
+  MapPublisher(const Config& config, SessionStore& store);
 
   void publish_slices(std::vector<CloudSlice> slices);
   void publish_pose(CameraPose pose);
@@ -43,18 +44,19 @@ class MapPublisher {
   /// Does nothing unless frames are to be published.
   void publish_frame(const RgbdFrame& frame);
 
-  /// The queues are short enough for more. After a failure of the bus they stay long: the next
-  /// publish_...() throws it.
+  /// Whether the queues are short enough for more. After a failure of the bus they stay long; the
+  /// next publish_...() throws the error.
   bool has_room() const;
 
-  /// What waits to be sent.
+  /// Bytes that wait to be sent.
   std::size_t queued_bytes() const;
 
-  /// Waits until everything is sent. @throws std::runtime_error when sending failed, or when a
-  ///   slice of a session that goes on differs from what the log has
+  /// Waits until everything is sent.
+  /// @throws std::runtime_error when sending failed, or when a slice of a resumed session differs
+  ///   from the one in the log
   void flush();
 
-  /// Since somebody asked for something again, seconds.
+  /// Time since the last request for a resend, seconds.
   double time_since_request_s() const;
 
   std::int64_t slices_published() const { return slices_published_; }
@@ -70,17 +72,18 @@ class MapPublisher {
   void publish(const std::string& channel, const Message& message);
 
   Config config_;
-  SessionLog& log_;
+  SessionStore& store_;
   Bus bus_;
   Stream slice_stream_;
   Stream frame_stream_;                   ///< null: frames are not published
-  std::vector<Stream> earlier_sessions_;  ///< only served
+  std::vector<Stream> earlier_sessions_;  ///< only for resends
   std::int64_t slices_published_ = 0;
   std::int64_t points_published_ = 0;
-  std::optional<BusThread> bus_thread_;  ///< last: stops before the rest goes
+  std::optional<BusThread>
+      bus_thread_;  ///< last: stops before the members that it uses are destroyed
 };
 
-/// What the options ask for.
+/// The configuration for these options.
 MapPublisher::Config publisher_config(const Options& options, std::int64_t session);
 
 }  // namespace kintsugi::mapper

@@ -12,9 +12,8 @@
 #include "lcmtypes/base/stop_signal.hpp"
 #include "lcmtypes/channels.hpp"
 #include "mapper/process/linger.hpp"
-#include "mapper/process/paced_source.hpp"
 #include "mapper/process/state_text.hpp"
-#include "mapper/source/bus/lcm_source.hpp"
+#include "mapper/source/frames/paced_source.hpp"
 
 namespace kintsugi::mapper {
 namespace {
@@ -22,7 +21,7 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr double kStatusPeriod_ms = 300.0;
-constexpr milliseconds kFrameWait{100};  ///< how long a status may be late
+constexpr milliseconds kFrameWait{100};  ///< the longest delay of a status
 constexpr milliseconds kRoomWait{5};
 
 void log_notice(const SourceNotice& notice) {
@@ -31,10 +30,8 @@ void log_notice(const SourceNotice& notice) {
   spdlog::log(is_good ? spdlog::level::info : spdlog::level::warn, "{}", notice.text);
 }
 
-/// A recording gives every frame, and is paced here: its frames are the same at any speed.
 SourceConfig source_config(const Options& options) {
   SourceConfig config = options.source;
-  if (!config.device.starts_with(kLcmScheme)) config.replay = true;
   config.stop_requested = [] { return stop_requested(); };
   config.notify = log_notice;
   return config;
@@ -42,9 +39,9 @@ SourceConfig source_config(const Options& options) {
 
 std::unique_ptr<FrameSource> session_source(std::unique_ptr<FrameSource> source,
                                             const Options& options, Resumption& resumption) {
-  const bool is_paced = source->frames_total() >= 0 && !options.source.replay;
+  const bool is_recording = source->status().frames_total >= 0;
   source = resumption.attach(std::move(source));
-  if (!is_paced) return source;
+  if (!is_recording || options.source.replay) return source;
   return std::make_unique<PacedSource>(std::move(source), resumption.last_mapped_utime(),
                                        stop_requested);
 }
@@ -61,18 +58,18 @@ bool is_located(TrackingState state) {
 
 }  // namespace
 
-MapperProcess::MapperProcess(const Options& options, SessionLog& log, Resumption& resumption)
+MapperProcess::MapperProcess(const Options& options, SessionStore& store, Resumption& resumption)
     : options_(options),
       resumption_(resumption),
       reader_(source_config(options),
               [&](auto source) { return session_source(std::move(source), options, resumption); }),
       map_files_(options.cloud_file, options.mesh_file),
       pipeline_(pipeline_config(options, map_files_)),
-      publisher_(publisher_config(options, resumption.session()), log) {
+      publisher_(publisher_config(options, resumption.session()), store) {
   if (!options.timings_file.empty()) frame_log_.emplace(options.timings_file);
   if (options.store_frames) {
     const std::int64_t session = resumption.session();
-    frame_store_.emplace(log.stream(channels::kRgbdFrame, session), session,
+    frame_store_.emplace(store.stream(channels::kRgbdFrame, session), session,
                          resumption.last_stored_utime());
   }
 }
@@ -140,7 +137,7 @@ void MapperProcess::publish_slices(std::vector<CloudSlice> slices) {
   publisher_.publish_slices(std::move(slices));
 }
 
-/// What other threads did meanwhile.
+/// Fills in the times of the other threads.
 void MapperProcess::measure(const TimedFrame& read, FrameTimings& timings) {
   timings.read_ms = read.read_ms;
   timings.convert_ms = read.convert_ms;
@@ -155,7 +152,8 @@ void MapperProcess::publish_rest() {
   if (finished_) {
     publish_slices(pipeline_.finish());
   } else {
-    spdlog::warn("stopped before all was made again that had been mapped: resume once more");
+    spdlog::warn(
+        "stopped before all frames that were mapped before are mapped again: resume once more");
   }
   publisher_.flush();
   publish_status();
@@ -171,15 +169,16 @@ void MapperProcess::write_path() {
 void MapperProcess::publish_status() {
   MapperStatus status;
   statistics_.report(status);
-  // Nobody knows where a camera is that is not there.
+  // The pose of a disconnected camera is unknown.
   said_interrupted_ = reader_.interrupted();
   if (said_interrupted_) status.state = TrackingState::kLost;
   status.device = options_.source.device;
   status.finished = finished_;
   status.lingering = lingering_;
   status.frames_resumed = frames_resumed_;
-  status.frames_total = reader_.frames_total();
-  status.frames_dropped = reader_.counts().frames_dropped;
+  const SourceStatus source = reader_.status();
+  status.frames_total = source.frames_total;
+  status.frames_dropped = source.counts.frames_dropped;
   status.keyframes = pipeline_.num_keyframes();
   status.blocks = pipeline_.num_blocks();
   status.volume_bytes = pipeline_.volume_bytes();
@@ -187,7 +186,7 @@ void MapperProcess::publish_status() {
   status_clock_ = Stopwatch();
 }
 
-/// Now and then, and at once when the camera goes or comes.
+/// Periodically, and at once when the camera is disconnected or comes back.
 void MapperProcess::publish_status_when_due() {
   const bool is_news = reader_.interrupted() != said_interrupted_;
   if (is_news || status_clock_.elapsed_ms() >= kStatusPeriod_ms) publish_status();
@@ -195,9 +194,9 @@ void MapperProcess::publish_status_when_due() {
 
 void MapperProcess::log_start() const {
   const auto& volume = options_.pipeline.volume;
-  spdlog::info("device '{}'{}, {} frames", reader_.device_name(),
-               options_.source.replay ? ", replayed" : "",
-               reader_.frames_total() < 0 ? "unknown" : std::to_string(reader_.frames_total()));
+  const SourceStatus source = reader_.status();
+  spdlog::info("device '{}'{}, {} frames", source.name, options_.source.replay ? ", replayed" : "",
+               source.frames_total < 0 ? "unknown" : std::to_string(source.frames_total));
   spdlog::info("volume {:.2f} m, voxel {:.2f} mm, map '{}', session {}", volume.volume_size_m,
                1e3 * volume.resolution_m, options_.map_name, resumption_.session());
 }
@@ -220,8 +219,9 @@ void MapperProcess::log_change_of_state(const FrameResult& result, const RgbdFra
 
 void MapperProcess::log_summary() const {
   const double elapsed_s = 1e-3 * run_clock_.elapsed_ms();
-  const SourceCounts counts = reader_.counts();
-  if (reader_.finished()) spdlog::info("end: {}", reader_.end_reason());
+  const SourceStatus source = reader_.status();
+  const SourceCounts& counts = source.counts;
+  if (reader_.finished()) spdlog::info("end: {}", source.end_reason);
   spdlog::info(
       "{} frames in {:.1f} s ({:.1f} ms each, {:.1f} ms of CPU): {} located, {} lost, found again "
       "{} times, {} dropped, {} bad, {} interruptions",
@@ -237,12 +237,14 @@ void MapperProcess::log_summary() const {
 
 void MapperProcess::throw_failures() const {
   reader_.rethrow_failure();
-  if (reader_.finished() && !reader_.ended_well()) {
-    throw std::runtime_error("the device ended early, what came before is mapped: " +
-                             reader_.end_reason());
+  const SourceStatus source = reader_.status();
+  if (reader_.finished() && !source.ended_well) {
+    throw std::runtime_error("the device ended early; the frames before that are mapped: " +
+                             source.end_reason);
   }
   if (map_files_.failed()) {
-    throw std::runtime_error("a file of the map is missing, all else is done; see above");
+    throw std::runtime_error(
+        "a file of the map could not be written, see above; everything else is complete");
   }
 }
 

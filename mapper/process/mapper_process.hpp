@@ -17,18 +17,19 @@
 
 namespace kintsugi::mapper {
 
-/// Reads frames, maps them, says on the bus what came of it.
+/// Reads frames, maps them, and publishes the result on the bus.
 class MapperProcess {
  public:
-  /// Opens the device and the bus. `log` and `resumption` must outlive this.
-  /// @throws std::runtime_error when either cannot be opened
-  MapperProcess(const Options& options, SessionLog& log, Resumption& resumption);
+  /// Opens the device and the bus. `store` and `resumption` must outlive this.
+  /// @throws std::runtime_error when one of them cannot be opened
+  MapperProcess(const Options& options, SessionStore& store, Resumption& resumption);
 
-  /// Until the device ends, max_frames, or a stop signal. Then the final slice is published and
-  /// everything sent, and the files asked for written; then it stays to answer requests. Stopped
-  /// before it has made again what an interrupted session had, it leaves the session unfinished.
-  /// @throws std::runtime_error when reading, sending or writing failed or the recording ended
-  ///   before its time; what could be mapped and sent before that was
+  /// Maps until the device ends, max_frames, or a stop signal. Then it publishes the final slice,
+  /// sends all messages, writes the output files, and stays to answer requests. A resumed session
+  /// stays unfinished when it is stopped before all frames that were mapped before are mapped
+  /// again.
+  /// @throws std::runtime_error when reading, sending or writing failed, or the recording ended
+  ///   early; frames before the failure are mapped and their slices sent
   void run();
 
  private:
@@ -49,23 +50,24 @@ class MapperProcess {
   const Options options_;
   Resumption& resumption_;
   FrameReader reader_;
-  MapFiles map_files_;  ///< before the pipeline, whose worker writes to it
+  MapFiles map_files_;  ///< before pipeline_, whose worker writes to it
   MapperPipeline pipeline_;
   MapPublisher publisher_;
   RunStatistics statistics_;
   std::optional<FrameLog> frame_log_;
   std::optional<FrameStore> frame_store_;
-  Trajectory path_;  ///< of the frames that were located
+  Trajectory path_;  ///< poses of the frames that were tracked or given
   TrackingState last_state_ = TrackingState::kStarting;
   double cpu_ms_ = 0.0;         ///< of the process, at the last frame
   double extraction_ms_ = 0.0;  ///< of the pipeline, at the last frame
   Stopwatch run_clock_;
   Stopwatch status_clock_;
-  bool said_interrupted_ = false;  ///< in the last status
+  bool said_interrupted_ = false;  ///< the last status reported a disconnected camera
   bool finished_ = false;          ///< every slice is published
   bool lingering_ = false;
-  std::int64_t last_utime_ = -1;     ///< of the last mapped frame
-  std::int64_t frames_resumed_ = 0;  ///< mapped, the ones that had been mapped before
+  std::int64_t last_utime_ = -1;  ///< of the last mapped frame
+  std::int64_t frames_resumed_ =
+      0;  ///< frames mapped again that were mapped before the interruption
 };
 
 }  // namespace kintsugi::mapper

@@ -30,20 +30,15 @@ std::optional<RgbdFrame> ResumedSource::next() {
   return std::nullopt;
 }
 
-SourceCounts ResumedSource::counts() const {
-  SourceCounts counts = recording_->counts();
-  counts.frames_delivered -= num_skipped_;
-  counts.frames_dropped += num_skipped_;
-  return counts;
-}
-
-std::string ResumedSource::end_reason() const {
-  if (ends_there_ && all_given()) return "the session was ended here";
-  return recording_->end_reason();
-}
-
-bool ResumedSource::ended_well() const {
-  return (ends_there_ && all_given()) || recording_->ended_well();
+SourceStatus ResumedSource::status() const {
+  SourceStatus status = recording_->status();
+  status.counts.frames_delivered -= num_skipped_;
+  status.counts.frames_dropped += num_skipped_;
+  if (ends_there_ && all_given()) {
+    status.end_reason = "the session was ended here";
+    status.ended_well = true;
+  }
+  return status;
 }
 
 }  // namespace kintsugi::mapper

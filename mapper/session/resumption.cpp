@@ -16,75 +16,73 @@
 
 namespace kintsugi::mapper {
 
-Resumption::Resumption(SessionLog& log, const Options& options)
-    : log_(log),
-      max_range_m_(options.source.max_range_m),
-      options_(mapping_options(options)),
-      wanted_session_(options.session) {
-  if (log.sessions().empty()) {
-    begin_new_session();
+Resumption::Resumption(SessionStore& store, const Config& config) : store_(store), config_(config) {
+  if (store.sessions().empty()) {
+    begin_session(config.session != 0 ? config.session : new_session());
     return;
   }
-  const StoredSession& last = log.sessions().back();
-  expect_same_options(options_, last.options);
-  if (wanted_session_ != 0 && wanted_session_ != last.session) {
-    throw std::runtime_error("--session is " + std::to_string(wanted_session_) +
+  const StoredSession& last = store.sessions().back();
+  expect_same_options(config.options, last.options);
+  if (config.session != 0 && config.session != last.session) {
+    throw std::runtime_error("--session is " + std::to_string(config.session) +
                              ", the session to resume is " + std::to_string(last.session));
   }
   session_ = last.session;
   continued_ = last;
   if (!last.mapped_utimes.empty()) last_mapped_utime_ = last.mapped_utimes.back();
-  StoredStream& slices = log.stream(channels::kCloudSlice, session_);
-  slices.forget_behind_gap();
-  StoredStream& frames = log.stream(channels::kRgbdFrame, session_);
-  frames.forget_behind_gap();
-  frames.forget_from(last.frame_chunks_end);  // the frame that was being stored
+  // Missing chunks and the ones after them are made and added again.
+  StoredStream& slices = store.stream(channels::kCloudSlice, session_);
+  slices.index().truncate_at_gap();
+  ChunkIndex& frames = store.stream(channels::kRgbdFrame, session_).index();
+  frames.truncate_at_gap();
+  frames.truncate(last.frame_chunks_end);  // drops a frame of which only a part was stored
   spdlog::info("session {} is resumed: {} frames were mapped, {} chunks published", session_,
                last.mapped_utimes.size(), slices.next_sequence());
 }
 
-void Resumption::begin_new_session() {
-  session_ = wanted_session_ != 0 ? wanted_session_ : new_session();
+void Resumption::begin_session(std::int64_t session) {
+  session_ = session;
   continued_.reset();
   last_mapped_utime_ = -1;
-  log_.begin_session(session_, options_);
+  store_.begin_session(session, config_.options);
 }
 
 const StoredSession* Resumption::ended_session() const {
   if (!continued_ || continued_->slice_chunks_end == 0) return nullptr;
-  const std::int64_t published = log_.stream(channels::kCloudSlice, session_).next_sequence();
+  const std::int64_t published = store_.stream(channels::kCloudSlice, session_).next_sequence();
   return published >= continued_->slice_chunks_end ? &*continued_ : nullptr;
 }
 
 std::unique_ptr<FrameSource> Resumption::attach(std::unique_ptr<FrameSource> source) {
   if (!continued_) return source;
-  if (source->frames_total() >= 0) {
+  if (source->status().frames_total >= 0) {
     return std::make_unique<ResumedSource>(std::move(source), continued_->mapped_utimes,
                                            continued_->final_slice_begun);
   }
   if (has_all_frames()) return stored_frames_before(std::move(source));
   spdlog::warn(
-      "session {} cannot go on: its camera does not give the same frames again. What it published "
-      "is still served; a new session begins",
+      "session {} cannot be continued: a camera cannot repeat the frames that were mapped. Its "
+      "slices "
+      "are still sent to those who ask; a new session begins",
       session_);
-  wanted_session_ = 0;
-  begin_new_session();
+  begin_session(new_session());
   return source;
 }
 
 bool Resumption::has_all_frames() const {
-  const std::int64_t stored = log_.stream(channels::kRgbdFrame, session_).next_sequence();
+  const std::int64_t stored = store_.stream(channels::kRgbdFrame, session_).next_sequence();
   return stored > 0 && stored == continued_->frame_chunks_end &&
          continued_->last_frame_utime >= last_mapped_utime_;
 }
 
 std::unique_ptr<FrameSource> Resumption::stored_frames_before(
     std::unique_ptr<FrameSource> camera) const {
-  constexpr std::int64_t kShortestPause_us = 33'000;  // should the wall clock have gone back
+  constexpr std::int64_t kShortestPause_us = 33'000;  // if the wall clock was set back
   const std::int64_t pause_us = wall_clock_us() - continued_->last_event_utime;
   return std::make_unique<StoredThenLiveSource>(
-      log_.stream(channels::kRgbdFrame, session_), continued_->frame_chunks_end, max_range_m_,
-      std::move(camera), std::max(pause_us, kShortestPause_us), continued_->final_slice_begun);
+      store_.stream(channels::kRgbdFrame, session_), continued_->frame_chunks_end,
+      config_.max_range_m, std::move(camera), std::max(pause_us, kShortestPause_us),
+      continued_->final_slice_begun);
 }
 
 bool Resumption::has_caught_up(std::int64_t last_utime) const {

@@ -4,49 +4,55 @@
 #include <memory>
 #include <optional>
 
-#include "mapper/process/options.hpp"
-#include "mapper/session/session_log.hpp"
-#include "mapper/source/frame_source.hpp"
+#include "mapper/session/mapping_options.hpp"
+#include "mapper/session/session_store.hpp"
+#include "mapper/source/frames/frame_source.hpp"
 
 namespace kintsugi::mapper {
 
-/// Which session a run maps: a new one, or the last one of its log from where it was interrupted.
+/// Decides which session a run maps: a new one, or the last one of its log, which was interrupted.
 ///
-/// The state of mapping is not in the log. It is made again by mapping the same frames again;
-/// slices that the log has are not sent again.
+/// The log does not contain the state of the mapper. A resumed run maps the same frames again to
+/// restore it; slices that the log already contains are not sent again.
 class Resumption {
  public:
-  /// @throws std::runtime_error when the last session of the log cannot go on with these options;
-  ///   nothing is written then
-  Resumption(SessionLog& log, const Options& options);
+  struct Config {
+    MappingOptions options;
+    std::int64_t session = 0;  ///< 0: by the clock, or that of the log
+    double max_range_m = 6.5;  ///< of stored frames that are mapped again
+  };
 
-  /// The source for the session: one that begins with the frames which the session had mapped. A
-  /// live camera cannot give them again; unless the log has them, a new session begins, which is
-  /// said.
+  /// @param store must outlive this
+  /// @throws std::runtime_error when the last session of the log was begun with other options or
+  /// has
+  ///   another number; nothing is written then
+  Resumption(SessionStore& store, const Config& config);
+
+  /// The source for the session: it begins with the frames that the session had mapped. A live
+  /// camera cannot repeat them; unless the log contains them, a new session begins, with a warning.
   std::unique_ptr<FrameSource> attach(std::unique_ptr<FrameSource> source);
 
   std::int64_t session() const { return session_; }
-  /// The last session of the log, when all of it has been published.
+  /// The last session of the log if it is complete, so that there is nothing to map; else null.
   const StoredSession* ended_session() const;
 
-  /// Of the frames that were mapped before the session was interrupted; -1: none.
+  /// Time of the last frame that was mapped before the interruption; -1: none.
   std::int64_t last_mapped_utime() const { return last_mapped_utime_; }
-  /// Of the raw frames in the log; -1: none.
+  /// Time of the last raw frame in the log; -1: none.
   std::int64_t last_stored_utime() const { return continued_ ? continued_->last_frame_utime : -1; }
-  /// This frame was mapped before the session was interrupted.
+  /// Whether the frame of this time was mapped before the interruption.
   bool was_mapped(std::int64_t utime) const { return utime <= last_mapped_utime_; }
-  /// Everything has been made again that was there, when the last mapped frame is this one.
+  /// Whether a run whose last mapped frame has this time has repeated all frames that were mapped
+  /// before the interruption.
   bool has_caught_up(std::int64_t last_utime) const;
 
  private:
-  void begin_new_session();
+  void begin_session(std::int64_t session);
   bool has_all_frames() const;
   std::unique_ptr<FrameSource> stored_frames_before(std::unique_ptr<FrameSource> camera) const;
 
-  SessionLog& log_;
-  const double max_range_m_;
-  const MappingOptions options_;
-  std::int64_t wanted_session_;
+  SessionStore& store_;
+  const Config config_;
   std::int64_t session_ = 0;
   std::optional<StoredSession> continued_;
   std::int64_t last_mapped_utime_ = -1;

@@ -63,14 +63,14 @@ RgbdFrame StoredThenLiveSource::read_stored() {
   return frame;
 }
 
-SourceCounts StoredThenLiveSource::counts() const {
-  SourceCounts counts = camera_->counts();
-  counts.frames_delivered += num_stored_;
-  return counts;
-}
-
-std::string StoredThenLiveSource::end_reason() const {
-  return ends_there_ ? "the session was ended here" : camera_->end_reason();
+SourceStatus StoredThenLiveSource::status() const {
+  SourceStatus status = camera_->status();
+  status.counts.frames_delivered += num_stored_;
+  if (ends_there_) {
+    status.end_reason = "the session was ended here";
+    status.ended_well = true;
+  }
+  return status;
 }
 
 }  // namespace kintsugi::mapper

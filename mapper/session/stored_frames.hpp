@@ -1,22 +1,21 @@
 #pragma once
-// Raw frames in a SessionLog: without them the session of a live camera cannot be resumed.
+// Raw frames in a SessionStore. Without them the session of a live camera cannot be resumed.
 
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <string>
 
 #include "mapper/core/frame/rgbd_frame.hpp"
 #include "mapper/session/stored_stream.hpp"
 #include "mapper/source/bus/rgbd_frame_decoder.hpp"
-#include "mapper/source/frame_source.hpp"
+#include "mapper/source/frames/frame_source.hpp"
 
 namespace kintsugi::mapper {
 
-/// Puts frames into the log, without loss, before they are mapped: what was mapped is there.
+/// Stores frames in the log, without loss, before they are mapped, so every mapped frame is there.
 class FrameStore {
  public:
-  /// @param stored_until_utime frames up to this time are there already; -1: none is
+  /// @param stored_until_utime frames up to this time are stored already; -1: none is
   FrameStore(StoredStream& stream, std::int64_t session, std::int64_t stored_until_utime);
 
   void add(const RgbdFrame& frame);
@@ -27,22 +26,18 @@ class FrameStore {
   const std::int64_t stored_until_utime_;
 };
 
-/// Gives the frames in the log, then those of the camera, whose times and numbers go on from there.
+/// Returns the frames in the log, then those of the camera, with continuous times and numbers.
 class StoredThenLiveSource : public FrameSource {
  public:
-  /// @param chunks_end of the stored frames that are whole
+  /// @param chunks_end one past the last chunk of the last complete frame
   /// @param pause_us between the last stored frame and the first of the camera
-  /// @param ends_there the session was ending when it was interrupted: the camera is not wanted
+  /// @param ends_there mapping had ended when the session was interrupted: the camera is not read
   StoredThenLiveSource(const StoredStream& stored, std::int64_t chunks_end, double max_range_m,
                        std::unique_ptr<FrameSource> camera, std::int64_t pause_us, bool ends_there);
 
   /// @throws std::runtime_error when a stored frame cannot be read
   std::optional<RgbdFrame> next() override;
-  [[nodiscard]] std::int64_t frames_total() const override { return -1; }
-  [[nodiscard]] std::string name() const override { return camera_->name(); }
-  [[nodiscard]] SourceCounts counts() const override;
-  [[nodiscard]] std::string end_reason() const override;
-  [[nodiscard]] bool ended_well() const override { return ends_there_ || camera_->ended_well(); }
+  [[nodiscard]] SourceStatus status() const override;
 
  private:
   RgbdFrame read_stored();

@@ -15,7 +15,7 @@ StoredSession read_options(ByteView data) {
   try {
     const auto json = nlohmann::json::parse(data.begin(), data.end());
     const auto& number = json.at("session");
-    if (!number.is_number_integer()) throw std::runtime_error("session is no whole number");
+    if (!number.is_number_integer()) throw std::runtime_error("session is not a whole number");
     StoredSession session;
     session.session = number.get<std::int64_t>();
     session.options = json.at("options").get<MappingOptions>();
@@ -40,7 +40,7 @@ std::optional<StoredChunk> StoredSessionReader::read(const LogEvent& event) {
   }
   if (sessions_.empty()) {
     throw std::runtime_error("it begins with channel '" + event.channel +
-                             "': no log that a mapper made with --store");
+                             "', so a mapper did not make it with --store");
   }
   sessions_.back().last_event_utime = event.utime;
   if (event.channel == channels::kCloudSlice) return read_slice_chunk(event);

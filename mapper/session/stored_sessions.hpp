@@ -1,33 +1,29 @@
 #pragma once
-// What a log of a mapper says about the sessions in it.
+// The sessions in a log of a mapper.
 
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "lcmtypes/log/log_reader.hpp"
 #include "lcmtypes/messages.hpp"
+#include "mapper/session/mapping_options.hpp"
 
 namespace kintsugi::mapper {
 
-/// In the log only, at the start of each session: which one it is, and how it maps (JSON).
+/// Channel of the first event of each session, in the log only: its number and options as JSON.
 inline constexpr char kOptionsChannel[] = "MAPPER_OPTIONS";
 
-/// How a session maps: name of the option and its value. What is equal maps the same frames to the
-/// same slices.
-using MappingOptions = std::map<std::string, std::string>;
-
-/// The data of an event on kOptionsChannel.
+/// The data of the event on kOptionsChannel.
 Bytes encode_options(std::int64_t session, const MappingOptions& options);
 
 /// One session of a log.
 struct StoredSession {
   std::int64_t session = 0;
   MappingOptions options;
-  std::vector<std::int64_t> mapped_utimes;  ///< of the frames that were mapped, ascending
-  bool final_slice_begun = false;           ///< the session was ending
+  std::vector<std::int64_t> mapped_utimes;  ///< times of the mapped frames, ascending
+  bool final_slice_begun = false;           ///< mapping had ended, the rest was being published
   std::int64_t slice_chunks_end = 0;        ///< one past the last chunk of the final slice; 0: open
   std::int64_t frame_chunks_end = 0;        ///< one past the last chunk of a raw frame stored whole
   std::int64_t last_frame_utime = -1;       ///< of that frame
@@ -42,16 +38,16 @@ struct StoredChunk {
   std::int64_t sequence = 0;
 };
 
-/// Reads events in the order of the log.
+/// Collects the sessions from the events of a log, which must be read in order.
 class StoredSessionReader {
  public:
-  /// What the event is a chunk of; nothing for anything else.
-  /// @throws std::runtime_error when the log does not begin as the mapper begins one, or a message
-  ///   of the mapper is damaged
+  /// Which chunk the event contains; nullopt if it contains none.
+  /// @throws std::runtime_error when the log does not begin with the options of a session, or a
+  ///   message of the mapper is damaged
   std::optional<StoredChunk> read(const LogEvent& event);
 
   /// In the order in which they began.
-  std::vector<StoredSession> sessions() && { return std::move(sessions_); }
+  const std::vector<StoredSession>& sessions() const { return sessions_; }
 
  private:
   void begin_session(const LogEvent& event);

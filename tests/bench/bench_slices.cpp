@@ -25,7 +25,7 @@
 #include "mapper/evaluation/surface_error.hpp"
 #include "mapper/openni2_driver/recording/recording_uri.hpp"
 #include "mapper/output/map_writers.hpp"
-#include "mapper/source/frame_source.hpp"
+#include "mapper/source/open_source.hpp"
 #include "mapper/synthetic/render/sequence.hpp"
 
 namespace kintsugi::mapper::bench {
@@ -109,7 +109,6 @@ class Run {
     if (!scene_) {
       SourceConfig config;
       config.device = options_.device;
-      config.replay = true;
       source_ = open_frame_source(config);
     }
     if (!options_.cloud.empty()) cloud_.emplace(options_.cloud);

@@ -9,7 +9,7 @@
 #include <oneapi/tbb/global_control.h>
 
 #include "lcmtypes/base/stopwatch.hpp"
-#include "mapper/source/frame_source.hpp"
+#include "mapper/source/open_source.hpp"
 #include "tests/bench/frame_threads.hpp"
 
 namespace kintsugi::mapper::bench {
@@ -45,11 +45,11 @@ std::optional<FrameSample> run_frame(FrameSource& source, const CpuOfThreads& so
                                      MapperPipeline& pipeline, FrameRun& run) {
   FrameSample sample;
   const double cpu_before_ms = process_cpu_ms();
-  const double converted_before_ms = source.counts().convert_ms;
+  const double converted_before_ms = source.status().counts.convert_ms;
   Stopwatch stopwatch;
   const std::optional<RgbdFrame> frame = source.next();
   if (!frame) return std::nullopt;
-  sample.convert_ms = source.counts().convert_ms - converted_before_ms;
+  sample.convert_ms = source.status().counts.convert_ms - converted_before_ms;
   sample.read_ms = stopwatch.lap_ms() - sample.convert_ms;
   if (run.config.device_rests) wait_for_rest(source_cpu);
   sample.read_convert_cpu_ms = process_cpu_ms() - cpu_before_ms;
@@ -74,7 +74,6 @@ FrameRun run_frames(const FrameRunConfig& config) {
   const Threads before_source = current_threads();
   SourceConfig source_config;
   source_config.device = config.device;
-  source_config.replay = true;
   const std::unique_ptr<FrameSource> source = open_frame_source(source_config);
   const Threads with_source = current_threads();
   MapperPipeline pipeline(config.pipeline);

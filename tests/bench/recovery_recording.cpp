@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "mapper/openni2_driver/recording/recording_uri.hpp"
-#include "mapper/source/frame_source.hpp"
+#include "mapper/source/open_source.hpp"
 #include "mapper/synthetic/render/sequence.hpp"
 
 namespace kintsugi::mapper::bench {
@@ -44,7 +44,6 @@ RgbdFrame Recording::frame(int index) const {
 void Recording::read_frames(const std::string& device, int max_frames) {
   SourceConfig config;
   config.device = device;
-  config.replay = true;
   const auto source = open_frame_source(config);
   while (max_frames == 0 || num_frames() < max_frames) {
     auto frame = source->next();

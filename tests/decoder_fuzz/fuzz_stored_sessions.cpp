@@ -18,7 +18,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     }
   } catch (const std::runtime_error&) {
   }
-  fuzzing::require(std::move(reader).sessions().size() <= events.size(),
+  fuzzing::require(reader.sessions().size() <= events.size(),
                    "a session begins with an event");
   return 0;
 }

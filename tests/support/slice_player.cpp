@@ -12,7 +12,7 @@
 #include "lcmtypes/channels.hpp"
 #include "lcmtypes/stream/stream_publisher.hpp"
 #include "mapper/process/run_statistics.hpp"
-#include "mapper/session/session_log.hpp"
+#include "mapper/session/session_store.hpp"
 #include "mapper/session/stored_stream.hpp"
 #include "tests/support/bus_program.hpp"
 #include "tests/support/played_map.hpp"
@@ -92,8 +92,8 @@ class SlicePlayer {
   }
 
  private:
-  static mapper::SessionLog::Config log_config(const Options& options) {
-    mapper::SessionLog::Config config;
+  static mapper::SessionStore::Config log_config(const Options& options) {
+    mapper::SessionStore::Config config;
     config.path = options.store;
     return config;
   }
@@ -162,7 +162,7 @@ class SlicePlayer {
 
   void publish_status() {
     const StreamPublisherCounts counts = stream_.counts();
-    const mapper::SessionLog::Report store = log_.report();
+    const mapper::BufferedLog::Report store = log_.report();
     MapperStatus status;
     status.utime = wall_clock_us();
     status.session = options_.map.session;
@@ -203,7 +203,7 @@ class SlicePlayer {
   const Options options_;
   const PlayedMap map_;
   Bus bus_;
-  mapper::SessionLog log_;
+  mapper::SessionStore log_;
   StreamPublisher stream_;
   Clock::time_point start_;
   Clock::time_point next_status_;

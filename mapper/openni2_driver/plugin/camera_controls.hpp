@@ -8,8 +8,8 @@
 
 namespace kintsugi::mapper {
 
-/// The camera settings of an imitated colour stream. While exposure or white balance are automatic,
-/// they wander; switched off, they stay where they are.
+/// The camera settings of an imitated colour stream. Exposure and white balance vary with time
+/// while they are automatic, and keep their values when that is switched off.
 class CameraControls {
  public:
   static bool has(int property);
@@ -17,7 +17,7 @@ class CameraControls {
   OniStatus get(int property, void* data, int* size) const;
   OniStatus set(int property, const void* data, int size);
 
-  /// The image as it comes with the settings of this moment of the recording.
+  /// Applies the settings at this time of the recording to the image.
   cv::Mat expose(const cv::Mat& image, std::int64_t utime);
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-// Where imitated cameras are plugged in, or not.
+// Which imitated cameras are connected.
 
 #include <chrono>
 #include <cstdint>
@@ -9,24 +9,25 @@
 
 namespace kintsugi::mapper::camera_ports {
 
-// One process, one set of ports: it outlives the driver, which OpenNI2 ends with its last user.
+// This state belongs to the process and outlives the driver, which OpenNI2 unloads with its last
+// user.
 
-/// The camera at an address goes away.
-/// @param utime of the last image, in the recording's time.
-/// @param away absent: for good.
-/// @param new_uri its address when it is back, which may be the same.
+/// Disconnects the camera at an address.
+/// @param utime time of the last image, in the recording
+/// @param away duration; absent: forever
+/// @param new_uri its address afterwards, which may be the same
 void unplug(const std::string& uri, std::int64_t utime,
             std::optional<std::chrono::microseconds> away, const std::string& new_uri);
 
-/// The addresses of the cameras that are plugged in, of those that the environment variable
-/// KINTSUGI_CAMERAS lists (separated by blanks).
+/// The addresses of the connected cameras among those in the environment variable KINTSUGI_CAMERAS
+/// (separated by blanks).
 std::vector<std::string> listed();
 
-/// False while the camera is away.
+/// False while the camera is disconnected.
 bool is_plugged_in(const std::string& uri);
 
-/// For a camera that was away and is back: the time in the recording at which it goes on. Absent
-/// for any other; and when asked again, for it is opened now like any other.
+/// The time in the recording at which a camera continues that is back after an interruption. Absent
+/// for any other camera, and from the second call on.
 std::optional<std::int64_t> take_resume_utime(const std::string& uri);
 
 }  // namespace kintsugi::mapper::camera_ports

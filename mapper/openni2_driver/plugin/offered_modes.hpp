@@ -8,7 +8,7 @@
 
 namespace kintsugi::mapper {
 
-/// What the depth and the colour stream of a device offer; empty where it has no such stream.
+/// The modes of the depth and colour stream of a device; empty if it has no such stream.
 std::vector<OniVideoMode> offered_depth_modes(const Recording& recording,
                                               const CameraImitation& imitation);
 std::vector<OniVideoMode> offered_color_modes(const Recording& recording,

@@ -1,5 +1,5 @@
 #pragma once
-// OpenNI2's driver interface; its header wants these two from whoever includes it.
+// OpenNI2's driver interface; its header requires these two macros.
 
 #define XN_NEW(type, ...) new type(__VA_ARGS__)
 #define XN_DELETE(pointer) delete (pointer)

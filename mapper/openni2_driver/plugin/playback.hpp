@@ -20,43 +20,42 @@ inline constexpr std::size_t kNumStreamKinds = 2;
 
 struct PlayedFrame {
   StreamKind kind = StreamKind::kDepth;
-  int number = 0;              ///< in its stream, from 1, also counting past repeats
-  std::int64_t utime = 0;      ///< as the device's clock has it
-  std::int64_t due_utime = 0;  ///< when it was played, in the recording's own time
+  int number = 0;              ///< in its stream, from 1, continued over repeats
+  std::int64_t utime = 0;      ///< time stamp of the device
+  std::int64_t due_utime = 0;  ///< when it is played, in the time of the recording
   cv::Mat image;               ///< CV_16UC1 or CV_8UC3 (red first)
 };
 
-/// Plays the frames of a recording, one after the other in the order of their times, from a thread
-/// of its own.
+/// Plays the frames of a recording in the order of their times, in its own thread.
 ///
-/// Speed: 1 is the recording's own pace, 2 twice as fast, 0 as fast as possible, and any negative
-/// value one frame for each trigger(): the way in which OpenNI2 reads a file without loss, for its
-/// core triggers when a reader waits and no frame is there. The next frame is decoded ahead.
+/// Speed: 1 is real time, 2 twice as fast, 0 as fast as possible. With a negative speed one frame
+/// is played for each trigger(). This is how OpenNI2 reads a file without loss: its core triggers
+/// when a reader waits and there is no frame. The next frame is decoded in advance.
 class Playback {
  public:
   struct Callbacks {
-    /// False: nothing came of it, play the next one at once.
+    /// Returns false when the frame was not delivered, so that the next one is played at once.
     std::function<bool(const PlayedFrame&)> frame;
-    /// The last frame has been played, or reading failed: then the reason, else empty.
+    /// Called after the last frame with an empty text, or after a failed read with the reason.
     std::function<void(const std::string&)> end;
   };
 
-  /// The recording must outlive the playback. Callbacks come from the playback's thread.
+  /// The recording must outlive the playback. Callbacks are called from the playing thread.
   Playback(Recording& recording, Callbacks callbacks);
   ~Playback();
   Playback(const Playback&) = delete;
   Playback& operator=(const Playback&) = delete;
 
-  /// Frames of a stream that is not started are passed over. Starting the first stream after the
-  /// end plays the recording again from its beginning.
+  /// Starts a stream; frames of streams that are not started are skipped. After the end, starting
+  /// the first stream plays the recording again from its beginning.
   void start(StreamKind kind);
 
-  /// Returns when no frame of this stream is in flight any more.
+  /// Stops a stream, and returns when none of its frames is being delivered.
   void stop(StreamKind kind);
 
   void trigger();
 
-  /// Plays nothing more, and does not call that an end. From a callback, or from anywhere.
+  /// Stops playing without calling Callbacks::end. May be called from a callback.
   void halt();
 
   void set_speed(float speed);
@@ -97,7 +96,7 @@ class Playback {
   Recording& recording_;
   const Callbacks callbacks_;
   const std::vector<Item> items_;  ///< by due time; colour first where equal
-  std::optional<Decoded> ahead_;   ///< touched by the playing thread only
+  std::optional<Decoded> ahead_;   ///< used by the playing thread only
 
   mutable std::mutex mutex_;
   std::condition_variable changed_;  ///< any of the state below

@@ -4,13 +4,12 @@
 
 namespace kintsugi::mapper {
 
-/// Leaves out what comes faster than a mode's rate: the images nearest to the mode's own times
-/// stay.
+/// Reduces the frame rate to that of a mode: keeps the images nearest to the times of the mode.
 class RateFilter {
  public:
   void restart() { *this = {}; }
 
-  /// @param utime of the image.
+  /// @param utime time of the image
   bool passes(std::int64_t utime, int mode_rate_hz, int recorded_rate_hz);
 
   [[nodiscard]] int num_left_out() const { return num_left_out_; }

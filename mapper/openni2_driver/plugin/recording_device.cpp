@@ -4,10 +4,10 @@
 #include <cmath>
 #include <utility>
 
-#include "mapper/openni2_driver/device_properties.hpp"
 #include "mapper/openni2_driver/plugin/imitated_image.hpp"
 #include "mapper/openni2_driver/plugin/offered_modes.hpp"
 #include "mapper/openni2_driver/plugin/property.hpp"
+#include "mapper/openni2_driver/recording/device_properties.hpp"
 
 namespace kintsugi::mapper {
 namespace {

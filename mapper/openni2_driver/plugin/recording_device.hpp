@@ -16,18 +16,18 @@
 
 namespace kintsugi::mapper {
 
-/// A recording as an OpenNI2 device. To a client it is a file (isFile() is true): it has a playback
-/// speed, repeats (as OpenNI2's own files do at first), and says how many frames it has. At the end
-/// the device's state becomes EOF, after a failed read ERROR.
+/// A recording as an OpenNI2 device. For a client it is a file (isFile() is true): it has a
+/// playback speed, repeats by default (like OpenNI2's own files), and knows its number of frames.
+/// At the end the state of the device becomes EOF, after a failed read ERROR.
 ///
-/// With an imitation it is that camera, as far as the recording goes; `camera` itself makes it a
-/// live device, which begins again at its end.
+/// With an imitation it has the properties of that camera. CameraImitation::camera makes it a live
+/// device, which starts again at the end of the recording.
 class RecordingDevice : public oni::driver::DeviceBase {
  public:
   struct Callbacks {
     std::function<void(OniDeviceState)> state_changed;
     std::function<void(const std::string&)> report_error;  ///< for getExtendedError()
-    /// The imitated camera goes away, after the image of this time of the recording.
+    /// The imitated camera is disconnected after the image of this time of the recording.
     std::function<void(std::int64_t utime)> unplugged;
   };
 

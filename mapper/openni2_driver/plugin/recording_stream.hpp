@@ -14,7 +14,7 @@ namespace kintsugi::mapper {
 /// The depth or colour stream of a recording, as OpenNI2 sees it.
 class RecordingStream : public oni::driver::StreamBase {
  public:
-  /// @param modes what the stream offers, not empty; the first is in effect at first.
+  /// @param modes of the stream, not empty; the first is the initial one
   RecordingStream(StreamKind kind, const Recording& recording, const CameraImitation& imitation,
                   Playback& playback, std::vector<OniVideoMode> modes);
   ~RecordingStream() override;
@@ -27,16 +27,16 @@ class RecordingStream : public oni::driver::StreamBase {
   OniStatus setProperty(int id, const void* data, int size) override;
   OniBool isPropertySupported(int id) override;
   void notifyAllProperties() override;
-  /// Colour is registered to depth: the same pixel.
+  /// Returns the same pixel, because colour is registered to depth.
   OniStatus convertDepthToColorCoordinates(StreamBase* color, int depth_x, int depth_y,
                                            OniDepthPixel depth, int* color_x,
                                            int* color_y) override;
 
-  /// Hands a frame to OpenNI2 in the mode, mirrored and cropped as set. From the playback's thread.
-  /// False when the mode's rate leaves it out.
+  /// Passes a frame to OpenNI2 with the mode, mirroring and cropping that are set. Called from the
+  /// playing thread. Returns false when the frame rate of the mode skips it.
   bool deliver(const PlayedFrame& frame);
 
-  /// Of the mode in effect.
+  /// Image size of the present mode.
   [[nodiscard]] cv::Size image_size();
 
  private:

@@ -6,7 +6,7 @@
 
 namespace kintsugi::mapper {
 
-/// What a camera.txt says.
+/// The content of a camera.txt.
 struct Calibration {
   Intrinsics intrinsics;
   double depth_units_per_m = 1000.0;  ///< raw depth value / this = metres, > 0
@@ -14,9 +14,9 @@ struct Calibration {
 
 /// Reads a camera.txt: blank lines, `#` comments, and one line
 ///   fx fy cx cy width height depth_scale [k1 k2 p1 p2 k3]
-/// in pixels, with depth_scale in raw units per metre; without the last five the lens has no
+/// in pixels, with depth_scale in raw units per metre. Without the last five there is no
 /// distortion.
-/// @throws std::runtime_error naming file, line, field, its value and what was expected.
+/// @throws std::runtime_error naming file, line, field, its value and what was expected
 Calibration read_calibration(const std::filesystem::path& file);
 
 }  // namespace kintsugi::mapper

@@ -16,8 +16,8 @@ namespace kintsugi::mapper {
 /// Besides raw 0, raw 65535 is invalid (7-Scenes).
 class FolderRecording : public Recording {
  public:
-  /// Reads the lists and camera.txt; images are read when they are asked for.
-  /// @throws std::runtime_error naming file, line and what was expected.
+  /// Reads the lists and camera.txt, but no images.
+  /// @throws std::runtime_error naming file, line and what was expected
   explicit FolderRecording(const std::filesystem::path& folder);
 
   [[nodiscard]] std::string name() const override;

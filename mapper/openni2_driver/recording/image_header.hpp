@@ -1,5 +1,5 @@
 #pragma once
-// What a compressed image says of itself, read without decoding it.
+// The header of a compressed image, read without decoding it.
 
 #include <cstdint>
 #include <optional>
@@ -16,7 +16,7 @@ struct ImageHeader {
   int bits_per_pixel = 0;  ///< of all channels
 };
 
-/// Nothing when `bytes` are neither PNG nor JPEG, or end before they have told.
+/// nullopt when `bytes` are neither PNG nor JPEG, or end within the header.
 std::optional<ImageHeader> read_image_header(std::span<const std::uint8_t> bytes);
 
 }  // namespace kintsugi::mapper

@@ -8,7 +8,7 @@ namespace kintsugi::mapper {
 
 struct TimedImage {
   std::int64_t utime = 0;      ///< microseconds
-  std::filesystem::path file;  ///< with the folder
+  std::filesystem::path file;  ///< path with the folder
 };
 
 /// The images of a recording, each list ascending strictly in time.
@@ -17,11 +17,11 @@ struct ImageLists {
   std::vector<TimedImage> color;  ///< may be empty
 };
 
-/// Reads depth.txt and, where there is one, rgb.txt (lines `seconds file`); in a folder without
-/// depth.txt, associations.txt (lines `seconds file seconds file`, one of the two files under
-/// depth/), where neighbouring lines may repeat an image.
-/// @throws std::runtime_error naming file, line and what was expected: no list, an empty one, a
-/// line that does not parse, times that do not ascend, an image that is not there.
+/// Reads depth.txt and, if present, rgb.txt (lines `seconds file`). In a folder without depth.txt
+/// it reads associations.txt (lines `seconds file seconds file`, one of the two files under
+/// depth/), in which adjacent lines may repeat an image.
+/// @throws std::runtime_error naming file, line and what was expected, for a list that is missing,
+///   empty or malformed, times that do not ascend, or an image that is missing
 ImageLists read_image_lists(const std::filesystem::path& folder);
 
 }  // namespace kintsugi::mapper

@@ -10,12 +10,12 @@
 
 namespace kintsugi::mapper {
 
-/// A recording as an imitated camera sees it: images that never come, clocks that disagree or jump,
-/// and, after the camera was away, only what is left.
+/// A recording with the faults of an imitated camera: missing images, clocks that differ or jump,
+/// and, after an interruption, only the remaining images.
 class ImitatedRecording : public Recording {
  public:
-  /// @param resume_utime what was before this time of the recording has passed while the camera was
-  /// away; absent: it was not.
+  /// @param resume_utime time in the recording at which the camera is back after an interruption;
+  ///   absent: there was none
   ImitatedRecording(std::unique_ptr<Recording> recording, const CameraImitation& imitation,
                     std::optional<std::int64_t> resume_utime);
 
@@ -42,7 +42,7 @@ class ImitatedRecording : public Recording {
 
   std::unique_ptr<Recording> recording_;
   CameraImitation imitation_;
-  std::vector<int> depths_;  ///< indices of the images that come
+  std::vector<int> depths_;  ///< indices of the images that are not missing
   std::vector<int> colors_;
   std::int64_t clock_zero_ = 0;                   ///< time of the recording at which the clock is 0
   std::optional<std::int64_t> clock_jump_utime_;  ///< of the recording; absent: no jump

@@ -1,12 +1,19 @@
 #include "mapper/openni2_driver/recording/synthetic_recording.hpp"
 
+#include "mapper/synthetic/render/ground_truth.hpp"
+
 namespace kintsugi::mapper {
+
+SyntheticRecording::SyntheticRecording(const synthetic::Sequence::Config& config)
+    : sequence_(config) {
+  if (!config.ground_truth.empty()) synthetic::write_ground_truth(sequence_, config.ground_truth);
+}
 
 std::string SyntheticRecording::name() const { return "synthetic://" + sequence_.config().scene; }
 
 cv::Mat_<std::uint16_t> SyntheticRecording::depth(int index, DepthUnit unit) {
   cv::Mat_<std::uint16_t> depth = sequence_.depth_mm(index);
-  if (unit == DepthUnit::k100um) depth *= 10;  // the sensor's 5 m fit, see max_depth_value()
+  if (unit == DepthUnit::k100um) depth *= 10;  // 16 bits hold the sensor's range of 5 m
   return depth;
 }
 

@@ -5,12 +5,14 @@
 
 namespace kintsugi::mapper {
 
-/// A walk through a room of analytic geometry, rendered when a frame is asked for. Depth and colour
-/// have the same times; the true poses are known.
+/// A walk through a synthetic scene, rendered frame by frame. Depth and colour have the same times;
+/// the true poses are known.
 class SyntheticRecording : public Recording {
  public:
-  /// @throws as synthetic::Sequence
-  explicit SyntheticRecording(const synthetic::Sequence::Config& config) : sequence_(config) {}
+  /// Writes the ground truth if `config` names a folder for it.
+  /// @throws std::invalid_argument as synthetic::Sequence, std::system_error when the ground truth
+  ///   cannot be written
+  explicit SyntheticRecording(const synthetic::Sequence::Config& config);
 
   [[nodiscard]] std::string name() const override;
   [[nodiscard]] const Intrinsics& intrinsics() const override { return sequence_.intrinsics(); }

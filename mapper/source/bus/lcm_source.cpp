@@ -19,7 +19,7 @@ namespace kintsugi::mapper {
 namespace {
 
 constexpr auto kPoll = std::chrono::milliseconds(100);
-constexpr std::size_t kMaxWaitingInReplay = 8192;  // some 2 GB of compressed frames
+constexpr std::size_t kMaxWaitingInReplay = 8192;  // about 2 GB of compressed frames
 
 std::string channel_of(const std::string& device) {
   std::string channel = device.substr(kLcmScheme.size());
@@ -31,7 +31,7 @@ std::string channel_of(const std::string& device) {
 
 }  // namespace
 
-/// Takes messages off the bus, in a thread of its own, into a queue.
+/// Puts messages from the bus into a queue, in its own thread.
 struct LcmSource::Receiver {
   Receiver(const std::string& channel, const SourceConfig& config)
       : max_waiting(config.replay ? kMaxWaitingInReplay : 1),
@@ -68,7 +68,7 @@ struct LcmSource::Receiver {
   std::int64_t dropped = 0;
   Bus bus;
   StreamSubscriber<RgbdFrameMessage> subscriber;
-  std::optional<BusThread> thread;  ///< last: stops before the rest goes
+  std::optional<BusThread> thread;  ///< last: stops before the members that it uses are destroyed
 };
 
 LcmSource::LcmSource(const SourceConfig& config) : config_(config) {
@@ -77,6 +77,7 @@ LcmSource::LcmSource(const SourceConfig& config) : config_(config) {
     calibration = read_calibration(config.calibration_file).intrinsics;
   }
   decoder_ = std::make_unique<RgbdFrameDecoder>(config.max_range_m, calibration);
+  status_.name = config.device;
   receiver_ = std::make_unique<Receiver>(channel_of(config.device), config);
 }
 
@@ -89,17 +90,17 @@ std::optional<RgbdFrame> LcmSource::next() {
   return std::nullopt;
 }
 
-SourceCounts LcmSource::counts() const {
-  SourceCounts counts = counts_;
+SourceStatus LcmSource::status() const {
+  SourceStatus status = status_;
   const std::lock_guard lock(receiver_->mutex);
-  counts.frames_dropped += receiver_->dropped;
-  counts.frames_bad += receiver_->subscriber.counts().messages_bad;
-  return counts;
+  status.counts.frames_dropped += receiver_->dropped;
+  status.counts.frames_bad += receiver_->subscriber.counts().messages_bad;
+  return status;
 }
 
 std::optional<RgbdFrameMessage> LcmSource::wait_for_message() {
   PatientClock patience;
-  while (end_reason_.empty()) {
+  while (status_.end_reason.empty()) {
     if (auto message = receiver_->pop(kPoll)) return message;
     const bool silent =
         session_ != 0 && config_.lcm_silence_s > 0.0 && patience.now_s() > config_.lcm_silence_s;
@@ -125,20 +126,20 @@ std::optional<RgbdFrame> LcmSource::convert(const RgbdFrameMessage& message) {
     if (!next_in_session) throw std::runtime_error("another session, or out of order");
     const Stopwatch stopwatch;
     RgbdFrame frame = decoder_->decode(message);
-    counts_.convert_ms += stopwatch.elapsed_ms();
+    status_.counts.convert_ms += stopwatch.elapsed_ms();
     last_utime_ = message.utime;
-    ++counts_.frames_delivered;
-    if (frame.color_rgb.empty()) ++counts_.depth_unpaired;
+    ++status_.counts.frames_delivered;
+    if (frame.color_rgb.empty()) ++status_.counts.depth_unpaired;
     return frame;
   } catch (const std::exception&) {
-    ++counts_.frames_bad;
+    ++status_.counts.frames_bad;
     return std::nullopt;
   }
 }
 
 void LcmSource::end(bool well, const std::string& reason) {
-  ended_well_ = well;
-  end_reason_ = reason;
+  status_.ended_well = well;
+  status_.end_reason = reason;
 }
 
 }  // namespace kintsugi::mapper

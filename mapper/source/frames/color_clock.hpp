@@ -6,22 +6,23 @@
 
 namespace kintsugi::mapper {
 
-/// Finds out when a device dates its colour images by another clock than its depth images (the
-/// streams of some recordings each count from their own start).
+/// Detects that the time stamps of the colour images come from another clock than those of the
+/// depth images (in some recordings each stream counts from its own start).
 ///
-/// Images that come one after the other were taken at about the same time. When the times of colour
-/// images are off from those of the depth images among which they come by more than three periods,
-/// steadily, that is the difference of the clocks. Less may be lateness and is left as it is.
+/// Images that arrive one after the other were taken at about the same time. If the times of colour
+/// images steadily differ by more than three periods from those of the depth images between which
+/// they arrive, the difference is the offset of the clocks. A smaller one may be a delay and is not
+/// corrected.
 class ColorClock {
  public:
   explicit ColorClock(std::int64_t period_us) : period_us_(period_us) {}
 
   void add_depth(std::int64_t utime);
 
-  /// `utime` by the depth images' clock, as far as it is known.
+  /// Converts `utime` to the clock of the depth images, as far as the offset is known.
   std::int64_t add_color(std::int64_t utime);
 
-  /// So far the colour images' clock is ahead.
+  /// Offset of the colour clock: colour time minus depth time, microseconds.
   [[nodiscard]] std::int64_t ahead_us() const { return ahead_us_; }
 
  private:

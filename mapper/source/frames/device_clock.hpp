@@ -7,31 +7,31 @@
 
 namespace kintsugi::mapper {
 
-/// Turns the times that a device writes on its depth and colour images into times that ascend, in
-/// each stream, whatever the device's clock does.
+/// Converts the time stamps of depth and colour images to times that ascend in each stream, even if
+/// the clock of the device jumps.
 ///
-/// The device's own times are passed on for as long as its clock goes on sensibly. When it steps
-/// back, or (live) strays by more than a second from the time that has passed, a new epoch begins:
-/// its first image comes so long after the one before as has passed meanwhile, and the device's
-/// clock counts from there. Both streams have one clock: the second one to notice joins the epoch
-/// that the first one began.
+/// Time stamps are passed on unchanged as long as they are plausible. When they step back, or those
+/// of a live device deviate by more than a second from the elapsed time, a new epoch begins: its
+/// first image is placed after the previous one by the elapsed time, and the device clock counts
+/// from there. Both streams share one clock: the stream that notices the jump second joins the
+/// epoch of the first.
 class DeviceClock {
  public:
   using Instant = std::chrono::steady_clock::time_point;
   enum class Stream : std::uint8_t { kDepth = 0, kColor = 1 };
 
-  /// @param live images come at the pace at which they are taken.
-  /// @param period_us nominal time between two images.
+  /// @param live images arrive as fast as they are taken
+  /// @param period_us nominal time between two images
   DeviceClock(bool live, std::int64_t period_us) : live_(live), period_us_(period_us) {}
 
-  /// The time of an image that the device dated `stamp_us` and that came at `arrival`.
+  /// The time of an image with time stamp `stamp_us` that arrived at `arrival`.
   std::int64_t time_of(Stream stream, std::int64_t stamp_us, Instant arrival);
 
-  /// The device has been away: what has passed meanwhile has passed here, even in a replay.
+  /// The device was disconnected: the elapsed time counts for the next image, even of a recording.
   void interrupt();
 
  private:
-  /// What is known of one stream's images.
+  /// State of one stream.
   struct Line {
     bool seen = false;
     bool interrupted = false;

@@ -17,12 +17,12 @@ struct RawFrame {
   cv::Mat_<cv::Vec3b> color_rgb;  ///< or empty
 };
 
-/// Raw depth to metres along C's z; raw 0, raw 65535 and what lies beyond `max_range_m` is NaN.
+/// Raw depth to metres along C's z; raw 0, raw 65535 and values beyond `max_range_m` become NaN.
 cv::Mat_<float> depth_to_metres(const cv::Mat_<std::uint16_t>& depth_raw, double units_per_m,
                                 double max_range_m);
 
-/// The one place where raw images become what the mapper works on: depth in metres, the lens's
-/// distortion removed.
+/// Converts raw images to the frames that the mapper uses: depth in metres, lens distortion
+/// removed.
 class FrameConverter {
  public:
   /// @throws std::invalid_argument when the intrinsics, the unit or the range are not positive.

@@ -10,29 +10,29 @@
 
 namespace kintsugi::mapper {
 
-/// Joins each depth image with the colour image nearest in time, when that is within half a period
-/// of the depth stream (and a fifth of that, for the times of both waver).
+/// Pairs each depth image with the colour image nearest in time, if that is within 0.6 periods of
+/// the depth stream (half a period, and some jitter of both times).
 ///
-/// Images of each kind come in the order of their times, the two kinds interleaved in any way. A
-/// depth image is decided when a colour image of its time or later has come, or two more depth
-/// images have. A colour image goes with one depth image. Of colour images without a depth image
-/// the newest few are kept.
+/// Images of each kind must be added in the order of their times; the two kinds may interleave in
+/// any way. A depth image is decided when a colour image of its time or later has been added, or
+/// two more depth images. Each colour image is used at most once. Of colour images without a depth
+/// image the newest few are kept.
 class FramePairer {
  public:
-  /// @param expect_color false: depth images are decided at once.
+  /// @param expect_color false: depth images are decided at once
   FramePairer(bool expect_color, std::int64_t depth_period_us)
       : expect_color_(expect_color), max_difference_us_(depth_period_us * 3 / 5) {}
 
   void add_depth(std::int64_t utime, std::int64_t frame_index, cv::Mat_<std::uint16_t> depth_raw);
   void add_color(std::int64_t utime, cv::Mat_<cv::Vec3b> color_rgb);
 
-  /// No more images come: what is left is decided.
+  /// No more images will be added: decides the remaining ones.
   void finish() { finished_ = true; }
 
-  /// After finish(): images come again.
+  /// After finish(): images are added again.
   void resume(bool expect_color);
 
-  /// The oldest decided frame; its colour is empty when there was none for it.
+  /// The oldest decided frame; its colour is empty when there is none for it.
   std::optional<RawFrame> take();
 
   [[nodiscard]] std::int64_t depth_unpaired() const { return depth_unpaired_; }

@@ -39,7 +39,7 @@ double CameraReturn::seconds_away() const {
 
 std::unique_ptr<OpenNi2Device> CameraReturn::open_any() {
   try {
-    const auto runtime = OpenNi2Runtime::shared();  // looks for cameras
+    const auto runtime = OpenNi2Runtime::shared();  // searches for cameras
     for (const std::string& uri : addresses()) {
       try {
         return open(uri);
@@ -53,7 +53,7 @@ std::unique_ptr<OpenNi2Device> CameraReturn::open_any() {
   return nullptr;
 }
 
-/// @throws std::runtime_error also when it is another camera.
+/// @throws std::runtime_error when it cannot be opened or is another camera
 std::unique_ptr<OpenNi2Device> CameraReturn::open(const std::string& uri) const {
   auto camera = std::make_unique<OpenNi2Device>(uri, config_);
   const std::string serial_number = camera->serial_number();
@@ -67,8 +67,8 @@ std::unique_ptr<OpenNi2Device> CameraReturn::open(const std::string& uri) const 
   return camera;
 }
 
-/// Where the camera can be: the address it had, unless cameras are listed and it is not among them;
-/// then those of its name.
+/// Addresses to try: the previous one, unless cameras are listed and it is not among them; then
+/// those of cameras with the same name.
 std::vector<std::string> CameraReturn::addresses() const {
   std::vector<std::string> same_name;
   for (const openni::DeviceInfo& camera : plugged_in_cameras()) {

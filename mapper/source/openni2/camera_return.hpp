@@ -9,19 +9,19 @@
 
 namespace kintsugi::mapper {
 
-/// Waits for a camera that went away, and opens it again.
+/// Waits for a disconnected camera and opens it again.
 ///
-/// Each attempt initialises OpenNI2 anew (when this is its only user): only then do its drivers
-/// look for cameras where the system does not tell them. A camera may come back under another
-/// address (a USB camera's contains its device number): one of the same name is taken, and, where
-/// cameras have serial numbers, of the same number.
+/// Each attempt initialises OpenNI2 again (if this is its only user), because some drivers search
+/// for cameras only then. A camera may come back under another address (that of a USB camera
+/// contains its device number): one with the same name is taken and, where cameras have serial
+/// numbers, with the same number.
 class CameraReturn {
  public:
-  /// @param camera must be gone before the first attempt: it holds OpenNI2.
+  /// @param camera must be destroyed before the first attempt, because it keeps OpenNI2 initialised
   CameraReturn(const SourceConfig& config, const OpenNi2Device& camera);
 
-  /// Waits `patience` or until the next attempt is due, whichever is shorter; attempts then.
-  /// nullptr: not yet.
+  /// Waits until the next attempt is due, at most `patience`, and then makes the attempt if it is
+  /// due. Returns nullptr while the camera is not back.
   std::unique_ptr<OpenNi2Device> wait(std::chrono::milliseconds patience);
 
   [[nodiscard]] double seconds_away() const;
@@ -37,7 +37,7 @@ class CameraReturn {
   [[nodiscard]] std::vector<std::string> addresses() const;
 
   SourceConfig config_;
-  std::string uri_;  ///< that it had
+  std::string uri_;  ///< before it was disconnected
   std::string name_;
   std::string serial_number_;
   cv::Size image_size_;

@@ -4,11 +4,11 @@
 
 namespace kintsugi::mapper {
 
-/// What there is and what it offers, for people: for the device of a URI, or for every camera that
-/// is plugged in, its URI, name, the modes of its streams and whether it registers depth to colour.
-/// @param uri as OpenNI2 has it; empty: every camera
-/// @throws std::runtime_error when OpenNI2 cannot be initialised, the one device not be opened, or
-/// it is a file.
+/// A text for people about one device, or every connected camera: URI, name, modes of its streams,
+/// and whether it registers depth to colour.
+/// @param uri as OpenNI2 lists it; empty: every camera
+/// @throws std::runtime_error when OpenNI2 cannot be initialised, or the device cannot be opened or
+///   is a file
 std::string list_devices(const std::string& uri);
 
 }  // namespace kintsugi::mapper

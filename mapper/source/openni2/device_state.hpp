@@ -2,10 +2,10 @@
 
 namespace kintsugi::mapper {
 
-/// What a device has said of itself.
+/// The state that a device reports.
 enum class DeviceState {
   kPlaying,
-  kEnded,   ///< a recording is over
+  kEnded,   ///< the end of a recording
   kFailed,  ///< the device reports a fault
   kGone,    ///< the device has been disconnected
 };

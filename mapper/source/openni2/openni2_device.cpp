@@ -9,7 +9,7 @@
 
 #include <OpenNI.h>
 
-#include "mapper/openni2_driver/device_properties.hpp"
+#include "mapper/openni2_driver/recording/device_properties.hpp"
 #include "mapper/source/openni2/openni2_image.hpp"
 #include "mapper/source/openni2/openni2_intrinsics.hpp"
 #include "mapper/source/openni2/openni2_modes.hpp"
@@ -42,7 +42,7 @@ struct OpenNi2Device::Implementation {
     if (device.hasSensor(openni::SENSOR_COLOR)) uses_color = create_color();
     if (openni::PlaybackControl* playback = device.getPlaybackControl()) {
       playback->setRepeatEnabled(false);
-      playback->setSpeed(config.replay ? -1.0F : 1.0F);
+      playback->setSpeed(-1.0F);  // as fast as it is read
     }
     start(depth, "depth");
     if (uses_color) start(color, "colour");

@@ -8,7 +8,8 @@
 
 #include <opencv2/core.hpp>
 
-#include "mapper/source/frame_source.hpp"
+#include "lcmtypes/geometry.hpp"
+#include "mapper/source/frames/source_config.hpp"
 #include "mapper/source/openni2/device_state.hpp"
 
 namespace kintsugi::mapper {
@@ -22,37 +23,37 @@ struct DeviceImage {
   cv::Mat_<cv::Vec3b> color_rgb;  ///< on the depth image's pixels
 };
 
-/// An OpenNI2 device with its depth and, where it has one that is aligned with depth, colour
-/// stream, started.
+/// An OpenNI2 device whose depth stream and, if it is aligned with depth, colour stream are
+/// started.
 ///
-/// Registers depth to colour where the device can, takes the depth unit that suits the range, and
-/// undoes mirroring and cropping. One thread at a time. OpenNI2 itself is initialised with the
-/// first device of the process and shut down with the last.
+/// Registers depth to colour where the device supports it, selects the depth unit that suits the
+/// range, and undoes mirroring and cropping. To be used by one thread at a time. The first device
+/// of the process initialises OpenNI2, the last one shuts it down.
 class OpenNi2Device {
  public:
-  /// @param uri as OpenNI2 has it; empty: the first camera.
-  /// @throws std::runtime_error with the device and what OpenNI2 says.
+  /// @param uri as OpenNI2 lists it; empty: the first camera
+  /// @throws std::runtime_error naming the device, with the message of OpenNI2
   OpenNi2Device(const std::string& uri, const SourceConfig& config);
   ~OpenNi2Device();
   OpenNi2Device(const OpenNi2Device&) = delete;
   OpenNi2Device& operator=(const OpenNi2Device&) = delete;
 
-  /// The next image, oldest first; nullopt when none came in `timeout`.
-  /// @throws std::runtime_error for an image that cannot be used.
+  /// The oldest image that waits; nullopt when none arrives within `timeout`.
+  /// @throws std::runtime_error for an image that cannot be used
   std::optional<DeviceImage> wait(std::chrono::milliseconds timeout);
 
-  /// Exposure and white balance of the colour camera stay as they are now.
-  /// @return false when the device has no such settings.
+  /// Locks exposure and white balance of the colour camera at their present values.
+  /// @return false when the device has no such settings
   bool lock_exposure();
 
-  /// Nothing more is read. The streams stop at once, not only with this object's end: OpenNI2's
-  /// file driver keeps a core busy from the end of a file until then.
+  /// Stops the streams. To be called at the end of a file, because OpenNI2's file driver keeps a
+  /// core busy from then until the streams are stopped.
   void stop();
 
-  /// What the device has said; images from before may still be there to be read.
+  /// The state that the device reported last; earlier images may still wait to be read.
   [[nodiscard]] DeviceState state() const;
 
-  /// Why state() is kFailed, where the device told.
+  /// Why state() is kFailed, if the device reports a reason.
   [[nodiscard]] std::string failure() const;
 
   [[nodiscard]] std::string name() const;
@@ -67,7 +68,7 @@ class OpenNi2Device {
 
   /// With the lens's distortion when the device is ours; otherwise from the field of view alone
   /// (of the colour camera where depth is registered to it), the principal point in the middle.
-  /// @throws std::runtime_error when the device tells none.
+  /// @throws std::runtime_error when the device does not provide them
   [[nodiscard]] Intrinsics intrinsics() const;
 
  private:

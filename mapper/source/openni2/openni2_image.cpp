@@ -5,7 +5,7 @@
 
 #include <opencv2/imgproc.hpp>
 
-#include "mapper/source/openni2/device_mode.hpp"
+#include "mapper/source/frames/device_mode.hpp"
 
 namespace kintsugi::mapper {
 namespace {

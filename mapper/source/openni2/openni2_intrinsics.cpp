@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "mapper/openni2_driver/device_properties.hpp"
+#include "mapper/openni2_driver/recording/device_properties.hpp"
 #include "mapper/source/openni2/openni2_modes.hpp"
 
 namespace kintsugi::mapper {

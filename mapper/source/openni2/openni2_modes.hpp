@@ -1,12 +1,12 @@
 #pragma once
-// What the streams of an OpenNI2 device offer, and what of it the mapper takes.
+// Selects the modes of the streams of an OpenNI2 device.
 
 #include <string>
 #include <vector>
 
 #include <OpenNI.h>
 
-#include "mapper/source/openni2/device_mode.hpp"
+#include "mapper/source/frames/device_mode.hpp"
 
 namespace kintsugi::mapper {
 
@@ -15,20 +15,20 @@ std::vector<DeviceMode> usable_modes(const openni::SensorInfo& sensor);
 
 DeviceMode mode_of(const openni::VideoStream& stream);
 
-/// Sets the depth stream to the mode that is asked for; otherwise to 640x480@30 or the nearest to
-/// it, a recording to its own. In units of 0.1 mm where the device has them and they reach
-/// `max_range_m`, else in millimetres.
+/// Sets the depth stream to mode `asked`; if empty, to the mode nearest to 640x480@30, or the only
+/// mode of a recording. The unit is 0.1 mm where the device offers it and it reaches `max_range_m`,
+/// else 1 mm.
 /// @param asked as SourceConfig::depth_mode
-/// @throws std::runtime_error naming the device and what it offers, when it does not offer what is
-/// asked for, refuses it, or gives depth in no unit that the mapper reads.
+/// @throws std::runtime_error naming the device and what it offers, when it does not offer `asked`,
+///   refuses it, or gives depth in no unit that the mapper reads
 void set_depth_mode(const openni::Device& device, openni::VideoStream& depth,
                     const std::string& asked, double max_range_m);
 
-/// Sets the colour stream to the mode that is asked for; otherwise to the depth image's size or the
-/// nearest to it that covers the depth image.
+/// Sets the colour stream to mode `asked`; if empty, to the mode nearest to the size of the depth
+/// image that covers the depth image.
 /// @param asked as SourceConfig::color_mode
-/// @return false when the stream does not cover the depth image.
-/// @throws std::runtime_error as above, also when what is asked for does not cover the depth image.
+/// @return false when the stream does not cover the depth image
+/// @throws std::runtime_error as above, and when mode `asked` does not cover the depth image
 bool set_color_mode(const openni::Device& device, openni::VideoStream& color,
                     const std::string& asked, const DeviceMode& depth);
 

@@ -1,5 +1,5 @@
 #pragma once
-// OpenNI2's library as a whole: its life, its devices, what it says.
+// The OpenNI2 library: initialisation, list of cameras, errors, device events.
 
 #include <atomic>
 #include <memory>
@@ -12,27 +12,27 @@
 
 namespace kintsugi::mapper {
 
-/// OpenNI2's library is one per process and counts its users; what the drivers load (threads, USB)
-/// lives from the first user to the last, and cameras are looked for when that begins.
+/// Keeps OpenNI2 initialised. The library counts its users in the process: it loads its drivers and
+/// searches for cameras with the first user, and unloads the drivers with the last.
 class OpenNi2Runtime {
  public:
-  /// @throws std::runtime_error with what OpenNI2 says.
+  /// @throws std::runtime_error with the message of OpenNI2
   OpenNi2Runtime();
   ~OpenNi2Runtime();
   OpenNi2Runtime(const OpenNi2Runtime&) = delete;
   OpenNi2Runtime& operator=(const OpenNi2Runtime&) = delete;
 
-  /// The one of this process, for as long as somebody holds it.
+  /// The one of this process; it exists as long as somebody holds it.
   static std::shared_ptr<OpenNi2Runtime> shared();
 };
 
-/// What OpenNI2 has to say about the last failure in this thread, on one line.
+/// OpenNI2's message about the last failure in this thread, on one line.
 std::string openni2_error();
 
-/// The cameras that are plugged in. Needs a runtime.
+/// The connected cameras. Needs a runtime.
 std::vector<openni::DeviceInfo> plugged_in_cameras();
 
-/// Listens, as long as it lives, for what happens to one device. Called from drivers' threads.
+/// Records the state of one device. Callbacks come from threads of the drivers.
 class DeviceListener : public openni::OpenNI::DeviceStateChangedListener,
                        public openni::OpenNI::DeviceDisconnectedListener {
  public:

@@ -29,26 +29,26 @@ std::string in_seconds(double seconds) {
 OpenNi2Source::OpenNi2Source(const SourceConfig& config)
     : config_(config),
       device_(open_device(config, damage_)),
-      name_(device_->name()),
       clock_(!device_->is_recording(), depth_period_us(*device_)),
       color_clock_(depth_period_us(*device_)),
       pairer_(device_->has_color(), depth_period_us(*device_)),
       last_depth_s_(patience_.now_s()) {
   converter_.emplace(find_intrinsics(config, *device_), device_->depth_units_per_m(),
                      config.max_range_m);
-  frames_total_ = device_->num_depth_frames().value_or(-1);
+  status_.name = device_->name();
+  status_.frames_total = device_->num_depth_frames().value_or(-1);
 }
 
 std::optional<RgbdFrame> OpenNi2Source::next() {
   for (;;) {
     if (const auto raw = pairer_.take()) {
-      ++counts_.frames_delivered;
+      ++status_.counts.frames_delivered;
       const Stopwatch stopwatch;
       RgbdFrame frame = converter_->convert(*raw);
-      counts_.convert_ms += stopwatch.elapsed_ms();
+      status_.counts.convert_ms += stopwatch.elapsed_ms();
       return frame;
     }
-    if (!end_reason_.empty()) return std::nullopt;
+    if (!status_.end_reason.empty()) return std::nullopt;
     if (config_.stop_requested()) {
       end(true, "stopped on request");
     } else if (device_) {
@@ -59,11 +59,11 @@ std::optional<RgbdFrame> OpenNi2Source::next() {
   }
 }
 
-SourceCounts OpenNi2Source::counts() const {
-  SourceCounts counts = counts_;
-  counts.depth_unpaired = pairer_.depth_unpaired();
-  counts.color_unpaired = pairer_.color_unpaired();
-  return counts;
+SourceStatus OpenNi2Source::status() const {
+  SourceStatus status = status_;
+  status.counts.depth_unpaired = pairer_.depth_unpaired();
+  status.counts.color_unpaired = pairer_.color_unpaired();
+  return status;
 }
 
 void OpenNi2Source::read_image() {
@@ -75,7 +75,7 @@ void OpenNi2Source::read_image() {
       check_for_end(state_before);
     }
   } catch (const std::runtime_error& refusal) {
-    ++counts_.frames_bad;
+    ++status_.counts.frames_bad;
     last_refusal_ = refusal.what();
   }
   if (device_) check_for_silence();
@@ -103,11 +103,11 @@ void OpenNi2Source::compare_clocks(std::int64_t depth_utime) {
                       ": taken into account"});
 }
 
-/// Counts on when the device begins anew, and counts what it left out.
+/// Continues the count when the device starts again from 0, and counts skipped images as dropped.
 std::int64_t OpenNi2Source::continuous_index(std::int64_t index) {
   const std::int64_t step = device_index_ && index > *device_index_ ? index - *device_index_ : 1;
   device_index_ = index;
-  counts_.frames_dropped += step - 1;
+  status_.counts.frames_dropped += step - 1;
   frame_index_ = frame_index_ ? *frame_index_ + step : index;
   return *frame_index_;
 }
@@ -123,8 +123,8 @@ void OpenNi2Source::lock_exposure_when_due(std::int64_t stamp_us) {
                   "exposure cannot be locked: the device has no such camera settings"});
 }
 
-/// Nothing came. OpenNI2 itself only lets the wait time out when a recording is over.
-/// @param state_before from before the wait: what the device had played by then has been read.
+/// Called when no image arrived. For recordings, OpenNI2 times out only after the last image.
+/// @param state_before state before the wait: images that were played by then have been read
 void OpenNi2Source::check_for_end(DeviceState state_before) {
   switch (state_before) {
     case DeviceState::kPlaying:
@@ -151,9 +151,9 @@ void OpenNi2Source::check_for_silence() {
 }
 
 void OpenNi2Source::interrupt(const std::string& reason) {
-  ++counts_.interruptions;
+  ++status_.counts.interruptions;
   config_.notify({SourceNotice::Kind::kInterrupted,
-                  "device '" + name_ + "' is gone: " + reason + "; waiting for it"});
+                  "device '" + status_.name + "' is gone: " + reason + "; waiting for it"});
   return_.emplace(config_, *device_);
   device_.reset();
   pairer_.finish();
@@ -165,8 +165,8 @@ void OpenNi2Source::wait_for_camera() {
   const double away_s = return_->seconds_away();
   if (!device_) {
     if (config_.reconnect_s == 0.0 || away_s < config_.reconnect_s) return;
-    return end(false, "device '" + name_ + "' did not come back in " + in_seconds(away_s) + ": " +
-                          return_->last_error());
+    return end(false, "device '" + status_.name + "' did not come back in " + in_seconds(away_s) +
+                          ": " + return_->last_error());
   }
   return_.reset();
   pairer_.resume(device_->has_color());
@@ -175,13 +175,13 @@ void OpenNi2Source::wait_for_camera() {
   exposure_locked_ = false;
   last_refusal_.clear();
   last_depth_s_ = patience_.now_s();
-  config_.notify(
-      {SourceNotice::Kind::kResumed, "device '" + name_ + "' is back after " + in_seconds(away_s)});
+  config_.notify({SourceNotice::Kind::kResumed,
+                  "device '" + status_.name + "' is back after " + in_seconds(away_s)});
 }
 
 void OpenNi2Source::end(bool well, const std::string& reason) {
-  ended_well_ = well;
-  end_reason_ = reason;
+  status_.ended_well = well;
+  status_.end_reason = reason;
   if (device_) device_->stop();
   pairer_.finish();
 }

@@ -7,33 +7,28 @@
 #include <string>
 
 #include "lcmtypes/base/patient_clock.hpp"
-#include "mapper/source/frame_source.hpp"
 #include "mapper/source/frames/color_clock.hpp"
 #include "mapper/source/frames/device_clock.hpp"
 #include "mapper/source/frames/frame_converter.hpp"
 #include "mapper/source/frames/frame_pairer.hpp"
+#include "mapper/source/frames/frame_source.hpp"
 #include "mapper/source/openni2/camera_return.hpp"
 #include "mapper/source/openni2/openni2_device.hpp"
 
 namespace kintsugi::mapper {
 
-/// Frames from OpenNI2: a camera, a .oni file, or one of our own devices.
+/// Frames from OpenNI2: a camera, a .oni file, or a device of our driver (folder://, synthetic://).
 ///
-/// A camera that goes away is waited for, and the frames go on when it is back. A .oni file that is
-/// cut off is read as far as it goes (from a mended copy in the folder for temporary files, which
-/// lasts only while it is being opened).
+/// A camera that is disconnected is waited for, and frames continue when it is back. A truncated
+/// .oni file is read up to its last complete record, by way of a repaired temporary copy.
 class OpenNi2Source : public FrameSource {
  public:
   /// @throws std::runtime_error naming the device or file and what is wrong with it or with its
-  /// calibration.
+  ///   calibration
   explicit OpenNi2Source(const SourceConfig& config);
 
   std::optional<RgbdFrame> next() override;
-  [[nodiscard]] std::int64_t frames_total() const override { return frames_total_; }
-  [[nodiscard]] std::string name() const override { return name_; }
-  [[nodiscard]] SourceCounts counts() const override;
-  [[nodiscard]] std::string end_reason() const override { return end_reason_; }
-  [[nodiscard]] bool ended_well() const override { return ended_well_; }
+  [[nodiscard]] SourceStatus status() const override;
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -50,25 +45,21 @@ class OpenNi2Source : public FrameSource {
   void end(bool well, const std::string& reason);
 
   SourceConfig config_;
-  std::string damage_;                     ///< of a .oni file; empty: none
-  std::unique_ptr<OpenNi2Device> device_;  ///< null while the camera is away
-  std::optional<CameraReturn> return_;     ///< while it is away
-  std::string name_;
+  std::string damage_;                     ///< what is wrong with a .oni file; empty: nothing
+  std::unique_ptr<OpenNi2Device> device_;  ///< null while the camera is disconnected
+  std::optional<CameraReturn> return_;     ///< while it is disconnected
   std::optional<FrameConverter> converter_;
   DeviceClock clock_;
   ColorClock color_clock_;
   FramePairer pairer_;
-  std::int64_t frames_total_ = -1;
   std::optional<std::int64_t> device_index_;    ///< of the last depth image, since it was opened
-  std::optional<std::int64_t> frame_index_;     ///< ... in our count
+  std::optional<std::int64_t> frame_index_;     ///< the same, continued over interruptions
   std::optional<std::int64_t> first_stamp_us_;  ///< since it was opened
   bool exposure_locked_ = false;
   PatientClock patience_;
   double last_depth_s_;       ///< of patience_
   std::string last_refusal_;  ///< why the last bad image was refused
-  SourceCounts counts_;
-  std::string end_reason_;
-  bool ended_well_ = true;
+  SourceStatus status_;
 };
 
 }  // namespace kintsugi::mapper

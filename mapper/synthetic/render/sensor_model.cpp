@@ -4,23 +4,15 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <stdexcept>
-#include <string>
 
 #include <tbb/parallel_for.h>
 
+#include "lcmtypes/base/argument_check.hpp"
 #include "mapper/synthetic/scene/counter_random.hpp"
 
 namespace kintsugi::synthetic {
 
 namespace {
-
-void require(bool condition, const char* field, double value, const char* bound) {
-  if (!condition) {
-    throw std::invalid_argument(std::string("SensorModel: ") + field + " is " +
-                                std::to_string(value) + ", expected " + bound);
-  }
-}
 
 /// The standard normal distribution by its quantiles, in the middles of 4,096 equal shares: a draw
 /// is a look-up. Their variance is 0.9995; the largest is 3.7.

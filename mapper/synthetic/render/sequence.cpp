@@ -4,7 +4,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "mapper/synthetic/render/ground_truth.hpp"
+#include "lcmtypes/base/argument_check.hpp"
 
 namespace kintsugi::synthetic {
 
@@ -28,12 +28,6 @@ bool parse_switch(const std::string& key, const std::string& value) {
   if (value == "off") return false;
   throw std::invalid_argument("synthetic: option " + key + " is '" + value +
                               "', expected on or off");
-}
-
-void require_in_range(const char* field, int value, int low, int high) {
-  if (value >= low && value <= high) return;
-  throw std::invalid_argument(std::string("synthetic: ") + field + " is " + std::to_string(value) +
-                              ", expected " + std::to_string(low) + " to " + std::to_string(high));
 }
 
 }  // namespace
@@ -67,10 +61,9 @@ Sequence::Sequence(const Config& config)
       content_(make_scene_with_path(config.scene, config.seed)),
       sensor_({.noise = config.noise, .seed = config.seed}) {
   const int on_path = content_.trajectory.num_frames();
-  require_in_range("start", config_.start, 0, on_path - 1);
+  check_range("synthetic: start", config_.start, 0, on_path - 1);
   num_frames_ = config_.frames.value_or(on_path - config_.start);
-  require_in_range("frames", num_frames_, 1, on_path - config_.start);
-  if (!config_.ground_truth.empty()) write_ground_truth(*this, config_.ground_truth);
+  check_range("synthetic: frames", num_frames_, 1, on_path - config_.start);
 }
 
 void Sequence::check_index(int frame) const {

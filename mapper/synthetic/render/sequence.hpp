@@ -14,28 +14,26 @@
 
 namespace kintsugi::synthetic {
 
-/// Depth, colour and ground truth of a scene along its path. Any frame may be asked for in any
-/// order, and is always the same; the frame rendered last is kept.
+/// Depth, colour and ground truth of a scene along its path. Frames can be rendered in any order
+/// with the same result; the one rendered last is kept.
 class Sequence {
  public:
   struct Config {
     std::string scene = "office";  ///< one of scene_names()
     bool noise = true;             ///< of the depth sensor
-    std::uint32_t seed = 1;        ///< of the sensor's noise and of the hand's shake
+    std::uint32_t seed = 1;        ///< for the noise of the sensor and the shake of the hand
     int start = 0;                 ///< first frame of the path, >= 0 and on the path
     std::optional<int> frames;     ///< how many, >= 1 and on the path; absent: to the path's end
-    std::string ground_truth;      ///< folder to write the truth to; empty: nowhere
+    std::string ground_truth;      ///< folder for write_ground_truth(); empty: none
 
     /// From the options of a `synthetic://scene?key=value&...` address: noise=on|off, seed=N,
     /// start=N, frames=N, ground_truth=FOLDER.
-    /// @throws std::invalid_argument naming a bad key or value and what there is instead.
+    /// @throws std::invalid_argument naming a bad key or value, and what is allowed
     static Config parse(const std::string& scene,
                         const std::map<std::string, std::string>& options);
   };
 
-  /// Writes the ground truth, if asked to (see ground_truth.hpp).
-  /// @throws std::invalid_argument naming scene or field, value and bound; std::system_error if
-  /// the ground truth cannot be written.
+  /// @throws std::invalid_argument naming scene or field, value and bound
   explicit Sequence(const Config& config);
 
   const Config& config() const { return config_; }

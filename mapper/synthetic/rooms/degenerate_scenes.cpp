@@ -3,7 +3,7 @@
 // what geometry does not, and plain, where nothing does.
 #include <string>
 
-#include "mapper/synthetic/rooms/room_plans.hpp"
+#include "mapper/synthetic/rooms/scene_functions.hpp"
 #include "mapper/synthetic/scene/scene_builder.hpp"
 
 namespace kintsugi::synthetic {

@@ -150,12 +150,6 @@ void add_cabinet(SceneBuilder& builder, const Pose& X_WG, double width, const Co
              plain(0.88F * color));
 }
 
-void add_wardrobe(SceneBuilder& builder, const Pose& X_WG, double width, const Color& color) {
-  builder.begin_object("wardrobe", X_WG);
-  builder.add(box(width, 0.55, 1.95), at(0, 0, 0.975), plain(color));
-  add_fronts(builder, width, 0.10, 1.88, -0.275, 2, plain(0.88F * color));
-}
-
 void add_counter(SceneBuilder& builder, const Pose& X_WG, double width) {
   builder.begin_object("counter", X_WG);
   builder.add(box(width, 0.58, 0.86), at(0, 0.01, 0.43), plain(rgb(226, 228, 222)));

@@ -24,7 +24,6 @@ void add_stool(SceneBuilder& builder, const Pose& X_WG, const Color& color);
 void add_sofa(SceneBuilder& builder, const Pose& X_WG, double width, const Color& color);
 void add_bed(SceneBuilder& builder, const Pose& X_WG, const Color& color);  ///< 1.0 x 2.0 m
 void add_cabinet(SceneBuilder& builder, const Pose& X_WG, double width, const Color& color);
-void add_wardrobe(SceneBuilder& builder, const Pose& X_WG, double width, const Color& color);
 void add_counter(SceneBuilder& builder, const Pose& X_WG, double width);
 void add_fridge(SceneBuilder& builder, const Pose& X_WG);
 void add_bench(SceneBuilder& builder, const Pose& X_WG, double width);

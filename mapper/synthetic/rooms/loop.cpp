@@ -3,9 +3,9 @@
 #include <array>
 #include <numbers>
 
-#include "mapper/synthetic/rooms/room_plans.hpp"
 #include "mapper/synthetic/rooms/room_shell.hpp"
 #include "mapper/synthetic/rooms/rooms.hpp"
+#include "mapper/synthetic/rooms/scene_functions.hpp"
 #include "mapper/synthetic/rooms/walk.hpp"
 
 namespace kintsugi::synthetic {

@@ -2,8 +2,8 @@
 // touch, are stacked, lean, are thin, or have the colour of what they stand on.
 #include "mapper/synthetic/rooms/desk_things.hpp"
 #include "mapper/synthetic/rooms/furniture.hpp"
-#include "mapper/synthetic/rooms/room_plans.hpp"
 #include "mapper/synthetic/rooms/room_shell.hpp"
+#include "mapper/synthetic/rooms/scene_functions.hpp"
 #include "mapper/synthetic/rooms/small_objects.hpp"
 #include "mapper/synthetic/rooms/storage_things.hpp"
 #include "mapper/synthetic/scene/scene_builder.hpp"

@@ -4,7 +4,7 @@
 #include <map>
 #include <stdexcept>
 
-#include "mapper/synthetic/rooms/room_plans.hpp"
+#include "mapper/synthetic/rooms/scene_functions.hpp"
 
 namespace kintsugi::synthetic {
 

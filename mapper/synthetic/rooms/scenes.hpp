@@ -5,28 +5,21 @@
 #include <string>
 #include <vector>
 
-#include "mapper/synthetic/rooms/trajectory.hpp"
-#include "mapper/synthetic/scene/scene.hpp"
+#include "mapper/synthetic/rooms/scene_with_path.hpp"
 
 namespace kintsugi::synthetic {
 
-/// A scene and the path of a hand-held camera through it.
-struct SceneWithPath {
-  Scene scene;
-  Trajectory trajectory;
-};
-
-/// "office", "loop", "two-floors" stand for the paper's three datasets; "sphere" (radius 0.5 m at
-/// the origin), "plane" (z = 0, 4 m x 4 m) and "box-room" are small, for tests. "wall", "floor" and
-/// "corridor" show nothing else, so that depth leaves open where along it the camera is; in
-/// "wall-visit" the view goes from some things to the bare wall and back. Each of the four also as
-/// "...-plain", without texture.
+/// "office", "loop" and "two-floors" correspond to the three datasets of the paper. "sphere"
+/// (radius 0.5 m at the origin), "plane" (z = 0, 4 m x 4 m) and "box-room" are small, for tests. In
+/// "wall", "floor" and "corridor" the camera sees nothing else, so camera motion along the surface
+/// is unobservable from depth; in "wall-visit" the camera pans from some objects to the bare wall
+/// and back. The last four also exist as "...-plain", without texture.
 const std::vector<std::string>& scene_names();
 
-/// Throws std::invalid_argument naming the scenes there are, if `name` is none of them.
+/// @throws std::invalid_argument naming the known scenes, if `name` is none of them
 Scene make_scene(const std::string& name);
 
-/// The same, with the camera's path; `seed` is that of the hand's shake.
+/// The same, with the path of the camera; `seed` is for the shake of the hand.
 SceneWithPath make_scene_with_path(const std::string& name, std::uint32_t seed = 1);
 
 }  // namespace kintsugi::synthetic

@@ -1,5 +1,5 @@
 // Scenes with distances a person can work out, for tests.
-#include "mapper/synthetic/rooms/room_plans.hpp"
+#include "mapper/synthetic/rooms/scene_functions.hpp"
 #include "mapper/synthetic/scene/scene_builder.hpp"
 
 namespace kintsugi::synthetic {

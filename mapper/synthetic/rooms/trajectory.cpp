@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <stdexcept>
-#include <string>
 #include <unsupported/Eigen/Splines>
 
+#include "lcmtypes/base/argument_check.hpp"
 #include "mapper/synthetic/scene/counter_random.hpp"
 
 namespace kintsugi::synthetic {
@@ -18,13 +17,6 @@ constexpr int kKnotsPerFrame = 4;
 constexpr double kSmoothing_s = 0.5;  // the speed changes over about this time
 
 using WaypointSpline = Eigen::Spline<double, 6>;  // position, target
-
-void require(bool condition, const char* field, double value, const char* bound) {
-  if (!condition) {
-    throw std::invalid_argument(std::string("Trajectory: ") + field + " is " +
-                                std::to_string(value) + ", expected " + bound);
-  }
-}
 
 WaypointSpline fit(const std::vector<Waypoint>& waypoints) {
   const auto count = static_cast<Eigen::Index>(waypoints.size());
@@ -85,8 +77,7 @@ void Trajectory::Config::validate() const {
 Trajectory::Trajectory(const std::vector<Waypoint>& waypoints, const Config& config)
     : config_(config) {
   config_.validate();
-  require(waypoints.size() >= 2, "number of waypoints", static_cast<double>(waypoints.size()),
-          "at least 2");
+  require(waypoints.size() >= 2, "number of waypoints", waypoints.size(), "at least 2");
   sample_splines(waypoints);
   assign_times();
   CounterRandom random(config_.seed);

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "mapper/synthetic/rooms/furniture.hpp"
-#include "mapper/synthetic/rooms/room_plans.hpp"
 #include "mapper/synthetic/rooms/room_shell.hpp"
 #include "mapper/synthetic/rooms/rooms.hpp"
+#include "mapper/synthetic/rooms/scene_functions.hpp"
 #include "mapper/synthetic/rooms/small_objects.hpp"
 #include "mapper/synthetic/rooms/walk.hpp"
 

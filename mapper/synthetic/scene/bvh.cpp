@@ -2,29 +2,16 @@
 
 #include <numeric>
 
-#include "mapper/synthetic/scene/scene.hpp"
-
 namespace kintsugi::synthetic {
 
-Eigen::AlignedBox3d bounding_box_W(const Primitive& primitive) {
-  // A rotated box reaches |R| h along each axis. The margin covers rays that run along a face.
-  constexpr double kMargin = 1e-6;
-  const Eigen::Vector3d reach =
-      (primitive.X_WO.linear().cwiseAbs() * primitive.shape.half_extents).array() + kMargin;
-  const Eigen::Vector3d centre = primitive.X_WO.translation();
-  return {centre - reach, centre + reach};
-}
-
-Bvh::Bvh(const std::vector<Primitive>& primitives) : order_(primitives.size()) {
-  if (primitives.empty()) return;
-  std::vector<Eigen::AlignedBox3d> boxes;
-  boxes.reserve(primitives.size());
-  for (const Primitive& primitive : primitives) boxes.push_back(bounding_box_W(primitive));
+Bvh::Bvh(const std::vector<Eigen::AlignedBox3d>& boxes_W) : order_(boxes_W.size()) {
+  if (boxes_W.empty()) return;
   std::iota(order_.begin(), order_.end(), 0);
-  build(boxes, 0, static_cast<std::int32_t>(primitives.size()));
+  build(boxes_W, 0, static_cast<std::int32_t>(boxes_W.size()));
 }
 
-void Bvh::build(std::vector<Eigen::AlignedBox3d>& boxes, std::int32_t first, std::int32_t last) {
+void Bvh::build(const std::vector<Eigen::AlignedBox3d>& boxes, std::int32_t first,
+                std::int32_t last) {
   const std::size_t index = nodes_.size();
   nodes_.emplace_back();
   for (std::int32_t i = first; i < last; ++i) nodes_[index].box.extend(boxes[order_[i]]);

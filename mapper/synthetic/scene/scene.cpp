@@ -8,6 +8,18 @@
 #include "mapper/synthetic/scene/bvh.hpp"
 
 namespace kintsugi::synthetic {
+namespace {
+
+Eigen::AlignedBox3d bounding_box_W(const Primitive& primitive) {
+  // A rotated box reaches |R| h along each axis. The margin covers rays that run along a face.
+  constexpr double kMargin = 1e-6;
+  const Eigen::Vector3d reach =
+      (primitive.X_WO.linear().cwiseAbs() * primitive.shape.half_extents).array() + kMargin;
+  const Eigen::Vector3d centre = primitive.X_WO.translation();
+  return {centre - reach, centre + reach};
+}
+
+}  // namespace
 
 Scene::Scene(std::vector<Primitive> primitives, std::vector<Instance> instances)
     : primitives_(std::move(primitives)), instances_(std::move(instances)) {
@@ -18,7 +30,10 @@ Scene::Scene(std::vector<Primitive> primitives, std::vector<Instance> instances)
                                   std::to_string(instances_.size()));
     }
   }
-  bvh_ = std::make_unique<Bvh>(primitives_);
+  std::vector<Eigen::AlignedBox3d> boxes_W;
+  boxes_W.reserve(primitives_.size());
+  for (const Primitive& primitive : primitives_) boxes_W.push_back(bounding_box_W(primitive));
+  bvh_ = std::make_unique<Bvh>(boxes_W);
 }
 
 Scene::~Scene() = default;

@@ -1,5 +1,5 @@
 #pragma once
-// A union of solids: what a ray meets, and how far a point is from the nearest surface.
+// A union of solids: intersections with rays, and distances of points from the surface.
 
 #include <Eigen/Geometry>
 #include <limits>
@@ -16,7 +16,7 @@ namespace kintsugi::synthetic {
 
 class Bvh;
 
-/// Instance id of a pixel or ray that meets nothing. Instances start at 1.
+/// Instance id of a pixel or ray that meets no surface. Instances start at 1.
 inline constexpr int kNoInstance = 0;
 
 /// One solid of the scene; an object (instance) may be made of several.
@@ -27,14 +27,14 @@ struct Primitive {
   int instance = kNoInstance;
 };
 
-/// One object, as a person would count it: a chair, a mug, a wall.
+/// One object in the everyday sense: a chair, a mug, a wall.
 struct Instance {
   int id = kNoInstance;  ///< index in Scene::instances() + 1
   std::string name;      ///< "mug"; not unique
   std::string shape;     ///< of its first solid: "cylinder", ...
   Color color = Color::Zero();
-  /// Of the building: floor, wall, ceiling, stairs, what is built into a wall. The others are what
-  /// a person could name and pick up, push or take off its nail.
+  /// Part of the building: floor, wall, ceiling, stairs, door, window. Otherwise it is an object
+  /// that could be moved.
   bool is_structure = false;
 };
 
@@ -46,20 +46,20 @@ struct RayHit {
   int primitive = -1;  ///< index in Scene::primitives()
 };
 
-/// How far a point is from the surface of a scene, and whose surface it is.
+/// Distance of a point from the surface of a scene, and the instance that the surface belongs to.
 struct SurfaceDistance {
   double signed_m = std::numeric_limits<double>::infinity();  ///< as Scene::signed_distance()
-  int instance = kNoInstance;                                 ///< only of an empty scene none
+  int instance = kNoInstance;  ///< kNoInstance only for an empty scene
 };
 
 /// A scene in its own frame W: z up, the floor of the first storey at z = 0, metres.
 ///
-/// This is the frame of every ground truth. A mapper that tracks starts its map frame at the first
-/// camera pose instead: align before comparing, or give it the true poses.
+/// Every ground truth is in this frame. The map frame of a mapper is that of the camera at its
+/// first frame, unless it was given the true poses: align before you compare.
 /// Immutable; every method is const and may be called from several threads.
 class Scene {
  public:
-  /// Throws std::invalid_argument if a primitive's instance does not exist.
+  /// @throws std::invalid_argument if a primitive's instance does not exist.
   Scene(std::vector<Primitive> primitives, std::vector<Instance> instances);
   ~Scene();
   Scene(Scene&&) noexcept;
@@ -73,14 +73,13 @@ class Scene {
   std::optional<RayHit> intersect(const Eigen::Vector3d& origin_W,
                                   const Eigen::Vector3d& direction_W) const;
 
-  /// Distance from p_W to the nearest surface of the union, metres, positive in free space and
-  /// there exact. Negative inside: then it is minus the depth in the solid that holds p_W deepest,
-  /// which is exact while the nearest surface of that solid is also a surface of the union (that
-  /// is, away from where solids touch or overlap). Infinity for an empty scene.
+  /// Distance from p_W to the nearest surface of the union, metres. In free space it is positive
+  /// and exact. Inside it is minus the largest of the depths of p_W in the solids that contain it;
+  /// that is exact except near places where solids touch or overlap. Infinity for an empty scene.
   double signed_distance(const Eigen::Vector3d& p_W) const;
 
-  /// The same, with the instance of the solid it is measured to; of solids equally near that of the
-  /// first in the list, whose surface is also the one that is seen.
+  /// The same, with the instance of the nearest solid. Of equally near solids it is the first in
+  /// the list, as in intersect() and render().
   SurfaceDistance nearest_surface(const Eigen::Vector3d& p_W) const;
 
  private:

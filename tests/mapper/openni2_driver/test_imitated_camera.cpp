@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "mapper/openni2_driver/device_properties.hpp"
+#include "mapper/openni2_driver/recording/device_properties.hpp"
 #include "tests/mapper/openni2_driver/openni2_client.hpp"
 #include "tests/mapper/openni2_driver/recording_folder.hpp"
 

@@ -10,6 +10,9 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
+#include "mapper/process/option_table.hpp"
+#include "mapper/process/options.hpp"
+
 namespace {
 
 using ::testing::HasSubstr;
@@ -36,37 +39,12 @@ Outcome run_mapper(const std::string& flags) {
 TEST(Mapper, HelpListsTheFlags) {
   const Outcome outcome = run_mapper("--help");
   EXPECT_EQ(outcome.exit_code, 0);
-  for (const char* flag : {"--device",
-                           "--calibration",
-                           "--volume-size",
-                           "--resolution",
-                           "--shift",
-                           "--min-weight",
-                           "--trajectory",
-                           "--output-trajectory",
-                           "--cloud",
-                           "--mesh",
-                           "--timings",
-                           "--threads",
-                           "--depth-mode",
-                           "--color-mode",
-                           "--assume-registered",
-                           "--lock-exposure",
-                           "--max-frames",
-                           "--publish-frames",
-                           "--replay",
-                           "--lcm-url",
-                           "--map-name",
-                           "--session",
-                           "--rate",
-                           "--store",
-                           "--resume",
-                           "--store-file-size",
-                           "--store-frames",
-                           "--linger",
-                           "--ground-truth",
-                           "--config",
-                           "--print-config"}) {
+  kintsugi::mapper::Options options;
+  for (const auto& group : kintsugi::mapper::option_table(options)) {
+    EXPECT_THAT(outcome.text, HasSubstr(group.title));
+    for (const auto& option : group.options) EXPECT_THAT(outcome.text, HasSubstr(option.flag()));
+  }
+  for (const char* flag : {"--config", "--print-config", "--list-devices"}) {
     EXPECT_THAT(outcome.text, HasSubstr(flag));
   }
 }

@@ -23,11 +23,12 @@ class CountingSource : public FrameSource {
     frame.frame_index = given_++;
     return frame;
   }
-  std::int64_t frames_total() const override { return count_; }
-  std::string name() const override { return "counting"; }
-  SourceCounts counts() const override { return {.frames_delivered = given_}; }
-  std::string end_reason() const override { return given_ == count_ ? "all counted" : ""; }
-  bool ended_well() const override { return true; }
+  SourceStatus status() const override {
+    return {.name = "counting",
+            .frames_total = count_,
+            .counts = {.frames_delivered = given_},
+            .end_reason = given_ == count_ ? "all counted" : ""};
+  }
 
  private:
   int count_;
@@ -37,8 +38,8 @@ class CountingSource : public FrameSource {
 
 TEST(FrameReader, HandsOnEveryFrameInOrderAndThenTheEnd) {
   FrameReader reader(std::make_unique<CountingSource>(50, false));
-  EXPECT_EQ(reader.device_name(), "counting");
-  EXPECT_EQ(reader.frames_total(), 50);
+  EXPECT_EQ(reader.status().name, "counting");
+  EXPECT_EQ(reader.status().frames_total, 50);
   for (int i = 0; i < 50; ++i) {
     EXPECT_FALSE(reader.finished());
     const auto frame = reader.next(kLong);
@@ -49,9 +50,9 @@ TEST(FrameReader, HandsOnEveryFrameInOrderAndThenTheEnd) {
   }
   EXPECT_FALSE(reader.next(kLong));
   EXPECT_TRUE(reader.finished());
-  EXPECT_TRUE(reader.ended_well());
-  EXPECT_EQ(reader.end_reason(), "all counted");
-  EXPECT_EQ(reader.counts().frames_delivered, 50);
+  EXPECT_TRUE(reader.status().ended_well);
+  EXPECT_EQ(reader.status().end_reason, "all counted");
+  EXPECT_EQ(reader.status().counts.frames_delivered, 50);
   EXPECT_NO_THROW(reader.rethrow_failure());
 }
 
@@ -60,7 +61,7 @@ TEST(FrameReader, KeepsAFailureForAfterTheFramesBeforeIt) {
   EXPECT_TRUE(reader.next(kLong));
   EXPECT_FALSE(reader.next(kLong));
   EXPECT_TRUE(reader.finished());
-  EXPECT_FALSE(reader.ended_well());
+  EXPECT_FALSE(reader.status().ended_well);
   EXPECT_THROW(reader.rethrow_failure(), std::runtime_error);
 }
 

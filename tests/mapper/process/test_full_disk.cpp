@@ -92,7 +92,7 @@ TEST_F(FullDisk, WhileMappingIsSaidOnceAndMadeUpForWhenThereIsSpace) {
 
 TEST_F(FullDisk, InTheEndLeavesAWholeLogThatCanBeResumed) {
   EXPECT_EQ(MapperProgram(flags(log_), folder_ / "said.txt").wait(), 1);
-  EXPECT_THAT(said(), HasSubstr("the log lacks"));
+  EXPECT_THAT(said(), HasSubstr("the log is incomplete"));
   const StoredRun before = read_stored_run(log_);
   ASSERT_TRUE(disk_.resize("10m"));
   Flags resume = flags(log_);

@@ -8,7 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "mapper/source/frame_source.hpp"
+#include "mapper/source/open_source.hpp"
 #include "tests/mapper/openni2_driver/recording_folder.hpp"
 
 namespace kintsugi::mapper {
@@ -25,7 +25,6 @@ class CameraThatGoesAway : public testing::Test {
  protected:
   void open(const std::string& options) {
     config_.device = folder_.uri() + options;
-    config_.replay = options.find("camera=on") == std::string::npos;
     config_.notify = [this](const SourceNotice& notice) { notices_.push_back(notice); };
     source_ = open_frame_source(config_);
   }
@@ -73,11 +72,11 @@ TEST_F(CameraThatGoesAway, IsWaitedForAndGoesOn) {
   ASSERT_THAT(kinds(), ElementsAre(Kind::kInterrupted, Kind::kResumed));
   EXPECT_THAT(notices_[0].text, HasSubstr("it was disconnected; waiting for it"));
   EXPECT_THAT(notices_[1].text, HasSubstr("is back after"));
-  EXPECT_EQ(source_->counts().interruptions, 1);
-  EXPECT_EQ(source_->counts().frames_dropped, 0) << "what nobody sent was not dropped";
-  EXPECT_EQ(source_->counts().depth_unpaired, 0);
-  EXPECT_TRUE(source_->ended_well());
-  EXPECT_EQ(source_->end_reason(), "end of the recording");
+  EXPECT_EQ(source_->status().counts.interruptions, 1);
+  EXPECT_EQ(source_->status().counts.frames_dropped, 0) << "what nobody sent was not dropped";
+  EXPECT_EQ(source_->status().counts.depth_unpaired, 0);
+  EXPECT_TRUE(source_->status().ended_well);
+  EXPECT_EQ(source_->status().end_reason, "end of the recording");
 }
 
 TEST_F(CameraThatGoesAway, AndCountsItsTimeFromZeroGoesOnInOurs) {
@@ -104,8 +103,8 @@ TEST_F(CameraThatGoesAway, ForGoodIsGivenUpAfterTheTimeSet) {
   config_.reconnect_s = 0.5;
   open("?unplug_at=3");
   EXPECT_EQ(read().size(), 3U);
-  EXPECT_FALSE(source_->ended_well());
-  EXPECT_THAT(source_->end_reason(),
+  EXPECT_FALSE(source_->status().ended_well);
+  EXPECT_THAT(source_->status().end_reason,
               testing::AllOf(HasSubstr("did not come back in"), HasSubstr("is not plugged in")));
   EXPECT_FALSE(source_->next());
 }
@@ -120,8 +119,8 @@ TEST_F(CameraThatGoesAway, IsWaitedForUntilAskedToStop) {
   });
   EXPECT_EQ(read().size(), 3U);
   stopper.join();
-  EXPECT_TRUE(source_->ended_well());
-  EXPECT_EQ(source_->end_reason(), "stopped on request");
+  EXPECT_TRUE(source_->status().ended_well);
+  EXPECT_EQ(source_->status().end_reason, "stopped on request");
 }
 
 TEST_F(CameraThatGoesAway, HasItsExposureLockedAgain) {
@@ -166,7 +165,7 @@ TEST_F(CameraThatGoesAway, IsTheFirstCameraUnlessNamed) {
   const ListedCameras cameras(folder_.uri() + "?camera=on " + other.uri() + "?camera=on");
   config_.device = "";
   source_ = open_frame_source(config_);
-  EXPECT_EQ(source_->name(), "Kintsugi " + folder_.path().filename().string());
+  EXPECT_EQ(source_->status().name, "Kintsugi " + folder_.path().filename().string());
   EXPECT_EQ(read(1).size(), 1U);
 }
 
@@ -192,7 +191,8 @@ TEST_F(CameraThatGoesAway, IsWaitedForWhileOnlyAnotherOfItsKindIsThere) {
   config_.reconnect_s = 0.4;
   open(options);
   EXPECT_EQ(read().size(), 15U);
-  EXPECT_THAT(source_->end_reason(), HasSubstr("another camera is there: its serial number is B"));
+  EXPECT_THAT(source_->status().end_reason,
+              HasSubstr("another camera is there: its serial number is B"));
 }
 
 }  // namespace

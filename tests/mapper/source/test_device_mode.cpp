@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "mapper/source/openni2/device_mode.hpp"
+#include "mapper/source/frames/device_mode.hpp"
 #include "tests/mapper/openni2_driver/recording_folder.hpp"
 
 namespace kintsugi::mapper {

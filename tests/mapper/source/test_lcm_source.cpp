@@ -11,7 +11,7 @@
 #include "lcmtypes/channels.hpp"
 #include "lcmtypes/stream/stream_publisher.hpp"
 #include "mapper/source/bus/rgbd_frame_encoder.hpp"
-#include "mapper/source/frame_source.hpp"
+#include "mapper/source/open_source.hpp"
 #include "tests/mapper/openni2_driver/recording_folder.hpp"
 
 namespace kintsugi::mapper {
@@ -83,7 +83,7 @@ TEST_F(FramesInALog, ComeBackAsTheyWere) {
   const auto source = open();
   for (int i = 0; i < 4; ++i) {
     const auto frame = source->next();
-    ASSERT_TRUE(frame) << source->end_reason();
+    ASSERT_TRUE(frame) << source->status().end_reason;
     EXPECT_EQ(frame->utime, test_frame(i).utime);
     EXPECT_EQ(frame->frame_index, i + 1);
     EXPECT_EQ(frame->intrinsics, test_frame(i).intrinsics);
@@ -91,8 +91,8 @@ TEST_F(FramesInALog, ComeBackAsTheyWere) {
     EXPECT_EQ(cv::norm(frame->color_rgb, test::color_image(i), cv::NORM_INF), 0.0);
   }
   EXPECT_FALSE(source->next());
-  EXPECT_EQ(source->end_reason(), "end of the log");
-  EXPECT_TRUE(source->ended_well());
+  EXPECT_EQ(source->status().end_reason, "end of the log");
+  EXPECT_TRUE(source->status().ended_well);
 }
 
 TEST_F(FramesInALog, AreRefusedOneByOneWhenBad) {
@@ -106,8 +106,8 @@ TEST_F(FramesInALog, AreRefusedOneByOneWhenBad) {
   std::vector<std::int64_t> indices;
   while (const auto frame = source->next()) indices.push_back(frame->frame_index);
   EXPECT_THAT(indices, testing::ElementsAre(1, 4, 5));
-  EXPECT_EQ(source->counts().frames_bad, 2);
-  EXPECT_EQ(source->counts().depth_unpaired, 1);
+  EXPECT_EQ(source->status().counts.frames_bad, 2);
+  EXPECT_EQ(source->status().counts.depth_unpaired, 1);
 }
 
 TEST(LcmSource, WantsAChannel) {

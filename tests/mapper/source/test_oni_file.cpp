@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "mapper/openni2_driver/recording/image_decoder.hpp"
-#include "mapper/source/frame_source.hpp"
+#include "mapper/source/open_source.hpp"
 #include "mapper/source/openni2/oni_file.hpp"
 #include "tests/mapper/source/oni_recording.hpp"
 #include "tests/support/allocation_limit.hpp"
@@ -40,7 +40,6 @@ class RecordedOni : public ::testing::Test {
   static std::unique_ptr<FrameSource> open(const fs::path& file) {
     SourceConfig config;
     config.device = file.string();
-    config.replay = true;
     config.assume_registered = true;
     return open_frame_source(config);
   }
@@ -52,10 +51,10 @@ class RecordedOni : public ::testing::Test {
 
 TEST_F(RecordedOni, PlaysBackFrameForFrame) {
   const auto source = open(file_);
-  EXPECT_EQ(source->frames_total(), kNumFrames);
+  EXPECT_EQ(source->status().frames_total, kNumFrames);
   for (int i = 0; i < kNumFrames; ++i) {
     const auto frame = source->next();
-    ASSERT_TRUE(frame) << source->end_reason();
+    ASSERT_TRUE(frame) << source->status().end_reason;
     EXPECT_EQ(frame->utime, 33333 * i) << "from 0, as OpenNI2 records";
     const cv::Mat_<std::uint16_t> raw = test::raw_depth_image(i);
     for (int y = 0; y < raw.rows; ++y) {
@@ -70,16 +69,15 @@ TEST_F(RecordedOni, PlaysBackFrameForFrame) {
     EXPECT_EQ(cv::norm(frame->color_rgb, test::color_image(i), cv::NORM_INF), 0.0);
   }
   EXPECT_FALSE(source->next());
-  EXPECT_TRUE(source->ended_well());
-  EXPECT_EQ(source->end_reason(), "end of the recording");
-  EXPECT_EQ(source->counts().frames_dropped, 0);
+  EXPECT_TRUE(source->status().ended_well);
+  EXPECT_EQ(source->status().end_reason, "end of the recording");
+  EXPECT_EQ(source->status().counts.frames_dropped, 0);
 }
 
 TEST_F(RecordedOni, GivesDepthAloneUnlessItIsTakenForRegistered) {
   std::vector<std::string> warnings;
   SourceConfig config;
   config.device = file_.string();
-  config.replay = true;
   config.notify = [&](const SourceNotice& notice) { warnings.push_back(notice.text); };
   const auto frame = open_frame_source(config)->next();
   ASSERT_TRUE(frame);
@@ -104,9 +102,9 @@ TEST_F(RecordedOni, IsReadUpToWhereItIsCutOff) {
   }
   EXPECT_GT(frames, 0);
   EXPECT_LT(frames, kNumFrames);
-  EXPECT_EQ(source->frames_total(), frames);
-  EXPECT_FALSE(source->ended_well());
-  EXPECT_THAT(source->end_reason(),
+  EXPECT_EQ(source->status().frames_total, frames);
+  EXPECT_FALSE(source->status().ended_well);
+  EXPECT_THAT(source->status().end_reason,
               AllOf(HasSubstr("ended after " + std::to_string(frames) + " of 5 depth images"),
                     HasSubstr("cut.oni: it is cut off at byte")));
 }
@@ -125,9 +123,10 @@ TEST_F(RecordedOni, OfARecorderThatWasKilledIsReadToo) {
   int frames = 0;
   while (source->next()) ++frames;
   EXPECT_EQ(frames, kNumFrames);
-  EXPECT_FALSE(source->ended_well());
-  EXPECT_THAT(source->end_reason(), AllOf(HasSubstr("5 of an unknown number of depth images"),
-                                          HasSubstr("ends without an end record")));
+  EXPECT_FALSE(source->status().ended_well);
+  EXPECT_THAT(source->status().end_reason,
+              AllOf(HasSubstr("5 of an unknown number of depth images"),
+                    HasSubstr("ends without an end record")));
 }
 
 TEST_F(RecordedOni, CutOffAnywhereIsScannedOrRefused) {

@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "mapper/source/frame_source.hpp"
+#include "mapper/source/open_source.hpp"
 #include "tests/mapper/openni2_driver/recording_folder.hpp"
 
 namespace kintsugi::mapper {
@@ -28,7 +28,6 @@ class Camera : public testing::Test {
   /// Opens the recording as the options make it, every frame of it.
   FrameSource& open(const std::string& options) {
     config_.device = folder_.uri() + options;
-    config_.replay = options.find("camera=on") == std::string::npos;
     config_.notify = [this](const SourceNotice& notice) { notices_.push_back(notice); };
     source_ = open_frame_source(config_);
     return *source_;
@@ -208,7 +207,7 @@ TEST_F(Camera, WithSlowColourColoursTheFramesItCan) {
   for (int i = 0; i < kManyFrames; ++i) {
     EXPECT_EQ(has_color_of(frames[static_cast<std::size_t>(i)], i), i % 2 == 0) << i;
   }
-  EXPECT_EQ(source_->counts().depth_unpaired, kManyFrames / 2);
+  EXPECT_EQ(source_->status().counts.depth_unpaired, kManyFrames / 2);
 }
 
 TEST_F(Camera, WithLateColourIsPairedByTime) {
@@ -225,7 +224,7 @@ TEST_F(Camera, WithoutColourForAWhileGoesOnWithDepth) {
   for (int i = 0; i < kManyFrames; ++i) {
     EXPECT_EQ(has_color_of(frames[static_cast<std::size_t>(i)], i), i < 4 || i >= 20) << i;
   }
-  EXPECT_EQ(source_->counts().depth_unpaired, 16);
+  EXPECT_EQ(source_->status().counts.depth_unpaired, 16);
 }
 
 TEST_F(Camera, ThatLosesColourImagesLosesNoDepth) {
@@ -239,7 +238,7 @@ TEST_F(Camera, ThatLosesColourImagesLosesNoDepth) {
     EXPECT_TRUE(has_color_of(frame, i)) << i << " has the colour of another";
   }
   EXPECT_GE(colored, kManyFrames / 2);
-  EXPECT_EQ(source_->counts().depth_unpaired, kManyFrames - colored);
+  EXPECT_EQ(source_->status().counts.depth_unpaired, kManyFrames - colored);
 }
 
 TEST_F(Camera, WithTwoClocksIsPairedOnceTheyAreKnown) {
@@ -269,7 +268,7 @@ TEST_F(Camera, ThatSendsBrokenImagesLosesOnlyThose) {
   for (const char* fault : {"empty", "misfit"}) {
     const auto frames = read_as(std::string("?") + fault + "_every=4");
     EXPECT_EQ(frames.size(), kManyFrames * 3 / 4) << fault;
-    EXPECT_EQ(source_->counts().frames_bad, kManyFrames / 4) << fault;
+    EXPECT_EQ(source_->status().counts.frames_bad, kManyFrames / 4) << fault;
     expect_depth_of(frames[0], 0);
   }
 }

@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "mapper/openni2_driver/recording/recording_uri.hpp"
+#include "mapper/openni2_driver/recording/synthetic_recording.hpp"
 #include "mapper/synthetic/render/sequence.hpp"
 
 namespace kintsugi::synthetic {
@@ -39,9 +40,9 @@ TEST(Sequence, OptionsAreReadAndWrongOnesNamed) {
   EXPECT_THAT(error_of({{"noise", "maybe"}}), HasSubstr("on or off"));
   EXPECT_THAT(error_of({{"seed", "-1"}}), HasSubstr("whole number"));
   EXPECT_THAT(error_of({{"seed", "1x"}}), HasSubstr("1x"));
-  EXPECT_THAT(error_of({{"start", "241"}}), HasSubstr("expected 0 to 240"));
-  EXPECT_THAT(error_of({{"frames", "0"}}), HasSubstr("expected 1 to 241"));
-  EXPECT_THAT(error_of({{"start", "200"}, {"frames", "42"}}), HasSubstr("expected 1 to 41"));
+  EXPECT_THAT(error_of({{"start", "241"}}), HasSubstr("within [0, 240]"));
+  EXPECT_THAT(error_of({{"frames", "0"}}), HasSubstr("within [1, 241]"));
+  EXPECT_THAT(error_of({{"start", "200"}, {"frames", "42"}}), HasSubstr("within [1, 41]"));
 }
 
 TEST(Sequence, PartOfAPathIsThatPartOfTheWhole) {
@@ -71,11 +72,13 @@ TEST(Sequence, ScenesOpenAsRecordingsOfTheDriver) {
   EXPECT_TRUE(recording->depth_X_WC(1).has_value());
 }
 
-TEST(GroundTruth, IsWrittenOnRequest) {
+TEST(GroundTruth, IsWrittenWhenASyntheticDeviceIsOpenedWithAFolderForIt) {
   const auto folder =
       std::filesystem::temp_directory_path() / ("kintsugi_truth_" + std::to_string(getpid()));
-  const Sequence sequence(Sequence::Config::parse(
-      "box-room", {{"frames", "4"}, {"start", "1"}, {"ground_truth", folder.string()}}));
+  const auto config = Sequence::Config::parse(
+      "box-room", {{"frames", "4"}, {"start", "1"}, {"ground_truth", folder.string()}});
+  const mapper::SyntheticRecording recording(config);
+  const Sequence sequence(config);
 
   std::ifstream poses(folder / "groundtruth.txt");
   std::string line;

@@ -1,4 +1,4 @@
-#include "mapper/source/openni2/device_mode.hpp"
+#include "mapper/source/frames/device_mode.hpp"
 
 #include <algorithm>
 #include <array>

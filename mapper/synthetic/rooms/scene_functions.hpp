@@ -1,9 +1,9 @@
 #pragma once
-// One function per scene of scenes.hpp.
+// The functions behind make_scene_with_path(), one for each scene.
 
 #include <cstdint>
 
-#include "mapper/synthetic/rooms/scenes.hpp"
+#include "mapper/synthetic/rooms/scene_with_path.hpp"
 
 namespace kintsugi::synthetic {
 

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "lcmtypes/channels.hpp"
-#include "mapper/session/session_log.hpp"
+#include "mapper/session/session_store.hpp"
 #include "mapper/session/stored_stream.hpp"
 #include "tests/support/example_messages.hpp"
 #include "tests/support/file_size_limit.hpp"
@@ -41,28 +41,28 @@ Bytes pose(std::int64_t utime) {
   return encode(pose);
 }
 
-SessionLog::Config config_for(const std::filesystem::path& path, bool resume = false) {
-  SessionLog::Config config;
+SessionStore::Config config_for(const std::filesystem::path& path, bool resume = false) {
+  SessionStore::Config config;
   config.path = path;
   config.resume = resume;
   config.retry_period = std::chrono::milliseconds(1);
   return config;
 }
 
-void add_chunks(SessionLog& log, std::int64_t first, std::int64_t end) {
+void add_chunks(SessionStore& log, std::int64_t first, std::int64_t end) {
   StoredStream& stream = log.stream(channels::kCloudSlice, kSession);
   for (std::int64_t i = first; i < end; ++i) stream.add(i, chunk(i));
 }
 
-void expect_chunks(SessionLog& log, std::int64_t first, std::int64_t end) {
+void expect_chunks(SessionStore& log, std::int64_t first, std::int64_t end) {
   const StoredStream& stream = log.stream(channels::kCloudSlice, kSession);
   for (std::int64_t i = first; i < end; ++i) EXPECT_EQ(stream.find(i), chunk(i)) << i;
   EXPECT_EQ(stream.next_sequence(), end);
 }
 
-std::string error_of(const SessionLog::Config& config) {
+std::string error_of(const SessionStore::Config& config) {
   try {
-    const SessionLog log(config);
+    const SessionStore log(config);
   } catch (const std::exception& error) {
     return error.what();
   }
@@ -74,12 +74,12 @@ Bytes contents(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-TEST(SessionLog, GivesBackEveryChunkOfARotatedLogAlsoWhenItIsContinued) {
+TEST(SessionStore, GivesBackEveryChunkOfARotatedLogAlsoWhenItIsContinued) {
   const TemporaryFolder folder;
-  SessionLog::Config config = config_for(folder / "run.lcm");
+  SessionStore::Config config = config_for(folder / "run.lcm");
   config.max_file_bytes = 1'000'000;
   {
-    SessionLog log(config);
+    SessionStore log(config);
     log.begin_session(kSession, {{"device", "a"}});
     add_chunks(log, 0, 50);  // 2.4 MB
     log.add(channels::kCameraPose, pose(100));
@@ -93,7 +93,7 @@ TEST(SessionLog, GivesBackEveryChunkOfARotatedLogAlsoWhenItIsContinued) {
   }
   config.resume = true;
   {
-    SessionLog log(config);
+    SessionStore log(config);
     expect_chunks(log, 0, 50);
     ASSERT_EQ(log.sessions().size(), 1U);
     EXPECT_EQ(log.sessions()[0].session, kSession);
@@ -103,7 +103,7 @@ TEST(SessionLog, GivesBackEveryChunkOfARotatedLogAlsoWhenItIsContinued) {
     add_chunks(log, 50, 60);
     expect_chunks(log, 0, 60);
   }
-  SessionLog log(config);
+  SessionStore log(config);
   expect_chunks(log, 0, 60);
   std::int64_t on_disk = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder.path())) {
@@ -112,12 +112,12 @@ TEST(SessionLog, GivesBackEveryChunkOfARotatedLogAlsoWhenItIsContinued) {
   EXPECT_EQ(log.report().size_bytes, on_disk);
 }
 
-TEST(SessionLog, LosesAtMostTheEventThatWasBeingWrittenWhereverItIsCut) {
+TEST(SessionStore, LosesAtMostTheEventThatWasBeingWrittenWhereverItIsCut) {
   const TemporaryFolder folder;
   const auto path = folder / "run.lcm";
   std::uintmax_t before = 0;
   {
-    SessionLog log(config_for(path));
+    SessionStore log(config_for(path));
     log.begin_session(kSession, {});
     add_chunks(log, 0, 3);
     before = std::filesystem::file_size(path);
@@ -127,7 +127,7 @@ TEST(SessionLog, LosesAtMostTheEventThatWasBeingWrittenWhereverItIsCut) {
   for (std::uintmax_t cut = before + 1; cut < whole.size(); cut += cut < before + 42 ? 3 : 9'973) {
     std::filesystem::resize_file(path, cut);
     {
-      SessionLog log(config_for(path, true));
+      SessionStore log(config_for(path, true));
       expect_chunks(log, 0, 3);
       EXPECT_EQ(std::filesystem::file_size(path), before);
     }
@@ -137,20 +137,20 @@ TEST(SessionLog, LosesAtMostTheEventThatWasBeingWrittenWhereverItIsCut) {
   }
 }
 
-TEST(SessionLog, KnowsTheEndOfASession) {
+TEST(SessionStore, KnowsTheEndOfASession) {
   const TemporaryFolder folder;
   {
-    SessionLog log(config_for(folder / "run.lcm"));
+    SessionStore log(config_for(folder / "run.lcm"));
     log.begin_session(kSession, {});
     add_chunks(log, 0, 3);
     log.stream(channels::kCloudSlice, kSession).add(3, chunk(3, SliceKind::kFinal));
   }
-  const SessionLog log(config_for(folder / "run.lcm", true));
+  const SessionStore log(config_for(folder / "run.lcm", true));
   EXPECT_TRUE(log.sessions().at(0).final_slice_begun);
   EXPECT_EQ(log.sessions().at(0).slice_chunks_end, 4);
 }
 
-TEST(SessionLog, RefusesWhatItCannotContinueAndLeavesItAsItIs) {
+TEST(SessionStore, RefusesWhatItCannotContinueAndLeavesItAsItIs) {
   const TemporaryFolder folder;
   const auto path = folder / "run.lcm";
   EXPECT_THAT(error_of(config_for(path, true)), HasSubstr("No such file"));
@@ -172,11 +172,11 @@ TEST(SessionLog, RefusesWhatItCannotContinueAndLeavesItAsItIs) {
   EXPECT_EQ(contents(path), other);
 }
 
-TEST(SessionLog, SaysWhereALogIsDamagedAndCutsNothing) {
+TEST(SessionStore, SaysWhereALogIsDamagedAndCutsNothing) {
   const TemporaryFolder folder;
   const auto path = folder / "run.lcm";
   {
-    SessionLog log(config_for(path));
+    SessionStore log(config_for(path));
     log.begin_session(kSession, {});
     add_chunks(log, 0, 5);
   }
@@ -204,12 +204,12 @@ TEST(SessionLog, SaysWhereALogIsDamagedAndCutsNothing) {
   EXPECT_EQ(contents(path), damaged);
 }
 
-TEST(SessionLog, MissesAFileOfARotatedLog) {
+TEST(SessionStore, MissesAFileOfARotatedLog) {
   const TemporaryFolder folder;
-  SessionLog::Config config = config_for(folder / "run.lcm");
+  SessionStore::Config config = config_for(folder / "run.lcm");
   config.max_file_bytes = 1'000'000;
   {
-    SessionLog log(config);
+    SessionStore log(config);
     log.begin_session(kSession, {});
     add_chunks(log, 0, 50);
   }
@@ -222,11 +222,11 @@ TEST(SessionLog, MissesAFileOfARotatedLog) {
   EXPECT_THAT(error_of(config), HasSubstr("run.2.lcm' of an earlier run exists"));
 }
 
-TEST(SessionLog, KeepsInMemoryWhatADiskHasNoRoomForAndWritesItLater) {
+TEST(SessionStore, KeepsInMemoryWhatADiskHasNoRoomForAndWritesItLater) {
   const TemporaryFolder folder;
   const auto path = folder / "run.lcm";
   {
-    SessionLog log(config_for(path));
+    SessionStore log(config_for(path));
     log.begin_session(kSession, {});
     {
       const FileSizeLimit limit(200'000);
@@ -245,17 +245,17 @@ TEST(SessionLog, KeepsInMemoryWhatADiskHasNoRoomForAndWritesItLater) {
     EXPECT_EQ(log.report().waiting_bytes, 0);
     expect_chunks(log, 0, 20);
   }
-  SessionLog log(config_for(path, true));
+  SessionStore log(config_for(path, true));
   expect_chunks(log, 0, 20);
   EXPECT_EQ(log.sessions().at(0).mapped_utimes.size(), 1U);
 }
 
-TEST(SessionLog, BoundsWhatWaitsAndCountsTheChunksThatAreLost) {
+TEST(SessionStore, BoundsWhatWaitsAndCountsTheChunksThatAreLost) {
   const TemporaryFolder folder;
-  SessionLog::Config config = config_for(folder / "run.lcm");
+  SessionStore::Config config = config_for(folder / "run.lcm");
   config.max_waiting_bytes = 10 * kChunkBytes;
   {
-    SessionLog log(config);
+    SessionStore log(config);
     log.begin_session(kSession, {});
     const StoredStream& stream = log.stream(channels::kCloudSlice, kSession);
     {
@@ -278,10 +278,10 @@ TEST(SessionLog, BoundsWhatWaitsAndCountsTheChunksThatAreLost) {
   }
   // What was lost is made again when the session is continued.
   config.resume = true;
-  SessionLog log(config);
+  SessionStore log(config);
   StoredStream& stream = log.stream(channels::kCloudSlice, kSession);
   EXPECT_EQ(stream.next_sequence(), 31);
-  stream.forget_behind_gap();
+  stream.index().truncate_at_gap();
   const std::int64_t next = stream.next_sequence();
   EXPECT_GT(next, 0);
   EXPECT_LT(next, 30);
@@ -289,11 +289,11 @@ TEST(SessionLog, BoundsWhatWaitsAndCountsTheChunksThatAreLost) {
   expect_chunks(log, 0, 31);
 }
 
-TEST(SessionLog, WithoutANameLeavesNothingBehind) {
+TEST(SessionStore, WithoutANameLeavesNothingBehind) {
   const TemporaryFolder folder;
   setenv("TMPDIR", folder.path().c_str(), 1);
   {
-    SessionLog log(config_for({}));
+    SessionStore log(config_for({}));
     log.begin_session(kSession, {});
     add_chunks(log, 0, 20);
     expect_chunks(log, 0, 20);
@@ -304,9 +304,9 @@ TEST(SessionLog, WithoutANameLeavesNothingBehind) {
   unsetenv("TMPDIR");
 }
 
-TEST(SessionLog, IsSharedByThreads) {
+TEST(SessionStore, IsSharedByThreads) {
   const TemporaryFolder folder;
-  SessionLog log(config_for(folder / "run.lcm"));
+  SessionStore log(config_for(folder / "run.lcm"));
   log.begin_session(kSession, {});
   const StoredStream& stream = log.stream(channels::kCloudSlice, kSession);
   std::thread writer([&] { add_chunks(log, 0, 200); });

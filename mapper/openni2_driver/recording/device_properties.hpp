@@ -1,18 +1,18 @@
 #pragma once
-// What our devices tell beyond OpenNI2's own properties. Read with openni::Device::getProperty();
-// isPropertySupported() is false on every other device.
+// Properties of our devices beyond those of OpenNI2. Read with openni::Device::getProperty();
+// isPropertySupported() is false on all other devices.
 
 #include <cstdint>
 #include <type_traits>
 
 namespace kintsugi::mapper {
 
-/// DeviceCalibration: OpenNI2 itself knows only the field of view.
+/// A DeviceCalibration. OpenNI2 itself has only the field of view.
 inline constexpr int kDevicePropertyCalibration = 0x4B530001;
 
-/// Zero-terminated text, truncated to the buffer given: why the playback ended before its end
-/// (device state ERROR), empty when it did not. OpenNI2's getExtendedError() is per thread and so
-/// cannot carry what happens while frames are played.
+/// Zero-terminated text, truncated to the buffer: why the playback ended early (device state
+/// ERROR), else empty. OpenNI2's getExtendedError() is separate for each thread, so it cannot
+/// report errors of the playing thread.
 inline constexpr int kDevicePropertyPlaybackError = 0x4B530002;
 
 /// Intrinsics of the depth images and of the colour images registered to them, as they leave the

@@ -1,4 +1,4 @@
-#include "mapper/process/paced_source.hpp"
+#include "mapper/source/frames/paced_source.hpp"
 
 #include <algorithm>
 #include <thread>
@@ -7,7 +7,7 @@
 namespace kintsugi::mapper {
 namespace {
 
-/// A thread that sleeps wakes up a little late.
+/// A sleeping thread wakes up a little late.
 constexpr std::chrono::milliseconds kTolerance(10);
 
 }  // namespace
@@ -22,7 +22,7 @@ std::optional<RgbdFrame> PacedSource::next() {
   auto frame = next_frame_ ? std::exchange(next_frame_, std::nullopt) : read();
   if (!frame || frame->utime <= free_until_utime_) return frame;
   wait_until(due(*frame));
-  // Late: what should have come already supersedes it.
+  // This frame is overdue if the next one is due, too.
   while ((next_frame_ = read()) && due(*next_frame_) + kTolerance <= Clock::now()) {
     frame = std::exchange(next_frame_, std::nullopt);
     ++num_dropped_;
@@ -30,7 +30,7 @@ std::optional<RgbdFrame> PacedSource::next() {
   return frame;
 }
 
-/// A recording that is slow to read plays more slowly; that drops nothing.
+/// The time that reading takes delays the recording, so slow reading drops no frames.
 std::optional<RgbdFrame> PacedSource::read() {
   const auto begin = Clock::now();
   auto frame = recording_->next();
@@ -41,14 +41,14 @@ std::optional<RgbdFrame> PacedSource::read() {
   return frame;
 }
 
-SourceCounts PacedSource::counts() const {
-  SourceCounts counts = recording_->counts();
-  counts.frames_delivered -= num_dropped_ + (next_frame_ ? 1 : 0);
-  counts.frames_dropped += num_dropped_;
-  return counts;
+SourceStatus PacedSource::status() const {
+  SourceStatus status = recording_->status();
+  status.counts.frames_delivered -= num_dropped_ + (next_frame_ ? 1 : 0);
+  status.counts.frames_dropped += num_dropped_;
+  return status;
 }
 
-/// The first frame that is asked for is due at once.
+/// The first frame that is paced is due at once.
 PacedSource::Clock::time_point PacedSource::due(const RgbdFrame& frame) {
   const std::chrono::microseconds utime(frame.utime);
   if (!start_) start_ = Clock::now().time_since_epoch() - utime;

@@ -1,0 +1,165 @@
+#include "mapper/process/option_table.hpp"
+
+#include <cmath>
+#include <type_traits>
+#include <utility>
+
+#include <spdlog/fmt/fmt.h>
+
+#include "lcmtypes/base/argument_check.hpp"
+#include "mapper/session/mapping_options.hpp"
+
+namespace kintsugi::mapper {
+namespace {
+
+using enum OnResume;
+
+OptionGroup source_options(Options& o) {
+  return {"Where frames come from",
+          {{"--device", &o.source.device, kMustMatch,
+            "a .oni file, folder://PATH, synthetic://NAME, lcm://CHANNEL or the URI of a camera; "
+            "empty: the first camera"},
+           {"--calibration", &o.source.calibration_file, kMustMatch,
+            "camera.txt: fx fy cx cy width height depth_scale [k1 k2 p1 p2 k3]"},
+           {"--replay", &o.source.replay, kMayDiffer,
+            "map every frame of a recording, as fast as possible"},
+           {"--max-range", &o.source.max_range_m, kMustMatch, "depth beyond this is not used", "m"},
+           // It becomes a part of the address of the device.
+           {"--ground-truth", &o.ground_truth_dir, kMustMatch,
+            "folder into which a synthetic:// device writes its ground truth"},
+           {"--max-frames",
+            &o.max_frames,
+            kMayDiffer,
+            "stop after this number of frames; 0: at the end",
+            "",
+            {0, 1e9}}}};
+}
+
+OptionGroup camera_options(Options& o) {
+  return {"Cameras",
+          {{"--depth-mode", &o.source.depth_mode, kMustMatch,
+            "WIDTHxHEIGHT[@HZ]; empty: 640x480@30 where offered, else the nearest"},
+           {"--color-mode", &o.source.color_mode, kMustMatch,
+            "WIDTHxHEIGHT[@HZ]; empty: as depth where offered, else the nearest that covers depth"},
+           {"--assume-registered", &o.source.assume_registered, kMustMatch,
+            "use colour as aligned with depth although the device does not say that it is (.oni "
+            "files do not)"},
+           {"--lock-exposure", &o.lock_exposure_s, kMustMatch,
+            "lock exposure and white balance this long after the first image; -1: never", "s"},
+           {"--device-silence", &o.source.device_silence_s, kMayDiffer,
+            "a camera without depth images for this long counts as disconnected", "s"},
+           {"--reconnect", &o.source.reconnect_s, kMayDiffer,
+            "how long to wait for a disconnected camera; 0: without limit", "s"}}};
+}
+
+OptionGroup mapping_group(Options& o) {
+  auto& volume = o.pipeline.volume;
+  return {"Mapping",
+          {{"--volume-size", &volume.volume_size_m, kMustMatch, "side of the moving cube", "m"},
+           {"--resolution", &o.resolution_m, kMustMatch,
+            "side of a voxel; 0: 1/512 of the volume size", "m"},
+           {"--shift", &volume.shift_vox, kMustMatch,
+            "the cube moves when the camera is further than this from its centre", "voxels"},
+           {"--min-weight", &o.pipeline.slices.extractor.weight_threshold, kMustMatch,
+            "surface points need more observations than this"},
+           {"--trajectory", &o.given_path_file, kMustMatch,
+            "camera path in TUM format; replaces tracking"},
+           {"--threads",
+            &o.threads,
+            kMayDiffer,
+            "threads of the parallel stages; 0: one per core",
+            "",
+            {0, 1024}}}};
+}
+
+OptionGroup output_options(Options& o) {
+  return {"Files to write",
+          {{"--output-trajectory", &o.output_path_file, kMayDiffer, "the camera path, TUM format"},
+           {"--cloud", &o.cloud_file, kMayDiffer, "the points of every slice, PLY"},
+           {"--mesh", &o.mesh_file, kMayDiffer, "the surface as triangles, PLY"},
+           {"--timings", &o.timings_file, kMayDiffer,
+            "times and tracking result of every frame, CSV"}}};
+}
+
+OptionGroup bus_options(Options& o) {
+  return {"The bus",
+          {{"--publish-frames", &o.publish_frames, kMayDiffer, "publish RGBD_FRAME, too"},
+           {"--lcm-url", &o.lcm_url, kMayDiffer, "URL of the LCM bus; empty: LCM's default"},
+           {kMapNameOption, &o.map_name, kMustMatch,
+            "name of the map; distinguishes mappers on the same bus"},
+           // Resumption compares it with the session in the log.
+           {"--session",
+            &o.session,
+            kMayDiffer,
+            "number of this run; 0: from the clock, or that of the resumed session",
+            "",
+            {0, 9.2e18}},
+           {"--rate",
+            &o.rate_mb_s,
+            kMayDiffer,
+            "upper limit of the data rate of slices",
+            "MB/s",
+            {0.001, 1e6}}}};
+}
+
+OptionGroup store_options(Options& o) {
+  return {
+      "Resending and resuming",
+      {{"--store", &o.store_file, kMayDiffer,
+        "LCM log of all published messages, for resending and resuming; empty: a temporary one"},
+       {"--resume", &o.resume_file, kMayDiffer,
+        "log of an interrupted run, whose last session is continued"},
+       {"--store-file-size",
+        &o.store_file_size_mb,
+        kMayDiffer,
+        "the log continues in FILE.1.lcm and so on above this size",
+        "MB",
+        {1, 1e9}},
+       {"--store-frames", &o.store_frames, kMayDiffer,
+        "store all frames in the log, lossless, so that the session of a camera can be "
+        "resumed"},
+       {"--linger", &o.linger_s, kMayDiffer,
+        "at the end, stay until there was no request for this long; -1: until a signal", "s"}}};
+}
+
+}  // namespace
+
+MapperOption::MapperOption(std::string flag, OptionValue value, OnResume on_resume,
+                           std::string help, std::string unit, Bounds bounds)
+    : flag_(std::move(flag)),
+      value_(value),
+      on_resume_(on_resume),
+      help_(std::move(help)),
+      unit_(std::move(unit)),
+      bounds_(bounds) {}
+
+std::string MapperOption::help() const {
+  std::string text = help_;
+  if (!unit_.empty()) text += ", " + unit_;
+  const bool has_bounds = std::isfinite(bounds_.lowest) || std::isfinite(bounds_.highest);
+  if (has_bounds) text += fmt::format(" [{:g}, {:g}]", bounds_.lowest, bounds_.highest);
+  return text;
+}
+
+std::string MapperOption::value_text() const {
+  return std::visit([](const auto* value) { return fmt::format("{}", *value); }, value_);
+}
+
+void MapperOption::check_bounds() const {
+  const auto check = [this](const auto* value) {
+    using Value = std::remove_cvref_t<decltype(*value)>;
+    if constexpr (std::is_arithmetic_v<Value> && !std::is_same_v<Value, bool>) {
+      const auto number = static_cast<double>(*value);
+      require(number >= bounds_.lowest && number <= bounds_.highest, flag_, *value,
+              fmt::format("within [{:g}, {:g}]", bounds_.lowest, bounds_.highest));
+    }
+  };
+  std::visit(check, value_);
+}
+
+std::vector<OptionGroup> option_table(Options& options) {
+  return {source_options(options), camera_options(options), mapping_group(options),
+          output_options(options), bus_options(options),    store_options(options)};
+}
+
+}  // namespace kintsugi::mapper

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "mapper/session/buffered_log.hpp"
+#include "mapper/session/mapping_options.hpp"
+#include "mapper/session/stored_sessions.hpp"
+#include "mapper/session/stored_stream.hpp"
+
+namespace kintsugi::mapper {
+
+/// The sessions of a mapper in an LCM log: every message that it publishes, from which lost chunks
+/// are sent again and an interrupted session is continued. Thread safe.
+class SessionStore {
+ public:
+  using Config = BufferedLog::Config;
+
+  /// @throws std::runtime_error as LogFiles does
+  explicit SessionStore(const Config& config);
+  SessionStore(const SessionStore&) = delete;
+  SessionStore& operator=(const SessionStore&) = delete;
+
+  /// The sessions in the log when it was opened, oldest first.
+  const std::vector<StoredSession>& sessions() const { return reader_.sessions(); }
+
+  /// Begins a session: the messages that follow belong to it. In a new log its options are on disk
+  /// afterwards.
+  /// @throws std::runtime_error when they cannot be written to a new log, which is then removed
+  void begin_session(std::int64_t session, const MappingOptions& options);
+
+  /// Appends a message that is not a chunk of a stream. Never fails.
+  void add(const std::string& channel, ByteView message) { log_.append(channel, message); }
+
+  /// The chunks of one session on one channel. The stream lives as long as this.
+  StoredStream& stream(const std::string& channel, std::int64_t session);
+
+  /// Tries to write what could not be written before. To be called regularly.
+  void retry() { log_.retry(); }
+
+  BufferedLog::Report report() const { return log_.report(); }
+
+ private:
+  void read_event(const LogEvent& event, const LogPlace& place);
+
+  std::mutex mutex_;  ///< guards streams_
+  std::map<std::pair<std::string, std::int64_t>, std::unique_ptr<StoredStream>> streams_;
+  StoredSessionReader reader_;  ///< constant after the constructor
+  BufferedLog log_;
+};
+
+}  // namespace kintsugi::mapper

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+
+#include "mapper/source/frames/frame_source.hpp"
+
+namespace kintsugi::mapper {
+
+/// Plays a recording at the speed at which it was recorded. next() returns a frame when it is due;
+/// like with a camera, frames that are overdue are dropped when a newer one is due, too. Depth and
+/// colour of a frame are dropped together, so the remaining frames are the same as without pacing.
+class PacedSource : public FrameSource {
+ public:
+  /// @param recording gives every frame as fast as next() is called
+  /// @param free_until_utime frames up to this time are not paced, microseconds; -1: all are
+  PacedSource(std::unique_ptr<FrameSource> recording, std::int64_t free_until_utime,
+              std::function<bool()> stop_requested);
+
+  std::optional<RgbdFrame> next() override;
+  [[nodiscard]] SourceStatus status() const override;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  std::optional<RgbdFrame> read();
+  Clock::time_point due(const RgbdFrame& frame);
+  void wait_until(Clock::time_point due) const;
+
+  std::unique_ptr<FrameSource> recording_;
+  const std::int64_t free_until_utime_;
+  const std::function<bool()> stop_requested_;
+  std::optional<Clock::duration> start_;  ///< when time 0 of the recording was
+  std::optional<RgbdFrame> next_frame_;   ///< read and not yet returned
+  std::int64_t num_dropped_ = 0;
+};
+
+}  // namespace kintsugi::mapper

@@ -1,0 +1,65 @@
+#include <chrono>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+#include "mapper/source/frames/paced_source.hpp"
+#include "tests/mapper/source/empty_recording.hpp"
+
+namespace kintsugi::mapper {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using std::chrono::milliseconds;
+using testing::EmptyRecording;
+using testing::kPeriod_us;
+
+bool never() { return false; }
+
+TEST(PacedSource, GivesNoFrameBeforeItsTime) {
+  PacedSource source(std::make_unique<EmptyRecording>(10), -1, never);
+  const auto begin = Clock::now();
+  while (const auto frame = source.next()) {
+    EXPECT_GE(Clock::now() - begin, std::chrono::microseconds(frame->utime));
+  }
+  EXPECT_EQ(source.status().end_reason, "all given");
+}
+
+TEST(PacedSource, DropsWholeFramesWhenAskedTooLateAndCountsThem) {
+  PacedSource source(std::make_unique<EmptyRecording>(40), -1, never);
+  std::int64_t taken = 0;
+  std::int64_t last_utime = -1;
+  while (const auto frame = source.next()) {
+    ++taken;
+    EXPECT_GT(frame->utime, last_utime);
+    last_utime = frame->utime;
+    std::this_thread::sleep_for(milliseconds(50));
+  }
+  EXPECT_EQ(last_utime, 39 * kPeriod_us) << "the newest one stays";
+  EXPECT_LE(taken, 12) << "of five in a row, one; and some leave for the first and the last";
+  EXPECT_EQ(source.status().counts.frames_delivered, taken);
+  EXPECT_EQ(source.status().counts.frames_dropped, 40 - taken);
+}
+
+TEST(PacedSource, PlaysMoreSlowlyARecordingThatIsSlowToRead) {
+  PacedSource source(std::make_unique<EmptyRecording>(20, milliseconds(20)), -1, never);
+  std::int64_t taken = 0;
+  while (source.next()) ++taken;
+  EXPECT_EQ(taken + source.status().counts.frames_dropped, 20);
+  EXPECT_GE(taken, 15) << "nearly all; on a busy machine the reader itself may come late";
+}
+
+TEST(PacedSource, HurriesThroughWhatWasMappedBeforeAndGivesAllOfIt) {
+  PacedSource source(std::make_unique<EmptyRecording>(500), 497 * kPeriod_us, never);
+  for (int i = 0; i < 498; ++i) EXPECT_EQ(source.next()->utime, i * kPeriod_us);
+  EXPECT_EQ(source.status().counts.frames_dropped, 0);
+}
+
+TEST(PacedSource, DoesNotWaitAnyMoreWhenItIsStopped) {
+  PacedSource source(std::make_unique<EmptyRecording>(1'000'000), -1, [] { return true; });
+  EXPECT_TRUE(source.next());
+  EXPECT_TRUE(source.next());
+}
+
+}  // namespace
+}  // namespace kintsugi::mapper
