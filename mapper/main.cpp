@@ -1,33 +1,19 @@
-// kintsugi-mapper: RGB-D frames in, camera poses and cloud slices out.
+// kintsugi-mapper: estimates camera poses from RGB-D frames and publishes the map in slices.
 
-#include <exception>
-#include <memory>
 #include <variant>
 
-#include <spdlog/spdlog.h>
-#include <tbb/global_control.h>
-
+#include "lcmtypes/base/run_main.hpp"
 #include "lcmtypes/base/stop_signal.hpp"
 #include "mapper/process/options.hpp"
-#include "mapper/process/run_mapper.hpp"
+#include "mapper/process/run.hpp"
 
 int main(int argc, char** argv) {
-  using namespace kintsugi::mapper;
-  kintsugi::install_stop_signals();
-  try {
-    const auto parsed = parse_command_line(argc, argv);
+  using namespace kintsugi;
+  install_stop_signals();
+  return run_main(argv, [&] {
+    const auto parsed = mapper::parse_options(argc, argv);
     if (const int* exit_code = std::get_if<int>(&parsed)) return *exit_code;
-    const auto& options = std::get<Options>(parsed);
-
-    std::unique_ptr<tbb::global_control> thread_limit;
-    if (options.threads > 0) {
-      thread_limit = std::make_unique<tbb::global_control>(
-          tbb::global_control::max_allowed_parallelism, options.threads);
-    }
-    run_mapper(options);
+    mapper::run(std::get<mapper::Options>(parsed));
     return 0;
-  } catch (const std::exception& error) {
-    spdlog::error("kintsugi-mapper: {}", error.what());
-    return 1;
-  }
+  });
 }

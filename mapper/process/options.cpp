@@ -148,7 +148,7 @@ void Options::validate() const {
   }
 }
 
-std::variant<Options, int> parse_command_line(int argc, const char* const* argv) {
+std::variant<Options, int> parse_options(int argc, const char* const* argv) {
   Options options;
   CLI::App app{"Maps the RGB-D frames of an OpenNI2 device and publishes the map in slices."};
   app.option_defaults()->always_capture_default();

@@ -43,6 +43,6 @@ struct Options {
 /// printed configuration or devices, or a flag that is wrong (said on stderr).
 /// @throws std::invalid_argument for a value out of its bounds, std::runtime_error for a file that
 ///   cannot be read
-std::variant<Options, int> parse_command_line(int argc, const char* const* argv);
+std::variant<Options, int> parse_options(int argc, const char* const* argv);
 
 }  // namespace kintsugi::mapper

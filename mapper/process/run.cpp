@@ -1,9 +1,11 @@
-#include "mapper/process/run_mapper.hpp"
+#include "mapper/process/run.hpp"
 
+#include <memory>
 #include <stdexcept>
 #include <string>
 
 #include <spdlog/spdlog.h>
+#include <tbb/global_control.h>
 
 #include "mapper/process/linger.hpp"
 #include "mapper/process/map_publisher.hpp"
@@ -44,7 +46,12 @@ void expect_complete(const SessionLog& log) {
 
 }  // namespace
 
-void run_mapper(const Options& options) {
+void run(const Options& options) {
+  std::unique_ptr<tbb::global_control> thread_limit;
+  if (options.threads > 0) {
+    thread_limit = std::make_unique<tbb::global_control>(
+        tbb::global_control::max_allowed_parallelism, options.threads);
+  }
   SessionLog log(log_config(options));
   Resumption resumption(log, options);
   if (const StoredSession* ended = resumption.ended_session()) {

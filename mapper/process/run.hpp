@@ -4,9 +4,8 @@
 
 namespace kintsugi::mapper {
 
-/// kintsugi-mapper: maps a new session, continues one that was interrupted, or serves one that has
-/// ended, until it has answered everybody.
-/// @throws std::exception with what went wrong; what could be done is done then
-void run_mapper(const Options& options);
+/// Maps the frames of a device, or only resends a session that has ended, as `options` say.
+/// @throws std::exception with a message for the user when the run failed
+void run(const Options& options);
 
 }  // namespace kintsugi::mapper

@@ -1,11 +1,10 @@
 // kintsugi-evaluate-surface: how far a map's points are from the true surface of a synthetic scene.
 
-#include <exception>
 #include <iostream>
 
 #include <CLI/CLI.hpp>
-#include <spdlog/spdlog.h>
 
+#include "lcmtypes/base/run_main.hpp"
 #include "mapper/evaluation/surface_error.hpp"
 #include "mapper/tools/map_of_scene.hpp"
 
@@ -26,17 +25,14 @@ void evaluate(const MapOfSceneOptions& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  MapOfSceneOptions options;
-  CLI::App app{"Distance of every point of a map from the true surface of a synthetic scene."};
-  add_cloud(app, options);
-  add_scene(app, options);
-  add_scene_frame(app, options);
-  CLI11_PARSE(app, argc, argv);
-  try {
+  return kintsugi::run_main(argv, [&] {
+    MapOfSceneOptions options;
+    CLI::App app{"Distance of every point of a map from the true surface of a synthetic scene."};
+    add_cloud(app, options);
+    add_scene(app, options);
+    add_scene_frame(app, options);
+    CLI11_PARSE(app, argc, argv);
     evaluate(options);
     return 0;
-  } catch (const std::exception& error) {
-    spdlog::error("kintsugi-evaluate-surface: {}", error.what());
-    return 1;
-  }
+  });
 }

@@ -1,14 +1,13 @@
 // kintsugi-ground-truth: the true instance of every point of a map of a synthetic scene.
 
 #include <algorithm>
-#include <exception>
 #include <iostream>
 #include <string>
 #include <vector>
 
 #include <CLI/CLI.hpp>
-#include <spdlog/spdlog.h>
 
+#include "lcmtypes/base/run_main.hpp"
 #include "mapper/evaluation/instance_labels.hpp"
 #include "mapper/tools/map_of_scene.hpp"
 
@@ -52,30 +51,31 @@ void label(const Options& options) {
             << "  objects " << found.objects << "  structure " << found.structure << '\n';
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  Options options;
-  CLI::App app{
-      "Writes every point of a map with the instance of the nearest surface of the synthetic scene "
-      "that was mapped."};
+void add_options(CLI::App& app, Options& options) {
   add_scene(app, options.map);
   add_cloud(app, options.map);
   app.add_option("OUT", options.out, "PLY file to write: x y z (of CLOUD) and instance_id")
       ->required();
   add_scene_frame(app, options.map);
   app.add_option("--max-distance", options.max_distance_m,
-                 "metres; points farther from every surface get instance 0")
+                 "points farther than this from every surface get instance 0, m")
       ->capture_default_str();
   app.add_option("--min-points", options.min_points,
-                 "instances with at least so many points are counted in what is printed")
+                 "the printed counts include instances with at least this many points")
       ->capture_default_str();
-  CLI11_PARSE(app, argc, argv);
-  try {
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return kintsugi::run_main(argv, [&] {
+    Options options;
+    CLI::App app{
+        "Labels every point of a map with the instance of the nearest surface of the synthetic "
+        "scene that was mapped."};
+    add_options(app, options);
+    CLI11_PARSE(app, argc, argv);
     label(options);
     return 0;
-  } catch (const std::exception& error) {
-    spdlog::error("kintsugi-ground-truth: {}", error.what());
-    return 1;
-  }
+  });
 }

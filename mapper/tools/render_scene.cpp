@@ -1,11 +1,12 @@
 // kintsugi-render-scene: writes a synthetic scene as a folder of images, which folder:// plays.
+
 #include <cstdio>
-#include <exception>
 #include <stdexcept>
 #include <string>
 
 #include <CLI/CLI.hpp>
 
+#include "lcmtypes/base/run_main.hpp"
 #include "mapper/openni2_driver/recording/recording_uri.hpp"
 #include "mapper/synthetic/render/folder_writer.hpp"
 
@@ -35,22 +36,19 @@ void render(const std::string& address, const std::string& folder, const std::st
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app(
-      "Renders a synthetic scene into a folder in TUM layout: depth, rgb, true normals, "
-      "instances and poses.");
-  std::string address;
-  std::string folder;
-  std::string frames;
-  app.add_option("scene", address, "synthetic://NAME?noise=on|off&seed=N&start=N&frames=N")
-      ->required();
-  app.add_option("--out", folder, "folder to write to")->required();
-  app.add_option("--frames", frames, "first:end:step, all by default");
-  CLI11_PARSE(app, argc, argv);
-  try {
+  return kintsugi::run_main(argv, [&] {
+    CLI::App app(
+        "Renders a synthetic scene into a folder in TUM layout: depth, rgb, true normals, "
+        "instances and poses.");
+    std::string address;
+    std::string folder;
+    std::string frames;
+    app.add_option("scene", address, "synthetic://NAME?noise=on|off&seed=N&start=N&frames=N")
+        ->required();
+    app.add_option("--out", folder, "folder to write to")->required();
+    app.add_option("--frames", frames, "first:end:step, all by default");
+    CLI11_PARSE(app, argc, argv);
     render(address, folder, frames);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "kintsugi-render-scene: %s\n", error.what());
-    return 1;
-  }
-  return 0;
+    return 0;
+  });
 }

@@ -17,7 +17,7 @@ using ::testing::HasSubstr;
 
 std::variant<Options, int> parse(std::vector<const char*> flags) {
   flags.insert(flags.begin(), "kintsugi-mapper");
-  return parse_command_line(static_cast<int>(flags.size()), flags.data());
+  return parse_options(static_cast<int>(flags.size()), flags.data());
 }
 
 Options options_of(const std::vector<const char*>& flags) {
