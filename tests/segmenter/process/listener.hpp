@@ -98,9 +98,9 @@ inline SegmenterProcess::Config on_the_bus(const kintsugi::testing::TemporaryFol
                                            const std::string& mode) {
   SegmenterProcess::Config config;
   config.lcm_url = kintsugi::testing::kPrivateBusUrl;
-  config.files.folder = folder.path();
+  config.segmentation.files.folder = folder.path();
   config.exit_on_final = true;
-  config.maps.map.mode = mode;
+  config.segmentation.maps.map.mode = mode;
   config.linger_s = 0.0;
   return config;
 }

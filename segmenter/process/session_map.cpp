@@ -1,18 +1,15 @@
-#include "segmenter/process/slice_processor.hpp"
+#include "segmenter/process/session_map.hpp"
 
 #include <algorithm>
-#include <stdexcept>
 #include <utility>
+
+#include <fmt/format.h>
+
+#include "lcmtypes/base/argument_check.hpp"
+#include "lcmtypes/base/stopwatch.hpp"
 
 namespace kintsugi::segmenter {
 namespace {
-
-void require_not_negative(const char* field, int value) {
-  if (value < 0) {
-    throw std::invalid_argument(std::string(field) + " is " + std::to_string(value) +
-                                ", must be >= 0");
-  }
-}
 
 SliceSequencer::Revisions revisions_in(const SegmentMap& map) {
   SliceSequencer::Revisions revisions;
@@ -24,16 +21,14 @@ SliceSequencer::Revisions revisions_in(const SegmentMap& map) {
 
 }  // namespace
 
-void SliceProcessor::Config::validate() const {
+void SessionMap::Config::validate() const {
   order.validate();
-  require_not_negative("write_every", write_every);
-  require_not_negative("save_every", save_every);
+  require(write_every >= 0, "write_every", write_every, ">= 0");
+  require(save_every >= 0, "save_every", save_every, ">= 0");
 }
 
-SliceProcessor::SliceProcessor(const Config& config, std::unique_ptr<SegmentMap> map,
-                               Outputs outputs)
+SessionMap::SessionMap(const Config& config, std::unique_ptr<SegmentMap> map)
     : config_((config.validate(), config)),
-      outputs_(std::move(outputs)),
       map_(std::move(map)),
       sequencer_(config.order, revisions_in(*map_)) {
   counts_.map_session = map_->map_session();
@@ -42,7 +37,7 @@ SliceProcessor::SliceProcessor(const Config& config, std::unique_ptr<SegmentMap>
   count_map();
 }
 
-std::optional<std::string> SliceProcessor::offer(CloudSlice slice, Clock::time_point now) {
+std::optional<std::string> SessionMap::offer(CloudSlice slice, Clock::time_point now) {
   if (slice.map_name != map_->map_name()) {
     return "its map is '" + slice.map_name + "', its session's map '" + map_->map_name() + "'";
   }
@@ -56,28 +51,26 @@ std::optional<std::string> SliceProcessor::offer(CloudSlice slice, Clock::time_p
   return std::nullopt;
 }
 
-void SliceProcessor::finish(Clock::time_point now) {
-  while (step(now, Outlook::kEnded)) {
-  }
-}
-
-bool SliceProcessor::step(Clock::time_point now, Outlook outlook) {
+StepResult SessionMap::step(Clock::time_point now, Outlook outlook) {
+  StepResult result;
   const std::vector<CloudSlice> slices = take_ready(now, outlook);
   if (!slices.empty()) {
-    segment(slices);
-    return true;
+    result.has_progressed = true;
+    result.updates = segment(slices);
+    if (auto request = save_when_due(std::ssize(slices))) {
+      result.saves.push_back(*std::move(request));
+    }
+  } else if (const auto gap = sequencer_.give_up_gap(now, outlook)) {
+    result.has_progressed = true;
+    result.warnings.push_back(
+        fmt::format("slices {} to {} of session {} are missing: the map continues without them",
+                    gap->first, gap->last, map_->map_session()));
   }
-  const auto gap = sequencer_.give_up_gap(now, outlook);
-  if (gap) {
-    outputs_.warn("slices " + std::to_string(gap->first) + " to " + std::to_string(gap->last) +
-                  " of session " + std::to_string(map_->map_session()) +
-                  " are missing: going on without them");
-  }
-  return gap.has_value();
+  return result;
 }
 
-// The next run; with Config::coalesce all there are, the newest revision of each slice.
-std::vector<CloudSlice> SliceProcessor::take_ready(Clock::time_point now, Outlook outlook) {
+// The next group; with Config::coalesce all there are, the newest revision of each slice.
+std::vector<CloudSlice> SessionMap::take_ready(Clock::time_point now, Outlook outlook) {
   const bool all = config_.coalesce && map_->config().mode == "batch";
   std::vector<CloudSlice> slices;
   while (all || slices.empty()) {
@@ -97,40 +90,37 @@ std::vector<CloudSlice> SliceProcessor::take_ready(Clock::time_point now, Outloo
   return slices;
 }
 
-void SliceProcessor::segment(const std::vector<CloudSlice>& slices) {
-  const auto num_slices = std::ssize(slices);
+std::vector<SegmentUpdate> SessionMap::segment(const std::vector<CloudSlice>& slices) {
   const auto num_new = std::ranges::count_if(slices, [this](const CloudSlice& slice) {
     return map_->cloud().find_slice(slice.id) == nullptr;
   });
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   is_saved_ = false;
-  is_broken_ = true;  // should this throw
+  is_broken_ = true;  // in case this throws
   if (const CloudSlice* const next = sequencer_.upcoming()) {
     map_->look_ahead(*next);
   }
   std::vector<SegmentUpdate> updates = map_->add(slices);
   is_broken_ = false;
-  const std::chrono::duration<double, std::milli> run = std::chrono::steady_clock::now() - start;
-  count_run(num_new, num_slices - num_new, run.count());
-  for (SegmentUpdate& update : updates) {
-    outputs_.publish(std::move(update));
-  }
-  save_when_due(num_slices);
+  count_run(num_new, std::ssize(slices) - num_new, watch.elapsed_ms());
+  return updates;
 }
 
-void SliceProcessor::save_when_due(std::int64_t num_slices) {
+std::optional<SaveRequest> SessionMap::save_when_due(std::int64_t num_slices) {
   num_since_write_ += num_slices;
   num_since_save_ += num_slices;
   const auto is_due = [](int every, std::int64_t since) { return every > 0 && since >= every; };
   if (counts_.complete || is_due(config_.write_every, num_since_write_)) {
-    save();
-  } else if (is_due(config_.save_every, num_since_save_)) {
-    num_since_save_ = 0;
-    outputs_.save(*map_, Save::kToGoOn);
+    return save();
   }
+  if (is_due(config_.save_every, num_since_save_)) {
+    num_since_save_ = 0;
+    return SaveRequest{map_, SaveKind::kForResume};
+  }
+  return std::nullopt;
 }
 
-void SliceProcessor::count_run(std::int64_t num_new, std::int64_t num_corrected, double run_ms) {
+void SessionMap::count_run(std::int64_t num_new, std::int64_t num_corrected, double run_ms) {
   counts_.segmented += num_new;
   counts_.corrected += num_corrected;
   num_timed_ += num_new + num_corrected;
@@ -141,7 +131,7 @@ void SliceProcessor::count_run(std::int64_t num_new, std::int64_t num_corrected,
   count_map();
 }
 
-void SliceProcessor::count_map() {
+void SessionMap::count_map() {
   counts_.lag = sequencer_.num_waiting() + sequencer_.num_missing();
   counts_.missing = sequencer_.num_given_up();
   counts_.points = map_->cloud().num_live();
@@ -151,12 +141,13 @@ void SliceProcessor::count_map() {
   counts_.ended = map_->has_final_slice() && sequencer_.num_waiting() == 0;
 }
 
-void SliceProcessor::save(bool again) {
-  if (again || !is_saved_) {
-    is_saved_ = true;
-    num_since_write_ = num_since_save_ = 0;
-    outputs_.save(*map_, is_broken_ ? Save::kBroken : Save::kCurrent);
+std::optional<SaveRequest> SessionMap::save(bool again) {
+  if (is_saved_ && !again) {
+    return std::nullopt;
   }
+  is_saved_ = true;
+  num_since_write_ = num_since_save_ = 0;
+  return SaveRequest{map_, is_broken_ ? SaveKind::kBroken : SaveKind::kCurrent};
 }
 
 }  // namespace kintsugi::segmenter
