@@ -41,7 +41,7 @@ class MapWriter {
   void wait() { writer_.wait(); }
 
   /// What is not written, and why; empty: nothing. From any thread.
-  [[nodiscard]] std::string problem() const;
+  std::string problem() const;
 
  private:
   using Snapshot = std::shared_ptr<const MapSnapshot>;
@@ -51,7 +51,7 @@ class MapWriter {
     std::string why;
   };
 
-  [[nodiscard]] Snapshot copy(const SegmentMap& map);
+  Snapshot copy(const SegmentMap& map);
   void put_files(const Snapshot& map, const std::string& stem);
   void put_saved(const Snapshot& map);
   void put(const std::string& name, Action action);

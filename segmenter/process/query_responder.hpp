@@ -47,9 +47,9 @@ class QueryResponder {
   void serve(const SessionMaps& maps);
 
   // From any thread:
-  [[nodiscard]] std::int64_t messages_bad() const { return num_bad_; }
+  std::int64_t messages_bad() const { return num_bad_; }
   /// Since somebody last asked, or since the start.
-  [[nodiscard]] double time_since_query_s() const;
+  double time_since_query_s() const;
 
  private:
   struct Copy {
@@ -59,8 +59,8 @@ class QueryResponder {
   };
 
   void take(const SegmentQuery& query);
-  [[nodiscard]] std::optional<SegmentQuery> next_query();
-  [[nodiscard]] bool has_room_for(const SegmentMap& map) const;
+  std::optional<SegmentQuery> next_query();
+  bool has_room_for(const SegmentMap& map) const;
   void make_room(std::size_t num_points);
   void update_copy(const SegmentMap& map);
   void begin(const SegmentQuery& query);

@@ -90,10 +90,10 @@ class SessionMap {
   /// Segments what is ready, with at most one run of the engine, or gives up a gap. With
   /// Outlook::kEnded, repeated steps segment everything, gaps or not.
   /// @throws what the engine throws; afterwards only save() may be called
-  StepResult step(Clock::time_point now, Outlook outlook);
+  [[nodiscard]] StepResult step(Clock::time_point now, Outlook outlook);
 
   /// A request to save the map, unless it has not changed since the last one; `again`: in any case.
-  std::optional<SaveRequest> save(bool again = false);
+  [[nodiscard]] std::optional<SaveRequest> save(bool again = false);
 
   const Counts& counts() const { return counts_; }
   const SegmentMap& map() const { return *map_; }

@@ -72,14 +72,14 @@ class SessionMaps {
   /// Does one step (SessionMap::step()) of one map, the maps in turn, and ends at most one
   /// superseded session.
   /// @throws what the engine throws; afterwards only save() may be called
-  StepResult step(Clock::time_point now);
+  [[nodiscard]] StepResult step(Clock::time_point now);
 
   /// No more slices will arrive: further steps segment everything, gaps or not, and then end the
   /// superseded sessions.
   void close() { is_closed_ = true; }
 
   /// A request for each map that has changed since its last one; `again`: for each map.
-  std::vector<SaveRequest> save(bool again = false);
+  [[nodiscard]] std::vector<SaveRequest> save(bool again = false);
 
   /// The full state of all maps: one update for each slice.
   std::vector<SegmentUpdate> describe() const;

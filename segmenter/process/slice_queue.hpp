@@ -61,7 +61,7 @@ class SliceQueue {
   }
 
   /// When full, none; but what is missing is taken all the same when nothing goes on without it.
-  [[nodiscard]] StreamRoom room() const {
+  StreamRoom room() const {
     const std::lock_guard lock(mutex_);
     if (!is_full()) {
       return StreamRoom::kPlenty;
@@ -75,25 +75,25 @@ class SliceQueue {
     return changed_.wait_for(lock, timeout, [this] { return !is_full(); });
   }
 
-  [[nodiscard]] std::int64_t size() const {
+  std::int64_t size() const {
     const std::lock_guard lock(mutex_);
     return static_cast<std::int64_t>(slices_.size());
   }
 
   /// Received and not segmented.
-  [[nodiscard]] std::size_t bytes() const {
+  std::size_t bytes() const {
     const std::lock_guard lock(mutex_);
     return queued_bytes_ + waiting_bytes_;
   }
 
   /// Closed, and everything taken.
-  [[nodiscard]] bool is_exhausted() const {
+  bool is_exhausted() const {
     const std::lock_guard lock(mutex_);
     return closed_ && slices_.empty();
   }
 
  private:
-  [[nodiscard]] bool is_full() const { return queued_bytes_ + waiting_bytes_ >= max_bytes_; }
+  bool is_full() const { return queued_bytes_ + waiting_bytes_ >= max_bytes_; }
 
   const std::size_t max_bytes_;
   mutable std::mutex mutex_;

@@ -53,7 +53,7 @@ class UpdatePublisher {
   /// True when somebody has asked for what only a full state can tell, and it is time for one:
   /// states take half of the stream at most. Then publish_state(). Who asks at another time asks
   /// again, if the state that was on its way has not helped. `now_s` never decreases.
-  [[nodiscard]] bool take_state_request(double now_s);
+  bool take_state_request(double now_s);
 
   /// Publishes updates that together say everything: SegmentMap::describe() of each map.
   void publish_state(std::vector<SegmentUpdate> updates, double now_s);
@@ -62,15 +62,15 @@ class UpdatePublisher {
   void flush();
 
   // From any thread:
-  [[nodiscard]] bool is_idle() const { return queued_bytes() == 0; }
-  [[nodiscard]] Counts counts() const;
+  bool is_idle() const { return queued_bytes() == 0; }
+  Counts counts() const;
   /// Since somebody last asked for something, or since the start.
-  [[nodiscard]] double time_since_request_s() const;
+  double time_since_request_s() const;
   /// The first thing that could not be published; empty: none.
-  [[nodiscard]] std::string problem() const;
+  std::string problem() const;
 
  private:
-  [[nodiscard]] std::size_t queued_bytes() const { return stream_ ? stream_->queued_bytes() : 0; }
+  std::size_t queued_bytes() const { return stream_ ? stream_->queued_bytes() : 0; }
   void wait_for_room() const;
   template <class Action>
   void try_to(const Action& action);

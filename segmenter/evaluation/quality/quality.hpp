@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "lcmtypes/messages.hpp"
-#include "segmenter/evaluation/quality/quality_boundaries.hpp"
-#include "segmenter/evaluation/quality/quality_overlap.hpp"
+#include "segmenter/evaluation/quality/boundaries.hpp"
+#include "segmenter/evaluation/quality/overlap.hpp"
 
 namespace kintsugi::segmenter {
 

@@ -1,3 +1,5 @@
+#include "segmenter/evaluation/session/session_log.hpp"
+
 #include <algorithm>
 #include <map>
 #include <stdexcept>
@@ -6,7 +8,6 @@
 #include "lcmtypes/channels.hpp"
 #include "lcmtypes/log/log_reader.hpp"
 #include "lcmtypes/stream/stream_subscriber.hpp"
-#include "segmenter/evaluation/session/recorded_session.hpp"
 
 namespace kintsugi::segmenter {
 namespace {
@@ -127,8 +128,9 @@ void add_remarks(const LoggedSession& logged, RecordedSession& session) {
     session.remarks.push_back("The log ends before the final slice of the map.");
   }
   if (logged.num_corrections > 0) {
-    session.remarks.push_back(std::to_string(logged.num_corrections) +
-                              " corrections of slices were replayed as they came.");
+    session.remarks.push_back(
+        std::to_string(logged.num_corrections) +
+        " corrections of slices were segmented in the order in which they were recorded.");
   }
   if (logged.num_wrong_resolution > 0) {
     session.is_whole = false;

@@ -15,7 +15,7 @@
 #include "lcmtypes/base/stop_signal.hpp"
 #include "lcmtypes/bus/message_subscriber.hpp"
 #include "lcmtypes/channels.hpp"
-#include "segmenter/io/ply_reader.hpp"
+#include "segmenter/io/ply/ply_reader.hpp"
 #include "segmenter/process/segmenter_process.hpp"
 #include "tests/segmenter/process/slice_session.hpp"
 #include "tests/support/private_bus.hpp"

@@ -9,7 +9,7 @@
 
 #include "segmenter/io/saved_map.hpp"
 #include "segmenter/query/answer.hpp"
-#include "segmenter/tools/query_client.hpp"
+#include "segmenter/tools/query/query_client.hpp"
 #include "tests/segmenter/process/listener.hpp"
 #include "tests/segmenter/process/room_session.hpp"
 #include "tests/segmenter/tools/program.hpp"

@@ -8,10 +8,10 @@
 
 #include "lcmtypes/channels.hpp"
 #include "segmenter/core/presets.hpp"
-#include "segmenter/io/ply_reader.hpp"
+#include "segmenter/io/ply/ply_reader.hpp"
 #include "segmenter/process/process_status.hpp"
 #include "segmenter/process/segmenter_process.hpp"
-#include "tests/segmenter/evaluation/session_log.hpp"
+#include "tests/segmenter/evaluation/session/log_of_slices.hpp"
 #include "tests/segmenter/process/listener.hpp"
 #include "tests/segmenter/process/room_session.hpp"
 #include "tests/segmenter/process/slice_session.hpp"
