@@ -1,0 +1,96 @@
+#include "lcmtypes/base/ply_writer.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cerrno>
+#include <fstream>
+#include <stdexcept>
+#include <system_error>
+#include <utility>
+
+#include "lcmtypes/base/argument_check.hpp"
+
+namespace kintsugi {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "records are written as they are");
+
+/// map.ply -> map.vertex.ply; AtomicFile writes it as map.vertex.partial.ply.
+std::filesystem::path temporary_name(std::filesystem::path path, const std::string& element) {
+  path.replace_filename(path.stem().string() + "." + element + path.extension().string());
+  return path;
+}
+
+void copy(const std::filesystem::path& from, std::ostream& to) {
+  std::ifstream in(from, std::ios::binary);
+  std::vector<char> buffer(std::size_t{1} << 16U);
+  while (in.read(buffer.data(), static_cast<std::streamsize>(buffer.size())), in.gcount() > 0) {
+    to.write(buffer.data(), in.gcount());
+  }
+  if (!in.eof()) throw std::system_error(errno, std::generic_category(), from.string());
+}
+
+}  // namespace
+
+PlyWriter::PlyWriter(const std::filesystem::path& path, std::vector<PlyElement> elements,
+                     const std::vector<std::string>& comments)
+    : file_(path), comments_(comments) {
+  for (const std::string& comment : comments) {
+    require(comment.find_first_of("\r\n") == std::string::npos,
+            path.string() + ": a comment for its header has several lines: '" + comment + "'");
+  }
+  const bool counts_are_known =
+      std::ranges::all_of(elements, [](const PlyElement& e) { return e.count.has_value(); });
+  for (PlyElement& element : elements) {
+    List& list = lists_.emplace_back(List{std::move(element), 0, nullptr});
+    if (counts_are_known) {
+      continue;
+    }
+    list.temporary = std::make_unique<AtomicFile>(temporary_name(path, list.element.name));
+    list.temporary->stream();  // fails now when the folder cannot be written to
+  }
+  if (counts_are_known) write_header();
+}
+
+PlyWriter::~PlyWriter() = default;
+
+void PlyWriter::write_record(std::size_t element, const char* record, std::size_t size) {
+  List& list = lists_.at(element);
+  AtomicFile& file = list.temporary ? *list.temporary : file_;
+  file.stream().write(record, static_cast<std::streamsize>(size));
+  ++list.count;
+}
+
+void PlyWriter::write_header() {
+  std::ostream& out = file_.stream();
+  out << "ply\nformat binary_little_endian 1.0\n";
+  for (const std::string& comment : comments_) out << "comment " << comment << '\n';
+  for (const List& list : lists_) {
+    const std::int64_t count = list.element.count.value_or(list.count);
+    out << "element " << list.element.name << ' ' << count << '\n';
+    for (const std::string& property : list.element.properties) {
+      out << "property " << property << '\n';
+    }
+  }
+  out << "end_header\n";
+}
+
+void PlyWriter::commit() {
+  for (const List& list : lists_) {
+    if (list.count == list.element.count.value_or(list.count)) continue;
+    throw std::logic_error("PlyWriter: " + std::to_string(list.count) + " records of element " +
+                           list.element.name + " were appended, expected " +
+                           std::to_string(*list.element.count));
+  }
+  if (std::ranges::any_of(lists_, [](const List& list) { return list.temporary != nullptr; })) {
+    write_header();
+    for (List& list : lists_) {
+      list.temporary->stream().flush();
+      copy(list.temporary->partial_path(), file_.stream());
+      list.temporary.reset();
+    }
+  }
+  file_.commit();
+}
+
+}  // namespace kintsugi
