@@ -1,24 +1,16 @@
 #include "mapper/evaluation/instance_labels.hpp"
 
 #include <cmath>
-#include <span>
 #include <stdexcept>
 #include <string>
 
 #include <oneapi/tbb/parallel_for.h>
 
-#include "mapper/output/ply_file.hpp"
+#include "lcmtypes/base/ply_writer.hpp"
 #include "mapper/synthetic/scene/scene.hpp"
 
 namespace kintsugi::mapper {
 namespace {
-
-/// A vertex as it is in the file.
-struct LabelledPoint {
-  float x, y, z;
-  std::uint32_t instance_id;
-};
-static_assert(sizeof(LabelledPoint) == 16, "four properties without padding");
 
 std::vector<std::string> instance_comments(const synthetic::Scene& scene) {
   std::vector<std::string> comments;
@@ -57,14 +49,13 @@ void write_instance_cloud(const std::filesystem::path& path,
                                 " labels, expected one for each of " +
                                 std::to_string(points_W.size()) + " points");
   }
-  std::vector<LabelledPoint> vertices;
-  vertices.reserve(points_W.size());
+  PlyWriter file(
+      path,
+      {{"vertex", {"float x", "float y", "float z", "uint instance_id"}, std::ssize(points_W)}},
+      instance_comments(scene));
   for (std::size_t i = 0; i < points_W.size(); ++i) {
-    vertices.push_back({points_W[i].x, points_W[i].y, points_W[i].z, labels[i]});
+    file.append(0, points_W[i].x, points_W[i].y, points_W[i].z, labels[i]);
   }
-  PlyFile file(path, {{"vertex", {"float x", "float y", "float z", "uint instance_id"}}},
-               instance_comments(scene));
-  file.append(0, std::as_bytes(std::span(vertices)), std::ssize(vertices));
   file.commit();
 }
 

@@ -1,29 +1,9 @@
 #include "mapper/output/map_writers.hpp"
 
 #include <cstddef>
-#include <cstring>
 
 namespace kintsugi::mapper {
 namespace {
-
-/// Values one after the other, without padding.
-class PackedBytes {
- public:
-  template <typename... Values>
-  void append(const Values&... values) {
-    (append_one(values), ...);
-  }
-  const std::vector<std::byte>& bytes() const { return bytes_; }
-
- private:
-  template <typename Value>
-  void append_one(const Value& value) {
-    const auto* first = reinterpret_cast<const std::byte*>(&value);
-    bytes_.insert(bytes_.end(), first, first + sizeof value);
-  }
-
-  std::vector<std::byte> bytes_;
-};
 
 constexpr std::size_t kVertices = 0;
 constexpr std::size_t kFaces = 1;
@@ -36,13 +16,12 @@ CloudWriter::CloudWriter(const std::filesystem::path& path)
                      "uchar red", "uchar green", "uchar blue", "float weight"}}}) {}
 
 void CloudWriter::append(const std::vector<CloudPoint>& points_W) {
-  PackedBytes packed;
   for (const CloudPoint& p : points_W) {
-    packed.append(p.x, p.y, p.z, p.nx, p.ny, p.nz, p.red, p.green, p.blue, p.weight);
+    file_.append(kVertices, p.x, p.y, p.z, p.nx, p.ny, p.nz, p.red, p.green, p.blue, p.weight);
   }
-  file_.append(kVertices, packed.bytes(), std::ssize(points_W));
-  num_points_ += std::ssize(points_W);
 }
+
+std::int64_t CloudWriter::num_points() const { return file_.count(kVertices); }
 
 void CloudWriter::commit() { file_.commit(); }
 
@@ -52,14 +31,14 @@ MeshWriter::MeshWriter(const std::filesystem::path& path)
                    {"face", {"list uchar int vertex_indices"}}}) {}
 
 void MeshWriter::append(const MeshPiece& piece) {
-  PackedBytes vertices;
-  for (const MeshPiece::Vertex& v : piece.vertices) vertices.append(v.x, v.y, v.z, v.color_rgb);
-  file_.append(kVertices, vertices.bytes(), std::ssize(piece.vertices));
-  PackedBytes faces;
-  for (const MeshPiece::Triangle& t : piece.triangles) faces.append(std::uint8_t{3}, t);
-  file_.append(kFaces, faces.bytes(), std::ssize(piece.triangles));
-  num_triangles_ += std::ssize(piece.triangles);
+  constexpr std::uint8_t kCorners = 3;
+  for (const MeshPiece::Vertex& v : piece.vertices) {
+    file_.append(kVertices, v.x, v.y, v.z, v.color_rgb);
+  }
+  for (const MeshPiece::Triangle& t : piece.triangles) file_.append(kFaces, kCorners, t);
 }
+
+std::int64_t MeshWriter::num_triangles() const { return file_.count(kFaces); }
 
 void MeshWriter::commit() { file_.commit(); }
 
