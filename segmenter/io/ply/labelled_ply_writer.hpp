@@ -6,15 +6,15 @@
 #include <string>
 #include <vector>
 
-#include "lcmtypes/base/atomic_file.hpp"
+#include "lcmtypes/base/ply_writer.hpp"
 #include "lcmtypes/messages.hpp"
 
 namespace kintsugi::segmenter {
 
 /// Writes a binary little-endian PLY with the vertex properties
 ///   float x y z nx ny nz, uchar red green blue, uint segment_id, int slice_id, float weight
-/// in that order: the very positions and normals that were segmented, so that anyone can check the
-/// labels. The file appears under its name, whole, at commit().
+/// in that order. Positions and normals are exactly those that were segmented, so that anyone can
+/// check the labels. The complete file appears under its name at commit().
 class LabelledPlyWriter {
  public:
   /// @param num_points exactly as many as will be appended
@@ -25,15 +25,11 @@ class LabelledPlyWriter {
 
   void append(const CloudPoint& point_W, std::uint32_t segment_id, std::int32_t slice_id);
 
-  /// Throws std::logic_error when the number of points is not what the header says.
-  void commit();
+  /// @throws std::logic_error when the number of points is not what the header says
+  void commit() { writer_.commit(); }
 
  private:
-  void flush();
-
-  AtomicFile file_;
-  std::int64_t num_points_left_;
-  std::vector<char> buffer_;
+  PlyWriter writer_;
 };
 
 }  // namespace kintsugi::segmenter
