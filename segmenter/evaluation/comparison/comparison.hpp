@@ -25,7 +25,7 @@ struct ComparisonConfig {
   bool sweep = false;     ///< also the preset `objects` with one parameter at a time changed
   EngineConfig engine;    ///< of kGivenEngine
   QualityConfig quality;  ///< its boundary is replaced by the radius and tolerance below
-  double match_distance_vox = 1.0;      ///< a point's truth is no farther than this, > 0
+  double match_distance_vox = 1.0;      ///< maximum distance to the true point, > 0
   double boundary_radius_vox = 2.0;     ///< > 0
   double boundary_tolerance_vox = 1.0;  ///< in [0, boundary_radius_vox)
 
@@ -53,12 +53,14 @@ struct Comparison {
   std::vector<std::string> remarks;
 };
 
-/// Called with each result when it is there, and how many there will be.
+/// Called with each result as soon as it is known, and the total number of results.
 using OnComparedResult = std::function<void(const ComparedResult&, std::size_t num_results)>;
 
 /// Segments the final map by batch with each set of parameters.
-/// @throws std::invalid_argument for an invalid config, and where labels are asked for that the
-///   session has not; std::runtime_error when no point of the map has a truth
+/// @throws std::invalid_argument for an invalid config, and when labels are asked for but the
+/// session
+///   has none
+/// @throws std::runtime_error when no point of the map has a true instance
 Comparison compare_parameters(const RecordedSession& session, const Truth& truth,
                               const ComparisonConfig& config,
                               const OnComparedResult& on_result = {});

@@ -1,4 +1,5 @@
 #pragma once
+// The development of the join threshold of a segment (Fig. 2 of the paper).
 
 #include <cstdint>
 #include <span>

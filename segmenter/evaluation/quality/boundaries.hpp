@@ -1,5 +1,5 @@
 #pragma once
-// The boundaries between segments against those between true instances.
+// Compares the boundaries between segments with those between true instances.
 
 #include <cstdint>
 #include <span>
@@ -19,7 +19,7 @@ struct BoundaryConfig {
   void validate() const;
 };
 
-/// Shares in [0, 1]; 1 where there is no boundary point to be found.
+/// Recall and precision are in [0, 1], and 1 when there is no boundary point.
 struct BoundaryScore {
   std::int64_t num_true = 0;   ///< points on a boundary between instances
   std::int64_t num_found = 0;  ///< points on a boundary between segments

@@ -1,5 +1,5 @@
 #pragma once
-// A cloud of which it is known what each point belongs to.
+// The ground truth of a segmentation: a cloud with the true instance of each point.
 
 #include <cstdint>
 #include <filesystem>
@@ -16,10 +16,10 @@ namespace kintsugi::segmenter {
 struct TruthInstance {
   std::uint32_t id = 0;
   bool is_object = true;  ///< false: structure, such as floor, walls and ceiling
-  std::string name;       ///< "" where nobody says
+  std::string name;       ///< "" when unknown
 };
 
-/// Points of true surfaces and their instances, kNoInstance where it is not known.
+/// Points of true surfaces and their instances; kNoInstance where unknown.
 struct Truth {
   std::string source;                       ///< the file
   std::vector<CloudPoint> points_W;         ///< finite positions; nothing else of them matters
@@ -29,9 +29,9 @@ struct Truth {
   std::set<std::uint32_t> objects() const;
 };
 
-/// Of a PLY file with x y z and instance_id (any integer type; 0: not known). Header lines `comment
-/// instance ID structure|object NAME` say what an instance is, for all of them or none: then all
-/// are objects. Points whose position is not finite are left out.
+/// From a PLY file with x y z and instance_id (any integer type; 0: unknown). Header lines `comment
+/// instance ID structure|object NAME` give kind and name of either all instances or none; without
+/// them all are objects. Points whose position is not finite are left out.
 /// @param name stands for the file in errors
 /// @throws std::runtime_error when there is no instance_id or no point, or when the lines name an
 ///   instance twice or lack one

@@ -1,5 +1,5 @@
 #pragma once
-// Segments against true instances, by the points they share.
+// Compares segments with true instances by the points that they share.
 
 #include <cstdint>
 #include <span>
@@ -7,7 +7,7 @@
 
 namespace kintsugi::segmenter {
 
-/// The instance of a point that nothing is known of: it is left out of every score.
+/// The instance of a point whose true instance is unknown: the point is left out of every score.
 inline constexpr std::uint32_t kNoInstance = 0;
 
 /// The points that an instance and a segment share.
@@ -23,7 +23,7 @@ struct Overlap {
   }
 };
 
-/// How well an instance is found.
+/// How well an instance is segmented.
 struct InstanceScore {
   std::uint32_t instance = 0;
   std::int64_t num_points = 0;

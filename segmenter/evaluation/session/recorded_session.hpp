@@ -15,7 +15,7 @@ struct RecordedSession {
   std::string source;             ///< the file
   std::vector<SliceGroup> steps;  ///< one run of an engine each; at least one
   std::int64_t num_slices = 0;    ///< each once, however often it was corrected
-  bool has_times = false;         ///< the slices' utime means something
+  bool has_times = false;         ///< the slices have valid times
   /// Of a labelled cloud: the segment_id of each point, of each slice; else empty.
   std::vector<std::vector<std::uint32_t>> segment_ids;
 
@@ -31,7 +31,7 @@ struct RecordedSession {
   std::int64_t num_points() const;  ///< of these, rejected ones included
 };
 
-/// When all its slices are there, microseconds.
+/// The time at which the last slice of the step was taken, microseconds.
 std::int64_t ready_us(const SliceGroup& step);
 
 }  // namespace kintsugi::segmenter

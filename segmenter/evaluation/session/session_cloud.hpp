@@ -1,4 +1,5 @@
 #pragma once
+// Reads a session from a PLY file.
 
 #include <filesystem>
 
@@ -7,8 +8,8 @@
 
 namespace kintsugi::segmenter {
 
-/// Reads a PLY file (read_cloud()): its points by slice_id, without it as a single slice. Has
-/// neither times nor a path.
+/// Reads a PLY file (read_cloud()). Its slice_id gives the slices; without slice_id there is one.
+/// The session has neither times nor a camera path.
 /// @throws std::runtime_error as read_cloud()
 RecordedSession read_session_cloud(const std::filesystem::path& path,
                                    const CloudInputConfig& config);

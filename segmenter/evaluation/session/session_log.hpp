@@ -1,4 +1,5 @@
 #pragma once
+// Reads a recorded session from an LCM log.
 
 #include <filesystem>
 
@@ -6,10 +7,10 @@
 
 namespace kintsugi::segmenter {
 
-/// Reads CLOUD_SLICE and CAMERA_POSE from an LCM log, in any order of arrival and
-/// with duplicates. Slices and corrections are put in order as kintsugi-segmenter does
-/// (SliceSequencer). Of several sessions the one with most slices is taken, of equal ones the
-/// first. What can be read of a damaged log is taken; is_whole tells.
+/// Reads CLOUD_SLICE and CAMERA_POSE from an LCM log, in any order of arrival and with duplicates.
+/// Slices and corrections are ordered as in kintsugi-segmenter (SliceSequencer). Of several
+/// sessions the one with most slices is used, of equal ones the first. Of a damaged log, what can
+/// be read is used, and is_whole is false.
 /// @throws std::runtime_error when `path` cannot be read, is no LCM log or holds no points
 RecordedSession read_session_log(const std::filesystem::path& path);
 

@@ -1,5 +1,5 @@
 #pragma once
-// Labelled clouds as PLY files.
+// Writes labelled clouds as PLY files.
 
 #include <cstdint>
 #include <filesystem>

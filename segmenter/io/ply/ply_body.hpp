@@ -10,24 +10,24 @@
 
 namespace kintsugi::segmenter {
 
-/// Reads the rows of a PLY file from the first to the last. Everything it reads is checked against
-/// the end of the file; errors are std::runtime_error that name file, element, row and place (byte
-/// offset, or line of an ascii file).
+/// Reads the rows of a PLY file from the first to the last. Every read is checked against the end
+/// of the file. Errors are std::runtime_error and name file, element, row and place (byte offset,
+/// or line of an ascii file).
 class PlyBody {
  public:
   virtual ~PlyBody() = default;
 
-  /// Throws unless what is left of the file can hold the rows that the header claims, so that
-  /// nothing is allocated on the word of a header.
+  /// Call it before allocating memory for the rows that the header claims.
+  /// @throws std::runtime_error unless the rest of the file can hold these rows
   void check_count(const PlyElement& element) const;
 
-  /// Reads one row. `values` gets one entry for each property; that of a list is its length.
+  /// Reads one row. `values` gets one entry for each property, for a list its length.
   virtual void read_row(const PlyElement& element, std::int64_t row,
                         std::vector<double>& values) = 0;
 
   void skip(const PlyElement& element);
 
-  /// Throws when anything but blanks follows the last row.
+  /// @throws std::runtime_error when anything but blanks follows the last row
   void expect_end() const;
 
  protected:

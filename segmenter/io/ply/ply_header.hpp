@@ -1,5 +1,5 @@
 #pragma once
-// The header of a PLY file: what it says the file holds.
+// The header of a PLY file: its elements and their properties.
 
 #include <cstddef>
 #include <cstdint>
@@ -26,7 +26,7 @@ struct PlyProperty {
 
 struct PlyElement {
   std::string name;
-  std::int64_t count = 0;  ///< as the header claims: check against the file before believing it
+  std::int64_t count = 0;  ///< as the header claims; to be checked against the size of the file
   int line = 0;            ///< of its declaration, from 1
   std::vector<PlyProperty> properties;
 
@@ -37,8 +37,8 @@ struct PlyElement {
 struct PlyHeader {
   PlyFormat format = PlyFormat::kAscii;
   std::vector<PlyElement> elements;
-  std::vector<std::string> comments;  ///< what follows the keyword of each, without blanks around
-  std::size_t num_bytes = 0;          ///< where the data begin
+  std::vector<std::string> comments;  ///< their text, without surrounding blanks
+  std::size_t num_bytes = 0;          ///< offset at which the data begin
   int num_lines = 0;
 };
 

@@ -23,9 +23,9 @@ void write_if_named(const std::filesystem::path& path, const std::string& text) 
 }  // namespace
 
 void add_trajectory_options(CLI::App& app, TrajectoryOptions& options) {
-  auto* const trajectory =
-      app.add_option("--trajectory", options.estimate_file,
-                     "instead of IN: an estimated camera path (TUM format), held against --truth");
+  auto* const trajectory = app.add_option(
+      "--trajectory", options.estimate_file,
+      "instead of IN: an estimated camera path (TUM format), to compare with --truth");
   auto* const truth = app.add_option("--truth", options.truth_file, "the true path (TUM format)")
                           ->needs(trajectory);
   trajectory->needs(truth);
@@ -38,8 +38,8 @@ void add_trajectory_options(CLI::App& app, TrajectoryOptions& options) {
       ->transform(CLI::CheckedTransformer(kUnits).description("{s,f,m,deg}"))
       ->default_str("s");
   app.add_flag("--fixed-delta,!--all-pairs", options.relative.fixed_delta,
-               "relative error over --delta (default), or of every pose to every other, whatever "
-               "--delta says: evaluate_rpe.py with and without its --fixed_delta")
+               "relative error over --delta (default), or of every pose to every other, ignoring "
+               "--delta: evaluate_rpe.py with and without its --fixed_delta")
       ->needs(trajectory);
   app.add_option("--csv", options.csv_file, "write the errors as one row of a table")
       ->needs(trajectory);

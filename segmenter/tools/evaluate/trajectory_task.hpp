@@ -1,5 +1,5 @@
 #pragma once
-// kintsugi-evaluate --trajectory: how far an estimated camera path is from the true one.
+// kintsugi-evaluate --trajectory: the errors of an estimated camera path.
 
 #include <filesystem>
 #include <string>
@@ -11,7 +11,7 @@
 namespace kintsugi::segmenter {
 
 struct TrajectoryOptions {
-  std::string estimate_file;  ///< TUM format; empty: nothing is to be done
+  std::string estimate_file;  ///< TUM format; empty: this task is not asked for
   std::string truth_file;     ///< TUM format
   RelativeTrajectoryErrorConfig relative;
   std::filesystem::path csv_file;   ///< empty: none

@@ -19,12 +19,12 @@ void add_options(CLI::App& app, ExportOptions& options) {
                  "a saved map (kintsugi-segmenter --save), or a labelled PLY file")
       ->required();
   app.add_option("--json", options.json, "write the description of every segment as JSON");
-  app.add_option("--csv", options.csv, "the same as a table, a line a segment");
-  app.add_option("--graph", options.graph, "write which segments touch, as GraphML");
+  app.add_option("--csv", options.csv, "write the same as a table, one line for each segment");
+  app.add_option("--graph", options.graph, "write the graph of touching segments as GraphML");
   app.add_option("--ply", options.ply, "write all points with their segment_id");
   app.add_option("--segs", options.segs,
-                 "write ScanNet's segs.json: the segment of each vertex of --mesh, else of --ply, "
-                 "else of MAP when that is a PLY file");
+                 "write ScanNet's segs.json: the segment of each vertex of --mesh, otherwise of "
+                 "--ply, otherwise of MAP if that is a PLY file");
   app.add_option("--scene-id", options.scene_id,
                  "sceneId in it (default: its name without .segs.json)");
   app.add_option(
@@ -32,13 +32,16 @@ void add_options(CLI::App& app, ExportOptions& options) {
       "a PLY file whose vertices get the segment of the nearest point within two voxels");
   auto* const folder = app.add_option("--segment-plys", options.segment_folder,
                                       "write each segment as segment_ID.ply in this folder");
-  app.add_option("--segments", options.segment_ids, "only these of them: ID,ID,... (default: all)")
+  app.add_option("--segments", options.segment_ids,
+                 "ID,ID,...: of --segment-plys only these segments (default: all)")
       ->delimiter(',')
       ->needs(folder);
-  app.add_option("--min-points", options.min_points, "only those of so many points and more")
+  app.add_option("--min-points", options.min_points,
+                 "of --segment-plys only segments with at least this many points")
       ->needs(folder);
-  app.add_option("--resolution", options.resolution_m,
-                 "voxel size of a PLY file in metres, > 0 (default: the median spacing of points)")
+  app.add_option(
+         "--resolution", options.resolution_m,
+         "voxel size of a PLY file in metres, > 0 (default: the median spacing of the points)")
       ->check(CLI::PositiveNumber);
 }
 

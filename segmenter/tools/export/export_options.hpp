@@ -1,5 +1,5 @@
 #pragma once
-// What kintsugi-export is told.
+// The command line of kintsugi-export.
 
 #include <cstdint>
 #include <filesystem>
@@ -27,7 +27,7 @@ struct ExportOptions {
 
 void add_options(CLI::App& app, ExportOptions& options);
 
-/// Throws std::runtime_error when there is nothing to write, or a folder is not there.
+/// @throws std::runtime_error when there is nothing to write, or a folder does not exist
 void validate(const ExportOptions& options);
 
 }  // namespace kintsugi::segmenter

@@ -1,4 +1,5 @@
 #pragma once
+// Transfers the segments of a map to the vertices of a mesh.
 
 #include <cstdint>
 #include <filesystem>

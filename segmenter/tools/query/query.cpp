@@ -39,52 +39,59 @@ struct Options {
 };
 
 void add_places(CLI::App& app, Options& options) {
-  CLI::Option_group& place = *app.add_option_group("Where", "one of these; none: everywhere");
+  CLI::Option_group& place =
+      *app.add_option_group("Where", "at most one of these; default: everywhere");
   place.require_option(0, 1);
-  place.add_option("--at", options.point_W, "X Y Z: at the map point nearest to here, metres, W")
+  place
+      .add_option("--at", options.point_W,
+                  "X Y Z: the segment of the nearest map point, metres, frame W")
       ->expected(3);
   place
       .add_option(
           "--pixel", options.pixel,
-          "U V: what the camera sees there now (or from --pose); integers are pixel centres")
+          "U V: the segment that the camera sees at this pixel now (or from --pose); integers are "
+          "pixel centres")
       ->expected(2);
   place
       .add_option("--ray", options.ray,
-                  "X Y Z DX DY DZ: what is seen from X Y Z in direction DX DY DZ, W")
+                  "X Y Z DX DY DZ: the segment seen from X Y Z in direction DX DY DZ, frame W")
       ->expected(6);
   place
       .add_option("--box", options.box_W,
-                  "X Y Z X Y Z: with a point between these corners, metres, W")
+                  "X Y Z X Y Z: segments with a point between these corners, metres, frame W")
       ->expected(6);
-  place.add_option("--id", options.query.segment_ids, "ID,...: of these ids")->delimiter(',');
+  place.add_option("--id", options.query.segment_ids, "ID,...: the segments with these ids")
+      ->delimiter(',');
 }
 
 void add_options(CLI::App& app, Options& options) {
   SegmentQuery& query = options.query;
   query.max_segments = 10;
   add_places(app, options);
-  app.add_flag("--planar", query.only_planar, "only those that are planar");
+  app.add_flag("--planar", query.only_planar, "only planar segments");
   app.add_option("--changed-since", query.changed_since,
-                 "only those that changed after this device time, microseconds")
+                 "only segments that changed after this device time, microseconds")
       ->check(CLI::NonNegativeNumber);
-  app.add_option("--largest", query.max_segments, "the largest so many; 0: all")
+  app.add_option("--largest", query.max_segments, "only the N largest; 0: all")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   app.add_option("--radius", query.radius_m,
-                 "--at, --pixel, --ray: how far off a map point may be, metres; 0: two voxels")
+                 "--at, --pixel, --ray: maximum distance to a map point, metres; 0: two voxels")
       ->check(CLI::Range(0.0, kMaxQueryRadius_m))
       ->capture_default_str();
   app.add_option("--pose", options.pose,
-                 "TX TY TZ QX QY QZ QW: of the camera for --pixel (default: as heard on the bus)")
+                 "TX TY TZ QX QY QZ QW: camera pose for --pixel (default: the one on the bus)")
       ->expected(7);
   app.add_option("--intrinsics", options.intrinsics,
-                 "FX FY CX CY WIDTH HEIGHT: of the camera for --pixel (default: of the raw frames "
-                 "on the bus if there are any, else a Kinect's, 525 525 319.5 239.5 640 480)")
+                 "FX FY CX CY WIDTH HEIGHT: camera intrinsics for --pixel (default: those of the "
+                 "raw frames on the bus if there are any, else a Kinect's, 525 525 319.5 239.5 640 "
+                 "480)")
       ->expected(6);
   app.add_option("--map", options.map,
-                 "ask this file, which kintsugi-segmenter --save has left, instead of the bus");
-  app.add_option("--map-name", query.map_name, "which map, when there are several");
-  app.add_option("--map-session", query.map_session, "likewise, by the session of its mapper")
+                 "query this saved map (kintsugi-segmenter --save) instead of the bus");
+  app.add_option("--map-name", query.map_name, "name of the map, when there are several");
+  app.add_option("--map-session", query.map_session,
+                 "mapper session of the map, when there are several")
       ->check(CLI::NonNegativeNumber);
   app.add_option("--lcm-url", options.lcm_url, "the bus (default: LCM_DEFAULT_URL)");
   app.add_option("--timeout", options.timeout_s, "seconds to wait for an answer, > 0")
@@ -126,11 +133,11 @@ void look_through_pixel(const Options& options, QueryClient* client, SegmentQuer
   if (!options.pose.empty()) {
     X_WC = given_pose(options.pose);
   } else if (client != nullptr) {
-    const CameraView view =
+    const HeardCamera camera =
         client->hear_camera(query.map_session, QueryClient::Seconds(options.timeout_s));
-    X_WC = view.pose.X_WC;
-    intrinsics = view.intrinsics.value_or(intrinsics);
-    query.map_session = view.pose.session;
+    X_WC = camera.pose.X_WC;
+    intrinsics = camera.intrinsics.value_or(intrinsics);
+    query.map_session = camera.pose.session;
   } else {
     throw std::invalid_argument("--pixel of a saved map needs --pose");
   }

@@ -41,7 +41,7 @@ QueryClient::QueryClient(const std::string& lcm_url)
                              [this](const SegmenterStatus& status) { status_ = status; });
 }
 
-// Those to other clients come too.
+// Answers to other clients arrive too.
 void QueryClient::take(SegmentAnswer answer) {
   if (answer.client != client_ || answer.number != number_) return;
   (answer.problem.empty() ? answer_ : refusal_) = std::move(answer);
@@ -89,7 +89,7 @@ std::string QueryClient::silence(Seconds timeout, int times_asked) const {
                     status_->map_name, status_->lag_slices, status_->slice_ms);
 }
 
-CameraView QueryClient::hear_camera(std::int64_t map_session, Seconds timeout) {
+HeardCamera QueryClient::hear_camera(std::int64_t map_session, Seconds timeout) {
   subscribe<CameraPose>(bus_, channels::kCameraPose, [this, map_session](const CameraPose& pose) {
     if (map_session != 0 && pose.session != map_session) return;
     if (is_located(pose)) pose_ = pose;
@@ -98,15 +98,14 @@ CameraView QueryClient::hear_camera(std::int64_t map_session, Seconds timeout) {
   bus_.subscribe(channels::kRgbdFrame, [this](ByteView data) {
     try {
       intrinsics_ = decode_chunk<RgbdFrameMessage>(data).header.intrinsics;
-    } catch (const DecodeError&) {  // it says nothing
+    } catch (const DecodeError&) {  // without intrinsics
     }
   });
   const auto deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(timeout);
   if (!handle_until(deadline, [&] { return pose_.has_value(); })) {
     throw std::runtime_error(fmt::format(
         "no camera pose within {} s on {}: {}; give --pose", timeout.count(), bus_.url(),
-        camera_is_lost_ ? "the camera has lost its place"
-                        : "no mapper is heard there, or it has ended"));
+        camera_is_lost_ ? "camera tracking is lost" : "no mapper is heard there, or it has ended"));
   }
   handle_until(Clock::now() + kFrameWait, [&] { return intrinsics_.has_value(); });
   return {*pose_, intrinsics_};

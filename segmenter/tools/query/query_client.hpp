@@ -1,5 +1,5 @@
 #pragma once
-// Asks a segmenter on the bus, and hears where the camera is.
+// Sends queries to segmenters on the bus, and listens to the camera pose.
 
 #include <chrono>
 #include <cstdint>
@@ -11,10 +11,10 @@
 
 namespace kintsugi::segmenter {
 
-/// Where a camera is, and how it sees.
-struct CameraView {
+/// The pose of a camera and, if known, its intrinsics.
+struct HeardCamera {
   CameraPose pose;
-  std::optional<Intrinsics> intrinsics;  ///< nothing: no raw frame was heard
+  std::optional<Intrinsics> intrinsics;  ///< absent: no raw frame was received
 };
 
 /// One client of the segmenters on a bus. Belongs to one thread.
@@ -22,20 +22,21 @@ class QueryClient {
  public:
   using Seconds = std::chrono::duration<double>;
 
-  /// Opens the bus; empty: the default one. Throws std::runtime_error when it cannot be opened.
+  /// Opens the bus; empty: the default one.
+  /// @throws std::runtime_error when it cannot be opened
   explicit QueryClient(const std::string& lcm_url);
 
-  /// Asks, and asks again as long as no answer comes: queries and answers may be lost. Of several
-  /// segmenters the first that has an answer gives it; where none has, SegmentAnswer::problem says
-  /// why. Throws std::runtime_error saying what was heard when nobody answers in `timeout`, and
-  /// std::invalid_argument for a query that is out of bounds; its client, number and utime are set
-  /// here.
+  /// Sends the query, and repeats it until an answer arrives, because queries and answers may be
+  /// lost. Of several segmenters the first useful answer is returned; when there is none,
+  /// SegmentAnswer::problem says why. Sets client, number and utime of the query.
+  /// @throws std::runtime_error when nobody answers within `timeout`, with what was heard instead
+  /// @throws std::invalid_argument for a query that is out of bounds
   SegmentAnswer ask(SegmentQuery query, Seconds timeout);
 
-  /// The newest pose of a camera that knows where it is, of the mapper session `map_session` (0:
-  /// any). Intrinsics come along when raw frames are heard within a moment. Throws
-  /// std::runtime_error saying what was heard when no such pose comes in `timeout`. Call it once.
-  CameraView hear_camera(std::int64_t map_session, Seconds timeout);
+  /// The newest tracked pose of a camera, of the mapper session `map_session` (0: any), with the
+  /// intrinsics if raw frames arrive within half a second. Call it once.
+  /// @throws std::runtime_error when no such pose arrives within `timeout`, with what was heard
+  HeardCamera hear_camera(std::int64_t map_session, Seconds timeout);
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -53,7 +54,7 @@ class QueryClient {
   std::optional<SegmentAnswer> answer_;
   std::optional<SegmentAnswer> refusal_;
   std::optional<SegmenterStatus> status_;  // of any segmenter, the newest
-  std::optional<CameraPose> pose_;         // the newest of a camera that knows where it is
+  std::optional<CameraPose> pose_;         // the newest tracked one
   bool camera_is_lost_ = false;
   std::optional<Intrinsics> intrinsics_;
 };

@@ -1,5 +1,5 @@
 #pragma once
-// An answer as a person reads it, and as a program does.
+// Answers as a table for people and as JSON for programs.
 
 #include <string>
 
@@ -7,8 +7,8 @@
 
 namespace kintsugi::segmenter {
 
-/// A line for each segment, under a header; of a single one all that is known. Lengths in metres,
-/// frame W.
+/// A line for each segment, under a header; for a single segment also all details. Lengths in
+/// metres, frame W.
 std::string answer_table(const SegmentAnswer& answer);
 
 /// One JSON object: `map` (name, sessions, slices, points, segments), `matching` (how many segments
