@@ -12,7 +12,7 @@
 namespace kintsugi::segmenter {
 namespace {
 
-// As the mapper averages those of its surface.
+// The same as in the mapper.
 constexpr float kAveragingRadius_vox = 2.0F;
 
 NormalsConfig normals_of(const CloudInputConfig& config) {

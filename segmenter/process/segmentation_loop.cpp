@@ -50,7 +50,7 @@ void SegmentationLoop::run() {
   }
 }
 
-// What is received meanwhile waits in the queue.
+// Slices that are received while the map is loaded wait in the queue.
 void SegmentationLoop::resume() {
   if (!config_.resume_file.empty()) {
     auto map = resume_map(config_.resume_file, config_.maps.map, session_);

@@ -14,7 +14,7 @@ namespace {
 
 using Labels = std::vector<std::uint32_t>;
 
-/// The final map: its points in order of slice and index, and what each belongs to.
+/// The final map: its points in order of slice and index, with their true instances.
 class KnownMap {
  public:
   KnownMap(const RecordedSession& session, const Truth& truth, const ComparisonConfig& config)
@@ -42,7 +42,7 @@ class KnownMap {
     return labels;
   }
 
-  /// Fills in time and quality.
+  /// Segments with the parameters of `result` and sets its time and quality.
   void segment(ComparedResult& result) const {
     const CloudChange everything = cloud_.everything();
     const Stopwatch watch;

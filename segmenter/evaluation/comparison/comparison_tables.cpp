@@ -11,7 +11,7 @@ namespace {
 
 std::string shortest(double value) { return fmt::format("{:g}", value); }
 
-/// Of given labels the parameters are not known.
+/// Empty for given labels, whose parameters are unknown.
 std::string parameter(const ParameterSet& variant, double EngineConfig::*value) {
   return variant.name == kGivenLabels ? "" : shortest(variant.engine.*value);
 }
@@ -34,7 +34,7 @@ std::vector<std::string> quality_row(const ComparedResult& result) {
   return row;
 }
 
-/// What is known of an instance of the truth.
+/// A true instance and its scores.
 struct InstanceRow {
   TruthInstance instance;
   std::int64_t num_points = 0;

@@ -12,8 +12,8 @@
 namespace kintsugi::segmenter {
 namespace {
 
-/// So often that all runs together take about the budget: a run takes time in proportion to the
-/// points so far.
+/// The smallest interval between runs of batch that keeps their total time within the budget, if
+/// the time of a run is proportional to the number of points.
 int affordable_interval(const RecordedSession& session, double final_ms, double budget_s) {
   double points = 0.0;
   double points_of_all_runs = 0.0;
@@ -37,7 +37,7 @@ std::vector<std::int64_t> lag_of(const MeasuredSession& measured, const Recorded
   return slices_behind(all_ready_us, run_ms);
 }
 
-/// Labels by the size of their segments, largest first, of equal ones the smaller label.
+/// Labels by the size of their segments, largest first; at equal size the smaller label first.
 std::vector<std::uint32_t> labels_by_size(std::span<const std::uint32_t> labels) {
   std::vector<std::int64_t> sizes;
   for (const std::uint32_t label : labels) {
@@ -51,7 +51,7 @@ std::vector<std::uint32_t> labels_by_size(std::span<const std::uint32_t> labels)
   return by_size;
 }
 
-/// Of the segments asked for that there are.
+/// The theta histories of the configured segments, as far as they exist.
 std::vector<ChosenSegment> choose_thetas(const RecordedSession& session,
                                          const MeasuredSession& batch,
                                          const EvaluationConfig& config) {

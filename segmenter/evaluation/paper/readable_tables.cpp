@@ -35,7 +35,7 @@ class ReadableRows {
   Table table_;
 };
 
-/// A figure that was not measured after every slice says so.
+/// Marks a figure that was not measured after every slice.
 std::string sampled(const ModeResult& mode, const std::string& text) {
   return mode.is_complete ? text : "~ " + text;
 }

@@ -6,7 +6,7 @@
 namespace kintsugi::segmenter {
 namespace {
 
-/// Over all steps: exact where each was run, else by trapezoids from the point (0, 0).
+/// The time of all steps: the exact sum if each was run, else by the trapezoidal rule from (0, 0).
 double total_ms(const std::vector<MeasuredRun>& runs) {
   double total = 0.0;
   std::int32_t step_before = -1;

@@ -21,7 +21,7 @@ struct Piece {
   std::int32_t larger = kNone;  // of the two
 };
 
-/// The tree of joins of a cloud: told by join_segments() over `forest`.
+/// The tree of joins of a cloud, as join_segments() reports them.
 class JoinTree {
  public:
   JoinTree(const SegmentForest& forest, double threshold)

@@ -34,7 +34,7 @@ void take_known(std::span<const CloudPoint> points_W, std::span<const std::uint3
           std::to_string(known.cloud.num_rejected()) + " points cannot be segmented, must be 0");
 }
 
-/// The points that have a neighbour that fits.
+/// Flags the points that have a neighbour for which fits(point, neighbour) is true.
 template <typename Fits>
 Flags with_neighbour(const NeighbourIndex& index, std::size_t num_points, const Fits& fits) {
   Flags flags(num_points, 0);

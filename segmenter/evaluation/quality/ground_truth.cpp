@@ -15,7 +15,7 @@
 namespace kintsugi::segmenter {
 namespace {
 
-/// Of `instance ID structure|object NAME`; nothing for any other comment.
+/// Parses `instance ID structure|object NAME`; nothing for any other comment.
 std::optional<TruthInstance> parse_instance(const std::string& comment) {
   std::istringstream words(comment);
   std::string keyword;

@@ -14,7 +14,7 @@ namespace {
 
 using Labels = std::pair<std::uint32_t, std::uint32_t>;  // instance and segment of a point
 
-/// Of the points that have an instance, ascending.
+/// The labels of the points that have an instance, ascending.
 std::vector<Labels> sorted_labels(std::span<const std::uint32_t> instances,
                                   std::span<const std::uint32_t> segments) {
   std::vector<Labels> labels;

@@ -12,7 +12,7 @@
 namespace kintsugi::segmenter {
 namespace {
 
-/// What a log holds of one session of a mapper.
+/// The contents of a log for one mapper session.
 struct LoggedSession {
   SliceSequencer order{{}};
   std::vector<SliceGroup> steps;
@@ -34,7 +34,7 @@ struct LoggedSession {
     take(Outlook::kSilent);
   }
 
-  /// Gives up what is missing.
+  /// Takes what is left, without the missing slices.
   void end() {
     do take(Outlook::kEnded);
     while (order.give_up_gap({}, Outlook::kEnded));
@@ -48,7 +48,7 @@ struct LoggedSession {
 
 using LoggedSessions = std::map<std::int64_t, LoggedSession>;
 
-/// Everything in the log, and what was wrong with it.
+/// Reads all sessions of the log; adds to `faults` what was wrong with it.
 LoggedSessions read_log(const std::filesystem::path& path, std::vector<std::string>& faults) {
   LogReader log(path);
   LoggedSessions sessions;
@@ -94,7 +94,7 @@ double path_length_m(const std::vector<Pose>& X_WC) {
   return length_m;
 }
 
-/// Build time and path, from camera poses or, without them, from the slices.
+/// Sets build time and path length, from camera poses or, without them, from the slices.
 void measure_path(const LoggedSession& logged, RecordedSession& session) {
   const std::vector<const CloudSlice*> slices = session.newest_slices();
   std::vector<Pose> path;
@@ -116,7 +116,7 @@ void measure_path(const LoggedSession& logged, RecordedSession& session) {
   session.path_length_m = path_length_m(path);
 }
 
-/// What is missing, was left out or was corrected.
+/// Adds remarks about what is missing, was left out or was corrected.
 void add_remarks(const LoggedSession& logged, RecordedSession& session) {
   if (const auto num_missing = logged.order.num_missing(); num_missing > 0) {
     session.is_whole = false;

@@ -127,7 +127,7 @@ class AsciiBody final : public PlyBody {
  private:
   static constexpr std::string_view kBlanks = " \t\r";
 
-  // Makes line_ the next line that is not blank.
+  // Moves line_ to the next line that is not blank.
   void next_line(const PlyElement& element, std::int64_t row) {
     do {
       if (num_bytes_left() == 0) {
@@ -159,7 +159,7 @@ class AsciiBody final : public PlyBody {
     return error == std::errc::result_out_of_range ? out_of_range_value(word) : value;
   }
 
-  // What a number beyond double's range stands for: zero when too small, else infinity.
+  // The value of a number beyond the range of double: zero when too small, else infinity.
   static double out_of_range_value(std::string_view word) {
     const bool is_small =
         word.find("e-") != std::string_view::npos || word.find("E-") != std::string_view::npos;

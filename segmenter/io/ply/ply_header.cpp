@@ -30,7 +30,7 @@ constexpr std::array<TypeInfo, 8> kTypes{{
 
 const TypeInfo& info(PlyType type) { return kTypes.at(static_cast<std::size_t>(type)); }
 
-// What an error quotes of a file: short, and printable whatever is in it.
+// A quotation for an error message: short, and printable whatever the file contains.
 std::string quoted(std::string_view text) {
   constexpr std::size_t kMaxQuoted = 40;
   std::string result = "'";
@@ -51,7 +51,7 @@ std::vector<std::string_view> split(std::string_view line) {
   return words;
 }
 
-// Of a line of these words: what follows the first.
+// What follows the first of these words of a line.
 std::string_view text_after(const std::vector<std::string_view>& words) {
   if (words.size() < 2) return {};
   return {words[1].data(), words.back().data() + words.back().size()};

@@ -34,7 +34,7 @@ struct Options {
   TrajectoryOptions trajectory;
 };
 
-/// A map or a camera path, but not both.
+/// The input is a map or a camera path, but not both.
 void require_task(const Options& options) {
   const bool has_path = !options.trajectory.estimate_file.empty();
   if (has_path && !options.input.empty()) throw CLI::ExcludesError("--trajectory", "IN");

@@ -22,7 +22,7 @@
 namespace kintsugi::segmenter {
 namespace {
 
-/// Those that are asked for, ascending. Throws when one is not there.
+/// The ids of the wanted segments, ascending. Throws when one does not exist.
 std::vector<std::uint32_t> chosen_segments(const LabelledMap& input, const ExportOptions& options) {
   const std::vector<SegmentStatistics>& segments = input.map.segments;
   std::vector<std::uint32_t> wanted = options.segment_ids;
@@ -69,7 +69,7 @@ void write_segs(const LabelledMap& input, const ExportOptions& options) {
   write_scannet_segments(scene_id_of(options), parameters, ids, options.segs);
 }
 
-/// Files that need every segment to be described.
+/// Writes the files that need a description of every segment.
 void write_descriptions(const LabelledMap& input, const ExportOptions& options) {
   const LabelledCloud cloud = labelled_cloud(input.map);
   const AdjacencyGraph graph = adjacency_graph(cloud);

@@ -21,7 +21,7 @@ bool is_ply(const std::filesystem::path& path) {
   return std::string_view(start.data(), start.size()) == "ply";
 }
 
-/// Slices as the vertices come: of a file that mixes them there are several of one id.
+/// Runs of vertices with the same slice_id, in the order of the file; an id can have several.
 std::vector<SliceRecord> slices_of(const PlyCloud& cloud) {
   std::vector<SliceRecord> slices;
   for (PointIndex i = 0; i < cloud.points_W.size(); ++i) {
@@ -37,7 +37,7 @@ std::vector<SliceRecord> slices_of(const PlyCloud& cloud) {
   return slices;
 }
 
-/// Normals of length 1, or 0 where there is none that can be used.
+/// Makes the length of each normal 1, or 0 where it cannot be used.
 void make_usable(PlyCloud& cloud) {
   normalize_normals(cloud.points_W);
   for (CloudPoint& p : cloud.points_W) {

@@ -1,4 +1,4 @@
-// kintsugi-query: asks a segmenter on the bus, or a saved map, for segments.
+// kintsugi-query: asks a segmenter on the bus, or a saved map, about segments.
 
 #include <algorithm>
 #include <array>

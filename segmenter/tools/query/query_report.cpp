@@ -44,7 +44,7 @@ std::string row(const DescribedSegment& segment, std::ptrdiff_t num_neighbours) 
                      plane_text(segment));
 }
 
-/// What has no place in a row.
+/// What does not fit into a row.
 std::string details(const DescribedSegment& segment, std::span<const SegmentContact> contacts) {
   const SegmentStatistics& s = segment.statistics;
   std::string out = fmt::format("\nsegment {}\n", s.segment_id);
