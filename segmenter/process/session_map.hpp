@@ -96,8 +96,8 @@ class SessionMap {
   [[nodiscard]] std::optional<SaveRequest> save(bool again = false);
 
   const Counts& counts() const { return counts_; }
-  const SegmentMap& map() const { return *map_; }
-  std::shared_ptr<const SegmentMap> shared_map() const { return map_; }
+  const SegmentMap& segment_map() const { return *map_; }
+  std::shared_ptr<const SegmentMap> shared_segment_map() const { return map_; }
   /// True when no slice that arrived waits to be segmented.
   bool is_idle() const { return sequencer_.num_waiting() == 0; }
   /// Memory of the slices that arrived and are not segmented.

@@ -57,7 +57,7 @@ SessionMaps::Session* SessionMaps::find_or_begin(const CloudSlice& slice, Clock:
     return nullptr;
   }
   Session& session = begin(std::make_unique<SegmentMap>(config_.map, session_, slice), now);
-  supersede(session.map.map(), now, warnings);
+  supersede(session.map.segment_map(), now, warnings);
   return &session;
 }
 
@@ -71,7 +71,7 @@ SessionMaps::Session& SessionMaps::begin(std::unique_ptr<SegmentMap> map, Clock:
 void SessionMaps::supersede(const SegmentMap& map, Clock::time_point now, Warnings& warnings) {
   const std::int64_t begun = map.map_session();
   for (auto& [number, other] : sessions_) {
-    if (number == begun || other.map.map().map_name() != map.map_name()) {
+    if (number == begun || other.map.segment_map().map_name() != map.map_name()) {
       continue;
     }
     other.last_news = now;
@@ -83,9 +83,10 @@ void SessionMaps::supersede(const SegmentMap& map, Clock::time_point now, Warnin
 }
 
 bool SessionMaps::is_superseded(const SegmentMap& map) const {
-  return std::any_of(
-      sessions_.upper_bound(map.map_session()), sessions_.end(),
-      [&](const auto& newer) { return newer.second.map.map().map_name() == map.map_name(); });
+  return std::any_of(sessions_.upper_bound(map.map_session()), sessions_.end(),
+                     [&](const auto& newer) {
+                       return newer.second.map.segment_map().map_name() == map.map_name();
+                     });
 }
 
 StepResult SessionMaps::step(Clock::time_point now) {
@@ -122,7 +123,7 @@ void SessionMaps::end_superseded(Clock::time_point now, StepResult& result) {
   }
   for (auto it = sessions_.begin(); it != sessions_.end(); ++it) {
     auto& [number, session] = *it;
-    if (is_superseded(session.map.map()) && can_end(number, session, now)) {
+    if (is_superseded(session.map.segment_map()) && can_end(number, session, now)) {
       return end(it, result);
     }
   }
@@ -144,7 +145,7 @@ void SessionMaps::end(Sessions::iterator session, StepResult& result) {
   const SessionMap& map = session->second.map;
   num_missing_ += map.counts().missing;
   result.has_progressed = true;
-  result.saves.push_back({map.shared_map(), SaveKind::kSessionEnded});
+  result.saves.push_back({map.shared_segment_map(), SaveKind::kSessionEnded});
   result.warnings.push_back(fmt::format("session {} has ended", number));
   result.ended_session = number;
   sessions_.erase(session);
@@ -185,7 +186,7 @@ void SessionMaps::drop(std::int32_t id, std::int64_t map_session, const std::str
 std::vector<SegmentUpdate> SessionMaps::describe() const {
   std::vector<SegmentUpdate> all;
   for (const auto& [number, session] : sessions_) {
-    std::ranges::move(session.map.map().describe(), std::back_inserter(all));
+    std::ranges::move(session.map.segment_map().describe(), std::back_inserter(all));
   }
   return all;
 }
@@ -198,7 +199,7 @@ SessionMaps::Counts SessionMaps::counts() const {
   counts.complete = counts.ended = !sessions_.empty();
   for (const auto& [number, session] : sessions_) {
     const SessionMap::Counts& of_map = session.map.counts();
-    const bool is_last = !is_superseded(session.map.map());
+    const bool is_last = !is_superseded(session.map.segment_map());
     counts.newest = of_map;  // the largest number comes last
     counts.lag += of_map.lag;
     counts.missing += of_map.missing;
@@ -212,13 +213,8 @@ SessionMaps::Counts SessionMaps::counts() const {
 std::vector<const SegmentMap*> SessionMaps::maps() const {
   std::vector<const SegmentMap*> maps;
   maps.reserve(sessions_.size());
-  for (const auto& [number, session] : sessions_) maps.push_back(&session.map.map());
+  for (const auto& [number, session] : sessions_) maps.push_back(&session.map.segment_map());
   return maps;
-}
-
-const SegmentMap* SessionMaps::map(std::int64_t map_session) const {
-  const auto found = sessions_.find(map_session);
-  return found == sessions_.end() ? nullptr : &found->second.map.map();
 }
 
 }  // namespace kintsugi::segmenter

@@ -87,8 +87,6 @@ class SessionMaps {
   Counts counts() const;
   /// All maps, older sessions first.
   std::vector<const SegmentMap*> maps() const;
-  /// The map of a session; null when there is none.
-  const SegmentMap* map(std::int64_t map_session) const;
 
  private:
   struct Session {

@@ -83,8 +83,8 @@ class Revisions : public ::testing::Test {
     }
     EXPECT_EQ(session.counts().lag, 0);
     EXPECT_TRUE(session.counts().complete);
-    EXPECT_EQ(mirror_.labels(), testing::labels_of(session.map()));
-    EXPECT_EQ(mirror_.statistics(), session.map().statistics().all());
+    EXPECT_EQ(mirror_.labels(), testing::labels_of(session.segment_map()));
+    EXPECT_EQ(mirror_.statistics(), session.segment_map().statistics().all());
     EXPECT_EQ(mirror_.num_segments(), session.counts().segments);
   }
 
@@ -109,7 +109,7 @@ TEST_F(Revisions, MovingAThirdOfTheMapAndBackGivesWhatBatchGivesEachTime) {
     mirror_ = {};
     SessionMap session = make(mode);
     run(session, slices_);
-    const Labels original = testing::labels_of(session.map());
+    const Labels original = testing::labels_of(session.segment_map());
     EXPECT_GT(session.counts().segments, 100);
     EXPECT_TRUE(testing::same_partition(original, batch_labels(slices_))) << mode;
 
@@ -118,13 +118,14 @@ TEST_F(Revisions, MovingAThirdOfTheMapAndBackGivesWhatBatchGivesEachTime) {
     const auto num_moved = std::ssize(slices_) * 2 / 3 - std::ssize(slices_) / 3;
     EXPECT_EQ(num_updates_, num_moved);
     EXPECT_EQ(session.counts().corrected, num_moved);
-    const Labels after = testing::labels_of(session.map());
+    const Labels after = testing::labels_of(session.segment_map());
     EXPECT_TRUE(testing::same_partition(after, batch_labels(moved_))) << mode;
     EXPECT_FALSE(testing::same_partition(after, original)) << "the motion changes nothing";
 
     run(session, back_);
-    EXPECT_TRUE(testing::same_partition(testing::labels_of(session.map()), original)) << mode;
-    EXPECT_EQ(session.map().cloud().num_live(), session.counts().points);
+    EXPECT_TRUE(testing::same_partition(testing::labels_of(session.segment_map()), original))
+        << mode;
+    EXPECT_EQ(session.segment_map().cloud().num_live(), session.counts().points);
     EXPECT_EQ(session.counts().received, std::ssize(slices_));
   }
 }
@@ -158,7 +159,7 @@ TEST_F(Revisions, FinalMapIsTheSameInAnyOrderOfArrivalWithDuplicates) {
     SessionMap in_order = make(mode);
     mirror_ = {};
     run(in_order, back_);
-    const Labels expected = testing::labels_of(in_order.map());
+    const Labels expected = testing::labels_of(in_order.segment_map());
     for (int round = 0; round < 2; ++round) {
       std::ranges::shuffle(all, random);
       SessionMap shuffled = make(mode);
@@ -171,8 +172,9 @@ TEST_F(Revisions, FinalMapIsTheSameInAnyOrderOfArrivalWithDuplicates) {
         }
       }
       run(shuffled, {});
-      EXPECT_TRUE(testing::same_partition(testing::labels_of(shuffled.map()), expected)) << mode;
-      for (const SliceRecord& slice : shuffled.map().cloud().slices()) {
+      EXPECT_TRUE(testing::same_partition(testing::labels_of(shuffled.segment_map()), expected))
+          << mode;
+      for (const SliceRecord& slice : shuffled.segment_map().cloud().slices()) {
         EXPECT_EQ(slice.revision, back_[static_cast<std::size_t>(slice.slice_id)].revision);
       }
     }
@@ -194,7 +196,7 @@ TEST_F(Revisions, FinalMapIsTheSameWhenASegmenterStopsAnywhereAndAnotherHearsEve
         }
       }
       mirror_ = {};
-      SessionMap second = resume(std::make_unique<SegmentMap>(first.map().state()));
+      SessionMap second = resume(std::make_unique<SegmentMap>(first.segment_map().state()));
       std::ranges::shuffle(all, random);
       run(second, all);
       EXPECT_TRUE(testing::same_partition(mirror_.labels(), expected)) << mode;
@@ -216,7 +218,7 @@ TEST_F(Revisions, IdsDependOnTheOrderOfArrivalAndNotOnTiming) {
     }
   }
   run(at_once, {});
-  EXPECT_EQ(testing::labels_of(late.map()), testing::labels_of(at_once.map()));
+  EXPECT_EQ(testing::labels_of(late.segment_map()), testing::labels_of(at_once.segment_map()));
 }
 
 TEST_F(Revisions, ANewSegmenterGoesOnWithTheMapOfAnEarlierOne) {
@@ -232,7 +234,7 @@ TEST_F(Revisions, ANewSegmenterGoesOnWithTheMapOfAnEarlierOne) {
       num_updates_ = 0;
       SessionMap session = resume(std::move(map));
       EXPECT_EQ(num_updates_, static_cast<int>(num_done));
-      EXPECT_EQ(mirror_.labels(), testing::labels_of(session.map()));
+      EXPECT_EQ(mirror_.labels(), testing::labels_of(session.segment_map()));
       EXPECT_EQ(session.counts().segmented, static_cast<std::int64_t>(num_done));
       run(session, slices_);
       EXPECT_TRUE(testing::same_partition(mirror_.labels(), batch_labels(slices_)));

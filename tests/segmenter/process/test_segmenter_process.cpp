@@ -58,7 +58,7 @@ TEST(SegmenterStreams, MapIsTheSameHoweverTheChunksArrive) {
     while (map.step({}, Outlook::kEnded).has_progressed) {
     }
     EXPECT_TRUE(map.counts().complete);
-    return testing::labels_of(map.map());
+    return testing::labels_of(map.segment_map());
   };
   const auto expected = labels_after();
   for (int round = 0; round < 5; ++round) {

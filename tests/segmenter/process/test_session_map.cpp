@@ -77,7 +77,7 @@ TEST_F(SessionMapTest, PublishesUpdatesThatReplayToTheMap) {
       for (; num_mirrored < updates_.size(); ++num_mirrored) {
         mirror.apply(updates_[num_mirrored]);
       }
-      EXPECT_EQ(mirror.labels(), testing::labels_of(map.map())) << mode << slice.id;
+      EXPECT_EQ(mirror.labels(), testing::labels_of(map.segment_map())) << mode << slice.id;
       EXPECT_EQ(mirror.num_segments(), updates_.back().num_segments) << mode << slice.id;
     }
     ASSERT_EQ(updates_.size(), 6U);
@@ -87,7 +87,7 @@ TEST_F(SessionMapTest, PublishesUpdatesThatReplayToTheMap) {
       EXPECT_EQ(updates_[i].map_session, 5);
       EXPECT_EQ(updates_[i].is_final, i == 5);
     }
-    EXPECT_EQ(mirror.statistics(), map.map().statistics().all());
+    EXPECT_EQ(mirror.statistics(), map.segment_map().statistics().all());
     EXPECT_TRUE(map.counts().complete);
     EXPECT_EQ(map.counts().lag, 0);
   }
@@ -110,8 +110,10 @@ TEST_F(SessionMapTest, MapDoesNotDependOnTheOrderOfArrival) {
         shuffled.offer(slice, now_);  // a duplicate changes nothing
         run(shuffled);
       }
-      EXPECT_EQ(testing::labels_of(shuffled.map()), testing::labels_of(in_order.map()));
-      EXPECT_EQ(shuffled.map().statistics().all(), in_order.map().statistics().all());
+      EXPECT_EQ(testing::labels_of(shuffled.segment_map()),
+                testing::labels_of(in_order.segment_map()));
+      EXPECT_EQ(shuffled.segment_map().statistics().all(),
+                in_order.segment_map().statistics().all());
     }
   }
   EXPECT_THAT(warnings_, ::testing::IsEmpty());
@@ -134,15 +136,15 @@ TEST_F(SessionMapTest, CoalescingSegmentsWaitingSlicesInOneRunWithOneUpdateEach)
     EXPECT_EQ(update.num_slices, update.slice_id + 1);
     EXPECT_EQ(update.num_points, 200 * (update.slice_id + 1));
   }
-  EXPECT_EQ(mirror.labels(), testing::labels_of(one_run.map()));
+  EXPECT_EQ(mirror.labels(), testing::labels_of(one_run.segment_map()));
 
   SessionMap each = make("batch");
   for (const CloudSlice& slice : slices) {
     each.offer(slice, now_);
     run(each);
   }
-  EXPECT_TRUE(
-      testing::same_partition(testing::labels_of(one_run.map()), testing::labels_of(each.map())));
+  EXPECT_TRUE(testing::same_partition(testing::labels_of(one_run.segment_map()),
+                                      testing::labels_of(each.segment_map())));
 }
 
 TEST_F(SessionMapTest, GoesOnWithoutAMissingSliceAfterTheTimeout) {
@@ -210,7 +212,7 @@ TEST_F(SessionMapTest, CoalescingTakesTheNewestRevisionOfEachSlice) {
   }
   run(map, Outlook::kEnded);
   ASSERT_EQ(updates_.size(), 4U);
-  EXPECT_EQ(map.map().cloud().find_slice(1)->revision, 2);
+  EXPECT_EQ(map.segment_map().cloud().find_slice(1)->revision, 2);
   EXPECT_EQ(map.counts().points, 99 + 98 + 99);
   EXPECT_EQ(map.counts().segmented, 3);
   EXPECT_EQ(map.counts().corrected, 1);
