@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include <CLI/CLI.hpp>
+
 #include "segmenter/core/presets.hpp"
 
 namespace kintsugi::segmenter {

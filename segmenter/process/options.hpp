@@ -4,10 +4,12 @@
 #include <string_view>
 #include <variant>
 
-#include <CLI/CLI.hpp>
-
 #include "segmenter/map/segment_map.hpp"
 #include "segmenter/process/segmenter_process.hpp"
+
+namespace CLI {
+class App;
+}
 
 namespace kintsugi::segmenter {
 

@@ -1,5 +1,7 @@
 #include "segmenter/tools/cloud_options.hpp"
 
+#include <CLI/CLI.hpp>
+
 namespace kintsugi::segmenter {
 
 void add_cloud_options(CLI::App& app, CloudInputConfig& config) {

@@ -1,9 +1,11 @@
 #pragma once
 // The flags of programs that read a cloud from a PLY file.
 
-#include <CLI/CLI.hpp>
-
 #include "segmenter/io/cloud_input.hpp"
+
+namespace CLI {
+class App;
+}
 
 namespace kintsugi::segmenter {
 

@@ -1,5 +1,6 @@
 #include "segmenter/tools/evaluate/quality_task.hpp"
 
+#include <CLI/CLI.hpp>
 #include <spdlog/spdlog.h>
 
 #include "segmenter/evaluation/comparison/comparison_report.hpp"

@@ -4,10 +4,12 @@
 #include <filesystem>
 #include <string>
 
-#include <CLI/CLI.hpp>
-
 #include "segmenter/evaluation/comparison/comparison.hpp"
 #include "segmenter/evaluation/report/page_parts.hpp"
+
+namespace CLI {
+class App;
+}
 
 namespace kintsugi::segmenter {
 

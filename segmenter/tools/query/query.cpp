@@ -4,6 +4,8 @@
 #include <iostream>
 #include <stdexcept>
 
+#include <CLI/CLI.hpp>
+
 #include "lcmtypes/base/run_main.hpp"
 #include "lcmtypes/codec/codec.hpp"
 #include "segmenter/io/saved_map.hpp"

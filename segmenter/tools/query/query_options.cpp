@@ -4,6 +4,8 @@
 #include <stdexcept>
 #include <tuple>
 
+#include <CLI/CLI.hpp>
+
 #include "segmenter/query/pixel_ray.hpp"
 
 namespace kintsugi::segmenter {
