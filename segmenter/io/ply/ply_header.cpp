@@ -31,7 +31,7 @@ constexpr std::array<TypeInfo, 8> kTypes{{
 const TypeInfo& info(PlyType type) { return kTypes.at(static_cast<std::size_t>(type)); }
 
 // A quotation for an error message: short, and printable whatever the file contains.
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
   constexpr std::size_t kMaxQuoted = 40;
   std::string result = "'";
   for (const char c : text.substr(0, kMaxQuoted)) {
@@ -110,7 +110,7 @@ class HeaderParser {
     } else if (words[1] == "binary_big_endian") {
       header_.format = PlyFormat::kBinaryBigEndian;
     } else {
-      fail("unknown format " + quoted(words[1]) + ", " + kExpected);
+      fail("unknown format " + in_quotes(words[1]) + ", " + kExpected);
     }
   }
 
@@ -128,7 +128,7 @@ class HeaderParser {
     } else if (keyword == "comment") {
       header_.comments.emplace_back(text_after(words));
     } else if (keyword != "obj_info") {
-      fail("unknown keyword " + quoted(keyword) +
+      fail("unknown keyword " + in_quotes(keyword) +
            ", expected element, property, comment, obj_info or end_header");
     }
     return false;
@@ -142,12 +142,12 @@ class HeaderParser {
     const char* const end = words[2].data() + words[2].size();
     const auto [rest, error] = std::from_chars(words[2].data(), end, element.count);
     if (error != std::errc{} || rest != end || element.count < 0) {
-      fail("the count of element " + quoted(words[1]) + " is " + quoted(words[2]) +
+      fail("the count of element " + in_quotes(words[1]) + " is " + in_quotes(words[2]) +
            ", expected a number >= 0");
     }
     for (const PlyElement& other : header_.elements) {
       if (other.name == element.name) {
-        fail("element " + quoted(words[1]) + " is declared a second time");
+        fail("element " + in_quotes(words[1]) + " is declared a second time");
       }
     }
     header_.elements.push_back(std::move(element));
@@ -161,7 +161,7 @@ class HeaderParser {
     if (words.size() == 5 && words[1] == "list") {
       property = {std::string(words[4]), parse_type(words[3]), parse_type(words[2])};
       if (!is_integer(*property.list_count)) {
-        fail("the length of list " + quoted(words[4]) + " must have an integer type");
+        fail("the length of list " + in_quotes(words[4]) + " must have an integer type");
       }
     } else if (words.size() == 3) {
       property = {std::string(words[2]), parse_type(words[1]), std::nullopt};
@@ -170,7 +170,7 @@ class HeaderParser {
     }
     PlyElement& element = header_.elements.back();
     if (element.find(property.name)) {
-      fail("property " + quoted(property.name) + " of element " + quoted(element.name) +
+      fail("property " + in_quotes(property.name) + " of element " + in_quotes(element.name) +
            " is declared a second time");
     }
     element.properties.push_back(std::move(property));
@@ -182,7 +182,7 @@ class HeaderParser {
         return candidate.type;
       }
     }
-    fail("unknown type " + quoted(word) +
+    fail("unknown type " + in_quotes(word) +
          ", expected char, uchar, short, ushort, int, uint, float or double");
   }
 
