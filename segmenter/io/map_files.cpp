@@ -5,7 +5,7 @@
 
 #include "lcmtypes/base/atomic_file.hpp"
 #include "lcmtypes/client/statistics_json.hpp"
-#include "segmenter/io/labelled_ply_writer.hpp"
+#include "segmenter/io/ply/labelled_ply_writer.hpp"
 #include "segmenter/io/segments_csv.hpp"
 
 namespace kintsugi::segmenter {

@@ -1,5 +1,5 @@
 #pragma once
-// Files of records that lie there as in memory, little-endian, with a CRC-32 at the end.
+// Files of records in their memory layout, little-endian, with a CRC-32 at the end.
 
 #include <bit>
 #include <cstddef>
@@ -14,7 +14,8 @@
 
 namespace kintsugi::segmenter {
 
-static_assert(std::endian::native == std::endian::little, "records go to the file as they are");
+static_assert(std::endian::native == std::endian::little,
+              "records are written in their memory layout");
 
 /// Writes records to a stream that throws when it fails.
 class RecordWriter {
@@ -40,17 +41,17 @@ class RecordWriter {
   std::uint32_t crc_ = 0;
 };
 
-/// Reads records of a file in order. Each error is a std::runtime_error that names the file.
+/// Reads the records of a file in order. Every error is a std::runtime_error that names the file.
 class RecordReader {
  public:
-  /// Throws when `path` is no file that can be read.
+  /// @throws std::runtime_error when `path` cannot be read
   explicit RecordReader(const std::filesystem::path& path);
 
   std::uint64_t size() const { return size_; }
-  /// Bytes from the place reached to the end.
+  /// Bytes from the current position to the end.
   std::uint64_t left() const { return size_ - position_; }
 
-  /// Throws, before anything is allocated, when the file ends before.
+  /// @throws std::runtime_error, before anything is allocated, when the file is too short
   template <class Record>
   std::vector<Record> read_all(std::uint64_t count) {
     static_assert(std::is_trivially_copyable_v<Record>);
@@ -67,10 +68,11 @@ class RecordReader {
     return record;
   }
 
-  /// Throws unless the last four bytes are the CRC-32 of all before. Leaves the place as it is.
+  /// Keeps the current position.
+  /// @throws std::runtime_error unless the last four bytes are the CRC-32 of all before them
   void check_checksum();
 
-  /// Throws with the file, the place reached and `reason`.
+  /// @throws std::runtime_error with the file, the current position and `reason`
   [[noreturn]] void fail(const std::string& reason) const;
 
  private:

@@ -215,10 +215,6 @@ SegmentMapState read_map_state(const std::filesystem::path& path) {
   return state;
 }
 
-void save_map(const SegmentMap& map, const std::filesystem::path& path) {
-  write_map_state(map.state(), path);
-}
-
 std::unique_ptr<SegmentMap> make_map(const SegmentMapState& state,
                                      const std::filesystem::path& path) {
   try {

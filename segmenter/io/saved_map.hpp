@@ -23,10 +23,9 @@ SegmentMapState read_map_state(const std::filesystem::path& path);
 std::unique_ptr<SegmentMap> make_map(const SegmentMapState& state,
                                      const std::filesystem::path& path);
 
-/// Both for the map itself. A map that was loaded tells the same from then on as the one that was
-/// saved: partition, thetas, ids, events, statistics. load_map() refuses a file also when its
-/// points give other segments than it says.
-void save_map(const SegmentMap& map, const std::filesystem::path& path);
+/// Both in one. A loaded map continues exactly as the saved one would have: partition, thetas, ids,
+/// events and statistics are the same. Also refuses a file whose points give other segments than it
+/// says.
 std::unique_ptr<SegmentMap> load_map(const std::filesystem::path& path);
 
 }  // namespace kintsugi::segmenter

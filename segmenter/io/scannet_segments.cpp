@@ -19,7 +19,7 @@ void write_scannet_segments(const std::string& scene_id,
   }
   AtomicFile file(path);
   std::ostream& out = file.stream();
-  // The indices of millions are never in memory as JSON.
+  // Written one by one: as JSON, the indices of millions of points would need much memory.
   out << "{\"params\":" << params.dump()
       << ",\"sceneId\":" << nlohmann::ordered_json(scene_id).dump() << ",\"segIndices\":[";
   const char* separator = "";

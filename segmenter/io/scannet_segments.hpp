@@ -1,5 +1,5 @@
 #pragma once
-// The segments of a PLY file as the tools of the ScanNet data set read them.
+// The segments of a PLY file in the format of the ScanNet data set.
 
 #include <cstdint>
 #include <filesystem>
@@ -9,7 +9,7 @@
 
 namespace kintsugi::segmenter {
 
-/// What ScanNet's own segmenter was given: the same parameters as ours by meaning.
+/// The parameters of ScanNet's own segmenter, which mean the same as ours.
 struct ScanNetParameters {
   double k_thresh = 0.0;           ///< k of Felzenszwalb and Huttenlocher
   std::int64_t seg_min_verts = 0;  ///< segments of fewer points are joined to a neighbour
@@ -17,8 +17,7 @@ struct ScanNetParameters {
 
 /// Writes ScanNet's *.segs.json:
 ///   {"params":{"kThresh":0.002,"segMinVerts":50},"sceneId":"...","segIndices":[1,1,3,0]}
-/// @param scene_id a name
-/// @param parameters nothing when they are not known: "params" is empty then
+/// @param parameters absent when unknown: "params" is then empty
 /// @param segment_ids of each vertex of the PLY file, in its order; 0: in no segment
 /// @throws std::system_error naming the file and the reason
 void write_scannet_segments(const std::string& scene_id,

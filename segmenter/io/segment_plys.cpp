@@ -4,7 +4,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "segmenter/io/labelled_ply_writer.hpp"
+#include "segmenter/io/ply/labelled_ply_writer.hpp"
 
 namespace kintsugi::segmenter {
 namespace {

@@ -21,7 +21,7 @@ void BackgroundWriter::put(const std::string& name, Job job) {
     const std::lock_guard lock(mutex_);
     const auto waiting = std::ranges::find(jobs_, name, &NamedJob::name);
     if (waiting != jobs_.end()) {
-      std::swap(waiting->job, job);  // what it held is freed without the lock
+      std::swap(waiting->job, job);  // the old job is freed after the lock is released
     } else {
       jobs_.push_back({name, std::move(job)});
     }

@@ -1,5 +1,5 @@
 #pragma once
-// Files are written while the work goes on.
+// A thread that writes files, so that nobody waits for the disk.
 
 #include <condition_variable>
 #include <deque>
@@ -10,23 +10,23 @@
 
 namespace kintsugi::segmenter {
 
-/// Does jobs one after the other on a thread of its own: whoever hands one in waits for no disk.
+/// Does jobs one after the other in a thread of its own.
 ///
-/// A job takes the place of one of the same name that has not begun, so that the newest is done
-/// and, however slow the disk, one job of a name waits. Safe for any number of threads.
+/// A new job replaces one of the same name that has not begun. However slow the disk, at most one
+/// job of a name is waiting, and it is the newest. Safe for any number of threads.
 class BackgroundWriter {
  public:
   using Job = std::function<void()>;  ///< must not throw
 
   BackgroundWriter();
-  /// Does what was handed in.
+  /// Finishes all jobs.
   ~BackgroundWriter();
   BackgroundWriter(const BackgroundWriter&) = delete;
   BackgroundWriter& operator=(const BackgroundWriter&) = delete;
 
   void put(const std::string& name, Job job);
 
-  /// Waits until everything handed in is done.
+  /// Waits until all jobs are done.
   void wait();
 
  private:
@@ -39,7 +39,7 @@ class BackgroundWriter {
 
   std::mutex mutex_;
   std::condition_variable changed_;
-  std::deque<NamedJob> jobs_;  // that have not begun
+  std::deque<NamedJob> jobs_;  // not begun
   bool is_busy_ = false;
   bool is_ending_ = false;
   std::thread thread_;

@@ -11,7 +11,7 @@
 namespace kintsugi::segmenter {
 namespace {
 
-constexpr char kSaved[] = "";  // the name of what is saved: no stem is empty
+constexpr char kSaved[] = "";  // the action that writes the saved map; no stem is empty
 
 void write_files(const MapSnapshot& map, const std::filesystem::path& folder,
                  const std::string& stem) {
@@ -26,7 +26,7 @@ void save_state(const SegmentMapState& state, const std::filesystem::path& file)
     std::filesystem::create_directories(file.parent_path());
   }
   write_map_state(state, file);
-  spdlog::info("saved {}: {} slices to go on with", file.string(), state.slices.size());
+  spdlog::info("saved {}: {} slices", file.string(), state.slices.size());
 }
 
 }  // namespace
@@ -47,7 +47,7 @@ void MapWriter::write_and_save(const SegmentMap& map, const std::string& stem) {
   put_saved(snapshot);
 }
 
-// Whoever has it last hands its memory back.
+// The last owner of the snapshot returns its memory to spare_.
 MapWriter::Snapshot MapWriter::copy(const SegmentMap& map) {
   std::unique_ptr<MapSnapshot> snapshot;
   {
@@ -89,12 +89,12 @@ void MapWriter::attempt(const std::string& name, std::int64_t number, const Acti
   std::string why;
   try {
     action();
-  } catch (const std::exception& error) {  // the map goes on
+  } catch (const std::exception& error) {  // segmentation continues
     why = std::string("the map is not written: ") + error.what();
   }
   const std::lock_guard lock(mutex_);
   if (!why.empty()) {
-    // Of a disk that stays full the 1st, 2nd, 4th, 8th ... failure is told.
+    // Logs the 1st, 2nd, 4th, 8th ... failure: a full disk must not fill the log.
     if (std::has_single_bit(static_cast<std::uint64_t>(++num_failures_))) {
       spdlog::error("{}", why);
     }

@@ -1,5 +1,5 @@
 #pragma once
-// The files of the maps, written while the work goes on.
+// Writes the files of the maps in the background.
 
 #include <cstdint>
 #include <filesystem>
@@ -15,9 +15,9 @@
 
 namespace kintsugi::segmenter {
 
-/// Copies maps and writes the copies in a thread of its own. When a file cannot be written, what
-/// was there stays; the copy is kept, and this tells so, until it is written after all or a newer
-/// one is. For one thread, but for problem().
+/// Copies maps and writes the copies in a thread of its own. When a file cannot be written, the old
+/// file stays, problem() reports it, and the copy is kept until it or a newer one is written. For
+/// one thread, except problem().
 class MapWriter {
  public:
   struct Config {
@@ -27,21 +27,21 @@ class MapWriter {
 
   explicit MapWriter(Config config) : config_(std::move(config)) {}
 
-  /// STEM.ply and STEM.json in Config::folder: the map to look at.
+  /// Writes the map files: STEM.ply, STEM.json and STEM.csv in Config::folder.
   void write(const SegmentMap& map, const std::string& stem);
-  /// Config::save_file: the map to go on with.
+  /// Writes the saved map, for --resume: Config::save_file.
   void save(const SegmentMap& map);
-  /// Both, of one copy.
+  /// Writes both from one copy.
   void write_and_save(const SegmentMap& map, const std::string& stem);
 
-  /// Tries again what could not be written.
+  /// Tries again to write what could not be written.
   void try_again();
 
-  /// Waits until everything handed in is written, or has failed.
+  /// Waits until everything is written, or has failed.
   void wait() { writer_.wait(); }
 
-  /// What is not written, and why; empty: nothing. From any thread.
-  [[nodiscard]] std::string problem() const;
+  /// Which file is not written, and why; empty: none. From any thread.
+  std::string problem() const;
 
  private:
   using Snapshot = std::shared_ptr<const MapSnapshot>;
@@ -51,20 +51,20 @@ class MapWriter {
     std::string why;
   };
 
-  [[nodiscard]] Snapshot copy(const SegmentMap& map);
+  Snapshot copy(const SegmentMap& map);
   void put_files(const Snapshot& map, const std::string& stem);
   void put_saved(const Snapshot& map);
   void put(const std::string& name, Action action);
   void attempt(const std::string& name, std::int64_t number, const Action& action);
 
   Config config_;
-  std::mutex spare_mutex_;                      // guards the next
-  std::unique_ptr<MapSnapshot> spare_;          // memory of a copy that is written
-  mutable std::mutex mutex_;                    // guards what follows
-  std::map<std::string, std::int64_t> newest_;  // number of the newest action, by its name
-  std::map<std::string, Failure> failures_;     // likewise
+  std::mutex spare_mutex_;              // guards the next
+  std::unique_ptr<MapSnapshot> spare_;  // memory of a copy that has been written, for the next one
+  mutable std::mutex mutex_;            // guards what follows
+  std::map<std::string, std::int64_t> newest_;  // number of the newest action of each name
+  std::map<std::string, Failure> failures_;     // by name of the action
   std::int64_t num_failures_ = 0;               // since the last success
-  BackgroundWriter writer_;                     // last: its jobs use the rest
+  BackgroundWriter writer_;                     // last: its jobs use the others
 };
 
 }  // namespace kintsugi::segmenter

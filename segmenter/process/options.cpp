@@ -1,9 +1,16 @@
 #include "segmenter/process/options.hpp"
 
 #include <array>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <iostream>
 #include <map>
+#include <stdexcept>
 #include <string>
 #include <vector>
+
+#include <CLI/CLI.hpp>
 
 #include "segmenter/core/presets.hpp"
 
@@ -73,6 +80,113 @@ void add_segmentation_options(CLI::App& app, SegmentMapConfig& config,
   app.add_option("--neighbours", engine.neighbour_search, "neighbour search: grid or flann")
       ->transform(CLI::CheckedTransformer(searches).description("{grid,flann}"))
       ->default_str("grid");
+}
+
+namespace {
+
+void add_file_flags(CLI::App& app, Options& options) {
+  SegmentationLoop::Config& segmentation = options.process.segmentation;
+  SessionMap::Config& each_map = segmentation.maps.each_map;
+  app.add_option("--out", segmentation.files.folder,
+                 "folder for the map files segments.ply, .json and .csv, written at the end, on "
+                 "SIGUSR1, and as --write-every says")
+      ->capture_default_str();
+  app.add_option("--write-every", each_map.write_every,
+                 "also write the map files after every N slices; 0: do not")
+      ->capture_default_str();
+  app.add_option("--save", segmentation.files.save_file,
+                 "also save the map in this file, for --resume, whenever the map files are "
+                 "written; of several maps only the one in segments.ply is saved");
+  app.add_option("--save-every", each_map.save_every,
+                 "also save the map after every N slices, which is faster than writing the map "
+                 "files; 0: do not")
+      ->capture_default_str();
+  app.add_option("--resume", segmentation.resume_file,
+                 "continue the map saved in this file: slices in it are not segmented again; mode "
+                 "and parameters must be those it was saved with");
+  app.add_flag("--resume-if-saved", options.resume_if_saved,
+               "continue the map in the file of --save, if that exists");
+}
+
+void add_slice_flags(CLI::App& app, Options& options) {
+  SessionMaps::Config& maps = options.process.segmentation.maps;
+  app.add_flag("--coalesce", maps.each_map.coalesce,
+               "mode batch: segment all waiting slices in one run: catches up sooner and gives the "
+               "same partition, but segment ids may differ from one run to the next");
+  app.add_option("--gap-timeout", options.gap_timeout_s,
+                 "seconds to wait for a missing slice that nobody resends before the map "
+                 "continues without it, > 0")
+      ->check(CLI::Range(0.001, 1e6))
+      ->capture_default_str();
+  app.add_option("--max-queue", options.max_queue_mb,
+                 "MB of slices that are received but not yet segmented; further slices are "
+                 "refused and requested again when there is room, > 0")
+      ->check(CLI::Range(1e-6, 1e6))
+      ->capture_default_str();
+  app.add_option("--map-name", maps.map_name,
+                 "only the map of this name (default: all; maps not named 'map' are written as "
+                 "segments_NAME)");
+  app.add_option("--log", options.process.log,
+                 "read the slices from this LCM log instead of the bus");
+}
+
+void add_bus_flags(CLI::App& app, Options& options) {
+  app.add_option("--lcm-url", options.process.lcm_url,
+                 "the bus (default: LCM_DEFAULT_URL); with --log, publish the results there");
+  app.add_option("--rate", options.rate_mb_per_s, "MB/s of updates on the bus, > 0")
+      ->check(CLI::Range(1e-3, 1e6))
+      ->capture_default_str();
+  app.add_flag("--exit-on-final", options.process.exit_on_final,
+               "exit when the final slice is segmented and published");
+  app.add_option("--linger", options.process.linger_s,
+                 "at the end, stay until nobody has requested a resend for so many seconds; "
+                 "negative: until a stop signal")
+      ->capture_default_str();
+}
+
+}  // namespace
+
+SegmenterProcess::Config Options::config() const {
+  SegmenterProcess::Config config = process;
+  SessionMaps::Config& maps = config.segmentation.maps;
+  maps.each_map.order.gap_timeout = std::chrono::milliseconds(std::llround(gap_timeout_s * 1000.0));
+  config.max_queue_bytes = static_cast<std::size_t>(std::llround(max_queue_mb * 1e6));
+  config.updates.rate_bytes_per_s = rate_mb_per_s * 1e6;
+  config.updates.map_name = maps.map_name;
+  config.publish = config.log.empty() || !config.lcm_url.empty();
+  if (resume_if_saved) {
+    const std::filesystem::path& saved = config.segmentation.files.save_file;
+    if (saved.empty()) {
+      throw std::invalid_argument("--resume-if-saved needs --save FILE, the file to resume from");
+    }
+    if (config.segmentation.resume_file.empty() && std::filesystem::exists(saved)) {
+      config.segmentation.resume_file = saved;
+    }
+  }
+  return config;
+}
+
+std::variant<Options, int> parse_options(int argc, const char* const* argv) {
+  CLI::App app{"Segments the map whose slices a mapper publishes, while it grows."};
+  Options options;
+  add_segmentation_options(app, options.process.segmentation.maps.map);
+  add_file_flags(app, options);
+  add_slice_flags(app, options);
+  add_bus_flags(app, options);
+  app.set_config("--config", "", "read options from this file, in the format of --print-config");
+  bool print_config = false;
+  app.add_flag("--print-config", print_config, "print all options with their values, and exit")
+      ->configurable(false);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error);
+  }
+  if (print_config) {
+    std::cout << app.config_to_str(true, true);
+    return 0;
+  }
+  return options;
 }
 
 }  // namespace kintsugi::segmenter

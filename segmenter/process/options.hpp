@@ -1,13 +1,34 @@
 #pragma once
-// Flags that the programs of the segmenter share.
+// The command line of kintsugi-segmenter, and the flags that all programs of the segmenter share.
 
 #include <string_view>
-
-#include <CLI/CLI.hpp>
+#include <variant>
 
 #include "segmenter/map/segment_map.hpp"
+#include "segmenter/process/segmenter_process.hpp"
+
+namespace CLI {
+class App;
+}
 
 namespace kintsugi::segmenter {
+
+/// What the command line of kintsugi-segmenter sets; config() turns it into that of the process.
+struct Options {
+  SegmenterProcess::Config process;
+  double gap_timeout_s = 10.0;   ///< SliceSequencer::Config::gap_timeout
+  double max_queue_mb = 1024.0;  ///< SegmenterProcess::Config::max_queue_bytes, 1e6 bytes each
+  double rate_mb_per_s = 10.0;   ///< UpdatePublisher::Config::rate_bytes_per_s
+  bool resume_if_saved = false;  ///< resume the map that --save has left, if there is one
+
+  /// @throws std::invalid_argument for flags that do not fit together
+  SegmenterProcess::Config config() const;
+};
+
+/// Reads the command line, and the --config file it names. Returns the options, or the exit code
+/// when there is nothing to run: help, the printed configuration, or a wrong flag (explained on
+/// stderr).
+std::variant<Options, int> parse_options(int argc, const char* const* argv);
 
 /// --mode, --audit, --preset (`default_preset` unless given), --threshold, --scale, --color-weight,
 /// --min-points, --radius-factor, --beta and --neighbours, into `config`, whose other values are

@@ -21,7 +21,7 @@ std::int64_t resident_memory_bytes() {
 
 SegmenterStatus make_status(const SessionMaps::Counts& maps, const StreamCounts& slices,
                             const UpdatePublisher::Counts& updates) {
-  const SliceProcessor::Counts& map = maps.newest;
+  const SessionMap::Counts& map = maps.newest;
   SegmenterStatus status;
   status.utime = wall_clock_us();
   status.map_session = map.map_session;

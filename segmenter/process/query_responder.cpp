@@ -17,7 +17,7 @@
 namespace kintsugi::segmenter {
 namespace {
 
-constexpr std::size_t kMaxWaiting = 64;  // queries; of more the oldest is forgotten
+constexpr std::size_t kMaxWaiting = 64;  // queries; beyond this the oldest is dropped
 constexpr std::chrono::seconds kKeepCopy{10};
 constexpr int kNiceness = 10;  // half way to the lowest priority
 
@@ -32,7 +32,8 @@ std::vector<MapIdentity> identities(const std::vector<const SegmentMap*>& maps) 
   return identities;
 }
 
-/// Memory for a map of so many points, written to once: the kernel gives pages only then.
+/// Allocates memory for so many points and writes to it, because the kernel provides pages only on
+/// the first write.
 void touch_memory(SegmentMapState& state, std::size_t num_points) {
   state = {};
   state.points_W = std::vector<CloudPoint>(num_points);
@@ -77,7 +78,7 @@ void QueryResponder::take(const SegmentQuery& query) {
   waiting_.push_back(query);
 }
 
-// It stays in the queue until it is begun, or cannot be.
+// The query stays in the queue until begin() or drop().
 std::optional<SegmentQuery> QueryResponder::next_query() {
   const std::lock_guard lock(mutex_);
   if (current_ || room_points_ > 0 || bus_ == nullptr) return std::nullopt;
@@ -99,7 +100,7 @@ void QueryResponder::publish(const MakeAnswer& make_answer) {
     answer.utime = wall_clock_us();
     answer.session = session_;
     stream_->publish(std::move(answer));
-  } catch (const std::exception& error) {  // who asks again gets another; the map goes on
+  } catch (const std::exception& error) {  // segmentation continues; the client asks again
     spdlog::error("an answer is not published: {}", error.what());
   }
 }
@@ -123,7 +124,7 @@ bool QueryResponder::has_room_for(const SegmentMap& map) const {
   return copy_ && copy_->map.state.points_W.capacity() >= map.cloud().num_live();
 }
 
-// With some to spare: the map grows.
+// A quarter more than needed, because the map grows.
 void QueryResponder::make_room(std::size_t num_points) {
   if (!copy_) copy_ = std::make_unique<Copy>();
   copy_->version = -1;
@@ -138,7 +139,7 @@ void QueryResponder::update_copy(const SegmentMap& map) {
   copy_->last_used = Clock::now();
   const bool is_same_map = copy_->map.state.map_session == map.map_session();
   if (is_same_map && copy_->version == map.version()) return;
-  copy_->version = -1;  // should this throw
+  copy_->version = -1;  // in case this throws
   take_snapshot(map, copy_->map);
   copy_->version = map.version();
   const std::chrono::duration<double, std::milli> took = Clock::now() - copy_->last_used;
@@ -161,7 +162,7 @@ void QueryResponder::drop(const SegmentQuery& query) {
 }
 
 void QueryResponder::run() {
-  setpriority(PRIO_PROCESS, 0, kNiceness);  // of this thread alone
+  setpriority(PRIO_PROCESS, 0, kNiceness);  // applies to this thread only
   oneapi::tbb::task_arena one_core(1);
   std::unique_lock lock(mutex_);
   while (true) {

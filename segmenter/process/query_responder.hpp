@@ -1,5 +1,5 @@
 #pragma once
-// Answers to what people ask about segments, while the map goes on.
+// Answers queries about segments while segmentation continues.
 
 #include <atomic>
 #include <chrono>
@@ -20,13 +20,13 @@ namespace kintsugi::segmenter {
 
 /// Takes segment queries from the bus and answers them one after the other.
 ///
-/// The working thread gives no more than a copy of the map, between two slices, and only when the
-/// map is not the one that was copied for the query before. Getting memory for the copy, which
-/// takes most of its time, looking at it, describing segments and sending is done by a thread of
-/// its own, on one core and with low priority. The memory is kept for some time.
+/// The segmenting thread only copies the map, between two slices, and only when it has changed
+/// since the copy for the previous query. Everything else happens in a thread of its own, on one
+/// core and with low priority: allocating memory for the copy (which takes longer than the
+/// copying), searching, describing segments, sending. The memory is kept for a few seconds.
 ///
-/// Queries that wait are few and each waits once, however often it is asked again: who gets no
-/// answer asks later.
+/// Few queries are queued, and each only once, however often it is repeated; a client that gets no
+/// answer repeats its query.
 class QueryResponder {
  public:
   using Clock = std::chrono::steady_clock;
@@ -34,22 +34,22 @@ class QueryResponder {
   /// @param bus must outlive this; null: answers nothing
   /// @param session of this segmenter
   QueryResponder(Bus* bus, std::int64_t session);
-  /// Sends the answer that is being made.
+  /// Waits until the current answer is sent.
   ~QueryResponder();
   QueryResponder(const QueryResponder&) = delete;
   QueryResponder& operator=(const QueryResponder&) = delete;
 
-  /// From now on bus.handle() takes queries; this must outlive that.
+  /// From now on bus.handle() receives queries; this must outlive that.
   void subscribe(Bus& bus);
 
-  /// Begins with the next query unless one is being answered. For the thread that changes the maps,
-  /// between two changes.
+  /// Begins to answer the next query unless one is being answered. To be called between two changes
+  /// by the thread that changes the maps.
   void serve(const SessionMaps& maps);
 
   // From any thread:
-  [[nodiscard]] std::int64_t messages_bad() const { return num_bad_; }
-  /// Since somebody last asked, or since the start.
-  [[nodiscard]] double time_since_query_s() const;
+  std::int64_t messages_bad() const { return num_bad_; }
+  /// Since the last query, or since the start.
+  double time_since_query_s() const;
 
  private:
   struct Copy {
@@ -59,8 +59,8 @@ class QueryResponder {
   };
 
   void take(const SegmentQuery& query);
-  [[nodiscard]] std::optional<SegmentQuery> next_query();
-  [[nodiscard]] bool has_room_for(const SegmentMap& map) const;
+  std::optional<SegmentQuery> next_query();
+  bool has_room_for(const SegmentMap& map) const;
   void make_room(std::size_t num_points);
   void update_copy(const SegmentMap& map);
   void begin(const SegmentQuery& query);
@@ -71,15 +71,15 @@ class QueryResponder {
 
   Bus* bus_;
   std::int64_t session_;
-  std::unique_ptr<Copy> copy_;               // of the thread while it is busy, else of serve()
-  std::unique_ptr<StreamPublisher> stream_;  // of the thread; since the first answer
+  std::unique_ptr<Copy> copy_;               // used by the thread while it is busy, else by serve()
+  std::unique_ptr<StreamPublisher> stream_;  // used by the thread; made for the first answer
   std::atomic<std::int64_t> num_bad_{0};
 
   mutable std::mutex mutex_;  // guards what follows
   std::condition_variable changed_;
   std::deque<SegmentQuery> waiting_;
   std::optional<SegmentQuery> current_;  // being answered: the thread is busy
-  std::size_t room_points_ = 0;          // > 0: it is busy making room for so many
+  std::size_t room_points_ = 0;          // > 0: the thread is busy allocating memory for so many
   Clock::time_point last_query_ = Clock::now();
   bool is_ending_ = false;
   std::thread thread_;  // last: it uses the rest

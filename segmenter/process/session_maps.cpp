@@ -3,46 +3,44 @@
 #include <algorithm>
 #include <bit>
 #include <iterator>
-#include <stdexcept>
 #include <utility>
+
+#include <fmt/format.h>
+
+#include "lcmtypes/base/argument_check.hpp"
 
 namespace kintsugi::segmenter {
 
 void SessionMaps::Config::validate() const {
   map.validate();
-  processor.validate();
-  if (max_maps < 1) {
-    throw std::invalid_argument("max_maps is 0, must be >= 1");
-  }
-  if (settle.count() < 0) {
-    throw std::invalid_argument("settle is " + std::to_string(settle.count()) +
-                                " ms, must be >= 0");
-  }
+  each_map.validate();
+  require(max_maps >= 1, "max_maps", max_maps, ">= 1");
+  require(settle.count() >= 0, "settle [ms]", settle.count(), ">= 0");
 }
 
-SessionMaps::SessionMaps(const Config& config, std::int64_t session, SliceStream stream,
-                         SliceProcessor::Outputs outputs)
+SessionMaps::SessionMaps(const Config& config, std::int64_t session,
+                         std::function<StreamState(std::int64_t)> stream_state)
     : config_((config.validate(), config)),
       session_(session),
-      stream_(std::move(stream)),
-      outputs_(std::move(outputs)) {}
+      stream_state_(std::move(stream_state)) {}
 
 void SessionMaps::resume(std::unique_ptr<SegmentMap> map) { begin(std::move(map), {}); }
 
-void SessionMaps::offer(CloudSlice slice, Clock::time_point now) {
-  Session* const session = find_or_begin(slice, now);
-  if (session == nullptr) {
-    return;
+std::vector<std::string> SessionMaps::offer(CloudSlice slice, Clock::time_point now) {
+  Warnings warnings;
+  if (Session* const session = find_or_begin(slice, now, warnings)) {
+    session->last_news = now;
+    const std::int32_t id = slice.id;
+    const std::int64_t map_session = slice.session;
+    if (const auto why = session->map.offer(std::move(slice), now)) {
+      drop(id, map_session, *why, warnings);
+    }
   }
-  session->last_news = now;
-  const std::int32_t id = slice.id;
-  const std::int64_t map_session = slice.session;
-  if (const auto why = session->processor.offer(std::move(slice), now)) {
-    drop(id, map_session, *why);
-  }
+  return warnings;
 }
 
-SessionMaps::Session* SessionMaps::find_or_begin(const CloudSlice& slice, Clock::time_point now) {
+SessionMaps::Session* SessionMaps::find_or_begin(const CloudSlice& slice, Clock::time_point now,
+                                                 Warnings& warnings) {
   if (!config_.map_name.empty() && slice.map_name != config_.map_name) {
     return nullptr;
   }
@@ -50,128 +48,145 @@ SessionMaps::Session* SessionMaps::find_or_begin(const CloudSlice& slice, Clock:
     return &found->second;
   }
   if (forgotten_.contains(slice.session)) {
-    drop(slice.id, slice.session, "its session has ended");
+    drop(slice.id, slice.session, "its session has ended", warnings);
     return nullptr;
   }
   if (sessions_.size() >= config_.max_maps) {
-    drop(slice.id, slice.session, std::to_string(sessions_.size()) + " maps are kept, and no more");
+    drop(slice.id, slice.session, fmt::format("at most {} maps are kept", config_.max_maps),
+         warnings);
     return nullptr;
   }
   Session& session = begin(std::make_unique<SegmentMap>(config_.map, session_, slice), now);
-  supersede(session.processor.map(), now);
+  supersede(session.map.segment_map(), now, warnings);
   return &session;
 }
 
 SessionMaps::Session& SessionMaps::begin(std::unique_ptr<SegmentMap> map, Clock::time_point now) {
   const std::int64_t map_session = map->map_session();
-  SliceProcessor processor(
-      config_.processor, std::move(map),
-      {outputs_.publish, [this](const SegmentMap& map, Save why) { save(map, why); },
-       outputs_.warn});
-  return sessions_.try_emplace(map_session, Session{std::move(processor), now}).first->second;
+  Session session{SessionMap(config_.each_map, std::move(map)), now};
+  return sessions_.try_emplace(map_session, std::move(session)).first->second;
 }
 
-// From now on one of two sessions waits for its end.
-void SessionMaps::supersede(const SegmentMap& map, Clock::time_point now) {
+// Of each pair of sessions with the name of `map`, the older one is superseded from now on.
+void SessionMaps::supersede(const SegmentMap& map, Clock::time_point now, Warnings& warnings) {
   const std::int64_t begun = map.map_session();
   for (auto& [number, other] : sessions_) {
-    if (number == begun || other.processor.map().map_name() != map.map_name()) {
+    if (number == begun || other.map.segment_map().map_name() != map.map_name()) {
       continue;
     }
     other.last_news = now;
-    const std::int64_t older = std::min(number, begun);
-    const std::int64_t newer = std::max(number, begun);
-    outputs_.warn("session " + std::to_string(newer) + " has the map name '" + map.map_name() +
-                  "' now; session " + std::to_string(older) +
-                  " gets what is still missing of it, and ends. Two mappers at a time need a "
-                  "--map-name each");
+    warnings.push_back(fmt::format(
+        "session {} now owns the map name '{}'; session {} receives only what is still missing of "
+        "it, and then ends. Mappers that run at the same time need a --map-name each",
+        std::max(number, begun), map.map_name(), std::min(number, begun)));
   }
-}
-
-bool SessionMaps::step(Clock::time_point now) {
-  bool has_done_something = false;
-  for (auto& [number, session] : sessions_) {
-    if (session.processor.step(now, stream_.outlook(number))) {
-      session.last_news = now;
-      has_done_something = true;
-    }
-  }
-  return end_superseded(now) || has_done_something;
 }
 
 bool SessionMaps::is_superseded(const SegmentMap& map) const {
-  return std::any_of(
-      sessions_.upper_bound(map.map_session()), sessions_.end(),
-      [&](const auto& newer) { return newer.second.processor.map().map_name() == map.map_name(); });
+  return std::any_of(sessions_.upper_bound(map.map_session()), sessions_.end(),
+                     [&](const auto& newer) {
+                       return newer.second.map.segment_map().map_name() == map.map_name();
+                     });
 }
 
-bool SessionMaps::end_superseded(Clock::time_point now) {
+StepResult SessionMaps::step(Clock::time_point now) {
+  StepResult result = step_next(now);
+  end_superseded(now, result);
+  return result;
+}
+
+// Once closed, one session is finished after the other.
+StepResult SessionMaps::step_next(Clock::time_point now) {
+  auto next = is_closed_ ? sessions_.begin() : sessions_.upper_bound(last_stepped_session_);
+  for (std::size_t i = 0; i < sessions_.size(); ++i, ++next) {
+    if (next == sessions_.end()) {
+      next = sessions_.begin();
+    }
+    auto& [number, session] = *next;
+    const Outlook outlook = is_closed_ ? Outlook::kEnded : stream_state_(number).outlook;
+    StepResult result = session.map.step(now, outlook);
+    if (result.has_progressed) {
+      session.last_news = now;
+      last_stepped_session_ = number;
+      for (SaveRequest& request : std::exchange(result.saves, {})) {
+        add_request(std::move(request), result.saves);
+      }
+      return result;
+    }
+  }
+  return {};
+}
+
+void SessionMaps::end_superseded(Clock::time_point now, StepResult& result) {
+  if (is_closed_ && result.has_progressed) {
+    return;  // first every map is finished
+  }
   for (auto it = sessions_.begin(); it != sessions_.end(); ++it) {
     auto& [number, session] = *it;
-    if (!is_superseded(session.processor.map())) {
-      continue;
-    }
-    if (!session.processor.is_idle() || !stream_.is_quiet(number)) {
-      session.last_news = now;
-    } else if (now - session.last_news >= config_.settle) {
-      end(it);
-      return true;
+    if (is_superseded(session.map.segment_map()) && can_end(number, session, now)) {
+      return end(it, result);
     }
   }
-  return false;
 }
 
-void SessionMaps::end(Sessions::iterator session) {
+bool SessionMaps::can_end(std::int64_t number, Session& session, Clock::time_point now) const {
+  if (is_closed_) {
+    return true;
+  }
+  if (!session.map.is_idle() || !stream_state_(number).is_quiet) {
+    session.last_news = now;
+    return false;
+  }
+  return now - session.last_news >= config_.settle;
+}
+
+void SessionMaps::end(Sessions::iterator session, StepResult& result) {
   const auto number = session->first;
-  num_missing_ += session->second.processor.counts().missing;
-  save(session->second.processor.map(), Save::kSessionEnded);
-  outputs_.warn("session " + std::to_string(number) + " has ended");
+  const SessionMap& map = session->second.map;
+  num_missing_ += map.counts().missing;
+  result.has_progressed = true;
+  result.saves.push_back({map.shared_segment_map(), SaveKind::kSessionEnded});
+  result.warnings.push_back(fmt::format("session {} has ended", number));
+  result.ended_session = number;
   sessions_.erase(session);
   forgotten_.insert(number);
-  stream_.forget(number);
 }
 
-void SessionMaps::finish(Clock::time_point now) {
+std::vector<SaveRequest> SessionMaps::save(bool again) {
+  std::vector<SaveRequest> requests;
   for (auto& [number, session] : sessions_) {
-    session.processor.finish(now);
-  }
-  for (auto it = sessions_.begin(); it != sessions_.end();) {
-    const auto next = std::next(it);
-    if (is_superseded(it->second.processor.map())) {
-      end(it);
+    if (auto request = session.map.save(again)) {
+      add_request(*std::move(request), requests);
     }
-    it = next;
   }
+  return requests;
 }
 
-void SessionMaps::save(bool again) {
-  for (auto& [number, session] : sessions_) {
-    session.processor.save(again);
+// A superseded map is never written under the name that the newer session owns.
+void SessionMaps::add_request(SaveRequest request, std::vector<SaveRequest>& requests) const {
+  if (is_superseded(*request.map)) {
+    if (request.kind == SaveKind::kForResume) {
+      return;
+    }
+    request.kind = SaveKind::kSessionEnded;
   }
+  requests.push_back(std::move(request));
 }
 
-// A map that is superseded does not go under the name that a newer one has.
-void SessionMaps::save(const SegmentMap& map, Save why) {
-  if (!is_superseded(map)) {
-    outputs_.save(map, why);
-  } else if (why != Save::kToGoOn) {
-    outputs_.save(map, Save::kSessionEnded);
-  }
-}
-
-// The 1st, 2nd, 4th, 8th ... is told: a mapper that nobody follows does not fill the log.
-void SessionMaps::drop(std::int32_t id, std::int64_t map_session, const std::string& why) {
+// Warns at the 1st, 2nd, 4th, 8th ... slice: a mapper that nobody follows must not fill the log.
+void SessionMaps::drop(std::int32_t id, std::int64_t map_session, const std::string& why,
+                       Warnings& warnings) {
   if (std::has_single_bit(static_cast<std::uint64_t>(++num_dropped_))) {
-    outputs_.warn("dropped " + std::to_string(num_dropped_) + " slices so far, the last: slice " +
-                  std::to_string(id) + " of session " + std::to_string(map_session) + ", because " +
-                  why);
+    warnings.push_back(
+        fmt::format("dropped {} slices so far, the last: slice {} of session {}, because {}",
+                    num_dropped_, id, map_session, why));
   }
 }
 
 std::vector<SegmentUpdate> SessionMaps::describe() const {
   std::vector<SegmentUpdate> all;
   for (const auto& [number, session] : sessions_) {
-    std::ranges::move(session.processor.map().describe(), std::back_inserter(all));
+    std::ranges::move(session.map.segment_map().describe(), std::back_inserter(all));
   }
   return all;
 }
@@ -183,12 +198,12 @@ SessionMaps::Counts SessionMaps::counts() const {
   counts.dropped = num_dropped_;
   counts.complete = counts.ended = !sessions_.empty();
   for (const auto& [number, session] : sessions_) {
-    const SliceProcessor::Counts& of_map = session.processor.counts();
-    const bool is_last = !is_superseded(session.processor.map());
+    const SessionMap::Counts& of_map = session.map.counts();
+    const bool is_last = !is_superseded(session.map.segment_map());
     counts.newest = of_map;  // the largest number comes last
     counts.lag += of_map.lag;
     counts.missing += of_map.missing;
-    counts.waiting_bytes += session.processor.waiting_bytes();
+    counts.waiting_bytes += session.map.waiting_bytes();
     counts.complete = counts.complete && of_map.complete && is_last;
     counts.ended = counts.ended && of_map.ended && is_last;
   }
@@ -198,13 +213,8 @@ SessionMaps::Counts SessionMaps::counts() const {
 std::vector<const SegmentMap*> SessionMaps::maps() const {
   std::vector<const SegmentMap*> maps;
   maps.reserve(sessions_.size());
-  for (const auto& [number, session] : sessions_) maps.push_back(&session.processor.map());
+  for (const auto& [number, session] : sessions_) maps.push_back(&session.map.segment_map());
   return maps;
-}
-
-const SegmentMap* SessionMaps::map(std::int64_t map_session) const {
-  const auto found = sessions_.find(map_session);
-  return found == sessions_.end() ? nullptr : &found->second.processor.map();
 }
 
 }  // namespace kintsugi::segmenter

@@ -1,5 +1,5 @@
 #pragma once
-// A map for each mapper session on the bus.
+// One map for each mapper session on the bus.
 
 #include <chrono>
 #include <cstdint>
@@ -10,111 +10,109 @@
 #include <string>
 #include <vector>
 
-#include "segmenter/process/slice_processor.hpp"
+#include "segmenter/process/session_map.hpp"
 
 namespace kintsugi::segmenter {
 
-/// What is known of the stream that brings the slices. Called from the thread of SessionMaps.
-struct SliceStream {
-  /// What may still come of a session; not kEnded.
-  std::function<Outlook(std::int64_t map_session)> outlook;
-  /// Nothing of a session is missing, or nobody sends it: it is over once nothing new comes.
-  std::function<bool(std::int64_t map_session)> is_quiet;
-  /// Nothing of a session is wanted any more.
-  std::function<void(std::int64_t map_session)> forget;
+/// What may still arrive of the slices of a session.
+struct StreamState {
+  Outlook outlook = Outlook::kSilent;  ///< never kEnded
+  bool is_quiet = false;  ///< true: nothing is missing, or nobody sends it, so the session can end
 };
 
 /// Gives each slice to the map of its session. Belongs to one thread; knows neither bus nor files.
 ///
-/// Maps of different names live side by side. Of two sessions of one name the newer (the larger
-/// number) has the name; the older is superseded: it still gets what was published of it, beside
-/// the new one and never mixed with it, and when nothing of it is missing and nothing new has come
-/// for Config::settle it is handed to `save` and forgotten. So two mappers that run under one name
-/// at the same time make two maps, until the older pauses: it is told that they need names.
-/// Slices of sessions that were forgotten are dropped and counted.
+/// Maps of different names are kept side by side. Of two sessions with one name, the newer (the
+/// larger number) owns the name and the older is superseded: it still receives its own slices, and
+/// the two maps are never mixed. When nothing of a superseded session is missing and nothing new
+/// has arrived for Config::settle, a save of its map is requested and the session is forgotten. Two
+/// mappers that run under one name at the same time therefore make two maps until the older
+/// pauses; a warning says that each needs a name. Slices of forgotten sessions are dropped and
+/// counted.
 class SessionMaps {
  public:
-  using Clock = SliceProcessor::Clock;
-  using Save = SliceProcessor::Save;
+  using Clock = SessionMap::Clock;
 
   struct Config {
     SegmentMapConfig map;
-    SliceProcessor::Config processor;
+    SessionMap::Config each_map;
     std::string map_name;       ///< only the map of this name; empty: all
-    std::size_t max_maps = 64;  ///< at a time; slices of more are dropped; >= 1
-    /// Ten heartbeats: a mapper that went on with its session, or serves it still, was heard.
-    std::chrono::milliseconds settle{2'000};  ///< >= 0
+    std::size_t max_maps = 64;  ///< at the same time, >= 1; slices of further sessions are dropped
+    /// Ten heartbeats: enough to hear a mapper that resumes its session or still resends it. >= 0
+    std::chrono::milliseconds settle{2'000};
 
-    /// Throws std::invalid_argument naming field, value and bound.
+    /// @throws std::invalid_argument naming field, value and bound
     void validate() const;
   };
 
   /// What has happened so far.
   struct Counts {
-    SliceProcessor::Counts newest;  ///< of the map of the newest session
-    std::int64_t maps = 0;          ///< being kept
+    SessionMap::Counts newest;      ///< of the map of the newest session
+    std::int64_t maps = 0;          ///< that are kept
     std::int64_t lag = 0;           ///< of all maps
-    std::int64_t missing = 0;       ///< slices, of all maps, those forgotten too
+    std::int64_t missing = 0;       ///< slices, of all maps, also of forgotten ones
     std::int64_t dropped = 0;       ///< slices
     std::size_t waiting_bytes = 0;  ///< of slices that wait to be segmented
-    bool complete = false;          ///< every map is, and none is superseded
-    bool ended = false;             ///< likewise
+    bool complete = false;          ///< every map is complete, and none is superseded
+    bool ended = false;             ///< every map has ended, and none is superseded
   };
 
   /// @param session of this segmenter
+  /// @param stream_state of a mapper session, given by its number
   /// @throws std::invalid_argument for an invalid config
-  SessionMaps(const Config& config, std::int64_t session, SliceStream stream,
-              SliceProcessor::Outputs outputs);
+  SessionMaps(const Config& config, std::int64_t session,
+              std::function<StreamState(std::int64_t)> stream_state);
 
-  SessionMaps(const SessionMaps&) = delete;  // its processors refer to it
-  SessionMaps& operator=(const SessionMaps&) = delete;
-
-  /// Goes on with a map that was kept; call before the first offer().
+  /// Resumes a saved map; call before the first offer().
   void resume(std::unique_ptr<SegmentMap> map);
 
-  /// Takes a slice in any order of arrival.
-  void offer(CloudSlice slice, Clock::time_point now);
+  /// Accepts a slice in any order of arrival. Returns warnings for the user.
+  std::vector<std::string> offer(CloudSlice slice, Clock::time_point now);
 
-  /// Segments what is ready, at most one run of each map, and ends what is over. Returns false
-  /// when there was nothing to do. Throws what the engine throws; then only save() may follow.
-  bool step(Clock::time_point now);
+  /// Does one step (SessionMap::step()) of one map, the maps in turn, and ends at most one
+  /// superseded session.
+  /// @throws what the engine throws; afterwards only save() may be called
+  [[nodiscard]] StepResult step(Clock::time_point now);
 
-  /// No more slices will come: segments all that is there, gaps or not, ends superseded maps.
-  void finish(Clock::time_point now);
+  /// No more slices will arrive: further steps segment everything, gaps or not, and then end the
+  /// superseded sessions.
+  void close() { is_closed_ = true; }
 
-  /// Saves every map that has not been saved as it is; with `again`, all.
-  void save(bool again = false);
+  /// A request for each map that has changed since its last one; `again`: for each map.
+  [[nodiscard]] std::vector<SaveRequest> save(bool again = false);
 
-  /// All maps for a listener that knows nothing of them, one update for each slice.
-  [[nodiscard]] std::vector<SegmentUpdate> describe() const;
+  /// The full state of all maps: one update for each slice.
+  std::vector<SegmentUpdate> describe() const;
 
-  [[nodiscard]] Counts counts() const;
-  /// All maps, the older sessions first.
-  [[nodiscard]] std::vector<const SegmentMap*> maps() const;
-  /// The map of a session; null: none.
-  [[nodiscard]] const SegmentMap* map(std::int64_t map_session) const;
+  Counts counts() const;
+  /// All maps, older sessions first.
+  std::vector<const SegmentMap*> maps() const;
 
  private:
   struct Session {
-    SliceProcessor processor;
-    Clock::time_point last_news;  // when it was last certain that it goes on
+    SessionMap map;
+    Clock::time_point last_news;  // when it was last certain that it continues
   };
   using Sessions = std::map<std::int64_t, Session>;
+  using Warnings = std::vector<std::string>;
 
-  Session* find_or_begin(const CloudSlice& slice, Clock::time_point now);
+  Session* find_or_begin(const CloudSlice& slice, Clock::time_point now, Warnings& warnings);
   Session& begin(std::unique_ptr<SegmentMap> map, Clock::time_point now);
-  void supersede(const SegmentMap& map, Clock::time_point now);
-  [[nodiscard]] bool is_superseded(const SegmentMap& map) const;
-  bool end_superseded(Clock::time_point now);
-  void end(Sessions::iterator session);
-  void save(const SegmentMap& map, Save why);
-  void drop(std::int32_t id, std::int64_t map_session, const std::string& why);
+  void supersede(const SegmentMap& map, Clock::time_point now, Warnings& warnings);
+  bool is_superseded(const SegmentMap& map) const;
+  StepResult step_next(Clock::time_point now);
+  void end_superseded(Clock::time_point now, StepResult& result);
+  bool can_end(std::int64_t number, Session& session, Clock::time_point now) const;
+  void end(Sessions::iterator session, StepResult& result);
+  void add_request(SaveRequest request, std::vector<SaveRequest>& requests) const;
+  void drop(std::int32_t id, std::int64_t map_session, const std::string& why, Warnings& warnings);
 
   Config config_;
   std::int64_t session_;
-  SliceStream stream_;
-  SliceProcessor::Outputs outputs_;
-  Sessions sessions_;  // by number
+  std::function<StreamState(std::int64_t)> stream_state_;
+  Sessions sessions_;                      // by number
+  std::int64_t last_stepped_session_ = 0;  // the next step begins with the one after it
+  bool is_closed_ = false;
   std::set<std::int64_t> forgotten_;
   std::int64_t num_dropped_ = 0;
   std::int64_t num_missing_ = 0;  // of forgotten sessions

@@ -1,5 +1,5 @@
 #pragma once
-// Between the thread that receives slices and the one that segments them.
+// The queue between the thread that receives slices and the one that segments them.
 
 #include <chrono>
 #include <condition_variable>
@@ -14,12 +14,12 @@
 
 namespace kintsugi::segmenter {
 
-/// Slices in order of arrival, with an account of everything that was received and is not
-/// segmented. push() never refuses: whoever receives looks at room() first. Safe for any number of
-/// threads.
+/// Slices in order of arrival. Counts the memory of all slices that were received and are not
+/// segmented. push() never refuses a slice: the receiver checks room() first. Safe for any number
+/// of threads.
 class SliceQueue {
  public:
-  /// @param max_bytes of slices in the queue and of those that were taken and wait
+  /// @param max_bytes of slices in the queue and of those that were taken and are not segmented
   explicit SliceQueue(std::size_t max_bytes) : max_bytes_(max_bytes) {}
 
   void push(CloudSlice slice) {
@@ -31,7 +31,7 @@ class SliceQueue {
     changed_.notify_all();
   }
 
-  /// Nothing will be pushed any more.
+  /// No more slices will be pushed.
   void close() {
     {
       const std::lock_guard lock(mutex_);
@@ -40,8 +40,8 @@ class SliceQueue {
     changed_.notify_all();
   }
 
-  /// Takes everything there is; waits for it up to `timeout`, or until the queue is closed. What
-  /// is taken waits from now on.
+  /// Takes all slices; when there are none, waits up to `timeout` or until the queue is closed.
+  /// What is taken counts as waiting to be segmented from now on.
   std::vector<CloudSlice> take(std::chrono::milliseconds timeout) {
     std::unique_lock lock(mutex_);
     changed_.wait_for(lock, timeout, [this] { return closed_ || !slices_.empty(); });
@@ -49,8 +49,8 @@ class SliceQueue {
     return std::exchange(slices_, {});
   }
 
-  /// Says how much of what was taken still waits to be segmented, and whether it waits for a slice
-  /// that is missing.
+  /// Sets how much of what was taken still waits to be segmented, and whether it waits for a
+  /// missing slice.
   void set_waiting(std::size_t bytes, bool is_for_missing) {
     {
       const std::lock_guard lock(mutex_);
@@ -60,8 +60,9 @@ class SliceQueue {
     changed_.notify_all();
   }
 
-  /// When full, none; but what is missing is taken all the same when nothing goes on without it.
-  [[nodiscard]] StreamRoom room() const {
+  /// Nothing when the queue is full; but a missing slice is accepted all the same when segmentation
+  /// cannot continue without it.
+  StreamRoom room() const {
     const std::lock_guard lock(mutex_);
     if (!is_full()) {
       return StreamRoom::kPlenty;
@@ -69,31 +70,31 @@ class SliceQueue {
     return waits_for_missing_ && slices_.empty() ? StreamRoom::kOnlyNext : StreamRoom::kNone;
   }
 
-  /// Waits up to `timeout`; true when there is plenty.
+  /// Waits up to `timeout` for room; returns whether there is plenty.
   bool wait_for_room(std::chrono::milliseconds timeout) {
     std::unique_lock lock(mutex_);
     return changed_.wait_for(lock, timeout, [this] { return !is_full(); });
   }
 
-  [[nodiscard]] std::int64_t size() const {
+  std::int64_t size() const {
     const std::lock_guard lock(mutex_);
     return static_cast<std::int64_t>(slices_.size());
   }
 
-  /// Received and not segmented.
-  [[nodiscard]] std::size_t bytes() const {
+  /// Of slices that were received and are not segmented.
+  std::size_t bytes() const {
     const std::lock_guard lock(mutex_);
     return queued_bytes_ + waiting_bytes_;
   }
 
-  /// Closed, and everything taken.
-  [[nodiscard]] bool is_exhausted() const {
+  /// True when the queue is closed and empty.
+  bool is_exhausted() const {
     const std::lock_guard lock(mutex_);
     return closed_ && slices_.empty();
   }
 
  private:
-  [[nodiscard]] bool is_full() const { return queued_bytes_ + waiting_bytes_ >= max_bytes_; }
+  bool is_full() const { return queued_bytes_ + waiting_bytes_ >= max_bytes_; }
 
   const std::size_t max_bytes_;
   mutable std::mutex mutex_;

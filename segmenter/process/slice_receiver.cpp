@@ -18,7 +18,7 @@ SliceReceiver::SliceReceiver(const Config& config, SliceQueue& queue)
     : queue_(queue),
       subscriber_(
           channels::kCloudSlice, [this](CloudSlice slice) { queue_.push(std::move(slice)); },
-          [this](const DecodeError& reason) { bad(reason); },
+          [this](const DecodeError& reason) { count_bad(reason); },
           [&] {
             StreamSubscriber<CloudSlice>::Config stream;
             stream.receiver = config.session;
@@ -40,6 +40,7 @@ void SliceReceiver::subscribe(Bus& bus) { subscriber_.subscribe(bus); }
 void SliceReceiver::ask(Bus& bus, double now_s) { subscriber_.ask(bus, now_s); }
 
 void SliceReceiver::read(const std::filesystem::path& log) {
+  reads_log_ = true;
   reader_ = std::thread([this, reader = std::make_shared<LogReader>(log)] {
     try {
       while (!stopping_) {
@@ -67,11 +68,11 @@ bool SliceReceiver::is_coming(std::int64_t map_session) const {
   }
   return std::ranges::any_of(subscriber_.gaps(), [&](const StreamGap& gap) {
     return gap.session == map_session;
-  });  // else nobody has heard of it
+  });  // no gap: nobody has announced the session
 }
 
-// The 1st, 2nd, 4th, 8th ...: a publisher of garbage does not fill the log.
-void SliceReceiver::bad(const DecodeError& reason) {
+// Warns at the 1st, 2nd, 4th, 8th ... message: a publisher of garbage must not fill the log.
+void SliceReceiver::count_bad(const DecodeError& reason) {
   if (std::has_single_bit(static_cast<std::uint64_t>(++num_bad_))) {
     spdlog::warn("dropped {} messages so far, the last: {}", num_bad_, reason.what());
   }

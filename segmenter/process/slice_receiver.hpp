@@ -1,5 +1,5 @@
 #pragma once
-// From the bus, or a log, to whole slices.
+// Receives whole slices from the bus or from a log.
 
 #include <atomic>
 #include <cstddef>
@@ -17,13 +17,13 @@
 
 namespace kintsugi::segmenter {
 
-/// Decodes and joins chunks, asks for what is missing, and puts slices into a queue while that has
-/// room. Messages that cannot be used are counted, and told of ever more rarely.
+/// Decodes messages, joins chunks to slices, requests what is missing, and puts slices into a queue
+/// while that has room. Messages that cannot be used are counted, and logged ever more rarely.
 class SliceReceiver {
  public:
   struct Config {
-    std::int64_t session = 0;                               ///< of this segmenter: who asks
-    std::string map_name;                                   ///< only slices of this map; empty: all
+    std::int64_t session = 0;  ///< of this segmenter, for its resend requests
+    std::string map_name;      ///< only slices of this map; empty: all
     std::size_t max_pending_bytes = std::size_t{1} << 30U;  ///< of incomplete slices
   };
 
@@ -36,35 +36,37 @@ class SliceReceiver {
 
   /// From now on bus.handle() fills the queue; this must outlive that.
   void subscribe(Bus& bus);
-  /// Asks for what is missing, when it is time to; for the thread of bus.handle().
+  /// Requests what is missing when it is time to; for the thread of bus.handle().
   void ask(Bus& bus, double now_s);
 
-  /// Reads `log` in a thread of its own, as fast as there is room, and then closes the queue.
-  /// Throws std::runtime_error when it is no log.
+  /// Reads `log` in a thread of its own, as fast as the queue has room, and then closes the queue.
+  /// @throws std::runtime_error when it is not an LCM log
   void read(const std::filesystem::path& log);
 
-  /// Takes no more; of a log: reads no further. Call before problem().
+  /// Accepts nothing more; stops reading a log. Call before problem().
   void stop();
 
-  // What is known of a session; from any thread.
-  /// What is missing of it is on its way. Not of a log.
-  [[nodiscard]] bool is_coming(std::int64_t map_session) const;
-  /// What is in a map that is gone on with need not come again.
+  // From any thread:
+  bool reads_log() const { return reads_log_; }
+  /// True while missing slices of a session are being resent. Meaningless for a log.
+  bool is_coming(std::int64_t map_session) const;
+  /// What is in a resumed map need not be received again.
   void restore(const SegmentMap& map) {
     subscriber_.restore(map.map_session(), map.chunks().ranges());
   }
   void forget(std::int64_t map_session) { subscriber_.forget(map_session); }
-  [[nodiscard]] StreamCounts counts() const { return subscriber_.counts(); }
-  [[nodiscard]] std::size_t pending_bytes() const { return subscriber_.pending_bytes(); }
+  StreamCounts counts() const { return subscriber_.counts(); }
+  std::size_t pending_bytes() const { return subscriber_.pending_bytes(); }
 
   /// Why the log could not be read to its end; nothing when it could.
-  [[nodiscard]] const std::optional<std::string>& problem() const { return problem_; }
+  const std::optional<std::string>& problem() const { return problem_; }
 
  private:
-  void bad(const DecodeError& reason);
+  void count_bad(const DecodeError& reason);
 
   SliceQueue& queue_;
   std::atomic<bool> stopping_{false};
+  std::atomic<bool> reads_log_{false};
   std::int64_t num_bad_ = 0;            // of the thread that receives
   std::optional<std::string> problem_;  // of the reader, until it is stopped
   StreamSubscriber<CloudSlice> subscriber_;

@@ -96,8 +96,8 @@ void UpdatePublisher::try_to(const Action& action) {
     action();
   } catch (const std::exception& error) {
     const std::lock_guard lock(mutex_);
-    if (problem_.empty()) {  // all that comes after it fails likewise
-      problem_ = std::string("an update is not published: ") + error.what();
+    if (problem_.empty()) {  // those after it fail for the same reason
+      problem_ = std::string("an update was not published: ") + error.what();
       spdlog::error("{}", problem_);
     }
   }

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "segmenter/io/ply_reader.hpp"
+#include "segmenter/io/ply/ply_reader.hpp"
 
 namespace kintsugi::segmenter::bench {
 namespace {

@@ -1,20 +1,19 @@
 #include "segmenter/evaluation/agreement/agreement.hpp"
 
 #include <algorithm>
-#include <stdexcept>
 #include <string>
 #include <unordered_map>
 #include <utility>
+
+#include "lcmtypes/base/argument_check.hpp"
 
 namespace kintsugi::segmenter {
 
 std::vector<SegmentAgreement> mutual_overlap(std::span<const std::uint32_t> labels,
                                              std::span<const std::uint32_t> reference) {
-  if (labels.size() != reference.size()) {
-    throw std::invalid_argument("labels of " + std::to_string(labels.size()) +
-                                " points, reference of " + std::to_string(reference.size()) +
-                                ": must be the same points");
-  }
+  require(labels.size() == reference.size(),
+          "labels of " + std::to_string(labels.size()) + " points, reference of " +
+              std::to_string(reference.size()) + ": must be the same points");
   std::unordered_map<std::uint32_t, std::int64_t> reference_sizes;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs(labels.size());
   for (std::size_t i = 0; i < labels.size(); ++i) {

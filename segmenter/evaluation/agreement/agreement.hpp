@@ -1,4 +1,5 @@
 #pragma once
+// Agreement of two partitions of the same points (Eq. 5 of the paper).
 
 #include <cstdint>
 #include <span>

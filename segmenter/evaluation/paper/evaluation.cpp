@@ -4,20 +4,16 @@
 #include <cmath>
 #include <functional>
 #include <numeric>
-#include <stdexcept>
 #include <utility>
 
+#include "lcmtypes/base/argument_check.hpp"
 #include "lcmtypes/base/process_memory.hpp"
 
 namespace kintsugi::segmenter {
 namespace {
 
-void require(bool holds, const std::string& what) {
-  if (!holds) throw std::invalid_argument(what);
-}
-
-/// So often that all runs together take about the budget: a run takes time in proportion to the
-/// points so far.
+/// The smallest interval between runs of batch that keeps their total time within the budget, if
+/// the time of a run is proportional to the number of points.
 int affordable_interval(const RecordedSession& session, double final_ms, double budget_s) {
   double points = 0.0;
   double points_of_all_runs = 0.0;
@@ -31,17 +27,17 @@ int affordable_interval(const RecordedSession& session, double final_ms, double 
   return static_cast<int>(std::clamp(interval, 1.0, static_cast<double>(session.steps.size())));
 }
 
-std::vector<std::int64_t> lag_of(const Replay& replay, const RecordedSession& session) {
+std::vector<std::int64_t> lag_of(const MeasuredSession& measured, const RecordedSession& session) {
   std::vector<std::int64_t> all_ready_us;
   std::vector<double> run_ms;
-  for (const MeasuredRun& run : replay.runs) {
+  for (const MeasuredRun& run : measured.runs) {
     all_ready_us.push_back(ready_us(session.steps[static_cast<std::size_t>(run.step)]));
     run_ms.push_back(run.engine_ms);
   }
   return slices_behind(all_ready_us, run_ms);
 }
 
-/// Labels by the size of their segments, largest first, of equal ones the smaller label.
+/// Labels by the size of their segments, largest first; at equal size the smaller label first.
 std::vector<std::uint32_t> labels_by_size(std::span<const std::uint32_t> labels) {
   std::vector<std::int64_t> sizes;
   for (const std::uint32_t label : labels) {
@@ -55,8 +51,9 @@ std::vector<std::uint32_t> labels_by_size(std::span<const std::uint32_t> labels)
   return by_size;
 }
 
-/// Of the segments asked for that there are.
-std::vector<ChosenSegment> choose_thetas(const RecordedSession& session, const Replay& batch,
+/// The theta histories of the configured segments, as far as they exist.
+std::vector<ChosenSegment> choose_thetas(const RecordedSession& session,
+                                         const MeasuredSession& batch,
                                          const EvaluationConfig& config) {
   const std::vector<std::uint32_t> by_size = labels_by_size(batch.labels);
   std::vector<ChosenSegment> chosen;
@@ -99,10 +96,8 @@ void EvaluationConfig::validate() const {
     require(std::count(modes.begin(), modes.end(), mode) == 1,
             std::string("mode ").append(quoted).append(" comes twice"));
   }
-  require(batch_every >= 0,
-          "batch_every is " + std::to_string(batch_every) + ", must be >= 0 (0: chosen)");
-  require(batch_budget_s > 0.0,
-          "batch_budget_s is " + std::to_string(batch_budget_s) + ", must be > 0");
+  require(batch_every >= 0, "batch_every", batch_every, ">= 0 (0: chosen)");
+  require(batch_budget_s > 0.0, "batch_budget_s", batch_budget_s, "> 0");
   for (const int rank : segments) {
     require(rank >= 1, "segments has rank " + std::to_string(rank) + ", must be >= 1 (1: largest)");
     require(std::count(segments.begin(), segments.end(), rank) == 1,
@@ -111,12 +106,13 @@ void EvaluationConfig::validate() const {
 }
 
 Evaluation evaluate(RecordedSession session, EvaluationConfig config,
-                    const OnReplayProgress& on_progress) {
+                    const OnMeasurementProgress& on_progress) {
   config.engine.resolution_m = session.resolution_m();
   config.validate();
   Evaluation result;
   const auto num_steps = static_cast<int>(session.steps.size());
-  const Replay reference = replay_batch(session.steps, num_steps, config.engine, on_progress);
+  const MeasuredSession reference =
+      measure_batch(session.steps, num_steps, config.engine, on_progress);
   result.num_vertices = reference.runs.back().map_points;
   result.batch_final_ms = reference.runs.back().engine_ms;
   result.num_segments = std::int64_t{std::ranges::max(reference.labels)} + 1;
@@ -125,14 +121,14 @@ Evaluation evaluate(RecordedSession session, EvaluationConfig config,
                                                                     config.batch_budget_s);
   for (const std::string& mode : config.modes) {
     ModeResult& of_mode = result.modes.emplace_back();
-    of_mode.replay =
+    of_mode.measured =
         mode == "batch"
-            ? replay_batch(session.steps, result.batch_every, config.engine, on_progress)
-            : replay_incrementally(session.steps, mode, config.engine, on_progress);
-    of_mode.is_complete = of_mode.replay.runs.size() == session.steps.size();
-    of_mode.agreements = mutual_overlap(of_mode.replay.labels, reference.labels);
+            ? measure_batch(session.steps, result.batch_every, config.engine, on_progress)
+            : measure_incremental(session.steps, mode, config.engine, on_progress);
+    of_mode.is_complete = of_mode.measured.runs.size() == session.steps.size();
+    of_mode.agreements = mutual_overlap(of_mode.measured.labels, reference.labels);
     if (session.has_times && of_mode.is_complete) {
-      of_mode.slices_behind = lag_of(of_mode.replay, session);
+      of_mode.slices_behind = lag_of(of_mode.measured, session);
     }
   }
   result.thetas = choose_thetas(session, reference, config);

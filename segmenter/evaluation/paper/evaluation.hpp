@@ -1,5 +1,5 @@
 #pragma once
-// Everything the paper measures, over one recorded session.
+// The measurements of the paper, over one recorded session.
 
 #include <cstdint>
 #include <optional>
@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "segmenter/evaluation/agreement/agreement.hpp"
-#include "segmenter/evaluation/agreement/theta_history.hpp"
+#include "segmenter/evaluation/paper/theta_history.hpp"
 #include "segmenter/evaluation/session/recorded_session.hpp"
 #include "segmenter/evaluation/times/lag.hpp"
-#include "segmenter/evaluation/times/replay.hpp"
+#include "segmenter/evaluation/times/measured_session.hpp"
 
 namespace kintsugi::segmenter {
 
@@ -36,7 +36,7 @@ struct ChosenSegment {
 
 /// One mode over the session.
 struct ModeResult {
-  Replay replay;
+  MeasuredSession measured;
   bool is_complete = true;                  ///< ran after every step; else it was sampled (`batch`)
   std::vector<std::int64_t> slices_behind;  ///< of each step; empty: no times, or sampled
   std::vector<SegmentAgreement> agreements;  ///< with batch, on the final map
@@ -55,10 +55,10 @@ struct Evaluation {
   std::int64_t peak_resident_bytes = 0;
 };
 
-/// Segments the final map with batch, which is the reference, then replays the session in each
-/// mode.
+/// Segments the final map with batch, which is the reference, then measures each mode over the
+/// session.
 /// @throws std::invalid_argument for an invalid config
 Evaluation evaluate(RecordedSession session, EvaluationConfig config,
-                    const OnReplayProgress& on_progress = {});
+                    const OnMeasurementProgress& on_progress = {});
 
 }  // namespace kintsugi::segmenter

@@ -46,7 +46,7 @@ std::string tables(const Evaluation& evaluation) {
   text += html_note(
       "Times are wall time of the segmentation of a slice, without keeping the segment "
       "ids, which has its own row. Batch starts from nothing each time. Memory growth is "
-      "that of the process over the replay, the points themselves included. The paper's "
+      "that of the process over the session, the points themselves included. The paper's "
       "datasets are others: its columns are no comparison of equals.");
   text += html_section("Table II: lag");
   if (evaluation.session.has_times) {

@@ -9,7 +9,7 @@
 
 namespace kintsugi::segmenter {
 
-/// One HTML page with everything in it: it refers to no other file.
+/// One self-contained HTML page with all results.
 std::string make_page(const Evaluation& evaluation, const ReportContext& context,
                       const std::vector<DrawnFigure>& figures);
 

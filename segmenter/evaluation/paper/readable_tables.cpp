@@ -12,7 +12,7 @@ class ReadableRows {
  public:
   ReadableRows(const Evaluation& evaluation, const std::string& quantity) : results_(evaluation) {
     table_.header = {quantity};
-    for (const ModeResult& mode : results_.modes) table_.header.push_back(mode.replay.mode);
+    for (const ModeResult& mode : results_.modes) table_.header.push_back(mode.measured.mode);
     for (const paper::Dataset& dataset : paper::kDatasets) {
       table_.header.push_back("paper: " + std::string(dataset.name));
     }
@@ -28,14 +28,14 @@ class ReadableRows {
     }
   }
 
-  [[nodiscard]] Table take() { return std::move(table_); }
+  Table take() { return std::move(table_); }
 
  private:
   const Evaluation& results_;
   Table table_;
 };
 
-/// A figure that was not measured after every slice says so.
+/// Marks a figure that was not measured after every slice.
 std::string sampled(const ModeResult& mode, const std::string& text) {
   return mode.is_complete ? text : "~ " + text;
 }
@@ -62,34 +62,35 @@ Table readable_table1(const Evaluation& evaluation) {
       "Map length (m)", [&](Mode) { return decimal(session.path_length_m, 1); },
       [](Paper p) { return decimal(p.length_m, 1); });
   rows.add(
-      "Maximum per slice (ms)", [](Mode m) { return decimal(slice_times(m.replay).max_ms, 2); },
+      "Maximum per slice (ms)", [](Mode m) { return decimal(slice_times(m.measured).max_ms, 2); },
       [](Paper p) { return decimal(p.max_ms, 2); });
   rows.add(
-      "Minimum per slice (ms)", [](Mode m) { return decimal(slice_times(m.replay).min_ms, 3); },
+      "Minimum per slice (ms)", [](Mode m) { return decimal(slice_times(m.measured).min_ms, 3); },
       [](Paper p) { return decimal(p.min_ms, 2); });
   rows.add(
       "Average per slice (ms)",
-      [](Mode m) { return sampled(m, decimal(slice_times(m.replay).average_ms, 2)); },
+      [](Mode m) { return sampled(m, decimal(slice_times(m.measured).average_ms, 2)); },
       [](Paper p) { return decimal(p.average_ms, 2); });
   rows.add(
       "Total timing (s)",
-      [](Mode m) { return sampled(m, decimal(slice_times(m.replay).total_s, 2)); },
+      [](Mode m) { return sampled(m, decimal(slice_times(m.measured).total_s, 2)); },
       [](Paper p) { return decimal(p.total_s, 2); });
   rows.add("99th percentile per slice (ms)",
-           [](Mode m) { return decimal(slice_times(m.replay).p99_ms, 2); }, {});
-  rows.add("CPU of all threads, average per run (ms)",
-           [](Mode m) { return decimal(mean_over_runs(m.replay, &MeasuredRun::engine_cpu_ms), 2); },
-           {});
+           [](Mode m) { return decimal(slice_times(m.measured).p99_ms, 2); }, {});
+  rows.add(
+      "CPU of all threads, average per run (ms)",
+      [](Mode m) { return decimal(mean_over_runs(m.measured, &MeasuredRun::engine_cpu_ms), 2); },
+      {});
   rows.add("Segment ids, average per slice (ms)",
            [](Mode m) {
-             return m.replay.mode == "batch"
+             return m.measured.mode == "batch"
                         ? ""
-                        : decimal(mean_over_runs(m.replay, &MeasuredRun::ids_ms), 2);
+                        : decimal(mean_over_runs(m.measured, &MeasuredRun::ids_ms), 2);
            },
            {});
   rows.add("Memory growth (bytes per point)",
            [&](Mode m) {
-             return decimal(static_cast<double>(m.replay.resident_growth_bytes) /
+             return decimal(static_cast<double>(m.measured.resident_growth_bytes) /
                                 static_cast<double>(evaluation.num_vertices),
                             0);
            },
@@ -128,7 +129,7 @@ Table readable_agreement(const Evaluation& evaluation) {
     for (const std::int64_t min_points : {std::int64_t{1}, kLargeSegment}) {
       const AgreementSummary summary = summarize(mode.agreements, min_points);
       table.rows.push_back(
-          {mode.replay.mode,
+          {mode.measured.mode,
            min_points == 1 ? "any size" : "at least " + std::to_string(min_points) + " points",
            grouped(summary.num_segments), grouped(summary.num_points), percent(summary.exact_share),
            decimal(summary.mean_v, 4), percent(summary.exact_point_share),

@@ -15,7 +15,7 @@ void write_tables(const Evaluation& evaluation, const std::filesystem::path& fol
   write_text_file(folder / "agreement.csv", to_csv(agreement_table(evaluation)));
   write_text_file(folder / "theta.csv", to_csv(theta_table(evaluation)));
   for (const ModeResult& mode : evaluation.modes) {
-    write_text_file(folder / ("slices_" + mode.replay.mode + ".csv"),
+    write_text_file(folder / ("slices_" + mode.measured.mode + ".csv"),
                     to_csv(slices_table(evaluation, mode)));
   }
 }

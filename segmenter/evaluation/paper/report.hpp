@@ -1,5 +1,5 @@
 #pragma once
-// The results of an evaluation as files.
+// The results of the paper's measurements as files.
 
 #include <filesystem>
 

@@ -23,11 +23,11 @@ std::string color_of(const std::string& mode) {
   return "#2e7d32";
 }
 
-bool is_incremental(const ModeResult& mode) { return mode.replay.mode != "batch"; }
+bool is_incremental(const ModeResult& mode) { return mode.measured.mode != "batch"; }
 
 Series times_of(const ModeResult& mode) {
-  Series series{.name = mode.replay.mode, .color = color_of(mode.replay.mode), .points = {}};
-  for (const MeasuredRun& run : mode.replay.runs) {
+  Series series{.name = mode.measured.mode, .color = color_of(mode.measured.mode), .points = {}};
+  for (const MeasuredRun& run : mode.measured.runs) {
     series.points.emplace_back(run.step, run.engine_ms);
   }
   return series;
@@ -62,7 +62,7 @@ double slowest_incremental_ms(const Evaluation& evaluation) {
   double slowest_ms = 0.0;
   for (const ModeResult& mode : evaluation.modes) {
     if (is_incremental(mode)) {
-      slowest_ms = std::max(slowest_ms, slice_times(mode.replay).max_ms);
+      slowest_ms = std::max(slowest_ms, slice_times(mode.measured).max_ms);
     }
   }
   return slowest_ms;
@@ -96,8 +96,8 @@ void add_lag_figure(const Evaluation& evaluation, std::vector<Figure>& figures) 
                 {.x_label = "slice", .y_label = "slices behind"}};
   for (const ModeResult& mode : evaluation.modes) {
     if (mode.slices_behind.empty()) continue;
-    Series series{.name = mode.replay.mode,
-                  .color = color_of(mode.replay.mode),
+    Series series{.name = mode.measured.mode,
+                  .color = color_of(mode.measured.mode),
                   .style = Series::Style::kSteps,
                   .points = {}};
     for (std::size_t i = 0; i < mode.slices_behind.size(); ++i) {
@@ -126,8 +126,9 @@ void add_agreement_figure(const Evaluation& evaluation, std::vector<Figure>& fig
       if (points.empty()) continue;
       const bool all = min_points == 1;
       figure.plot.series.push_back(
-          {.name = mode.replay.mode + (all ? "" : ", >= " + std::to_string(min_points) + " points"),
-           .color = color_of(mode.replay.mode),
+          {.name =
+               mode.measured.mode + (all ? "" : ", >= " + std::to_string(min_points) + " points"),
+           .color = color_of(mode.measured.mode),
            .dashed = !all,
            .points = std::move(points)});
     }

@@ -6,7 +6,7 @@
 namespace kintsugi::segmenter {
 namespace {
 
-/// Over all steps: exact where each was run, else by trapezoids from the point (0, 0).
+/// The time of all steps: the exact sum if each was run, else by the trapezoidal rule from (0, 0).
 double total_ms(const std::vector<MeasuredRun>& runs) {
   double total = 0.0;
   std::int32_t step_before = -1;
@@ -22,16 +22,16 @@ double total_ms(const std::vector<MeasuredRun>& runs) {
 
 }  // namespace
 
-double mean_over_runs(const Replay& replay, double MeasuredRun::*value) {
+double mean_over_runs(const MeasuredSession& measured, double MeasuredRun::*value) {
   double total = 0.0;
-  for (const MeasuredRun& run : replay.runs) total += run.*value;
-  return total / static_cast<double>(replay.runs.size());
+  for (const MeasuredRun& run : measured.runs) total += run.*value;
+  return total / static_cast<double>(measured.runs.size());
 }
 
-SliceTimes slice_times(const Replay& replay) {
+SliceTimes slice_times(const MeasuredSession& measured) {
   std::vector<double> times_ms;
-  times_ms.reserve(replay.runs.size());
-  for (const MeasuredRun& run : replay.runs) times_ms.push_back(run.engine_ms);
+  times_ms.reserve(measured.runs.size());
+  for (const MeasuredRun& run : measured.runs) times_ms.push_back(run.engine_ms);
   std::sort(times_ms.begin(), times_ms.end());
   const auto rank =
       static_cast<std::size_t>(std::ceil(0.99 * static_cast<double>(times_ms.size())));
@@ -39,8 +39,8 @@ SliceTimes slice_times(const Replay& replay) {
   times.max_ms = times_ms.back();
   times.min_ms = times_ms.front();
   times.p99_ms = times_ms[rank - 1];
-  times.total_s = 1e-3 * total_ms(replay.runs);
-  times.average_ms = 1e3 * times.total_s / (replay.runs.back().step + 1);
+  times.total_s = 1e-3 * total_ms(measured.runs);
+  times.average_ms = 1e3 * times.total_s / (measured.runs.back().step + 1);
   return times;
 }
 
@@ -52,16 +52,16 @@ Table table1(const Evaluation& evaluation) {
       "runs",   "max_ms",         "min_ms",         "average_ms",   "total_s",
       "p99_ms", "cpu_average_ms", "ids_average_ms", "segments",     "memory_growth_bytes"};
   for (const ModeResult& mode : evaluation.modes) {
-    const Replay& replay = mode.replay;
-    const SliceTimes times = slice_times(replay);
+    const MeasuredSession& measured = mode.measured;
+    const SliceTimes times = slice_times(measured);
     table.rows.push_back(
-        {replay.mode, std::to_string(evaluation.num_vertices), std::to_string(session.num_slices),
+        {measured.mode, std::to_string(evaluation.num_vertices), std::to_string(session.num_slices),
          decimal(session.build_time_s, 6), decimal(session.path_length_m, 6),
-         std::to_string(replay.runs.size()), decimal(times.max_ms, 3), decimal(times.min_ms, 3),
+         std::to_string(measured.runs.size()), decimal(times.max_ms, 3), decimal(times.min_ms, 3),
          decimal(times.average_ms, 3), decimal(times.total_s, 6), decimal(times.p99_ms, 3),
-         decimal(mean_over_runs(replay, &MeasuredRun::engine_cpu_ms), 3),
-         decimal(mean_over_runs(replay, &MeasuredRun::ids_ms), 3),
-         std::to_string(mode.agreements.size()), std::to_string(replay.resident_growth_bytes)});
+         decimal(mean_over_runs(measured, &MeasuredRun::engine_cpu_ms), 3),
+         decimal(mean_over_runs(measured, &MeasuredRun::ids_ms), 3),
+         std::to_string(mode.agreements.size()), std::to_string(measured.resident_growth_bytes)});
   }
   return table;
 }
@@ -73,7 +73,7 @@ Table table2(const Evaluation& evaluation) {
     if (mode.slices_behind.empty()) continue;
     const LagSummary lag = summarize_lag(mode.slices_behind);
     table.rows.push_back(
-        {mode.replay.mode, std::to_string(lag.max_slices), decimal(lag.mean_slices, 6)});
+        {mode.measured.mode, std::to_string(lag.max_slices), decimal(lag.mean_slices, 6)});
   }
   return table;
 }
@@ -85,7 +85,7 @@ Table agreement_table(const Evaluation& evaluation) {
   for (const ModeResult& mode : evaluation.modes) {
     for (const std::int64_t min_points : {std::int64_t{1}, kLargeSegment}) {
       const AgreementSummary summary = summarize(mode.agreements, min_points);
-      table.rows.push_back({mode.replay.mode, std::to_string(min_points),
+      table.rows.push_back({mode.measured.mode, std::to_string(min_points),
                             std::to_string(summary.num_segments),
                             std::to_string(summary.num_points), decimal(summary.exact_share, 6),
                             decimal(summary.mean_v, 6), decimal(summary.exact_point_share, 6),
@@ -101,7 +101,7 @@ Table slices_table(const Evaluation& evaluation, const ModeResult& mode) {
                   "points", "map_points",    "engine_ms",        "engine_cpu_ms",
                   "ids_ms", "slices_behind", "points_segmented", "edges",
                   "joins",  "iterations"};
-  for (const MeasuredRun& run : mode.replay.runs) {
+  for (const MeasuredRun& run : mode.measured.runs) {
     const auto index = static_cast<std::size_t>(run.step);
     const SliceGroup& step = evaluation.session.steps[index];
     std::size_t num_points = 0;

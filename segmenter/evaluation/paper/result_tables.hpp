@@ -19,10 +19,10 @@ struct SliceTimes {
 
 /// Of a mode that ran at least once. Where it was sampled, average and total are over all steps,
 /// the time between two runs taken to grow evenly; the others are over the runs.
-SliceTimes slice_times(const Replay& replay);
+SliceTimes slice_times(const MeasuredSession& measured);
 
 /// Of a mode that ran at least once.
-double mean_over_runs(const Replay& replay, double MeasuredRun::*value);
+double mean_over_runs(const MeasuredSession& measured, double MeasuredRun::*value);
 
 /// Segments of at least so many points count as large.
 inline constexpr std::int64_t kLargeSegment = 100;

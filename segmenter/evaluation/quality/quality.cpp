@@ -1,15 +1,12 @@
 #include "segmenter/evaluation/quality/quality.hpp"
 
-#include <stdexcept>
 #include <string>
 #include <unordered_map>
 
+#include "lcmtypes/base/argument_check.hpp"
+
 namespace kintsugi::segmenter {
 namespace {
-
-void require(bool holds, const std::string& what) {
-  if (!holds) throw std::invalid_argument(what);
-}
 
 double ratio(double sum, std::int64_t count) {
   return count == 0 ? 0.0 : sum / static_cast<double>(count);
@@ -49,12 +46,9 @@ void count_segments(std::span<const std::uint32_t> segments, const QualityConfig
 }  // namespace
 
 void QualityConfig::validate() const {
-  require(min_instance_points >= 1,
-          "min_instance_points is " + std::to_string(min_instance_points) + ", must be >= 1");
-  require(found_iou > 0.0 && found_iou <= 1.0,
-          "found_iou is " + std::to_string(found_iou) + ", must be in (0, 1]");
-  require(large_segment_points >= 1,
-          "large_segment_points is " + std::to_string(large_segment_points) + ", must be >= 1");
+  require(min_instance_points >= 1, "min_instance_points", min_instance_points, ">= 1");
+  require(found_iou > 0.0 && found_iou <= 1.0, "found_iou", found_iou, "in (0, 1]");
+  require(large_segment_points >= 1, "large_segment_points", large_segment_points, ">= 1");
   boundary.validate();
 }
 

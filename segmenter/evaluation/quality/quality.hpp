@@ -1,5 +1,5 @@
 #pragma once
-// How good a segmentation is, where the truth is known.
+// Measures of the quality of a segmentation, given the true instances.
 
 #include <cstdint>
 #include <set>
@@ -7,14 +7,14 @@
 #include <vector>
 
 #include "lcmtypes/messages.hpp"
-#include "segmenter/evaluation/quality/quality_boundaries.hpp"
-#include "segmenter/evaluation/quality/quality_overlap.hpp"
+#include "segmenter/evaluation/quality/boundaries.hpp"
+#include "segmenter/evaluation/quality/overlap.hpp"
 
 namespace kintsugi::segmenter {
 
 struct QualityConfig {
-  /// Instances of fewer points of the map are not counted in mean IoU and objects found, >= 1: what
-  /// the camera hardly saw cannot be found.
+  /// Instances with fewer points in the map are not counted in mean IoU and objects found, because
+  /// the camera hardly saw them; >= 1.
   std::int64_t min_instance_points = 100;
   double found_iou = 0.5;                   ///< an object is found at this best IoU, in (0, 1]
   std::int64_t large_segment_points = 100;  ///< segments of so many points are large, >= 1
@@ -24,7 +24,7 @@ struct QualityConfig {
   void validate() const;
 };
 
-/// Over the points that have an instance, but for the last two, which are over all points.
+/// Over the points that have an instance; the last two fields are over all points.
 struct SegmentationQuality {
   std::vector<InstanceScore> instances;  ///< all there are, ascending
   std::int64_t num_points = 0;           ///< that have an instance

@@ -68,7 +68,7 @@ std::string html_figures(const std::vector<DrawnFigure>& figures) {
   std::string text;
   for (const DrawnFigure& figure : figures) {
     text += html_section(figure.title) + "<figure>\n";
-    // gnuplot's own header is for a file by itself.
+    // Skips the XML header, which belongs only into a separate SVG file.
     const auto start = figure.svg.find("<svg");
     text += start == std::string::npos
                 ? html_remark(

@@ -1,5 +1,5 @@
 #pragma once
-// What the pages of reports are made of: HTML that refers to no other file.
+// Parts of the HTML pages of reports; the pages are self-contained.
 
 #include <optional>
 #include <string>
@@ -11,17 +11,17 @@
 
 namespace kintsugi::segmenter {
 
-/// What a page says of how it came about.
+/// How a report was made.
 struct ReportContext {
   std::string command_line;
   std::string version;                         ///< of the program
   std::optional<std::string> gnuplot_version;  ///< nothing: there is no gnuplot
 };
 
-/// A name and what is said of it.
+/// Names and values.
 using Facts = std::vector<std::pair<std::string, std::string>>;
 
-// All of these escape what they are given, but for `body`, which is HTML.
+// These escape their arguments, except `body`, which is HTML.
 std::string html_page(const std::string& title, const std::string& body);
 std::string html_section(const std::string& title);
 std::string html_note(const std::string& text);
@@ -29,7 +29,7 @@ std::string html_remark(const std::string& text);
 std::string html_list(const Facts& facts);
 /// A table that scrolls sideways where the page is narrow.
 std::string html_wide(const Table& table);
-/// Each under its title; one that is not drawn says why.
+/// Each figure under its title; instead of one that could not be drawn, the reason.
 std::string html_figures(const std::vector<DrawnFigure>& figures);
 
 /// Command line, version, gnuplot and machine.

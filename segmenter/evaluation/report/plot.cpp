@@ -9,21 +9,21 @@
 namespace kintsugi::segmenter {
 namespace {
 
-/// As a word of the shell, whatever is in it.
+/// Quoted as one word for the shell.
 std::string shell_quoted(const std::string& text) {
   std::string quoted = "'";
   for (const char c : text) quoted.append(c == '\'' ? "'\\''" : std::string(1, c));
   return quoted + "'";
 }
 
-/// As a string of gnuplot.
+/// Quoted as a string of gnuplot.
 std::string gnuplot_quoted(const std::string& text) {
   std::string quoted = "'";
   for (const char c : text) quoted.append(c == '\'' ? "''" : std::string(1, c));
   return quoted + "'";
 }
 
-/// What the command prints; nothing when it cannot be run or fails.
+/// The output of the command; nothing when it cannot be run or fails.
 std::optional<std::string> output_of(const std::string& command) {
   FILE* const pipe = ::popen(command.c_str(), "r");
   if (pipe == nullptr) return std::nullopt;

@@ -35,11 +35,11 @@ struct Plot {
 std::vector<std::pair<double, double>> thinned(const std::vector<std::pair<double, double>>& points,
                                                std::size_t num_buckets);
 
-/// A gnuplot script, its data in it, that prints the plot as SVG. Values that a logarithmic axis
+/// A self-contained gnuplot script that prints the plot as SVG. Values that a logarithmic axis
 /// cannot show are left out.
 std::string to_gnuplot(const Plot& plot);
 
-/// The version line of the gnuplot on this machine; nothing when there is none.
+/// The version line of the installed gnuplot; nothing when there is none.
 std::optional<std::string> gnuplot_version();
 
 /// What gnuplot prints for the script in `script_path`.

@@ -1,3 +1,5 @@
+#include "segmenter/evaluation/session/session_log.hpp"
+
 #include <algorithm>
 #include <map>
 #include <stdexcept>
@@ -6,12 +8,11 @@
 #include "lcmtypes/channels.hpp"
 #include "lcmtypes/log/log_reader.hpp"
 #include "lcmtypes/stream/stream_subscriber.hpp"
-#include "segmenter/evaluation/session/recorded_session.hpp"
 
 namespace kintsugi::segmenter {
 namespace {
 
-/// What a log holds of one session of a mapper.
+/// The contents of a log for one mapper session.
 struct LoggedSession {
   SliceSequencer order{{}};
   std::vector<SliceGroup> steps;
@@ -33,7 +34,7 @@ struct LoggedSession {
     take(Outlook::kSilent);
   }
 
-  /// Gives up what is missing.
+  /// Takes what is left, without the missing slices.
   void end() {
     do take(Outlook::kEnded);
     while (order.give_up_gap({}, Outlook::kEnded));
@@ -47,7 +48,7 @@ struct LoggedSession {
 
 using LoggedSessions = std::map<std::int64_t, LoggedSession>;
 
-/// Everything in the log, and what was wrong with it.
+/// Reads all sessions of the log; adds to `faults` what was wrong with it.
 LoggedSessions read_log(const std::filesystem::path& path, std::vector<std::string>& faults) {
   LogReader log(path);
   LoggedSessions sessions;
@@ -93,7 +94,7 @@ double path_length_m(const std::vector<Pose>& X_WC) {
   return length_m;
 }
 
-/// Build time and path, from camera poses or, without them, from the slices.
+/// Sets build time and path length, from camera poses or, without them, from the slices.
 void measure_path(const LoggedSession& logged, RecordedSession& session) {
   const std::vector<const CloudSlice*> slices = session.newest_slices();
   std::vector<Pose> path;
@@ -115,7 +116,7 @@ void measure_path(const LoggedSession& logged, RecordedSession& session) {
   session.path_length_m = path_length_m(path);
 }
 
-/// What is missing, was left out or was corrected.
+/// Adds remarks about what is missing, was left out or was corrected.
 void add_remarks(const LoggedSession& logged, RecordedSession& session) {
   if (const auto num_missing = logged.order.num_missing(); num_missing > 0) {
     session.is_whole = false;
@@ -127,8 +128,9 @@ void add_remarks(const LoggedSession& logged, RecordedSession& session) {
     session.remarks.push_back("The log ends before the final slice of the map.");
   }
   if (logged.num_corrections > 0) {
-    session.remarks.push_back(std::to_string(logged.num_corrections) +
-                              " corrections of slices were replayed as they came.");
+    session.remarks.push_back(
+        std::to_string(logged.num_corrections) +
+        " corrections of slices were segmented in the order in which they were recorded.");
   }
   if (logged.num_wrong_resolution > 0) {
     session.is_whole = false;

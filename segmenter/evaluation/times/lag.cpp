@@ -17,7 +17,7 @@ std::vector<std::int64_t> slices_behind(std::span<const std::int64_t> ready_us,
   std::size_t num_finished = 0;     // when the slice is ready
   double ready = 0.0;
   for (std::size_t i = 0; i < run_ms.size(); ++i) {
-    // Relative to the first: a double holds days in microseconds.
+    // Relative to the first, so that a double represents microseconds exactly.
     const auto own = static_cast<double>(ready_us[i] - ready_us[0]);
     ready = i == 0 ? own : std::max(ready, own);
     while (num_finished < i && finished_us[num_finished] <= ready) ++num_finished;

@@ -1,4 +1,5 @@
 #pragma once
+// How far the segmentation lags behind the mapper (Table II of the paper).
 
 #include <cstdint>
 #include <span>

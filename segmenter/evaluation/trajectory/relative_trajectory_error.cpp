@@ -42,7 +42,7 @@ std::vector<double> times_us(const Trajectory& trajectory, std::int64_t start_us
   return times;
 }
 
-/// How much of `unit` lies between a pose and the next.
+/// The distance from a pose to the next, in `unit`.
 double step_between(const StampedPose& pose, const StampedPose& next, DeltaUnit unit) {
   const Pose motion = pose.X_WC.inverse() * next.X_WC;
   switch (unit) {
@@ -58,7 +58,7 @@ double step_between(const StampedPose& pose, const StampedPose& next, DeltaUnit 
   return 0.0;
 }
 
-/// How far along the trajectory each pose is.
+/// The distance of each pose from the first along the trajectory, in `unit`.
 std::vector<double> progress_along(const Trajectory& trajectory, DeltaUnit unit) {
   std::vector<double> progress = {0.0};
   for (std::size_t i = 1; i < trajectory.size(); ++i) {
@@ -102,7 +102,7 @@ double median_interval_us(const Trajectory& trajectory) {
   return statistics_of(std::move(intervals_us)).median;
 }
 
-/// For each estimated pose the true one, if it is near enough.
+/// The true pose nearest in time to each estimated pose, if it is near enough.
 std::vector<const Pose*> true_poses(const Trajectory& estimate, const Trajectory& truth) {
   const std::int64_t start_us = truth.front().utime;
   const std::vector<double> truth_us = times_us(truth, start_us);

@@ -5,9 +5,9 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "segmenter/io/labelled_ply_writer.hpp"
 #include "segmenter/io/map_files.hpp"
-#include "segmenter/io/ply_reader.hpp"
+#include "segmenter/io/ply/labelled_ply_writer.hpp"
+#include "segmenter/io/ply/ply_reader.hpp"
 #include "tests/segmenter/process/slice_session.hpp"
 #include "tests/support/temporary_folder.hpp"
 

@@ -84,7 +84,7 @@ TEST_P(SavedMap, GoesOnAsIfItHadNeverBeenSaved) {
   SegmentMap map(config_of(GetParam()), 99, groups[0][0]);
   std::vector<std::unique_ptr<SegmentMap>> resumed;  // at each step so far
   for (const auto& group : groups) {
-    save_map(map, folder / "map");
+    write_map_state(map.state(), folder / "map");
     resumed.push_back(load_map(folder / "map"));
     expect_same(*resumed.back(), map);
     const auto updates = map.add(group);
@@ -92,11 +92,11 @@ TEST_P(SavedMap, GoesOnAsIfItHadNeverBeenSaved) {
       EXPECT_EQ(other->add(group), updates);
     }
   }
-  save_map(map, folder / "map");
+  write_map_state(map.state(), folder / "map");
   const std::string bytes = contents(folder / "map");
   for (const auto& other : resumed) {
     expect_same(*other, map);
-    save_map(*other, folder / "other");
+    write_map_state(other->state(), folder / "other");
     EXPECT_EQ(contents(folder / "other"), bytes);
   }
   EXPECT_TRUE(map.is_complete());
@@ -114,7 +114,7 @@ TEST_P(SavedMap, KeepsWhatItIs) {
   config.engine.min_points = 7.0;
   SegmentMap map(config, 99, slices[0]);
   map.add(slices);
-  save_map(map, folder / "map");
+  write_map_state(map.state(), folder / "map");
   const auto loaded = load_map(folder / "map");
   EXPECT_EQ(loaded->session(), 99);
   EXPECT_EQ(loaded->map_session(), 5);

@@ -14,7 +14,7 @@
 
 #include "segmenter/io/graph_file.hpp"
 #include "segmenter/io/map_files.hpp"
-#include "segmenter/io/ply_reader.hpp"
+#include "segmenter/io/ply/ply_reader.hpp"
 #include "segmenter/io/scannet_segments.hpp"
 #include "segmenter/io/segment_plys.hpp"
 #include "segmenter/io/segments_csv.hpp"

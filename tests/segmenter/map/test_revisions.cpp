@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "segmenter/process/slice_processor.hpp"
+#include "segmenter/process/session_map.hpp"
 #include "tests/segmenter/process/room_session.hpp"
 #include "tests/segmenter/process/slice_session.hpp"
 
@@ -45,25 +45,27 @@ class Revisions : public ::testing::Test {
     }
   }
 
-  SliceProcessor make(const std::string& mode) {
+  SessionMap make(const std::string& mode) {
     SegmentMapConfig config;
     config.mode = mode;
     return make(std::make_unique<SegmentMap>(config, 99, slices_[0]));
   }
 
-  SliceProcessor make(std::unique_ptr<SegmentMap> map) {
-    return {{},
-            std::move(map),
-            {[this](const SegmentUpdate& update) {
-               mirror_.apply(update);
-               ++num_updates_;
-             },
-             [](const SegmentMap&, SliceProcessor::Save) {},
-             [](const std::string& text) { ADD_FAILURE() << text; }}};
+  SessionMap make(std::unique_ptr<SegmentMap> map) { return {{}, std::move(map)}; }
+
+  /// Applies the updates of a step; returns whether there was one to do.
+  bool step(SessionMap& map) {
+    const StepResult result = map.step(now_, Outlook::kSilent);
+    for (const SegmentUpdate& update : result.updates) {
+      mirror_.apply(update);
+      ++num_updates_;
+    }
+    EXPECT_TRUE(result.warnings.empty()) << result.warnings.front();
+    return result.has_progressed;
   }
 
-  /// As a process does that tells everything first.
-  SliceProcessor go_on_with(std::unique_ptr<SegmentMap> map) {
+  /// As a process that resumes a map: it first sends the full state.
+  SessionMap resume(std::unique_ptr<SegmentMap> map) {
     for (const SegmentUpdate& update : map->describe()) {
       mirror_.apply(update);
       ++num_updates_;
@@ -72,18 +74,18 @@ class Revisions : public ::testing::Test {
   }
 
   /// Offers the slices that are new and segments them.
-  void run(SliceProcessor& processor, const std::vector<CloudSlice>& slices) {
+  void run(SessionMap& session, const std::vector<CloudSlice>& slices) {
     for (const CloudSlice& slice : slices) {
-      processor.offer(slice, now_);
+      session.offer(slice, now_);
     }
     now_ += seconds(1);  // more than a pause in corrections
-    while (processor.step(now_, Outlook::kSilent)) {
+    while (step(session)) {
     }
-    EXPECT_EQ(processor.counts().lag, 0);
-    EXPECT_TRUE(processor.counts().complete);
-    EXPECT_EQ(mirror_.labels(), testing::labels_of(processor.map()));
-    EXPECT_EQ(mirror_.statistics(), processor.map().statistics().all());
-    EXPECT_EQ(mirror_.num_segments(), processor.counts().segments);
+    EXPECT_EQ(session.counts().lag, 0);
+    EXPECT_TRUE(session.counts().complete);
+    EXPECT_EQ(mirror_.labels(), testing::labels_of(session.segment_map()));
+    EXPECT_EQ(mirror_.statistics(), session.segment_map().statistics().all());
+    EXPECT_EQ(mirror_.num_segments(), session.counts().segments);
   }
 
   std::vector<CloudSlice> every_revision_twice() const {
@@ -97,7 +99,7 @@ class Revisions : public ::testing::Test {
   const std::vector<CloudSlice> slices_ = testing::RoomRow(2, 0.05).cut(0.4);
   std::vector<CloudSlice> moved_ = slices_;
   std::vector<CloudSlice> back_ = slices_;
-  SliceProcessor::Clock::time_point now_{seconds(1000)};
+  SessionMap::Clock::time_point now_{seconds(1000)};
   LabelMirror mirror_;
   int num_updates_ = 0;
 };
@@ -105,72 +107,74 @@ class Revisions : public ::testing::Test {
 TEST_F(Revisions, MovingAThirdOfTheMapAndBackGivesWhatBatchGivesEachTime) {
   for (const std::string& mode : modes_equal_to_batch()) {
     mirror_ = {};
-    SliceProcessor processor = make(mode);
-    run(processor, slices_);
-    const Labels original = testing::labels_of(processor.map());
-    EXPECT_GT(processor.counts().segments, 100);
+    SessionMap session = make(mode);
+    run(session, slices_);
+    const Labels original = testing::labels_of(session.segment_map());
+    EXPECT_GT(session.counts().segments, 100);
     EXPECT_TRUE(testing::same_partition(original, batch_labels(slices_))) << mode;
 
     num_updates_ = 0;
-    run(processor, moved_);  // those that did not move are duplicates
+    run(session, moved_);  // those that did not move are duplicates
     const auto num_moved = std::ssize(slices_) * 2 / 3 - std::ssize(slices_) / 3;
     EXPECT_EQ(num_updates_, num_moved);
-    EXPECT_EQ(processor.counts().corrected, num_moved);
-    const Labels after = testing::labels_of(processor.map());
+    EXPECT_EQ(session.counts().corrected, num_moved);
+    const Labels after = testing::labels_of(session.segment_map());
     EXPECT_TRUE(testing::same_partition(after, batch_labels(moved_))) << mode;
     EXPECT_FALSE(testing::same_partition(after, original)) << "the motion changes nothing";
 
-    run(processor, back_);
-    EXPECT_TRUE(testing::same_partition(testing::labels_of(processor.map()), original)) << mode;
-    EXPECT_EQ(processor.map().cloud().num_live(), processor.counts().points);
-    EXPECT_EQ(processor.counts().received, std::ssize(slices_));
+    run(session, back_);
+    EXPECT_TRUE(testing::same_partition(testing::labels_of(session.segment_map()), original))
+        << mode;
+    EXPECT_EQ(session.segment_map().cloud().num_live(), session.counts().points);
+    EXPECT_EQ(session.counts().received, std::ssize(slices_));
   }
 }
 
 TEST_F(Revisions, UpdatesReplayToTheMapInEveryMode) {
   for (const std::string_view mode : engine_modes()) {
     mirror_ = {};
-    SliceProcessor processor = make(std::string(mode));
-    run(processor, slices_);
-    run(processor, moved_);
-    run(processor, back_);
+    SessionMap session = make(std::string(mode));
+    run(session, slices_);
+    run(session, moved_);
+    run(session, back_);
   }
 }
 
 TEST_F(Revisions, CorrectionsOfOneGoAreOneRun) {
-  SliceProcessor processor = make("batch");
-  run(processor, slices_);
+  SessionMap session = make("batch");
+  run(session, slices_);
   for (const CloudSlice& slice : moved_) {
-    processor.offer(slice, now_);
-    EXPECT_FALSE(processor.step(now_, Outlook::kSilent));
+    session.offer(slice, now_);
+    EXPECT_FALSE(step(session));
   }
   now_ += seconds(1);
-  EXPECT_TRUE(processor.step(now_, Outlook::kSilent));
-  EXPECT_FALSE(processor.step(now_, Outlook::kSilent));
+  EXPECT_TRUE(step(session));
+  EXPECT_FALSE(step(session));
 }
 
 TEST_F(Revisions, FinalMapIsTheSameInAnyOrderOfArrivalWithDuplicates) {
   std::vector<CloudSlice> all = every_revision_twice();
   std::mt19937 random(17);
   for (const std::string& mode : modes_equal_to_batch()) {
-    SliceProcessor in_order = make(mode);
+    SessionMap in_order = make(mode);
     mirror_ = {};
     run(in_order, back_);
-    const Labels expected = testing::labels_of(in_order.map());
+    const Labels expected = testing::labels_of(in_order.segment_map());
     for (int round = 0; round < 2; ++round) {
       std::ranges::shuffle(all, random);
-      SliceProcessor shuffled = make(mode);
+      SessionMap shuffled = make(mode);
       mirror_ = {};
       for (const CloudSlice& slice : all) {
         shuffled.offer(slice, now_);
         if (random() % 4 == 0) {
-          while (shuffled.step(now_, Outlook::kSilent)) {
+          while (step(shuffled)) {
           }
         }
       }
       run(shuffled, {});
-      EXPECT_TRUE(testing::same_partition(testing::labels_of(shuffled.map()), expected)) << mode;
-      for (const SliceRecord& slice : shuffled.map().cloud().slices()) {
+      EXPECT_TRUE(testing::same_partition(testing::labels_of(shuffled.segment_map()), expected))
+          << mode;
+      for (const SliceRecord& slice : shuffled.segment_map().cloud().slices()) {
         EXPECT_EQ(slice.revision, back_[static_cast<std::size_t>(slice.slice_id)].revision);
       }
     }
@@ -184,15 +188,15 @@ TEST_F(Revisions, FinalMapIsTheSameWhenASegmenterStopsAnywhereAndAnotherHearsEve
   for (const std::string& mode : modes_equal_to_batch()) {
     for (int round = 0; round < 2; ++round) {
       std::ranges::shuffle(all, random);
-      SliceProcessor first = make(mode);
+      SessionMap first = make(mode);
       const std::size_t num_heard = 1 + random() % all.size();
       for (std::size_t i = 0; i < num_heard; ++i) {
         first.offer(all[i], now_);
-        while (first.step(now_, Outlook::kSilent)) {
+        while (step(first)) {
         }
       }
       mirror_ = {};
-      SliceProcessor second = go_on_with(std::make_unique<SegmentMap>(first.map().state()));
+      SessionMap second = resume(std::make_unique<SegmentMap>(first.segment_map().state()));
       std::ranges::shuffle(all, random);
       run(second, all);
       EXPECT_TRUE(testing::same_partition(mirror_.labels(), expected)) << mode;
@@ -204,17 +208,17 @@ TEST_F(Revisions, IdsDependOnTheOrderOfArrivalAndNotOnTiming) {
   std::vector<CloudSlice> all = slices_;
   std::ranges::copy_if(moved_, std::inserter(all, all.begin() + std::ssize(slices_) * 3 / 4),
                        [](const CloudSlice& slice) { return slice.revision > 0; });
-  SliceProcessor late = make("batch");
+  SessionMap late = make("batch");
   run(late, all);
-  SliceProcessor at_once = make("batch");
+  SessionMap at_once = make("batch");
   mirror_ = {};
   for (const CloudSlice& slice : all) {
     at_once.offer(slice, now_);
-    while (at_once.step(now_, Outlook::kSilent)) {
+    while (step(at_once)) {
     }
   }
   run(at_once, {});
-  EXPECT_EQ(testing::labels_of(late.map()), testing::labels_of(at_once.map()));
+  EXPECT_EQ(testing::labels_of(late.segment_map()), testing::labels_of(at_once.segment_map()));
 }
 
 TEST_F(Revisions, ANewSegmenterGoesOnWithTheMapOfAnEarlierOne) {
@@ -228,13 +232,13 @@ TEST_F(Revisions, ANewSegmenterGoesOnWithTheMapOfAnEarlierOne) {
       }
       mirror_ = {};
       num_updates_ = 0;
-      SliceProcessor processor = go_on_with(std::move(map));
+      SessionMap session = resume(std::move(map));
       EXPECT_EQ(num_updates_, static_cast<int>(num_done));
-      EXPECT_EQ(mirror_.labels(), testing::labels_of(processor.map()));
-      EXPECT_EQ(processor.counts().segmented, static_cast<std::int64_t>(num_done));
-      run(processor, slices_);
+      EXPECT_EQ(mirror_.labels(), testing::labels_of(session.segment_map()));
+      EXPECT_EQ(session.counts().segmented, static_cast<std::int64_t>(num_done));
+      run(session, slices_);
       EXPECT_TRUE(testing::same_partition(mirror_.labels(), batch_labels(slices_)));
-      run(processor, moved_);
+      run(session, moved_);
       EXPECT_TRUE(testing::same_partition(mirror_.labels(), batch_labels(moved_)));
     }
   }

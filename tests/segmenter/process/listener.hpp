@@ -15,7 +15,7 @@
 #include "lcmtypes/base/stop_signal.hpp"
 #include "lcmtypes/bus/message_subscriber.hpp"
 #include "lcmtypes/channels.hpp"
-#include "segmenter/io/ply_reader.hpp"
+#include "segmenter/io/ply/ply_reader.hpp"
 #include "segmenter/process/segmenter_process.hpp"
 #include "tests/segmenter/process/slice_session.hpp"
 #include "tests/support/private_bus.hpp"
@@ -98,9 +98,9 @@ inline SegmenterProcess::Config on_the_bus(const kintsugi::testing::TemporaryFol
                                            const std::string& mode) {
   SegmenterProcess::Config config;
   config.lcm_url = kintsugi::testing::kPrivateBusUrl;
-  config.files.folder = folder.path();
+  config.segmentation.files.folder = folder.path();
   config.exit_on_final = true;
-  config.maps.map.mode = mode;
+  config.segmentation.maps.map.mode = mode;
   config.linger_s = 0.0;
   return config;
 }

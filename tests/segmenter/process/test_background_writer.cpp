@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "segmenter/process/background_writer.hpp"
-#include "segmenter/process/slice_processor.hpp"
+#include "segmenter/process/session_map.hpp"
 #include "tests/segmenter/process/slice_session.hpp"
 
 namespace kintsugi::segmenter {
@@ -59,21 +59,19 @@ TEST(BackgroundWriter, SlicesAreSegmentedWhileAFileIsWritten) {
   std::vector<std::size_t> written;
   BackgroundWriter writer;
   int num_updates = 0;
-  SliceProcessor::Config config;
+  SessionMap::Config config;
   config.write_every = 1;
   const auto slices = testing::wavy_session(20, 50);
-  SliceProcessor processor(config, std::make_unique<SegmentMap>(SegmentMapConfig{}, 1, slices[0]),
-                           {[&](const SegmentUpdate&) { ++num_updates; },
-                            [&](const SegmentMap& map, SliceProcessor::Save) {
-                              writer.put("map", [&, size = map.cloud().slices().size()] {
-                                disk_is_done.wait();
-                                written.push_back(size);
-                              });
-                            },
-                            [](const std::string&) {}});
+  SessionMap map(config, std::make_unique<SegmentMap>(SegmentMapConfig{}, 1, slices[0]));
   for (const CloudSlice& slice : slices) {
-    processor.offer(slice, {});
-    while (processor.step({}, Outlook::kSilent)) {
+    map.offer(slice, {});
+    const StepResult result = map.step({}, Outlook::kSilent);
+    num_updates += static_cast<int>(result.updates.size());
+    for (const SaveRequest& request : result.saves) {
+      writer.put("map", [&, size = request.map->cloud().slices().size()] {
+        disk_is_done.wait();
+        written.push_back(size);
+      });
     }
   }
   EXPECT_EQ(num_updates, 20);  // and no file is written yet

@@ -250,8 +250,8 @@ TEST_F(ProcessFaults, KilledAtAnyMomentAndRestartedEndsWithTheSameIds) {
 TEST_F(ProcessFaults, GoingOnAsksOnlyForWhatIsNotInTheSavedMap) {
   const auto slices = wavy_session(20, 300);
   SegmenterProcess::Config config = on_the_bus(folder_, "exact");
-  config.files.save_file = folder_ / "map.kseg";
-  config.maps.processor.save_every = 1;
+  config.segmentation.files.save_file = folder_ / "map.kseg";
+  config.segmentation.maps.each_map.save_every = 1;
   config.exit_on_final = false;
   {
     Listener listener(config);
@@ -260,10 +260,10 @@ TEST_F(ProcessFaults, GoingOnAsksOnlyForWhatIsNotInTheSavedMap) {
     EXPECT_TRUE(listener.hears([&] { return listener.status->slices_segmented == 19; }));
   }
   rearm_stop_signals();
-  const SegmentMapState saved = read_map_state(config.files.save_file);
+  const SegmentMapState saved = read_map_state(config.segmentation.files.save_file);
   ASSERT_EQ(saved.chunks.size(), 1U);
   EXPECT_EQ(saved.chunks[0].first, 0);
-  config.resume_file = config.files.save_file;
+  config.segmentation.resume_file = config.segmentation.files.save_file;
   config.exit_on_final = true;
   Listener listener(config);
   std::int64_t first_asked = std::numeric_limits<std::int64_t>::max();
@@ -287,16 +287,16 @@ TEST_F(ProcessFaults, ASavedMapOfAnotherSessionIsKeptAsideAndTheNewOneBegins) {
   const auto newer = wavy_session(4, 300, 6, 2);
   SegmentMap saved({}, 1, older[0]);
   saved.add({older.data(), 3});
-  save_map(saved, folder_ / "map.kseg");
+  write_map_state(saved.state(), folder_ / "map.kseg");
   SegmenterProcess::Config config = on_the_bus(folder_, "exact");
-  config.files.save_file = config.resume_file = folder_ / "map.kseg";
+  config.segmentation.files.save_file = config.segmentation.resume_file = folder_ / "map.kseg";
   Listener listener(config);
   MapperImitation mapper(listener.bus(), 6);
   mapper.publish(newer);
   EXPECT_EQ(listener.hear_the_end(), 0);
   EXPECT_EQ(labels_in(folder_ / "segments_5.ply"), testing::labels_of(saved));
   EXPECT_EQ(labels_in(folder_ / "segments.ply"), labels_without_fault(newer, "exact"));
-  EXPECT_EQ(read_map_state(config.files.save_file).map_session, 6);
+  EXPECT_EQ(read_map_state(config.segmentation.files.save_file).map_session, 6);
 }
 
 class FullDisk : public ProcessFaults {
@@ -313,19 +313,20 @@ class FullDisk : public ProcessFaults {
 TEST_F(FullDisk, TheOldMapStaysAndTheNewIsWrittenWhenThereIsSpace) {
   const auto slices = wavy_session(20, 400);  // 36 bytes a point: three slices fit beside the old
   SegmenterProcess::Config config = on_the_bus(folder_, "exact");
-  config.files.save_file = disk_.folder() / "map.kseg";
-  config.maps.processor.save_every = 1;
-  config.rewrite_period = std::chrono::milliseconds(200);
+  config.segmentation.files.save_file = disk_.folder() / "map.kseg";
+  config.segmentation.maps.each_map.save_every = 1;
+  config.segmentation.rewrite_period = std::chrono::milliseconds(200);
   config.exit_on_final = false;
   Listener listener(config);
   MapperImitation mapper(listener.bus(), 5);
   mapper.publish(slices[0]);
-  EXPECT_TRUE(listener.hears([&] { return std::filesystem::exists(config.files.save_file); }));
+  EXPECT_TRUE(
+      listener.hears([&] { return std::filesystem::exists(config.segmentation.files.save_file); }));
   mapper.publish({slices.begin() + 1, slices.end() - 1});
   EXPECT_TRUE(listener.hears([&] { return !listener.status->problem.empty(); }));
   EXPECT_THAT(listener.status->problem, HasSubstr("No space left"));
   EXPECT_TRUE(listener.hears([&] { return listener.status->slices_segmented == 19; }));
-  const std::size_t num_saved = read_map_state(config.files.save_file).slices.size();
+  const std::size_t num_saved = read_map_state(config.segmentation.files.save_file).slices.size();
   EXPECT_LT(num_saved, 19U);  // the old file, whole
   // And no other, but while it tries.
   EXPECT_TRUE(listener.hears(
@@ -335,14 +336,14 @@ TEST_F(FullDisk, TheOldMapStaysAndTheNewIsWrittenWhenThereIsSpace) {
   // What was being written may lack the newest slice; it comes by itself.
   EXPECT_TRUE(listener.hears([&] {
     return listener.status->problem.empty() &&
-           read_map_state(config.files.save_file).slices.size() == 19;
+           read_map_state(config.segmentation.files.save_file).slices.size() == 19;
   }));
   mapper.publish(slices.back());
   EXPECT_TRUE(listener.hears([&] { return listener.status->finished; }));
   request_stop();
   EXPECT_EQ(listener.hear_the_end(), 0);  // all is well in the end
   rearm_stop_signals();
-  EXPECT_EQ(testing::labels_of(*load_map(config.files.save_file)),
+  EXPECT_EQ(testing::labels_of(*load_map(config.segmentation.files.save_file)),
             labels_without_fault(slices, "exact"));
 }
 

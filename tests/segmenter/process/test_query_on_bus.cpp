@@ -9,7 +9,7 @@
 
 #include "segmenter/io/saved_map.hpp"
 #include "segmenter/query/answer.hpp"
-#include "segmenter/tools/query_client.hpp"
+#include "segmenter/tools/query/query_client.hpp"
 #include "tests/segmenter/process/listener.hpp"
 #include "tests/segmenter/process/room_session.hpp"
 #include "tests/segmenter/tools/program.hpp"
@@ -145,7 +145,7 @@ TEST_F(QueryOnTheBus, ProgramGivesTheSameOverTheBusAndOfTheSavedMap) {
   const auto slices = testing::RoomRow(1, 0.04).cut(0.5);
   SegmenterProcess::Config config = on_the_bus(folder_, "exact");
   config.exit_on_final = false;
-  config.files.save_file = folder_ / "map.kseg";
+  config.segmentation.files.save_file = folder_ / "map.kseg";
   Listener listener(config);
   StreamPublisher publisher(listener.bus(), channels::kCloudSlice, slices[0].session, {});
   for (const CloudSlice& slice : slices) publisher.publish(slice);

@@ -8,10 +8,10 @@
 
 #include "lcmtypes/channels.hpp"
 #include "segmenter/core/presets.hpp"
-#include "segmenter/io/ply_reader.hpp"
+#include "segmenter/io/ply/ply_reader.hpp"
 #include "segmenter/process/process_status.hpp"
 #include "segmenter/process/segmenter_process.hpp"
-#include "tests/segmenter/evaluation/session_log.hpp"
+#include "tests/segmenter/evaluation/session/log_of_slices.hpp"
 #include "tests/segmenter/process/listener.hpp"
 #include "tests/segmenter/process/room_session.hpp"
 #include "tests/segmenter/process/slice_session.hpp"
@@ -51,16 +51,14 @@ TEST(SegmenterStreams, MapIsTheSameHoweverTheChunksArrive) {
     }
     SegmentMapConfig config;
     config.mode = "voting";
-    SliceProcessor processor(
-        {}, std::make_unique<SegmentMap>(config, 1, received.front()),
-        {[](const SegmentUpdate&) {}, [](const SegmentMap&, SliceProcessor::Save) {},
-         [](const std::string&) {}});
+    SessionMap map({}, std::make_unique<SegmentMap>(config, 1, received.front()));
     for (CloudSlice& slice : received) {
-      EXPECT_FALSE(processor.offer(std::move(slice), {}));
+      EXPECT_FALSE(map.offer(std::move(slice), {}));
     }
-    processor.finish({});
-    EXPECT_TRUE(processor.counts().complete);
-    return testing::labels_of(processor.map());
+    while (map.step({}, Outlook::kEnded).has_progressed) {
+    }
+    EXPECT_TRUE(map.counts().complete);
+    return testing::labels_of(map.segment_map());
   };
   const auto expected = labels_after();
   for (int round = 0; round < 5; ++round) {
@@ -311,7 +309,7 @@ TEST_F(SegmenterOnTheBus, SegmentsEverySliceOfABurstHoweverSlowEngineAndFilesAre
   const TemporaryFolder folder;
   const auto slices = wavy_session(50, 300);
   SegmenterProcess::Config config = on_the_bus(folder, "batch");  // all of the map for each slice
-  config.maps.processor.write_every = 1;
+  config.segmentation.maps.each_map.write_every = 1;
   Listener listener(config);
   StreamPublisher publisher(listener.bus(), channels::kCloudSlice, slices[0].session, {});
   for (const CloudSlice& slice : slices) {

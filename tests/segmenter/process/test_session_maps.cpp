@@ -1,5 +1,7 @@
 // Several mapper sessions at a time, without bus and files.
 
+#include <algorithm>
+#include <iterator>
 #include <map>
 #include <set>
 
@@ -41,34 +43,35 @@ Labels labels_alone(const std::vector<CloudSlice>& slices) {
 
 class SessionMapsTest : public ::testing::Test {
  protected:
-  using Save = SessionMaps::Save;
   struct Saved {
     std::int64_t session;
     Labels labels;
-    Save why;
+    SaveKind kind;
   };
 
   SessionMaps make(const SessionMaps::Config& config = {}) {
-    return {config,
-            99,
-            {[this](std::int64_t session) {
-               return coming_.contains(session) ? Outlook::kLive : Outlook::kSilent;
-             },
-             [this](std::int64_t session) { return !coming_.contains(session); },
-             [this](std::int64_t session) { forgotten_.insert(session); }},
-            {[this](const SegmentUpdate& update) { mirrors_[update.map_session].apply(update); },
-             [this](const SegmentMap& map, Save why) {
-               saves_.push_back({map.map_session(), testing::labels_of(map), why});
-             },
-             [this](const std::string& text) { warnings_.push_back(text); }}};
+    return {config, 99, [this](std::int64_t session) {
+              const bool is_coming = coming_.contains(session);
+              return StreamState{is_coming ? Outlook::kLive : Outlook::kSilent, !is_coming};
+            }};
   }
 
+  bool step(SessionMaps& maps) {
+    const StepResult result = maps.step(now_);
+    for (const SegmentUpdate& update : result.updates) mirrors_[update.map_session].apply(update);
+    for (const auto& [map, kind] : result.saves) {
+      saves_.push_back({map->map_session(), testing::labels_of(*map), kind});
+    }
+    std::ranges::copy(result.warnings, std::back_inserter(warnings_));
+    if (result.ended_session) forgotten_.insert(*result.ended_session);
+    return result.has_progressed;
+  }
   void run(SessionMaps& maps) {
-    while (maps.step(now_)) {
+    while (step(maps)) {
     }
   }
   void offer(SessionMaps& maps, const CloudSlice& slice) {
-    maps.offer(slice, now_);
+    std::ranges::copy(maps.offer(slice, now_), std::back_inserter(warnings_));
     run(maps);
   }
   void settle(SessionMaps& maps) {
@@ -93,8 +96,9 @@ TEST_F(SessionMapsTest, LateSlicesOfAnOlderSessionGoIntoItsOwnMap) {
   coming_.insert(5);  // 1 and 3 are missing when the new mapper begins
   offer(maps, newer[0]);
   EXPECT_EQ(maps.counts().maps, 2);
-  EXPECT_THAT(warnings_, ElementsAre(AllOf(HasSubstr("session 6 has the map name 'map' now"),
-                                           HasSubstr("session 5 gets what is still missing"))));
+  EXPECT_THAT(warnings_,
+              ElementsAre(AllOf(HasSubstr("session 6 now owns the map name 'map'"),
+                                HasSubstr("session 5 receives only what is still missing"))));
   now_ += seconds(100);  // however long it takes
   offer(maps, newer[1]);
   offer(maps, older[3]);
@@ -114,10 +118,10 @@ TEST_F(SessionMapsTest, LateSlicesOfAnOlderSessionGoIntoItsOwnMap) {
   ASSERT_GE(saves_.size(), 2U);
   const Saved& ended = saves_[saves_.size() - 2];
   EXPECT_EQ(ended.session, 5);
-  EXPECT_EQ(ended.why, Save::kSessionEnded);
+  EXPECT_EQ(ended.kind, SaveKind::kSessionEnded);
   EXPECT_EQ(ended.labels, labels_alone(older));
   EXPECT_EQ(saves_.back().session, 6);
-  EXPECT_EQ(saves_.back().why, Save::kCurrent);
+  EXPECT_EQ(saves_.back().kind, SaveKind::kCurrent);
   EXPECT_EQ(maps.counts().missing, 0);
 }
 
@@ -134,7 +138,7 @@ TEST_F(SessionMapsTest, AnOlderSessionThatIsHeardLaterHasAMapBesideTheNewer) {
   }
   settle(maps);
   EXPECT_EQ(saves_.back().session, 5);
-  EXPECT_EQ(saves_.back().why, Save::kSessionEnded);  // not under the name of the newer
+  EXPECT_EQ(saves_.back().kind, SaveKind::kSessionEnded);  // not under the name of the newer
   EXPECT_EQ(saves_.back().labels, labels_alone(older));
   EXPECT_TRUE(maps.counts().complete);
 }
@@ -182,8 +186,10 @@ TEST_F(SessionMapsTest, TwoMappersOfOneNameMakeTwoMapsAndAreToldToTakeNames) {
     offer(maps, b[i]);
   }
   EXPECT_EQ(maps.counts().maps, 2);
-  EXPECT_THAT(warnings_, ElementsAre(HasSubstr("Two mappers at a time need a --map-name each")));
-  maps.finish(now_);
+  EXPECT_THAT(warnings_,
+              ElementsAre(HasSubstr("Mappers that run at the same time need a --map-name each")));
+  maps.close();
+  run(maps);
   EXPECT_EQ(mirrors_[5].labels(), labels_alone(a));
   EXPECT_EQ(mirrors_[6].labels(), labels_alone(b));
 }
@@ -211,7 +217,8 @@ TEST_F(SessionMapsTest, FollowsOnlyTheMapItIsToldTo) {
   offer(maps, named_session("kitchen", 6)[0]);
   EXPECT_EQ(maps.counts().maps, 0);
   offer(maps, named_session("office", 5)[0]);
-  EXPECT_NE(maps.map(5), nullptr);
+  ASSERT_EQ(maps.maps().size(), 1U);
+  EXPECT_EQ(maps.maps()[0]->map_session(), 5);
 }
 
 TEST_F(SessionMapsTest, KeepsNoMoreMapsThanItMay) {
@@ -223,7 +230,7 @@ TEST_F(SessionMapsTest, KeepsNoMoreMapsThanItMay) {
   }
   EXPECT_EQ(maps.counts().maps, 3);
   EXPECT_EQ(maps.counts().dropped, 2);
-  EXPECT_THAT(warnings_.front(), HasSubstr("3 maps are kept, and no more"));
+  EXPECT_THAT(warnings_.front(), HasSubstr("at most 3 maps are kept"));
 }
 
 TEST_F(SessionMapsTest, AResumedMapOfAnotherSessionIsKeptUnderItsNumber) {
@@ -240,7 +247,7 @@ TEST_F(SessionMapsTest, AResumedMapOfAnotherSessionIsKeptUnderItsNumber) {
   }
   settle(maps);
   EXPECT_EQ(saves_.back().session, 5);
-  EXPECT_EQ(saves_.back().why, Save::kSessionEnded);
+  EXPECT_EQ(saves_.back().kind, SaveKind::kSessionEnded);
   EXPECT_EQ(saves_.back().labels, labels);
   EXPECT_EQ(maps.counts().newest.map_session, 6);
   EXPECT_TRUE(maps.counts().complete);

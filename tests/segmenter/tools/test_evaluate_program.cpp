@@ -1,4 +1,4 @@
-// kintsugi-evaluate, run as a program, and how it reads sessions.
+// kintsugi-evaluate as a program: the tables and figures of the paper.
 
 #include <fstream>
 #include <iomanip>
@@ -8,112 +8,17 @@
 #include <gtest/gtest.h>
 
 #include "segmenter/evaluation/paper/evaluation.hpp"
-#include "segmenter/evaluation/session/recorded_session.hpp"
-#include "tests/segmenter/evaluation/session_log.hpp"
+#include "tests/segmenter/evaluation/session/log_of_slices.hpp"
 #include "tests/segmenter/process/slice_session.hpp"
 #include "tests/segmenter/tools/evaluate_program.hpp"
-#include "tests/support/temporary_folder.hpp"
 
 namespace kintsugi::segmenter {
 namespace {
 
-using kintsugi::testing::TemporaryFolder;
 using ::testing::AllOf;
 using ::testing::Contains;
-using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-
-CameraPose pose_at(double x_m, std::int64_t utime, std::int64_t session = 5) {
-  CameraPose pose;
-  pose.utime = utime;
-  pose.session = session;
-  pose.state = TrackingState::kTracking;
-  pose.X_WC.translation().x() = x_m;
-  return pose;
-}
-
-class SessionLog : public ::testing::Test {
- protected:
-  RecordedSession read() {
-    testing::write_log(path(), messages_);
-    return read_session_log(path());
-  }
-  std::filesystem::path path() const { return folder_ / "session.lcm"; }
-
-  TemporaryFolder folder_;
-  testing::LogMessages messages_;
-};
-
-TEST_F(SessionLog, HoldsSlicesTimesAndPath) {
-  testing::append_pose(pose_at(0.0, 500), messages_);
-  testing::append_slices(testing::wavy_session(3, 100), messages_);  // at 1000, 1001, 1002 us
-  testing::append_pose(pose_at(3.0, 900), messages_);
-  testing::append_pose(pose_at(2.0, 700), messages_);
-  CameraPose lost = pose_at(100.0, 800);
-  lost.state = TrackingState::kLost;
-  testing::append_pose(lost, messages_);
-  testing::append_pose(pose_at(50.0, 800, 6), messages_);  // of another session
-  const RecordedSession session = read();
-  EXPECT_EQ(session.num_slices, 3);
-  EXPECT_EQ(session.num_points(), 300);
-  EXPECT_EQ(ready_us(session.steps[2]), 1002);
-  EXPECT_TRUE(session.has_times);
-  EXPECT_TRUE(session.is_whole);
-  EXPECT_THAT(session.remarks, IsEmpty());
-  EXPECT_DOUBLE_EQ(session.path_length_m.value(), 3.0);
-  EXPECT_DOUBLE_EQ(session.build_time_s.value(), 502e-6);
-}
-
-TEST_F(SessionLog, WithoutPosesMeasuresAlongTheSlices) {
-  auto slices = testing::wavy_session(3, 100);
-  slices[1].X_WC.translation().y() = 1.0;
-  slices[2].X_WC.translation().y() = 3.0;
-  testing::append_slices(slices, messages_);
-  const RecordedSession session = read();
-  EXPECT_DOUBLE_EQ(session.path_length_m.value(), 3.0);
-  EXPECT_DOUBLE_EQ(session.build_time_s.value(), 2e-6);
-  EXPECT_THAT(session.remarks, Contains(HasSubstr("No camera poses")));
-}
-
-TEST_F(SessionLog, PutsSlicesInOrderAndCorrectionsWhereTheyCame) {
-  auto slices = testing::wavy_session(4, 100);
-  CloudSlice corrected = slices[1];
-  corrected.revision = 2;
-  corrected.points_W.pop_back();
-  testing::append_slices({slices[1], slices[0], corrected, slices[3], slices[1], slices[2]},
-                         messages_);
-  const RecordedSession session = read();
-  EXPECT_EQ(session.num_slices, 4);
-  EXPECT_EQ(session.num_points(), 399);
-  std::vector<std::pair<int, int>> replayed;  // id and revision
-  for (const SliceGroup& step : session.steps) {
-    ASSERT_EQ(step.slices.size(), 1U);
-    replayed.emplace_back(step.slices[0].id, step.slices[0].revision);
-  }
-  EXPECT_THAT(replayed, ElementsAre(std::pair(0, 0), std::pair(1, 0), std::pair(1, 2),
-                                    std::pair(2, 0), std::pair(3, 0)));
-  EXPECT_TRUE(session.is_whole);
-  EXPECT_THAT(session.remarks, Contains(HasSubstr("1 corrections of slices")));
-}
-
-TEST_F(SessionLog, TakesTheSessionWithMostSlicesAndSaysSo) {
-  testing::append_slices(testing::wavy_session(2, 50, 4), messages_);
-  testing::append_slices(testing::wavy_session(3, 50, 7), messages_);
-  const RecordedSession session = read();
-  EXPECT_EQ(session.num_slices, 3);
-  EXPECT_EQ(session.steps[0].slices[0].session, 7);
-  EXPECT_THAT(session.remarks, Contains(HasSubstr("2 sessions")));
-}
-
-TEST_F(SessionLog, TellsWhatIsMissing) {
-  const auto slices = testing::wavy_session(5, 50);
-  testing::append_slices({slices[0], slices[2], slices[3]}, messages_);
-  const RecordedSession session = read();
-  EXPECT_FALSE(session.is_whole);
-  EXPECT_THAT(session.remarks, AllOf(Contains(HasSubstr("1 slices are missing")),
-                                     Contains(HasSubstr("before the final slice"))));
-}
 
 class EvaluateProgram : public testing::EvaluateProgram {
  protected:
@@ -218,7 +123,7 @@ TEST_F(EvaluateProgram, NamesWhatIsWrongAndWritesNoPage) {
   expect_error(path("in.lcm") + " --out /proc/kintsugi", "/proc/kintsugi");
 
   testing::LogMessages messages;
-  testing::append_pose(pose_at(0.0, 1), messages);
+  testing::append_pose(testing::pose_at(0.0, 1), messages);
   testing::write_log(path("poses.lcm"), messages);
   expect_error(path("poses.lcm") + out, "holds no slice that could be read on CLOUD_SLICE");
 }

@@ -12,7 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "segmenter/io/map_files.hpp"
-#include "segmenter/io/ply_reader.hpp"
+#include "segmenter/io/ply/ply_reader.hpp"
 #include "segmenter/io/saved_map.hpp"
 #include "tests/segmenter/process/slice_session.hpp"
 #include "tests/segmenter/tools/program.hpp"
@@ -40,7 +40,7 @@ class Export : public ::testing::Test {
     SegmentMap map({}, 77, slices[0]);
     for (const CloudSlice& slice : slices) map.add({&slice, 1});
     map_ = take_snapshot(map);
-    save_map(map, folder_ / "map.kseg");
+    write_map_state(map.state(), folder_ / "map.kseg");
     write_map_files(map_, folder_.path(), "segments");
   }
 

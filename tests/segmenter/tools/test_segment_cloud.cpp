@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "segmenter/io/ply_reader.hpp"
+#include "segmenter/io/ply/ply_reader.hpp"
 #include "tests/segmenter/process/slice_session.hpp"
 #include "tests/segmenter/tools/program.hpp"
 #include "tests/support/temporary_folder.hpp"

@@ -1,0 +1,27 @@
+#include "segmenter/io/ply/labelled_ply_writer.hpp"
+
+namespace kintsugi::segmenter {
+namespace {
+
+kintsugi::PlyElement vertex_element(std::int64_t num_points) {
+  return {.name = "vertex",
+          .properties = {"float x", "float y", "float z", "float nx", "float ny", "float nz",
+                         "uchar red", "uchar green", "uchar blue", "uint segment_id",
+                         "int slice_id", "float weight"},
+          .count = num_points};
+}
+
+}  // namespace
+
+LabelledPlyWriter::LabelledPlyWriter(const std::filesystem::path& path, std::int64_t num_points,
+                                     const std::vector<std::string>& comments)
+    : writer_(path, {vertex_element(num_points)}, comments) {}
+
+void LabelledPlyWriter::append(const CloudPoint& point_W, std::uint32_t segment_id,
+                               std::int32_t slice_id) {
+  const CloudPoint& p = point_W;
+  writer_.append(0, p.x, p.y, p.z, p.nx, p.ny, p.nz, p.red, p.green, p.blue, segment_id, slice_id,
+                 p.weight);
+}
+
+}  // namespace kintsugi::segmenter

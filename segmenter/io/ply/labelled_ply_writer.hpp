@@ -1,0 +1,35 @@
+#pragma once
+// Writes labelled clouds as PLY files.
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "lcmtypes/base/ply_writer.hpp"
+#include "lcmtypes/messages.hpp"
+
+namespace kintsugi::segmenter {
+
+/// Writes a binary little-endian PLY with the vertex properties
+///   float x y z nx ny nz, uchar red green blue, uint segment_id, int slice_id, float weight
+/// in that order. Positions and normals are exactly those that were segmented, so that anyone can
+/// check the labels. The complete file appears under its name at commit().
+class LabelledPlyWriter {
+ public:
+  /// @param num_points exactly as many as will be appended
+  /// @param comments lines for the header, without line ends
+  /// @throws std::system_error naming the file and the reason, as do append() and commit()
+  LabelledPlyWriter(const std::filesystem::path& path, std::int64_t num_points,
+                    const std::vector<std::string>& comments);
+
+  void append(const CloudPoint& point_W, std::uint32_t segment_id, std::int32_t slice_id);
+
+  /// @throws std::logic_error when the number of points is not what the header says
+  void commit() { writer_.commit(); }
+
+ private:
+  PlyWriter writer_;
+};
+
+}  // namespace kintsugi::segmenter

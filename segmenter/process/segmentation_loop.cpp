@@ -1,0 +1,177 @@
+#include "segmenter/process/segmentation_loop.hpp"
+
+#include <utility>
+
+#include <spdlog/spdlog.h>
+
+#include "lcmtypes/base/argument_check.hpp"
+#include "lcmtypes/base/stop_signal.hpp"
+#include "segmenter/process/map_stem.hpp"
+#include "segmenter/process/resumed_map.hpp"
+
+namespace kintsugi::segmenter {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr milliseconds kPollPeriod{50};
+constexpr char kDefaultMapName[] = "map";  // of a mapper without --map-name
+
+void log_all(const std::vector<std::string>& warnings) {
+  for (const std::string& warning : warnings) {
+    spdlog::warn("{}", warning);
+  }
+}
+
+}  // namespace
+
+void SegmentationLoop::Config::validate() const {
+  maps.validate();
+  require(rewrite_period.count() > 0, "rewrite_period [ms]", rewrite_period.count(), "> 0");
+}
+
+SegmentationLoop::SegmentationLoop(const Config& config, std::int64_t session,
+                                   const Connections& connections)
+    : config_((config.validate(), config)),
+      session_(session),
+      with_(connections),
+      writer_(config.files),
+      maps_(config.maps, session,
+            [this](std::int64_t map_session) { return stream_state(map_session); }) {}
+
+void SegmentationLoop::run() {
+  try {
+    resume();
+    segment_until_end();
+    segment_rest();
+  } catch (...) {
+    write_all(maps_.save());
+    throw;
+  }
+}
+
+// Slices that are received while the map is loaded wait in the queue.
+void SegmentationLoop::resume() {
+  if (!config_.resume_file.empty()) {
+    auto map = resume_map(config_.resume_file, config_.maps.map, session_);
+    with_.receiver.restore(*map);
+    maps_.resume(std::move(map));
+    with_.updates.publish_state(maps_.describe(), with_.clock.now_s());
+    update_counts();
+  }
+}
+
+void SegmentationLoop::segment_until_end() {
+  bool is_behind = false;
+  while (!is_ending_ && (is_behind || !with_.queue.is_exhausted())) {
+    add(with_.queue.take(is_behind ? milliseconds(0) : kPollPeriod));
+    is_behind = step();
+    with_.queue.set_waiting(counts_.waiting_bytes, !is_behind);
+    serve();
+  }
+}
+
+void SegmentationLoop::segment_rest() {
+  add(with_.queue.take(milliseconds(0)));
+  if (stop_requested() && counts_.lag > 0) {
+    spdlog::info("segmenting what was received, {} slices behind; a second stop signal skips this",
+                 counts_.lag);
+    write_all(maps_.save());  // now, because the rest may take long
+  }
+  maps_.close();
+  while (step()) {
+  }
+  with_.queue.set_waiting(counts_.waiting_bytes, false);
+  write_all(maps_.save());
+  writer_.wait();
+  writer_.try_again();
+}
+
+void SegmentationLoop::add(std::vector<CloudSlice> slices) {
+  for (CloudSlice& slice : slices) {
+    log_all(maps_.offer(std::move(slice), now()));
+  }
+  update_counts();
+}
+
+bool SegmentationLoop::step() {
+  StepResult result = maps_.step(now());
+  for (SegmentUpdate& update : result.updates) {
+    with_.updates.publish(std::move(update));
+  }
+  write_all(result.saves);
+  log_all(result.warnings);
+  if (result.ended_session) {
+    with_.receiver.forget(*result.ended_session);
+  }
+  update_counts();
+  return result.has_progressed;
+}
+
+void SegmentationLoop::serve() {
+  if (with_.updates.take_state_request(with_.clock.now_s())) {
+    with_.updates.publish_state(maps_.describe(), with_.clock.now_s());
+  }
+  with_.queries.serve(maps_);
+  if (take_write_request()) {
+    write_all(maps_.save(!writer_.problem().empty()));
+  }
+  if (writer_.problem().empty()) {
+    next_rewrite_ = now() + config_.rewrite_period;
+  } else if (now() >= next_rewrite_) {
+    writer_.try_again();
+    next_rewrite_ = now() + config_.rewrite_period;
+  }
+}
+
+void SegmentationLoop::write_all(const std::vector<SaveRequest>& requests) {
+  for (const SaveRequest& request : requests) {
+    write(request);
+  }
+}
+
+// Only the main map can be resumed from a file; the others are rebuilt from the slices that their
+// mappers resend.
+void SegmentationLoop::write(const SaveRequest& request) {
+  const SegmentMap& map = *request.map;
+  const std::string& name = config_.maps.map_name;
+  const std::string stem = map_stem(map.map_name(), name.empty() ? kDefaultMapName : name);
+  const bool is_main = stem == map_stem("", "");
+  switch (request.kind) {
+    case SaveKind::kCurrent:
+      return is_main ? writer_.write_and_save(map, stem) : writer_.write(map, stem);
+    case SaveKind::kForResume:
+      return is_main ? writer_.save(map) : void();
+    case SaveKind::kBroken:
+      return writer_.write(map, stem);
+    case SaveKind::kSessionEnded:
+      return writer_.write(map, session_stem(stem, map.map_session()));
+  }
+}
+
+void SegmentationLoop::update_counts() {
+  const std::lock_guard lock(mutex_);
+  counts_ = maps_.counts();
+}
+
+SessionMaps::Counts SegmentationLoop::counts() const {
+  const std::lock_guard lock(mutex_);
+  return counts_;
+}
+
+// Nobody resends what is missing in a log; but what was resent while it was recorded may lie
+// anywhere in it, so no session of a log is quiet before its end.
+StreamState SegmentationLoop::stream_state(std::int64_t map_session) const {
+  if (with_.receiver.reads_log()) {
+    return {.outlook = Outlook::kSilent, .is_quiet = false};
+  }
+  const bool is_coming = with_.receiver.is_coming(map_session);
+  return {.outlook = is_coming ? Outlook::kLive : Outlook::kSilent, .is_quiet = !is_coming};
+}
+
+SegmentationLoop::Clock::time_point SegmentationLoop::now() const {
+  return Clock::time_point(std::chrono::duration_cast<Clock::duration>(
+      std::chrono::duration<double>(with_.clock.now_s())));
+}
+
+}  // namespace kintsugi::segmenter

@@ -1,0 +1,95 @@
+#pragma once
+// The thread that segments: from the queue of slices to updates and files.
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "lcmtypes/base/patient_clock.hpp"
+#include "segmenter/process/map_writer.hpp"
+#include "segmenter/process/query_responder.hpp"
+#include "segmenter/process/session_maps.hpp"
+#include "segmenter/process/slice_queue.hpp"
+#include "segmenter/process/slice_receiver.hpp"
+#include "segmenter/process/update_publisher.hpp"
+
+namespace kintsugi::segmenter {
+
+/// Takes slices from a queue, adds them to the maps, publishes the updates and writes what is to be
+/// saved. Between two steps it sends the full state to late joiners and begins to answer queries.
+class SegmentationLoop {
+ public:
+  struct Config {
+    SessionMaps::Config maps;
+    MapWriter::Config files;
+    std::filesystem::path resume_file;  ///< a saved map to resume; empty: begin without a map
+    /// A file that could not be written is tried again after this time, and when files are due; > 0
+    std::chrono::milliseconds rewrite_period{10'000};
+
+    /// @throws std::invalid_argument naming field, value and bound
+    void validate() const;
+  };
+  /// What the loop works with; must outlive it.
+  struct Connections {
+    SliceQueue& queue;
+    SliceReceiver& receiver;
+    UpdatePublisher& updates;
+    QueryResponder& queries;
+    PatientClock& clock;
+  };
+
+  /// @param session of this segmenter
+  /// @throws std::invalid_argument for an invalid config
+  SegmentationLoop(const Config& config, std::int64_t session, const Connections& connections);
+
+  /// Segments until the queue is closed and empty, or end() was called, and then what is left;
+  /// waits until the maps are written. For a thread of its own.
+  /// @throws what makes going on impossible, after it has tried to write the maps
+  void run();
+
+  /// Publishes full states, begins answers, and writes files that are due. run() calls it; after
+  /// run() has returned, another thread may.
+  void serve();
+
+  /// Waits until everything handed to the writer is written, or has failed.
+  void wait_for_files() { writer_.wait(); }
+
+  // From any thread:
+  /// Makes run() finish what was received and return.
+  void end() { is_ending_ = true; }
+  SessionMaps::Counts counts() const;
+  /// Which file is not written, and why; empty: none.
+  std::string file_problem() const { return writer_.problem(); }
+
+ private:
+  using Clock = SessionMaps::Clock;
+
+  void resume();
+  void segment_until_end();
+  void segment_rest();
+  void add(std::vector<CloudSlice> slices);
+  bool step();
+  void write_all(const std::vector<SaveRequest>& requests);
+  void write(const SaveRequest& request);
+  void update_counts();
+  StreamState stream_state(std::int64_t map_session) const;
+  Clock::time_point now() const;
+
+  Config config_;
+  std::int64_t session_;
+  Connections with_;
+  MapWriter writer_;
+  SessionMaps maps_;
+  Clock::time_point next_rewrite_{};
+  std::atomic<bool> is_ending_{false};
+
+  mutable std::mutex mutex_;    // guards the next against readers
+  SessionMaps::Counts counts_;  // written by the thread of run() alone
+};
+
+}  // namespace kintsugi::segmenter

@@ -1,0 +1,22 @@
+#include "segmenter/tools/cloud_options.hpp"
+
+#include <CLI/CLI.hpp>
+
+namespace kintsugi::segmenter {
+
+void add_cloud_options(CLI::App& app, CloudInputConfig& config) {
+  app.add_option("--resolution", config.resolution_m,
+                 "voxel size in metres, > 0 (default: the median spacing of the points)")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--normals-k", config.normals.num_neighbours,
+                 "number of neighbours to compute missing normals from, >= 3")
+      ->capture_default_str();
+  app.add_flag(
+      "--average-normals", config.averages_given_normals,
+      "also average the normals that the file gives within two voxels, as computed ones are");
+  app.add_option("--viewpoint", config.viewpoint_W,
+                 "X Y Z: computed normals point towards here (default: the mean of the points)")
+      ->expected(3);
+}
+
+}  // namespace kintsugi::segmenter

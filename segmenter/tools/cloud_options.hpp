@@ -1,0 +1,16 @@
+#pragma once
+// The flags of programs that read a cloud from a PLY file.
+
+#include "segmenter/io/cloud_input.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace kintsugi::segmenter {
+
+/// --resolution, --normals-k, --average-normals and --viewpoint, into `config`, whose values are
+/// the defaults.
+void add_cloud_options(CLI::App& app, CloudInputConfig& config);
+
+}  // namespace kintsugi::segmenter

@@ -1,0 +1,57 @@
+// kintsugi-query: asks a segmenter on the bus, or a saved map, about segments.
+
+#include <array>
+#include <iostream>
+#include <stdexcept>
+
+#include <CLI/CLI.hpp>
+
+#include "lcmtypes/base/run_main.hpp"
+#include "lcmtypes/codec/codec.hpp"
+#include "segmenter/io/saved_map.hpp"
+#include "segmenter/map/map_snapshot.hpp"
+#include "segmenter/query/answer.hpp"
+#include "segmenter/query/choose_map.hpp"
+#include "segmenter/tools/query/query_client.hpp"
+#include "segmenter/tools/query/query_options.hpp"
+#include "segmenter/tools/query/query_report.hpp"
+
+namespace kintsugi::segmenter {
+namespace {
+
+SegmentAnswer ask_file(const QueryOptions& options) {
+  SegmentQuery query = make_query(options, nullptr);
+  query.client = 1;
+  (void)encode(query);  // checks every field as the bus does
+  const MapSnapshot map = take_snapshot(*load_map(options.map));
+  choose_map(std::array{MapIdentity{map.state.map_session, map.state.map_name}}, query);
+  return answer(map, query);
+}
+
+SegmentAnswer ask_bus(const QueryOptions& options) {
+  QueryClient client(options.lcm_url);
+  return client.ask(make_query(options, &client), QueryClient::Seconds(options.timeout_s));
+}
+
+int run(const QueryOptions& options) {
+  const SegmentAnswer answer = options.map.empty() ? ask_bus(options) : ask_file(options);
+  if (!answer.problem.empty()) throw std::runtime_error(answer.problem);
+  std::cout << (options.json ? answer_json(answer) : answer_table(answer)) << std::flush;
+  return std::cout ? 0 : 1;
+}
+
+}  // namespace
+}  // namespace kintsugi::segmenter
+
+int main(int argc, char** argv) {
+  using namespace kintsugi::segmenter;
+  return kintsugi::run_main(argv, [&] {
+    CLI::App app(
+        "Asks a segmenter on the bus, or a saved map, about segments: position, size, plane, "
+        "neighbours.");
+    QueryOptions options;
+    add_options(app, options);
+    CLI11_PARSE(app, argc, argv);
+    return run(options);
+  });
+}

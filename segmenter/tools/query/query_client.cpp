@@ -1,0 +1,114 @@
+#include "segmenter/tools/query/query_client.hpp"
+
+#include <algorithm>
+#include <random>
+#include <stdexcept>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "lcmtypes/bus/message_subscriber.hpp"
+#include "lcmtypes/channels.hpp"
+
+namespace kintsugi::segmenter {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr milliseconds kFirstWait{500};  // before asking again; doubled each time up to
+constexpr milliseconds kLongestWait{4'000};
+constexpr milliseconds kOthersWait{500};  // for another segmenter when one has no answer
+constexpr milliseconds kFrameWait{500};   // for a raw frame when a pose has come
+
+std::int64_t random_client() {
+  std::random_device device;
+  return std::uniform_int_distribution<std::int64_t>(1)(device);
+}
+
+bool is_located(const CameraPose& pose) {
+  return pose.state == TrackingState::kTracking || pose.state == TrackingState::kGiven;
+}
+
+}  // namespace
+
+QueryClient::QueryClient(const std::string& lcm_url)
+    : bus_(lcm_url),
+      client_(random_client()),
+      answers_(channels::kSegmentAnswer,
+               [this](SegmentAnswer answer) { take(std::move(answer)); }) {
+  answers_.subscribe(bus_);
+  subscribe<SegmenterStatus>(bus_, channels::kSegmenterStatus,
+                             [this](const SegmenterStatus& status) { status_ = status; });
+}
+
+// Answers to other clients arrive too.
+void QueryClient::take(SegmentAnswer answer) {
+  if (answer.client != client_ || answer.number != number_) return;
+  (answer.problem.empty() ? answer_ : refusal_) = std::move(answer);
+}
+
+template <class IsDone>
+bool QueryClient::handle_until(Clock::time_point deadline, const IsDone& is_done) {
+  while (!is_done()) {
+    const auto left = std::chrono::ceil<milliseconds>(deadline - Clock::now());
+    if (left <= milliseconds(0)) return false;
+    bus_.handle(left);
+  }
+  return true;
+}
+
+SegmentAnswer QueryClient::ask(SegmentQuery query, Seconds timeout) {
+  query.client = client_;
+  query.number = ++number_;
+  answer_.reset();
+  refusal_.reset();
+  const auto deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(timeout);
+  int times_asked = 0;
+  for (milliseconds wait = kFirstWait; Clock::now() < deadline;
+       wait = std::min(2 * wait, kLongestWait)) {
+    query.utime = wall_clock_us();
+    bus_.publish(channels::kSegmentQuery, query);
+    ++times_asked;
+    handle_until(std::min(deadline, Clock::now() + wait), [&] { return answer_ || refusal_; });
+    if (!answer_ && refusal_) {
+      handle_until(Clock::now() + kOthersWait, [&] { return answer_.has_value(); });
+    }
+    if (answer_) return *std::move(answer_);
+    if (refusal_) return *std::move(refusal_);
+  }
+  throw std::runtime_error(silence(timeout, times_asked));
+}
+
+std::string QueryClient::silence(Seconds timeout, int times_asked) const {
+  const std::string what = fmt::format("nobody answered within {} s, asked {} times on {}",
+                                       timeout.count(), times_asked, bus_.url());
+  if (!status_) return what + ": no segmenter is heard there; is kintsugi-segmenter running?";
+  return what + fmt::format(
+                    ": the segmenter of map '{}' is heard, {} slices behind and {:.0f} ms a slice; "
+                    "give it longer with --timeout",
+                    status_->map_name, status_->lag_slices, status_->slice_ms);
+}
+
+HeardCamera QueryClient::hear_camera(std::int64_t map_session, Seconds timeout) {
+  subscribe<CameraPose>(bus_, channels::kCameraPose, [this, map_session](const CameraPose& pose) {
+    if (map_session != 0 && pose.session != map_session) return;
+    if (is_located(pose)) pose_ = pose;
+    camera_is_lost_ = !is_located(pose);
+  });
+  bus_.subscribe(channels::kRgbdFrame, [this](ByteView data) {
+    try {
+      intrinsics_ = decode_chunk<RgbdFrameMessage>(data).header.intrinsics;
+    } catch (const DecodeError&) {  // without intrinsics
+    }
+  });
+  const auto deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(timeout);
+  if (!handle_until(deadline, [&] { return pose_.has_value(); })) {
+    throw std::runtime_error(fmt::format(
+        "no camera pose within {} s on {}: {}; give --pose", timeout.count(), bus_.url(),
+        camera_is_lost_ ? "camera tracking is lost" : "no mapper is heard there, or it has ended"));
+  }
+  handle_until(Clock::now() + kFrameWait, [&] { return intrinsics_.has_value(); });
+  return {*pose_, intrinsics_};
+}
+
+}  // namespace kintsugi::segmenter
