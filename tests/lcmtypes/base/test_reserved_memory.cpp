@@ -25,7 +25,7 @@ TEST(ReservedMemory, GrowsInPlaceAndStartsAtZero) {
   EXPECT_GE(memory.committed_bytes(), 10'000'000U);
 }
 
-TEST(ReservedMemory, GivesMemoryBackAndStartsAnew) {
+TEST(ReservedMemory, IsZeroAgainAfterRelease) {
   ReservedMemory memory(std::size_t{1} << 24);
   memory.commit(1000);
   std::memset(memory.data(), 0xFF, 1000);
@@ -35,7 +35,7 @@ TEST(ReservedMemory, GivesMemoryBackAndStartsAnew) {
   EXPECT_EQ(memory.data()[999], std::byte{0});
 }
 
-TEST(ReservedMemory, EndsWhereItWasReserved) {
+TEST(ReservedMemory, ThrowsBeyondTheReservedRange) {
   ReservedMemory memory(5000);
   memory.commit(5000);
   EXPECT_EQ(memory.committed_bytes(), 5000U);
