@@ -1,5 +1,5 @@
 #pragma once
-// The channels of the bus: name, type and direction of each are in README.md.
+// The names of the channels. README.md lists the type, the sender and the receivers of each.
 
 namespace kintsugi::channels {
 

@@ -1,5 +1,5 @@
 #pragma once
-// Poses and camera intrinsics, as every process understands them.
+// Poses and camera intrinsics, as all processes use them.
 //
 // Frames: W map, C depth camera (x right, y down, z forward), V virtual camera.
 // X_AB is the pose of B in A: p_A = X_AB * p_B.

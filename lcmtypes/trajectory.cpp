@@ -17,8 +17,8 @@ namespace kintsugi {
 namespace {
 
 constexpr std::int64_t kMicroseconds = 1'000'000;
-constexpr std::int64_t kMaxSeconds =
-    4'000'000'000'000;  // two may differ by 64 bits of microseconds
+// The difference of two times in microseconds must fit 64 bits.
+constexpr std::int64_t kMaxSeconds = 4'000'000'000'000;
 constexpr double kMaxPosition_m = 1e9;
 constexpr double kUnitLengthTolerance = 0.01;
 

@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
-"""Prints which segments of a map appear, merge, split and go, and at the end the table of those
-that there are. An example of a client in Python; kintsugi-segment-events is the same in C++.
+"""Prints which segments of a map are created, merged, split and retired, and at the end the table
+of all segments. An example of a client in Python; kintsugi-segment-events is the same in C++.
 
     scripts/segment_events.py --log run.lcm   needs Python 3 and the built tree, nothing else
     scripts/segment_events.py                 from the bus; needs LCM's Python module (import lcm)
 
-What it cannot do: ask for what was lost, or for the full state that tells who begins late what was
-before. kintsugi-segment-events does. What is missing is said at the end (exit status 1); the table
-is right again after the next update that lists all segments, which the segmenter sends when
-somebody else asks.
+Unlike kintsugi-segment-events, it cannot request lost chunks, nor the full state that a client needs
+that joins late. If something is missing at the end, it says so, and the exit status is 1. The table
+is correct again after the next update that lists all segments, which the segmenter sends when
+another client requests a full state.
 """
 
 import argparse
@@ -24,16 +24,16 @@ from segment_table import SegmentTable  # noqa: E402
 from segment_text import print_table, print_update, write_json  # noqa: E402
 from segment_updates import CHANNEL, HEARTBEAT, Assembler, BadMessage, LogReader  # noqa: E402
 
-PATIENCE_S = 10.0  # a map that is complete, and a table that is not: nobody sends what is missing
+PATIENCE_S = 10.0  # how long to wait for missing updates after the map is complete
 
 
 class Listener:
-    """The table of one map, from messages of a log or the bus."""
+    """Keeps the table of one map, from messages of a log or the bus."""
 
-    def __init__(self, types, options):
+    def __init__(self, types, layout, options):
         self.options = options
         self.map_name = options.map_name
-        self.assembler = Assembler(types)
+        self.assembler = Assembler(types, layout)
         self.table = SegmentTable()
         self.num_bad = 0
         self.last_bad = ""
@@ -61,7 +61,7 @@ def say(text):
 
 
 def read_log(listener, path):
-    """What is wrong with the log; empty: nothing."""
+    """Reads the log up to its end or first damage. Returns the damage; empty: none."""
     log = LogReader(path)
     for channel, data in log:
         listener.handle(channel, data)
@@ -69,7 +69,7 @@ def read_log(listener, path):
 
 
 def listen(listener, options):
-    """Until Ctrl-C, or the end of the map."""
+    """Receives until Ctrl-C, or the end of the map."""
     try:
         import lcm
     except ImportError:
@@ -88,27 +88,29 @@ def listen(listener, options):
         listener.handle(channel, data)
 
     for channel in (CHANNEL, HEARTBEAT):
-        bus.subscribe(channel, handle).set_queue_capacity(0)  # nothing is dropped
-    say("listening; what is lost is not asked for")
+        bus.subscribe(channel, handle).set_queue_capacity(0)  # no limit
+    say("listening; lost chunks are not requested")
     while not stops:
         try:
             bus.handle_timeout(100)
         except OSError:
-            if not stops:  # not the signal's doing
+            if not stops:  # not interrupted by the signal
                 raise
         if options.exit_on_final and listener.table.is_final:
             if not listener.problem() or time.monotonic() - last_news_s > PATIENCE_S:
                 return
 
 
-def generated_types(folder):
+def generated_modules(folder):
+    """The message types and the layout of packed records."""
     sys.path.insert(0, folder)
     try:
         import kintsugi
+        import kintsugi_layout
     except ImportError:
-        sys.exit("segment_events.py: no message types in %s; run scripts/build, or "
-                 "lcm-gen -p --ppath DIR lcmtypes/*.lcm, and give --types DIR" % folder)
-    return kintsugi
+        sys.exit("segment_events.py: no message types in %s; run scripts/build, or give --types DIR, "
+                 "the folder share/python of a build" % folder)
+    return kintsugi, kintsugi_layout
 
 
 def parse_options():
@@ -118,21 +120,21 @@ def parse_options():
     parser.add_argument("--log", help="read this LCM log instead of the bus")
     parser.add_argument("--lcm-url", help="bus; default: LCM_DEFAULT_URL, or LCM's own")
     parser.add_argument("--map-name", default="",
-                        help="follow the map with this name (default: the first that is heard)")
+                        help="follow the map with this name (default: the first that is received)")
     parser.add_argument("--exit-on-final", action="store_true",
-                        help="exit when the map is complete, and not only on Ctrl-C")
-    parser.add_argument("--grown", action="store_true", help="a line for each segment that grew, too")
-    parser.add_argument("--quiet", action="store_true", help="only the table at the end")
-    parser.add_argument("--top", type=int, default=20, help="segments in the table that is printed")
-    parser.add_argument("--json", help="the whole table into this file, as JSON")
+                        help="exit when the map is complete, not only on Ctrl-C")
+    parser.add_argument("--grown", action="store_true", help="print a line for each segment that grew, too")
+    parser.add_argument("--quiet", action="store_true", help="print only the table at the end")
+    parser.add_argument("--top", type=int, default=20, help="number of segments in the printed table")
+    parser.add_argument("--json", help="write the whole table to this file, as JSON")
     parser.add_argument("--types", default=os.path.join(programs, "..", "share", "python"),
-                        help="folder of the types that lcm-gen -p has made")
+                        help="folder of the generated Python modules")
     return parser.parse_args()
 
 
 def main():
     options = parse_options()
-    listener = Listener(generated_types(options.types), options)
+    listener = Listener(*generated_modules(options.types), options)
     damage = ""
     if options.log:
         damage = read_log(listener, options.log)

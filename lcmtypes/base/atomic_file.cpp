@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 std::string quoted(const fs::path& path) { return std::string("'") + path.string() + "'"; }
 
-/// For errors: a person knows the final name.
+/// Both names of the file, for errors: a person knows only the final one.
 std::string both_names(const fs::path& path, const fs::path& partial) {
   return quoted(path) + " (by way of " + quoted(partial.filename()) + ")";
 }
@@ -30,7 +30,7 @@ std::string both_names(const fs::path& path, const fs::path& partial) {
 /// A file descriptor that closes itself.
 class Descriptor {
  public:
-  /// @param file names it in errors
+  /// @param file its name in errors
   Descriptor(const fs::path& path, int flags, const std::string& file)
       : value_(open(path.c_str(), flags | O_CLOEXEC, 0666)) {
     if (value_ < 0) fail("open", file, errno);
@@ -50,25 +50,26 @@ class Descriptor {
 
 fs::path partial_name(const fs::path& path) {
   fs::path partial = path;
-  // The extension stays at the end, where libraries look for the format.
+  // The extension stays at the end: libraries choose the format by it.
   partial.replace_filename(path.stem().string() + ".partial" + path.extension().string());
   return partial;
 }
 
-/// Also the name must be on disk; without its directory's entry the file is lost.
+/// The entry in the directory must be on disk, too: without it the file is lost.
 void sync_directory(const fs::path& path) {
   const fs::path parent = path.has_parent_path() ? path.parent_path() : fs::path(".");
   const Descriptor directory(parent, O_RDONLY | O_DIRECTORY, quoted(parent));
-  // Some file systems cannot; the file itself is safe then too.
+  // EINVAL: the file system cannot sync a directory. The file itself is on disk.
   if (fsync(directory.get()) != 0 && errno != EINVAL) fail("sync", quoted(parent), errno);
 }
 
 }  // namespace
 
-/// Buffers writes; throws at the one that fails, which std::ofstream does not tell apart.
+/// Buffers writes, and throws with the reason when one fails; std::ofstream does not keep the
+/// reason.
 class AtomicFile::FileBuffer : public std::streambuf {
  public:
-  /// @param name of the file in errors
+  /// @param name its name in errors
   FileBuffer(const fs::path& path, std::string name)
       : name_(std::move(name)), file_(path, O_WRONLY | O_CREAT | O_TRUNC, name_) {
     setp(buffer_.data(), buffer_.data() + buffer_.size());

@@ -1,5 +1,5 @@
 #pragma once
-// Output files that are whole or absent.
+// Output files that are never incomplete.
 
 #include <filesystem>
 #include <memory>
@@ -7,25 +7,25 @@
 
 namespace kintsugi {
 
-/// Writes beside the final name and renames on commit(): under the final name there is the old
-/// content or all of the new, whatever happens. Without commit() nothing remains.
+/// Writes to a second name and renames on commit(): whatever happens, the file with the final name
+/// has either its old content or all of the new. Without commit() the second file is removed.
 ///
-/// Either write to stream(), which throws std::system_error naming both files and the reason at
-/// the write that failed; or have a library write to partial_path(), which keeps the extension.
-/// Prefer the stream where the library can write to memory: few libraries report a full disk.
+/// Either write to stream(), which throws std::system_error with both names and the reason at the
+/// write that fails; or let a library write to partial_path(), which has the same extension. Prefer
+/// the stream if the library can write to memory: few libraries report a full disk.
 class AtomicFile {
  public:
-  /// Nothing is opened yet. Throws std::invalid_argument when `path` has no file name.
+  /// Opens nothing yet. @throws std::invalid_argument when `path` has no file name
   explicit AtomicFile(std::filesystem::path path);
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
 
-  /// The partial file, opened (and emptied) at the first call.
+  /// The second file, opened and emptied at the first call.
   std::ostream& stream();
   const std::filesystem::path& partial_path() const { return partial_path_; }
 
-  /// Flushes, forces to disk and renames. Throws std::system_error, and nothing remains then.
+  /// Writes everything to disk and renames. @throws std::system_error; then no new file remains
   void commit();
 
  private:

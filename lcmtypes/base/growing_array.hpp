@@ -11,17 +11,17 @@
 
 namespace kintsugi {
 
-/// A contiguous array that grows without ever moving: its address range is reserved once, for as
-/// many elements as a 32-bit index can name, and memory is taken as it grows. A map of millions of
-/// points therefore grows without the pauses of a vector that copies itself, and references into
-/// it stay valid. New elements are zero bytes until assigned.
+/// A contiguous array that never moves when it grows: its address range is reserved once, for as
+/// many elements as a 32-bit index can address, and memory is taken as it grows. A map of millions
+/// of points thus grows without the pauses of a vector that copies itself, and references into the
+/// array stay valid. New elements are zero bytes until assigned.
 template <typename T>
 class GrowingArray {
   static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>);
 
  public:
   GrowingArray() = default;
-  /// Throws std::bad_alloc where the address space is limited.
+  /// @throws std::bad_alloc when the address space is limited
   explicit GrowingArray(std::size_t size) { resize(size); }
   GrowingArray(GrowingArray&& other) noexcept { swap(other); }
   GrowingArray& operator=(GrowingArray&& other) noexcept {
@@ -51,8 +51,8 @@ class GrowingArray {
   T& back() { return (*this)[size_ - 1]; }
   std::span<const T> span() const { return {data_, size_}; }
 
-  /// Grows only; an array that is to shrink is made anew. Throws std::bad_alloc, and stays as it
-  /// is, when there is no more memory.
+  /// Grows; `size` must be at least size().
+  /// @throws std::bad_alloc, and changes nothing, when there is no more memory
   void resize(std::size_t size) {
     assert(size >= size_);
     if (size > capacity_) commit(size);
@@ -63,7 +63,8 @@ class GrowingArray {
     resize(size);
     for (std::size_t i = old; i < size; ++i) data_[i] = value;
   }
-  /// Keeps the memory. New elements then are what they were before, until assigned.
+  /// Sets the size to 0 and keeps the memory: elements added later have their old values until
+  /// they are assigned.
   void clear() { size_ = 0; }
   T& push_back(const T& value) {
     resize(size_ + 1);
@@ -93,7 +94,7 @@ class GrowingArray {
   }
 
   ReservedMemory memory_;
-  T* data_ = nullptr;  ///< the start of memory_, at hand for the compiler
+  T* data_ = nullptr;  ///< the start of memory_
   std::size_t size_ = 0;
   std::size_t capacity_ = 0;
 };

@@ -6,14 +6,14 @@
 
 namespace kintsugi {
 
-/// The shortest decimals that mean this float: 0.01 instead of 0.00999999977.
+/// The fewest decimals that identify this float: 0.01 instead of 0.00999999977.
 inline std::string shortest_text(float value) {
   char text[32];
   const auto end = std::to_chars(std::begin(text), std::end(text), value).ptr;
   return {std::begin(text), end};
 }
 
-/// The double of which shortest_text() are the shortest decimals, too.
+/// The double that prints as shortest_text(value).
 inline double readable(float value) {
   const std::string text = shortest_text(value);
   double result = 0.0;

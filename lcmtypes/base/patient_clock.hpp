@@ -1,5 +1,5 @@
 #pragma once
-// Time that does not pass while the process is stopped.
+// A clock that stands still while the process is stopped.
 
 #include <algorithm>
 #include <chrono>
@@ -9,16 +9,16 @@
 
 namespace kintsugi {
 
-/// Steady time in which each reading adds at most kMaxStep_s: a process that was stopped (SIGSTOP,
-/// a suspended machine, a debugger) finds that hardly any time has passed. What gives up after a
-/// time uses it, because what it waits for could not be received either.
+/// A steady clock in which each reading adds at most kMaxStep_s. For a process that was stopped
+/// (SIGSTOP, a suspended machine, a debugger) hardly any time has passed. Timeouts of receivers use
+/// it, because a stopped process cannot receive either.
 ///
-/// Read it more often than every kMaxStep_s, or it runs late. Any thread may read it.
+/// It must be read more often than every kMaxStep_s, or it runs late. Any thread may read it.
 class PatientClock {
  public:
   static constexpr double kMaxStep_s = 0.5;
 
-  /// `steady_s` gives seconds that never decrease.
+  /// @param steady_s returns seconds that never decrease
   explicit PatientClock(std::function<double()> steady_s = steady_clock_s)
       : steady_s_(std::move(steady_s)), last_s_(steady_s_()) {}
 

@@ -26,7 +26,7 @@ ReservedMemory::ReservedMemory(std::size_t reserved_bytes, HugePages huge_pages)
   std::size_t space = range_bytes_;
   void* start = range_;
   data_ = static_cast<std::byte*>(std::align(kHugePageBytes, reserved_bytes, start, space));
-  // The advice is a wish: without huge pages everything works, only slower.
+  // A failure is ignored: without huge pages everything works, only slower.
   const std::size_t first = huge_pages == HugePages::kEverywhere ? 0 : kHugePageBytes;
   if (first < reserved_bytes) ::madvise(data_ + first, reserved_bytes - first, MADV_HUGEPAGE);
 }

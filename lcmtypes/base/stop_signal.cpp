@@ -23,7 +23,7 @@ void install(int signal, void (*handler)(int)) {
   struct sigaction action = {};
   action.sa_handler = handler;
   sigemptyset(&action.sa_mask);
-  action.sa_flags = SA_RESTART;  // a signal is no reason for a read or write to fail
+  action.sa_flags = SA_RESTART;  // a signal must not make a read or write fail
   sigaction(signal, &action, nullptr);
 }
 
@@ -40,7 +40,7 @@ void rearm_stop_signals() { g_stop = 0; }
 
 bool take_write_request() {
   if (g_write == 0) return false;
-  g_write = 0;  // a signal between the two lines asks for what is about to be written anyway
+  g_write = 0;  // a signal between the two lines requests what is about to be written anyway
   return true;
 }
 

@@ -1,22 +1,23 @@
 #pragma once
-// What a person asks of a running process by signal, as flags that its main loop polls.
+// Signals to a running process, as flags that its main loop polls.
 
 namespace kintsugi {
 
-/// From now on SIGINT and SIGTERM ask to stop, and SIGUSR1 asks to write outputs now. A second
-/// SIGINT or SIGTERM ends the process at once. Call at the start of main, before any thread.
+/// Installs the handlers: SIGINT and SIGTERM request a stop, SIGUSR1 requests that outputs are
+/// written now. A second SIGINT or SIGTERM ends the process at once. Call it at the start of main,
+/// before any thread is started.
 void install_stop_signals();
 
 bool stop_requested();
 
-/// The stop that was asked for has been heeded: the next signal asks again, instead of ending the
-/// process at once.
+/// Clears the request to stop: the next signal requests a stop again, instead of ending the
+/// process.
 void rearm_stop_signals();
 
-/// True once after each SIGUSR1.
+/// Returns true once after each SIGUSR1.
 bool take_write_request();
 
-/// As though the signals had come; for tests, and for a process that ends itself.
+/// Do what the signals do; for tests, and for a process that ends itself.
 void request_stop();
 void request_write();
 

@@ -5,7 +5,7 @@
 
 namespace kintsugi {
 
-/// As printf, at most 255 characters.
+/// Formats like printf; the result is cut at 255 characters.
 template <class... Values>
 std::string format(const char* pattern, Values... values) {
   char text[256];

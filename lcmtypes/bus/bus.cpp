@@ -17,18 +17,18 @@
 namespace kintsugi {
 namespace {
 
-// Holds 0.4 s of a stream at its default rate while the receiver is busy.
+// Holds 0.4 s of a stream at its default rate, for the time that the receiver is busy.
 constexpr int kReceiveBufferBytes = 4'194'304;
 constexpr char kGroup[] = "239.255.76.67";
 constexpr char kReceiveBufferLimit[] = "/proc/sys/net/core/rmem_max";
 
 bool is_datagrams(const std::string& url) { return url.starts_with("udpm://"); }
 
-/// LCM prints pages about a missing route and then fails without a reason; this asks first.
-/// Connecting a datagram socket sends nothing, and fails just when there is no route.
+/// Checked before LCM is opened, which without a route prints pages of text and fails without a
+/// reason. Connecting a datagram socket sends nothing, and fails exactly when there is no route.
 bool has_multicast_route() {
   const int socket = ::socket(AF_INET, SOCK_DGRAM, 0);
-  if (socket < 0) return true;  // let LCM say what is wrong
+  if (socket < 0) return true;  // LCM will report the error
   sockaddr_in address{};
   address.sin_family = AF_INET;
   address.sin_port = htons(7667);
@@ -39,7 +39,7 @@ bool has_multicast_route() {
   return !unreachable;
 }
 
-/// The URL to open for what the caller asked for.
+/// The URL to open: with defaults for what `asked` leaves out.
 std::string complete_url(const std::string& asked) {
   std::string url = asked.empty() ? default_bus_url() : asked;
   if (!is_datagrams(url) || url.find("recv_buf_size=") != std::string::npos) return url;
@@ -47,15 +47,15 @@ std::string complete_url(const std::string& asked) {
   return url + separator + "recv_buf_size=" + std::to_string(kReceiveBufferBytes);
 }
 
-/// The network may take the next datagram: a cable is out, an interface is down, a queue is full,
-/// a firewall drops some.
-bool passes_over(int error) {
-  constexpr std::array kPassing = {ENETDOWN, ENETUNREACH, EHOSTDOWN, EHOSTUNREACH,
-                                   ENOBUFS,  EAGAIN,      EPERM,     ECONNREFUSED};
-  return std::find(kPassing.begin(), kPassing.end(), error) != kPassing.end();
+/// True for errors after which a later datagram may be sent: a cable is unplugged, an interface is
+/// down, a queue is full, a firewall drops packets.
+bool is_temporary(int error) {
+  constexpr std::array kTemporary = {ENETDOWN, ENETUNREACH, EHOSTDOWN, EHOSTUNREACH,
+                                     ENOBUFS,  EAGAIN,      EPERM,     ECONNREFUSED};
+  return std::find(kTemporary.begin(), kTemporary.end(), error) != kTemporary.end();
 }
 
-/// True when multicast goes further than this host: ttl > 0; LCM's default is 0.
+/// True when messages leave this host: ttl > 0; LCM's default is 0.
 bool leaves_host(const std::string& url) {
   const std::size_t option = url.find("ttl=");
   return is_datagrams(url) && option != std::string::npos &&
@@ -68,7 +68,7 @@ struct Bus::Subscriber {
   Bus& bus;
   Handler handler;
 
-  // Called by C code, which an exception must not cross: handle() throws it.
+  // Called by C code, through which no exception may pass: handle() throws it afterwards.
   static void on_message(const lcm_recv_buf_t* buffer, const char* /*channel*/, void* user) {
     auto* self = static_cast<Subscriber*>(user);
     try {
@@ -97,14 +97,13 @@ std::optional<std::string> receive_buffer_advice() {
   if (!(std::ifstream(kReceiveBufferLimit) >> limit) || limit >= kReceiveBufferBytes) return {};
   const std::string wanted = std::to_string(kReceiveBufferBytes);
   return "the kernel limits receive buffers to " + std::to_string(limit) + " bytes, " + wanted +
-         " are wanted: bursts may be lost. One command cures it: sysctl -w net.core.rmem_max=" +
-         wanted;
+         " are wanted: bursts may be lost. Raise the limit: sysctl -w net.core.rmem_max=" + wanted;
 }
 
 Bus::Bus(const std::string& url) : url_(complete_url(url)), lcm_(nullptr, lcm_destroy) {
   if (is_datagrams(url_) && !has_multicast_route()) {
     throw std::runtime_error("cannot open the bus " + url_ +
-                             ": no route for 224.0.0.0/4. One command cures it: "
+                             ": no route for 224.0.0.0/4. Add one: "
                              "ip route add 224.0.0.0/4 dev lo");
   }
   lcm_.reset(lcm_create(url_.c_str()));
@@ -120,12 +119,9 @@ void Bus::publish(const std::string& channel, ByteView message) {
   const auto size = static_cast<unsigned>(message.size());
   errno = 0;
   if (lcm_publish(lcm_.get(), channel.c_str(), message.data(), size) == 0) return;
-  if (is_datagrams(url_) && passes_over(errno)) {
-    ++messages_refused_;
-  } else {
-    throw std::runtime_error("cannot publish " + std::to_string(message.size()) + " bytes on " +
-                             channel + " of the bus " + url_);
-  }
+  if (is_datagrams(url_) && is_temporary(errno)) return;
+  throw std::runtime_error("cannot publish " + std::to_string(message.size()) + " bytes on " +
+                           channel + " of the bus " + url_);
 }
 
 std::size_t Bus::max_message_bytes() const {
@@ -139,7 +135,7 @@ void Bus::subscribe(const std::string& channel, Handler handler) {
   if (subscription == nullptr) {
     throw std::runtime_error("cannot subscribe to " + channel + " of the bus " + url_);
   }
-  // Without limit; the default drops what is beyond 30 messages, in silence.
+  // No limit: by default LCM silently drops messages beyond 30.
   lcm_subscription_set_queue_capacity(subscription, 0);
 }
 
@@ -149,7 +145,7 @@ bool Bus::handle(std::chrono::milliseconds timeout) {
   const bool interrupted = handled < 0 && errno == EINTR;  // by a signal
   if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
   if (handled < 0 && !interrupted) {
-    throw std::runtime_error("the connection to the bus " + url_ + " is gone");
+    throw std::runtime_error("the connection to the bus " + url_ + " is lost");
   }
   return handled > 0;
 }

@@ -1,7 +1,6 @@
 #pragma once
-// One LCM instance: opened with a clear error, callbacks that may throw.
+// A connection to the bus, which is LCM: with clear errors, and handlers that may throw.
 
-#include <atomic>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
@@ -14,21 +13,22 @@
 
 #include "lcmtypes/codec/codec.hpp"
 
-struct _lcm_t;  // LCM's own name NOLINT(bugprone-reserved-identifier)
+struct _lcm_t;  // declared by LCM NOLINT(bugprone-reserved-identifier)
 
 namespace kintsugi {
 
 /// Wall clock, microseconds since 1970.
 std::int64_t wall_clock_us();
 
-/// A session number for a run that starts now: the wall clock, so that later runs have larger ones.
+/// A session number for a run that starts now. It is the wall clock, so that a later run has a
+/// larger number.
 std::int64_t new_session();
 
-/// The URL that `Bus("")` opens: LCM_DEFAULT_URL, or LCM's own multicast group on this host.
+/// The URL that Bus("") opens: LCM_DEFAULT_URL, or LCM's default multicast group on this host.
 std::string default_bus_url();
 
-/// Text with the one command that cures it when the kernel's limit for receive buffers is smaller
-/// than what a Bus asks for; nothing when it is large enough.
+/// When the kernel's limit of receive buffers is below what Bus asks for: a text for a person, with
+/// the command that raises it. Nothing when the limit is high enough.
 std::optional<std::string> receive_buffer_advice();
 
 /// One connection to the bus. Publishing is thread safe; handle() belongs to one thread.
@@ -36,17 +36,19 @@ class Bus {
  public:
   using Handler = std::function<void(ByteView message)>;
 
-  /// `url` as LCM has it; empty: default_bus_url(). A receive buffer size is asked for where the
-  /// URL names none. Throws std::runtime_error with the cure when there is no multicast route, or
-  /// when LCM cannot open the URL.
+  /// @param url an LCM URL; empty: default_bus_url(). If it gives no receive buffer size, one is
+  /// added
+  /// @throws std::runtime_error when there is no multicast route, with the command that adds one,
+  /// or
+  ///   when LCM cannot open the URL
   explicit Bus(const std::string& url = "");
   ~Bus();
   Bus(const Bus&) = delete;
   Bus& operator=(const Bus&) = delete;
 
-  /// Sends one LCM message. What the network does not take at the moment is lost, as what it drops
-  /// on the way, and counted: streams send it again. Throws std::runtime_error when it cannot be
-  /// sent for another reason.
+  /// Sends one LCM message. A message that the network refuses at the moment (an interface is down,
+  /// a queue is full) is lost like one that is dropped on its way: streams resend it.
+  /// @throws std::runtime_error when it cannot be sent for another reason
   void publish(const std::string& channel, ByteView message);
 
   template <SmallMessage Message>
@@ -54,20 +56,19 @@ class Bus {
     publish(channel, ByteView(encode(message)));
   }
 
-  /// Calls `handler` in handle() for each message on `channel`; nothing is dropped from the queue.
-  /// Call before the first handle(), or from its thread.
+  /// From now on handle() calls `handler` with each message on `channel`. The queue of received
+  /// messages has no limit. Call it before the first handle(), or in the same thread.
   void subscribe(const std::string& channel, Handler handler);
 
-  /// Waits for a message and hands it on; false when none came in `timeout`. What a handler threw
-  /// is thrown here. Throws std::runtime_error when the connection is gone.
+  /// Waits for a message and calls its handler. Returns false when none is received in `timeout`.
+  /// @throws std::runtime_error when the connection is lost, and whatever the handler throws
   bool handle(std::chrono::milliseconds timeout);
 
   const std::string& url() const { return url_; }
-  std::int64_t messages_refused() const { return messages_refused_; }  ///< by the network
 
-  /// The largest message that arrives well: one datagram where the bus stays on this host (or is a
-  /// file), one Ethernet frame where it leaves it (ttl > 0). What a StreamPublisher takes as
-  /// max_chunk_bytes. Bytes.
+  /// The largest message that is rarely lost: one datagram if the bus stays on this host or is a
+  /// file, one Ethernet frame if it leaves the host (ttl > 0). For max_chunk_bytes of a
+  /// StreamPublisher.
   std::size_t max_message_bytes() const;
 
  private:
@@ -77,7 +78,6 @@ class Bus {
   std::unique_ptr<_lcm_t, void (*)(_lcm_t*)> lcm_;
   std::vector<std::unique_ptr<Subscriber>> subscribers_;
   std::exception_ptr failure_;
-  std::atomic<std::int64_t> messages_refused_{0};
 };
 
 }  // namespace kintsugi

@@ -1,5 +1,5 @@
 #pragma once
-// The one thread that receives from a Bus.
+// The thread that receives from a Bus.
 
 #include <atomic>
 #include <exception>
@@ -10,21 +10,21 @@
 
 namespace kintsugi {
 
-/// Runs bus.handle() until stopped. Subscribe before; handlers run in this thread.
+/// Runs bus.handle() until stop(). Subscribe before constructing it; handlers run in this thread.
 class BusThread {
  public:
-  /// Calls `tick` (may be empty) in this thread, between messages, every 20 ms or soon after: what
-  /// receives asks there for what it misses.
+  /// @param tick called in this thread between messages, about every 20 ms, for instance to request
+  ///   missing chunks; may be empty
   explicit BusThread(Bus& bus, std::function<void()> tick = {});
-  /// Stops; a failure that stop() has not reported is lost.
+  /// Ends the thread; an exception that stop() has not thrown is lost.
   ~BusThread();
   BusThread(const BusThread&) = delete;
   BusThread& operator=(const BusThread&) = delete;
 
-  /// True when a handler or tick threw: the thread has ended, and stop() throws it.
+  /// True when a handler or `tick` has thrown: the thread has ended, and stop() will throw it.
   bool failed() const { return failed_; }
 
-  /// Ends the thread, and throws what a handler or tick threw. May be called again.
+  /// Ends the thread. May be called again. @throws what a handler or `tick` has thrown
   void stop();
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-// Small messages from the bus, decoded and checked.
+// Subscribes to small messages.
 
 #include <functional>
 #include <string>
@@ -9,8 +9,8 @@
 
 namespace kintsugi {
 
-/// Calls `on_message` with every valid Message on `channel`, and `on_bad` (when given) with the
-/// reason why one was dropped.
+/// From now on bus.handle() calls `on_message` with every valid message on `channel`, and `on_bad`
+/// (if not empty) with the error of every other.
 template <SmallMessage Message>
 void subscribe(Bus& bus, const std::string& channel, std::function<void(const Message&)> on_message,
                std::function<void(const DecodeError&)> on_bad = {}) {

@@ -31,7 +31,7 @@ void SegmentListener::use(const SegmentUpdate& update) {
   const SegmentUpdate* const newest = table_.newest();
   const std::int64_t session = newest != nullptr ? newest->session : update.session;
   if (!table_.apply(update)) return;
-  // Started again: what is missing of the segmenter before is not missed any more.
+  // The segmenter was restarted: updates of its earlier session are not needed any more.
   if (session != update.session) updates_.forget(session);
   on_update_(update);
 }
@@ -40,21 +40,21 @@ void SegmentListener::note_bad(const DecodeError& reason) {
   dropped_ = "messages dropped: " + std::to_string(++num_bad_) + ", the last: " + reason.what();
 }
 
-/// What went before the last update that listed all segments is not missed.
+/// Updates before the last one that listed all segments are not needed.
 bool SegmentListener::lacks_updates() const {
   const std::int64_t session = table_.newest()->session;
   const std::vector<StreamGap> gaps = updates_.gaps();
   return std::ranges::any_of(gaps, [&](const StreamGap& gap) {
-    // Of more ranges than are told the highest are not.
+    // If there are more ranges than are reported, the highest are left out.
     return gap.session == session && (gap.ranges.size() >= kMaxResendRanges ||
                                       gap.ranges.back().last > table_.listed_sequence());
   });
 }
 
 std::string SegmentListener::problem() const {
-  if (table_.newest() == nullptr) return "no segment update was heard";
+  if (table_.newest() == nullptr) return "no segment update was received";
   if (lacks_updates()) {
-    return "updates are missing: segments may be, and others be there no more";
+    return "updates are missing: the table may lack segments, and have some that no longer exist";
   }
   if (!table_.has_all_segments()) {
     return "the table has " + std::to_string(table_.segments().size()) + " segments, the map " +

@@ -1,5 +1,5 @@
 #pragma once
-// A client of the segmenter: the segment table of one map, from the bus or a log.
+// A client of the segmenter: receives the segment table of one map, from the bus or a log.
 
 #include <functional>
 #include <string>
@@ -9,35 +9,37 @@
 
 namespace kintsugi {
 
-/// Keeps the table of one map, asking for updates that were lost; belongs to one thread.
+/// Keeps the segment table of one map up to date, and requests updates that were lost. Only one
+/// thread may use it.
 ///
-/// Who begins late is given a full state while the segmenter is there; a log has only what was
-/// recorded.
+/// On the bus, a listener that joins late receives a full state from the segmenter. A log has only
+/// the updates that were recorded.
 class SegmentListener {
  public:
-  /// `on_update` gets each update that the table has taken over, in the order in which their last
-  /// chunks arrive: after losses not quite that of their sequence numbers.
-  /// @param map_name empty: the map that is heard of first
+  /// @param map_name empty: the map of the first update that is received
+  /// @param on_update called with each update after it was applied to the table, in the order in
+  /// which
+  ///   the updates are complete; after losses this is not the order of their sequence numbers
   SegmentListener(const std::string& map_name,
                   std::function<void(const SegmentUpdate& update)> on_update);
   SegmentListener(const SegmentListener&) = delete;  // the subscriber calls it
   SegmentListener& operator=(const SegmentListener&) = delete;
 
-  /// From now on bus.handle() brings updates; this must outlive that.
+  /// From now on bus.handle() applies updates. This must outlive the last bus.handle().
   void subscribe(Bus& bus) { updates_.subscribe(bus); }
-  /// Asks for what is missing; `now_s` is a PatientClock's.
+  /// Requests what is missing. To be called regularly; `now_s` is the time of a PatientClock.
   void ask(Bus& bus, double now_s) { updates_.ask(bus, now_s); }
-  /// One LCM message, of a log.
+  /// Handles one LCM message of a log.
   void handle(const std::string& channel, ByteView message) { updates_.handle(channel, message); }
 
   const SegmentTable& table() const { return table_; }
-  /// Nothing is missing that the table would need.
+  /// The table has every segment of the map as far as it was published.
   bool is_whole() const { return problem().empty(); }
-  /// What is missing; empty: nothing.
+  /// What is missing, as text for a person; empty: nothing.
   std::string problem() const;
-  /// The map is complete, and so is the table, or nobody gives what is missing.
+  /// The map is complete, and the table is whole or the segmenter does not send what is missing.
   bool has_ended() const;
-  /// Messages that were dropped, and why the last was; empty: none.
+  /// How many messages were dropped as invalid, and why the last was; empty: none.
   const std::string& dropped() const { return dropped_; }
 
  private:

@@ -64,7 +64,7 @@ void SegmentTable::apply_event(const SegmentUpdate& update, const SegmentEvent& 
     case SegmentEventType::kRetired:
       end(event.segment_id, kNoSegment);
       break;
-    case SegmentEventType::kGrown:  // its statistics say it
+    case SegmentEventType::kGrown:  // changes only statistics
       break;
   }
 }
@@ -73,12 +73,12 @@ void SegmentTable::apply_statistics(const SegmentUpdate& update,
                                     const SegmentStatistics& statistics) {
   const std::uint32_t id = statistics.segment_id;
   if (ends_.contains(id) || update.sequence < listed_sequence_) return;
-  Segment told{statistics, update.sequence, update.utime};
-  const auto [place, is_new] = segments_.try_emplace(id, told);
-  if (!is_new && place->second.sequence < update.sequence) place->second = told;
+  Segment segment{statistics, update.sequence, update.utime};
+  const auto [place, is_new] = segments_.try_emplace(id, segment);
+  if (!is_new && place->second.sequence < update.sequence) place->second = segment;
 }
 
-/// What was told before `sequence`, and not in it, is gone.
+/// Removes the segments that were not updated since `sequence`, an update that lists all segments.
 void SegmentTable::forget_unlisted(std::int64_t sequence) {
   if (sequence <= listed_sequence_) return;
   listed_sequence_ = sequence;
@@ -98,7 +98,7 @@ const SegmentTable::End* SegmentTable::end(std::uint32_t segment_id) const {
 }
 
 std::optional<std::uint32_t> SegmentTable::heir(std::uint32_t segment_id) const {
-  // In a circle, which no segmenter tells of, there are not more steps than deaths.
+  // The limit ends a circle, which only an invalid stream can have.
   for (std::size_t step = 0; step <= ends_.size(); ++step) {
     if (segments_.contains(segment_id)) return segment_id;
     const auto gone = ends_.find(segment_id);

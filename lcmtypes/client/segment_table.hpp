@@ -1,5 +1,5 @@
 #pragma once
-// The segments of a map as a client knows them, from SEGMENT_UPDATE alone.
+// The segments of a map as a client knows them from SEGMENT_UPDATE alone.
 
 #include <cstddef>
 #include <cstdint>
@@ -12,72 +12,73 @@
 
 namespace kintsugi {
 
-/// True when the update lists every segment that there is after it: the last one of a full state
-/// does, and any other that changed them all.
+/// True if the update has statistics of every segment of the map: the last update of a full state
+/// has, and any other that changed all segments.
 inline bool lists_all_segments(const SegmentUpdate& update) {
   return static_cast<std::int64_t>(update.statistics.size()) == update.num_segments;
 }
 
-/// The table of the segments of one map: which there are, what is known of each, where it came
-/// from, and what became of those that are gone.
+/// The table of the segments of one map: its segments and their statistics, where each came from,
+/// and what became of segments that no longer exist.
 ///
-/// Updates may come in any order and more than once: the table after a set of updates is the same.
-/// That rests on what a segmenter promises: ids are never used again in its session, the birth and
-/// the death of each is told by one event, and the statistics in an update are those of every
-/// segment that changed, which only a later update replaces.
+/// Updates may be applied in any order and repeatedly: the table depends only on the set of
+/// updates. This relies on three guarantees of the segmenter: ids are never used again in its
+/// session; one event tells of the birth and one of the death of each segment; an update has the
+/// statistics of every segment that it changed, and they hold until a later update.
 ///
-/// A table that missed updates is right again after the next one that lists all segments, a full
-/// state for instance, as a listener gets that comes late: what such an update does not list is
-/// gone, and nobody says how.
+/// A table that lacks updates is correct again after the next update that lists all segments, for
+/// instance the end of a full state, which a late listener receives. Segments that such an update
+/// does not list no longer exist; there is no event for them.
 ///
-/// Which map it is is the caller's choice; of its sessions the table has the newest. An update of a
-/// newer session of the mapper, or of a newer segmenter, begins it anew; one of an older is
-/// ignored.
+/// The caller passes updates of one map only. The table has the newest session of it: an update of
+/// a newer session of the mapper or the segmenter clears the table first, one of an older session
+/// is ignored.
 class SegmentTable {
  public:
   /// Where a segment came from.
   struct Origin {
-    std::uint32_t parent_id = kNoSegment;  ///< split off it; kNoSegment: of new points
+    std::uint32_t parent_id = kNoSegment;  ///< it was split off this; kNoSegment: new points
     std::int64_t utime = 0;                ///< device time of the slice, microseconds
-    std::int32_t slice_id = 0;             ///< the slice that brought it about
+    std::int32_t slice_id = 0;             ///< the slice of the update
   };
-  /// What became of a segment that is gone.
+  /// What became of a segment that no longer exists.
   struct End {
-    std::uint32_t heir_id = kNoSegment;  ///< absorbed by it; kNoSegment: it lost all its points
-    std::int64_t utime = 0;              ///< as in Origin
+    std::uint32_t heir_id =
+        kNoSegment;          ///< it was merged into this; kNoSegment: it lost all points
+    std::int64_t utime = 0;  ///< as in Origin
     std::int32_t slice_id = 0;
   };
   struct Segment {
     SegmentStatistics statistics;
-    std::int64_t sequence = 0;  ///< of the update that told them
-    std::int64_t utime = 0;     ///< of that update; 0: told by a full state, changed at any time
+    std::int64_t sequence = 0;  ///< of the update with these statistics
+    std::int64_t utime = 0;     ///< of that update; 0: of a full state, time of change unknown
   };
 
-  /// Takes over what the update says. False when it is of an older session: ignored.
+  /// Applies an update. Returns false if it is ignored, because it is of an older session.
   bool apply(const SegmentUpdate& update);
 
-  /// Those that there are, by ascending id.
+  /// The segments that exist, by ascending id.
   const std::map<std::uint32_t, Segment>& segments() const { return segments_; }
-  /// nullptr: there is no such segment.
+  /// nullptr: no segment with this id exists.
   const Segment* find(std::uint32_t segment_id) const;
 
-  /// The birth of a segment, also of one that is gone; nullptr: it was not heard.
+  /// Where a segment came from, even if it no longer exists; nullptr: unknown.
   const Origin* origin(std::uint32_t segment_id) const;
-  /// The death of a segment; nullptr: it was not heard.
+  /// What became of a segment; nullptr: it exists, or that is unknown.
   const End* end(std::uint32_t segment_id) const;
-  /// The segment that there is and has taken the place of this one: itself, or who absorbed it, or
-  /// who absorbed that one, and so on. Nothing when there is none, or it is not known.
+  /// The existing segment that this one became by merging: itself, the segment that absorbed it, or
+  /// the one that absorbed that, and so on. Nothing: there is none, or it is unknown.
   std::optional<std::uint32_t> heir(std::uint32_t segment_id) const;
 
-  /// The newest update, without its vectors; nullptr: there was none.
+  /// The newest update, without its vectors; nullptr: none was applied.
   const SegmentUpdate* newest() const { return newest_ ? &*newest_ : nullptr; }
-  /// The map was complete after one of the updates.
+  /// The map was complete after one of the applied updates.
   bool is_final() const { return is_final_; }
-  /// Sequence number of the newest update that listed all segments; -1: there was none. What is
-  /// missing of the updates before it is not missed.
+  /// Sequence number of the newest update that listed all segments; -1: there was none. Updates
+  /// before it are not needed.
   std::int64_t listed_sequence() const { return listed_sequence_; }
-  /// There are as many segments as the newest update says. Where not, updates are missing, or are
-  /// the others of several slices that were segmented in one.
+  /// There are as many segments as the newest update says. If not, updates are missing, or several
+  /// slices were segmented together and not all of their updates were applied yet.
   bool has_all_segments() const {
     return newest_ && static_cast<std::int64_t>(segments_.size()) == newest_->num_segments;
   }

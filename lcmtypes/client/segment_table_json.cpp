@@ -4,7 +4,7 @@
 namespace kintsugi {
 namespace {
 
-using Json = nlohmann::ordered_json;  // keys in the order a person reads them
+using Json = nlohmann::ordered_json;  // keeps the order of the keys
 
 Json born_json(const SegmentTable::Origin* origin) {
   if (origin == nullptr) return nullptr;

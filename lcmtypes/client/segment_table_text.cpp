@@ -10,7 +10,7 @@
 namespace kintsugi {
 namespace {
 
-/// As `ll` in formats has it.
+/// The type that `%lld` needs.
 long long number(std::int64_t value) { return value; }
 
 std::string summary_text(const SegmentUpdate& update) {
@@ -41,7 +41,7 @@ std::string event_text(const SegmentEvent& event) {
   return "";
 }
 
-/// Whose statistics go with the event: the new segment, or the one that has grown.
+/// The segment whose statistics are printed with the event: the new one, or the one that has grown.
 std::uint32_t subject(const SegmentEvent& event) {
   return event.type == SegmentEventType::kSplit ? event.other_id : event.segment_id;
 }

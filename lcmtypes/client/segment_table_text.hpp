@@ -1,5 +1,5 @@
 #pragma once
-// What happened to segments, and which there are, for a person and for programs.
+// Segment updates and tables as text for a person, and as JSON for programs.
 
 #include <cstddef>
 #include <iosfwd>
@@ -9,15 +9,16 @@
 
 namespace kintsugi {
 
-/// The update as lines: a summary, and one for each segment that appeared, was split off, merged or
-/// retired; with `with_grown` also for each that grew. Empty when it tells of no segment.
+/// An update as lines of text: a summary, and a line for each segment that was created, split off,
+/// merged or retired, and if `with_grown` for each that grew. Empty if no segment changed.
 std::string update_text(const SegmentUpdate& update, bool with_grown);
 
-/// The table as lines: a summary, and the `num_listed` segments of most points.
+/// The table as lines of text: a summary, and the `num_listed` segments with the most points.
 std::string table_text(const SegmentTable& table, std::size_t num_listed);
 
-/// The table as JSON; `is_whole`: no update is missing. The keys of a segment are those of
-/// segments.json, and `born`: slice and parent (0: none), null when not heard.
+/// Writes the table as JSON. A segment has the fields of its statistics, and `born`: slice and
+/// parent (0: none), or null if that is unknown.
+/// @param is_whole no update is missing
 void write_table_json(const SegmentTable& table, bool is_whole, std::ostream& out);
 
 }  // namespace kintsugi

@@ -1,30 +1,37 @@
 #pragma once
-// Statistics of a segment as JSON: the keys that every program of ours writes them with.
+// Statistics of a segment as JSON, with the same keys in every file and program.
+
+#include <cstdint>
 
 #include <nlohmann/json.hpp>
 
 #include "lcmtypes/base/number_text.hpp"
-#include "lcmtypes/messages.hpp"
+#include "lcmtypes/segment_messages.hpp"
 
 namespace kintsugi {
 
-/// Three numbers, with as few decimals as mean these floats.
+inline nlohmann::ordered_json statistic_json(float value) { return readable(value); }
+inline nlohmann::ordered_json statistic_json(std::int32_t value) { return value; }
+inline nlohmann::ordered_json statistic_json(std::uint32_t value) { return value; }
+inline nlohmann::ordered_json statistic_json(const std::uint8_t (&color)[3]) {
+  return {color[0], color[1], color[2]};
+}
+/// Three numbers, each with the fewest decimals that identify the float.
 inline nlohmann::ordered_json vector_json(const float (&v)[3]) {
   return {readable(v[0]), readable(v[1]), readable(v[2])};
 }
 
-/// Metres and square metres, frame W; keys in the order a person reads them.
-inline nlohmann::ordered_json statistics_json(const SegmentStatistics& s) {
-  return {{"id", s.segment_id},
-          {"points", s.num_points},
-          {"box_min", vector_json(s.box_min_W)},
-          {"box_max", vector_json(s.box_max_W)},
-          {"centroid", vector_json(s.centroid_W)},
-          {"mean_normal", vector_json(s.mean_normal_W)},
-          {"mean_color", {s.mean_color[0], s.mean_color[1], s.mean_color[2]}},
-          {"area", readable(s.area_m2)},
-          {"first_slice", s.first_slice},
-          {"last_slice", s.last_slice}};
+inline nlohmann::ordered_json statistic_json(const float (&v)[3]) { return vector_json(v); }
+
+/// The fields in the order of their list, with their names as keys.
+inline nlohmann::ordered_json statistics_json(const SegmentStatistics& statistics) {
+  nlohmann::ordered_json json;
+  SegmentStatistics::visit_fields(
+      [&json](const StatisticsField& field, const auto& value) {
+        json[field.name] = statistic_json(value);
+      },
+      statistics);
+  return json;
 }
 
 }  // namespace kintsugi

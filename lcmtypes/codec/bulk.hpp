@@ -1,5 +1,6 @@
 #pragma once
-// Bulk messages: a header, and a payload of packed records that is cut into chunks.
+// Encoding and decoding of bulk messages: a header, and a payload of packed records that is cut
+// into chunks.
 
 #include <algorithm>
 #include <array>
@@ -14,21 +15,29 @@
 namespace kintsugi::codec {
 
 static_assert(std::endian::native == std::endian::little,
-              "records go to the bus as they lie in memory, which must be little-endian");
+              "records are sent as they are in memory, which must be little-endian");
 
 using Counts = std::array<std::int32_t, 4>;
 
-/// What the codec knows of a bulk message:
-///   WireType, kNumStrings, kAlignment (chunks are cut at multiples of it, bytes)
-///   header_to_wire(), header_from_wire()  every field that is not bulk data
-///   set_counts(), counts()                records of each bulk vector, in the LCM type
+/// What the codec has to know of a bulk message:
+///   WireType, kNumStrings                 its LCM type, and the number of its strings
+///   kAlignment                            chunks are cut at multiples of it, bytes
+///   kRecordsVersion                       of the packed records, if the LCM type has such a field
+///   header_to_wire(), header_from_wire()  convert every field that is not bulk data
+///   set_counts(), counts()                number of records of each bulk vector, in the LCM type
 ///   set_part(), first_byte()              place of the chunk in the payload, in the LCM type
-///   check_header(), check_records()       bounds
+///   check_header(), check_records()       throw when a field is out of its bounds
 ///   for_each_vector(message, f)           calls f with each bulk vector, in the payload's order
 template <class Message>
 struct Bulk;
 
-/// The LCM types that say the chunk's place in bytes.
+/// True for the LCM types whose payload is packed records, and not an image.
+template <class Wire>
+concept HasRecords = requires(Wire wire) {
+  wire.records_version;
+};
+
+/// For the LCM types in which the place of a chunk is given in bytes.
 template <class Wire>
 struct PlacedByByte {
   using WireType = Wire;
@@ -63,7 +72,7 @@ Counts count_records(const Message& message) {
   return counts;
 }
 
-/// Bytes of the whole payload; throws std::invalid_argument when it is out of bounds.
+/// Bytes of the whole payload. @throws std::invalid_argument when that is out of bounds
 template <class Message>
 std::int64_t payload_bytes(const Counts& counts) {
   const Check check(Bulk<Message>::WireType::getTypeName());
@@ -83,6 +92,9 @@ template <class Message>
 typename Bulk<Message>::WireType header_wire(const Message& message, const Counts& counts) {
   typename Bulk<Message>::WireType wire{};
   Bulk<Message>::header_to_wire(message, wire);
+  if constexpr (HasRecords<typename Bulk<Message>::WireType>) {
+    wire.records_version = Bulk<Message>::kRecordsVersion;
+  }
   Bulk<Message>::set_counts(wire, counts);
   return wire;
 }
@@ -160,6 +172,10 @@ Chunk<Message> decode_chunk(ByteView data) {
   return codec::as_decode_error([&] {
     const codec::Check check(Wire::getTypeName());
     auto wire = codec::decode_wire<Wire>(data, Traits::kNumStrings, 1);
+    // Before any size: records of another version have other sizes.
+    if constexpr (codec::HasRecords<Wire>) {
+      check.records_version(wire.records_version, Traits::kRecordsVersion);
+    }
     Chunk<Message> chunk;
     chunk.sequence = wire.sequence;
     chunk.index = wire.chunk_index;
@@ -171,7 +187,7 @@ Chunk<Message> decode_chunk(ByteView data) {
     Traits::check_header(check, chunk.header, chunk.num_records);
 
     const auto size = static_cast<std::int64_t>(wire.data.size());
-    // Every chunk but that of an empty payload carries something.
+    // Only the chunk of an empty payload may be empty.
     const std::int64_t max_count = std::max<std::int64_t>(1, chunk.total_bytes);
     check.range<std::int64_t>("num_chunks", chunk.count, 1, max_count);
     check.range("chunk_index", chunk.index, 0, chunk.count - 1);
@@ -216,7 +232,7 @@ Message join(const std::vector<Chunk<Message>>& chunks) {
       check.fail("payload bytes", joined, std::to_string(front.total_bytes));
     }
 
-    // Only now, when as many bytes have come as were claimed, memory is taken for them.
+    // Memory is allocated only now that as many bytes have been received as the header claims.
     Bytes payload;
     payload.reserve(static_cast<std::size_t>(joined));
     for (const auto& chunk : chunks) {

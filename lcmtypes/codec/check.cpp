@@ -7,14 +7,22 @@ namespace kintsugi {
 namespace codec {
 namespace {
 
-// A rotation that was normalised in double is orthonormal to 1e-15; 1e-6 moves a point at 10 m by
-// a hundredth of a millimetre.
+// A rotation normalised in double precision is orthonormal to 1e-15. An error of 1e-6 moves a point
+// at 10 m by a hundredth of a millimetre.
 constexpr double kRotationTolerance = 1e-6;
 constexpr double kMaxPosition_m = 1e6;
 
 bool is_control(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; }
 
 }  // namespace
+
+void Check::records_version(std::int16_t version, std::int16_t known) const {
+  if (version == known) return;
+  std::ostringstream text;
+  text << type_ << " has records of version " << version << ", this program knows version " << known
+       << ": it was sent or recorded by another version of Kintsugi";
+  throw std::invalid_argument(text.str());
+}
 
 void Check::finite(const char* field, double value) const {
   if (!std::isfinite(value)) fail(field, value, "a finite number");
@@ -38,7 +46,7 @@ void Check::pose(const char* field, const Pose& value) const {
     range(field, coordinate, -kMaxPosition_m, kMaxPosition_m);
   const Eigen::Matrix3d R = value.linear();
   const double error = (R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
-  // Written so that not-a-number fails.
+  // Written so that NaN fails.
   if (!(error <= kRotationTolerance)) fail(field, error, "a rotation with R^T R = I within 1e-6");
   if (!(R.determinant() > 0.0)) fail(field, R.determinant(), "a rotation, determinant 1");
 }

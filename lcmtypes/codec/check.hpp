@@ -1,5 +1,5 @@
 #pragma once
-// Bounds of message fields. Each failure names type, field, value and what was expected.
+// Checks of message fields. Each error names type, field, value and what was expected.
 
 #include <sstream>
 #include <stdexcept>
@@ -9,9 +9,10 @@
 
 namespace kintsugi::codec {
 
-/// Checks fields of one message; throws std::invalid_argument.
+/// Checks the fields of one message. @throws std::invalid_argument from every function
 class Check {
  public:
+  /// @param type name of the LCM type, for errors
   explicit Check(const char* type) : type_(type) {}
 
   template <class Value>
@@ -21,7 +22,7 @@ class Check {
     throw std::invalid_argument(text.str());
   }
 
-  /// `low` <= `value` <= `high`; not a number is outside every range.
+  /// `low` <= `value` <= `high`; NaN fails.
   template <class Value>
   void range(const char* field, Value value, Value low, Value high) const {
     if (value >= low && value <= high) return;
@@ -38,21 +39,25 @@ class Check {
   }
   void finite(const char* field, double value) const;
 
-  /// Bounded, and without control characters: names are printed in terminals.
+  /// At most kMaxStringBytes long and without control characters, because texts are printed in
+  /// terminals.
   void text(const char* field, const std::string& value) const;
 
-  /// Finite, and its linear part a rotation.
+  /// Finite, and its linear part is a rotation.
   void pose(const char* field, const Pose& value) const;
+
+  /// The packed records of the message have the layout that this program knows.
+  void records_version(std::int16_t version, std::int16_t known) const;
 
  private:
   const char* type_;
 };
 
-/// The rows of [R | t], and back.
+/// Converts a pose to the rows of [R | t], and back.
 void pose_to_wire(const Pose& X, double (&rows)[12]);
 Pose pose_from_wire(const double (&rows)[12]);
 
-/// Runs `decode`, and says DecodeError where it says std::invalid_argument.
+/// Returns decode(). @throws DecodeError where decode throws std::invalid_argument
 template <class Decode>
 auto as_decode_error(const Decode& decode) {
   try {

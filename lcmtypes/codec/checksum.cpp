@@ -13,7 +13,7 @@ std::uint32_t compute_checksum(ByteView message) {
   uLong crc = crc32_z(0, message.data(), kChecksumPlace);
   crc = crc32_z(crc, kNone.data(), kNone.size());
   const ByteView rest = message.subspan(kChecksumEnd);
-  // For zlib a null pointer is the wish to begin anew, and an empty rest may be one.
+  // zlib starts a new checksum when it is given a null pointer, which an empty span may have.
   if (!rest.empty()) crc = crc32_z(crc, rest.data(), rest.size());
   return static_cast<std::uint32_t>(crc);
 }

@@ -17,6 +17,7 @@ template <>
 struct Bulk<CloudSlice> {
   using WireType = cloud_slice_t;
   static constexpr int kNumStrings = 1;
+  static constexpr std::int16_t kRecordsVersion = kCloudPointVersion;
   static constexpr std::size_t kAlignment = sizeof(CloudPoint);  // whole points in each chunk
 
   template <class From, class To>
@@ -67,7 +68,7 @@ struct Bulk<CloudSlice> {
     check.pose("X_WC", slice.X_WC);
     check.text("map_name", slice.map_name);
   }
-  /// Points may hold anything: who uses them rejects and counts the unusable ones.
+  /// A point may have any values: the segmenter rejects and counts the points that it cannot use.
   static void check_records(const Check& /*check*/, const CloudSlice& /*slice*/) {}
 
   template <class Slice, class Function>

@@ -8,7 +8,7 @@
 namespace kintsugi {
 namespace codec {
 
-/// Frames come from other people's drivers too.
+/// Other people's drivers publish frames, too.
 template <>
 inline constexpr bool kChecksumOptional<rgbd_frame_t> = true;
 
@@ -60,7 +60,7 @@ struct Bulk<RgbdFrameMessage> : PlacedByByte<rgbd_frame_t> {
     check.positive("depth_bytes", counts[0]);
     check_intrinsics(check, frame.intrinsics);
   }
-  /// Whoever decodes the images finds out whether they are images.
+  /// The images are checked where they are decompressed.
   static void check_records(const Check& /*check*/, const RgbdFrameMessage& /*frame*/) {}
 
   template <class Frame, class Function>
@@ -74,7 +74,7 @@ struct Bulk<RgbdFrameMessage> : PlacedByByte<rgbd_frame_t> {
     constexpr double kMax_px = kMaxImageSide_px;
     check.range("width", intrinsics.width, 1, kMaxImageSide_px);
     check.range("height", intrinsics.height, 1, kMaxImageSide_px);
-    // A focal length below a pixel, or a principal point far outside, is no camera.
+    // No camera has a focal length below a pixel, or a principal point far outside the image.
     check.range("fx", intrinsics.fx, 1.0, 10.0 * kMax_px);
     check.range("fy", intrinsics.fy, 1.0, 10.0 * kMax_px);
     check.range("cx", intrinsics.cx, -kMax_px, 2.0 * kMax_px);

@@ -1,4 +1,4 @@
-// Where the camera is, and what keeps the numbered streams whole.
+// The pose of the camera, and the control messages of the numbered streams.
 
 #include <kintsugi/camera_pose_t.hpp>
 #include <kintsugi/heartbeat_t.hpp>

@@ -1,4 +1,4 @@
-// A question about segments, and its answer.
+// Queries for segments, and their answers.
 
 #include <cmath>
 #include <limits>
@@ -14,7 +14,7 @@ namespace kintsugi {
 namespace codec {
 namespace {
 
-// A direction or axis was normalised in float32, whose rounding is 6e-8 for each coordinate.
+// A direction or axis is normalised in float32, which rounds each coordinate by up to 6e-8.
 constexpr double kUnitTolerance = 1e-5;
 
 template <class Number>
@@ -34,8 +34,6 @@ static_assert(segment_query_t::PLACE_POINT == static_cast<int>(QueryPlace::kPoin
 static_assert(segment_query_t::PLACE_RAY == static_cast<int>(QueryPlace::kRay));
 static_assert(segment_query_t::PLACE_BOX == static_cast<int>(QueryPlace::kBox));
 static_assert(segment_query_t::PLACE_IDS == static_cast<int>(QueryPlace::kIds));
-static_assert(sizeof(DescribedSegment) == 176);
-static_assert(sizeof(SegmentContact) == 12);
 
 template <>
 struct Small<SegmentQuery> : Shape<segment_query_t> {
@@ -102,6 +100,7 @@ struct Small<SegmentQuery> : Shape<segment_query_t> {
 template <>
 struct Bulk<SegmentAnswer> : PlacedByByte<segment_answer_t> {
   static constexpr int kNumStrings = 1;
+  static constexpr std::int16_t kRecordsVersion = kSegmentRecordsVersion;
 
   template <class From, class To>
   static void copy(const From& from, To& to) {

@@ -6,12 +6,10 @@
 namespace kintsugi {
 namespace codec {
 
-static_assert(sizeof(LabelRun) == 20);
-static_assert(sizeof(SegmentEvent) == 12);
-
 template <>
 struct Bulk<SegmentUpdate> : PlacedByByte<segment_update_t> {
   static constexpr int kNumStrings = 1;
+  static constexpr std::int16_t kRecordsVersion = kSegmentRecordsVersion;
 
   template <class From, class To>
   static void copy(const From& from, To& to) {

@@ -1,12 +1,18 @@
 #pragma once
-// Messages that are one LCM message each: what all of them have in common.
+// Encoding and decoding of small messages, which are one LCM message each.
 
 #include "lcmtypes/codec/wire.hpp"
 
 namespace kintsugi::codec {
 
-/// What the codec knows of a small message: its LCM type, its shape, to_wire(), from_wire() and
-/// check(). Field names are the same in struct and LCM type, so one copy() serves both directions.
+/// What the codec has to know of a small message:
+///   WireType                 its LCM type
+///   kNumStrings              number of its strings
+///   kBytesPerCount           bytes of its arrays for each element that is counted; 0: no array
+///   to_wire(), from_wire()   conversion between the struct and the LCM type
+///   check(check, message)    throws when a field is out of its bounds
+/// Most fields have the same name in the struct and in the LCM type, so that a template copy()
+/// serves both directions.
 template <class Message>
 struct Small;
 
@@ -16,7 +22,7 @@ struct Shape {
   static constexpr std::size_t kBytesPerCount = 0;
 };
 
-/// The messages whose struct and LCM type differ in nothing.
+/// For messages whose struct and LCM type have the same fields: copy() is the whole conversion.
 template <class Message, class Wire>
 struct Copied : Shape<Wire> {
   static void to_wire(const Message& message, Wire& wire) { Small<Message>::copy(message, wire); }

@@ -1,22 +1,35 @@
 #pragma once
-// Statistics of a segment: the same record in updates and in answers.
+// Checks the statistics of a segment: the same record is in updates and in answers.
+
+#include <cmath>
+#include <string>
 
 #include "lcmtypes/codec/check.hpp"
 
 namespace kintsugi::codec {
 
-static_assert(sizeof(SegmentStatistics) == 72);
+inline void check_statistic(const Check& check, const StatisticsField& field, float value) {
+  if (std::isfinite(value)) return;
+  check.fail((std::string("statistics ") + field.name).c_str(), value, "a finite number");
+}
+inline void check_statistic(const Check& check, const StatisticsField& field,
+                            const float (&values)[3]) {
+  for (const float value : values) check_statistic(check, field, value);
+}
+inline void check_statistic(const Check& check, const StatisticsField& field, std::int32_t value) {
+  if (value >= 0) return;
+  check.fail((std::string("statistics ") + field.name).c_str(), value, ">= 0");
+}
+// Every unsigned value is valid.
+inline void check_statistic(const Check&, const StatisticsField&, std::uint32_t) {}
+inline void check_statistic(const Check&, const StatisticsField&, const std::uint8_t (&)[3]) {}
 
 inline void check_statistics(const Check& check, const SegmentStatistics& statistics) {
-  for (int axis = 0; axis < 3; ++axis) {
-    check.finite("statistics box_min_W", statistics.box_min_W[axis]);
-    check.finite("statistics box_max_W", statistics.box_max_W[axis]);
-    check.finite("statistics centroid_W", statistics.centroid_W[axis]);
-    check.finite("statistics mean_normal_W", statistics.mean_normal_W[axis]);
-  }
-  check.finite("statistics area_m2", statistics.area_m2);
-  check.not_negative("statistics first_slice", statistics.first_slice);
-  check.not_negative("statistics last_slice", statistics.last_slice);
+  SegmentStatistics::visit_fields(
+      [&check](const StatisticsField& field, const auto& value) {
+        check_statistic(check, field, value);
+      },
+      statistics);
 }
 
 }  // namespace kintsugi::codec

@@ -1,14 +1,13 @@
 #pragma once
-// Around the code that lcm-gen makes.
+// Safe use of the code that lcm-gen generates.
 //
-// Its decoder believes the message: it resizes an array to the count it reads, two billion or
-// negative, before it looks whether the bytes are there, and it moves backwards over a string of
-// negative length. So the size of a message is checked against its counts before it is decoded.
-// That is simple because every type of ours has the same shape:
-//   fingerprint, checksum, other fixed-size fields (the last is the count, if there is an array),
-//   strings, array.
-// Behind the right size the checksum is compared, so that a message which was valid once and has
-// changed since is refused and not believed.
+// The generated decoder trusts the message: it resizes an array to the count that it reads, be it
+// two billion or negative, before it checks that the bytes are there, and it moves backwards over a
+// string of negative length. Therefore the size of a message is compared with its counts before it
+// is decoded. That is simple because all our types have the same shape:
+//   fingerprint, checksum, other fields of fixed size (the last is the count, if there is an
+//   array), strings, array.
+// Then the checksum is compared, so that a message that was altered on its way is refused.
 
 #include <cassert>
 #include <cstddef>
@@ -25,20 +24,21 @@ struct WireShape {
   std::size_t fixed_bytes = 0;  ///< fingerprint and fixed-size fields
   int num_strings = 0;
   std::size_t bytes_per_count = 0;  ///< 0: there is no array
-  bool checksum_optional = false;   ///< 0 says that none is given
+  bool checksum_optional = false;   ///< a checksum of 0 means that there is none
 };
 
-/// Throws std::invalid_argument unless `data` has exactly the size that its own lengths say, and
-/// the checksum it claims.
+/// Checks the fingerprint, the size and the checksum of a message.
+/// @throws std::invalid_argument when the message is of another type or version, its size is not
+///   the one that its own counts and lengths give, or its checksum is wrong
 void check_wire(const WireShape& shape, ByteView data);
 
-/// Whether messages of a type come from people who need not compute a checksum.
+/// True for types that programs of other people send, which need not compute a checksum.
 template <class Wire>
 inline constexpr bool kChecksumOptional = false;
 
 template <class Wire>
 WireShape wire_shape(int num_strings, std::size_t bytes_per_count) {
-  // With every count zero and every string empty (a length and a terminator).
+  // An empty message: each count is 0, each string has 5 bytes, its length and its terminator.
   const auto size = static_cast<std::size_t>(Wire{}.getEncodedSize());
   return {Wire::getTypeName(), Wire::getHash(), size - 5 * static_cast<std::size_t>(num_strings),
           num_strings,         bytes_per_count, kChecksumOptional<Wire>};
@@ -56,7 +56,7 @@ Wire decode_wire(ByteView data, int num_strings, std::size_t bytes_per_count) {
   return wire;
 }
 
-/// The bytes of `wire` as they lie on the bus, whatever its checksum.
+/// The encoded message, with the checksum that `wire` has.
 template <class Wire>
 Bytes bytes_of(const Wire& wire) {
   Bytes data(static_cast<std::size_t>(wire.getEncodedSize()));
@@ -65,7 +65,7 @@ Bytes bytes_of(const Wire& wire) {
   return data;
 }
 
-/// The message of `wire`, with its checksum.
+/// The encoded message, with the correct checksum.
 template <class Wire>
 Bytes encode_wire(const Wire& wire) {
   Bytes data = bytes_of(wire);

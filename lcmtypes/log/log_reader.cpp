@@ -78,7 +78,7 @@ std::optional<LogEvent> LogReader::next() {
   return LogEvent{index_++, utime, std::move(channel), data_};
 }
 
-/// Remembers why nothing more can be read.
+/// Keeps the reason why nothing more can be read.
 std::nullopt_t LogReader::stop(const std::string& what) {
   damage_ = "log '" + path_.string() + "' is damaged at byte " + std::to_string(position_) +
             " of " + std::to_string(size_) + ", event " + std::to_string(index_) + ": " + what;

@@ -1,5 +1,5 @@
 #pragma once
-// An LCM log, event by event.
+// Reads an LCM log event by event.
 
 #include <cstdint>
 #include <filesystem>
@@ -11,33 +11,33 @@
 
 namespace kintsugi {
 
-/// One recorded message. `data` is valid until the next call of next().
+/// One recorded message.
 struct LogEvent {
   std::int64_t index = 0;  ///< in the log
   std::int64_t utime = 0;  ///< when it was received, wall clock, microseconds
   std::string channel;
-  ByteView data;
+  ByteView data;  ///< valid until the next call of next()
 };
 
-/// Reads the format itself: lcm::LogFile allocates whatever an event claims to hold, searches for
-/// the next event after damage, and does not say where or why it ended.
+/// Reads an LCM log. It does not use lcm::LogFile, which allocates as much memory as an event
+/// claims to need, searches for the next event after damage, and does not report where or why it
+/// ended.
 class LogReader {
  public:
-  /// Throws std::runtime_error when `path` cannot be read, is empty or is no LCM log.
+  /// @throws std::runtime_error when `path` cannot be read, is empty or is not an LCM log
   explicit LogReader(const std::filesystem::path& path);
 
-  /// The next event; nothing at the end of what can be read.
+  /// The next event; nothing at the end of the log or at its first damage.
   std::optional<LogEvent> next();
 
-  /// After next() returned nothing: where and how the log is damaged; nothing when it is whole.
+  /// After next() has returned nothing: where and how the log is damaged; nothing: it is whole.
   const std::optional<std::string>& damage() const { return damage_; }
 
-  /// The damage is that the file ends before its last event does, as when a writer was killed.
+  /// The damage is that the last event is incomplete, as after a writer was killed.
   bool is_cut_off() const { return is_cut_off_; }
 
-  /// Of the events that next() gave; the data of the last one ends here.
+  /// Bytes of all events that next() has returned; the data of the last one ends here.
   std::int64_t bytes_read() const { return position_; }
-  std::int64_t bytes_total() const { return size_; }
 
  private:
   std::nullopt_t stop(const std::string& what);

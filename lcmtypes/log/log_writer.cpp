@@ -70,7 +70,8 @@ LogWriter::LogWriter(std::filesystem::path path, int flags)
   if (size < 0) {
     const int error = errno;
     close(descriptor_);
-    fail(error == EWOULDBLOCK ? "write what another process writes:" : "open", path_, error);
+    fail(error == EWOULDBLOCK ? "lock, because another process writes it, the" : "open", path_,
+         error);
   }
   size_ = size;
 }
@@ -96,7 +97,7 @@ std::int64_t LogWriter::append(std::int64_t utime, const std::string& channel, B
          channel.size() <= static_cast<std::size_t>(log_format::kMaxChannelBytes));
   const Bytes event = encode_event(num_events_, utime, channel, data);
   if (const int error = write_all(descriptor_, event, size_)) {
-    // Should this fail too, then the next event overwrites the rest.
+    // If this fails, too, the next event overwrites the rest.
     [[maybe_unused]] const int ignored = ftruncate(descriptor_, size_);
     fail("write", path_, error);
   }

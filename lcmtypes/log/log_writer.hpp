@@ -1,5 +1,5 @@
 #pragma once
-// An LCM log being written, and read again where it was written.
+// Writes an LCM log, and reads back what was written.
 
 #include <cstdint>
 #include <filesystem>
@@ -9,20 +9,21 @@
 
 namespace kintsugi {
 
-/// Appends events to one file, each whole or not at all: lcm-logplayer and LogReader read what is
-/// there at any moment.
+/// Appends events to one file, each completely or not at all: LogReader and lcm-logplayer can read
+/// the file at any moment.
 ///
-/// What was appended outlives the process (SIGKILL), not a power failure: nothing is forced to
-/// disk. The file is locked while it is open, so that two processes never write one log. Not thread
-/// safe but for read(), which may run beside append().
+/// Events survive when the process is killed, but not a power failure, because the file is not
+/// synced to disk. The file is locked while it is open, so that two processes never write the same
+/// log. Not thread safe, except that read() may run in parallel to append().
 class LogWriter {
  public:
-  /// A new file. @throws std::system_error naming it: it exists, or cannot be made
+  /// Creates a file. @throws std::system_error naming it when it exists or cannot be created
   static LogWriter create(const std::filesystem::path& path);
-  /// A file that is there, to be read and to be continued at its end (see continue_after()).
-  /// @throws std::system_error naming it: it cannot be opened, or another process writes it
+  /// Opens an existing file, to read it and to continue it (see continue_after()).
+  /// @throws std::system_error naming it when it cannot be opened or another process writes it
   static LogWriter open(const std::filesystem::path& path);
-  /// A file without a name in `folder`, gone when it is closed. @throws std::system_error
+  /// Creates a file without a name in `folder`, which is deleted when it is closed.
+  /// @throws std::system_error
   static LogWriter temporary(const std::filesystem::path& folder);
 
   ~LogWriter();
@@ -31,15 +32,16 @@ class LogWriter {
   LogWriter& operator=(const LogWriter&) = delete;
   LogWriter& operator=(LogWriter&&) = delete;
 
-  /// The next event goes behind the first `bytes` bytes, which hold `events` events; what lies
-  /// beyond is cut off. @throws std::system_error
+  /// Cuts the file after its first `bytes` bytes, which are `events` events, and continues there.
+  /// @throws std::system_error
   void continue_after(std::int64_t bytes, std::int64_t events);
 
-  /// Appends an event and returns the place of its data. `channel` has 1 to 63 bytes.
-  /// @throws std::system_error naming file and reason (a full disk); the file is as it was then
+  /// Appends an event and returns the place of its data in the file. `channel` has 1 to 63 bytes.
+  /// @throws std::system_error naming file and reason, such as a full disk; the file is unchanged
+  /// then
   std::int64_t append(std::int64_t utime, const std::string& channel, ByteView data);
 
-  /// The `size` bytes of data that append() said are at `place`.
+  /// Reads `size` bytes at a place that append() has returned.
   /// @throws std::system_error when they cannot be read, std::runtime_error when the file is
   /// shorter
   Bytes read(std::int64_t place, std::size_t size) const;

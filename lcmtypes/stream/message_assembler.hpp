@@ -1,5 +1,5 @@
 #pragma once
-// The messages of one session whose chunks have not all come yet.
+// The messages of one session of which some chunks have not been received yet.
 
 #include <algorithm>
 #include <cstddef>
@@ -14,19 +14,20 @@
 
 namespace kintsugi {
 
-/// Puts chunks together, in whatever order they come. Memory is that of the chunks that came.
+/// Collects chunks, in any order, until their message is complete. It needs memory only for the
+/// chunks that it was given.
 template <BulkMessage Message>
 class MessageAssembler {
  public:
   using Chunks = std::vector<Chunk<Message>>;
 
-  /// Bytes that a chunk takes here.
+  /// Memory of a chunk.
   static std::size_t bytes(const Chunk<Message>& chunk) {
     return sizeof(chunk) + chunk.part.size() + chunk.identity.size();
   }
 
-  /// A chunk with the number of this one that has come before, and belongs to another message: one
-  /// of the two is false. Nothing: `chunk` fits.
+  /// The sequence number of a chunk with another header that was added before and, by its numbers,
+  /// belongs to the same message: one of the two is false. Nothing: there is none.
   std::optional<std::int64_t> conflict(const Chunk<Message>& chunk) const {
     const auto message = messages_.find(first_sequence(chunk));
     if (message == messages_.end()) return std::nullopt;
@@ -35,8 +36,8 @@ class MessageAssembler {
     return other.sequence;
   }
 
-  /// Keeps a chunk that has not come before and fits. Returns all the chunks of its message, in
-  /// order, when it was the last one; empty: some are missing.
+  /// Adds a chunk that was not added before and has no conflict(). Returns all chunks of its
+  /// message, in order, if it was the last one that was missing; else nothing.
   Chunks add(Chunk<Message> chunk) {
     const std::int64_t first = first_sequence(chunk);
     const auto count = static_cast<std::size_t>(chunk.count);
@@ -50,11 +51,11 @@ class MessageAssembler {
     return complete;
   }
 
-  /// Removes the message of the chunk, and returns the numbers of those of it that came.
+  /// Removes the chunks of this chunk's message, and returns their sequence numbers.
   std::vector<std::int64_t> drop(const Chunk<Message>& chunk) {
     return numbers(take(first_sequence(chunk)));
   }
-  /// Likewise every message that began before `sequence`.
+  /// The same for every message that begins before `sequence`.
   std::vector<std::int64_t> drop_before(std::int64_t sequence) {
     std::vector<std::int64_t> dropped;
     while (!messages_.empty() && messages_.begin()->first < sequence) {
@@ -64,10 +65,12 @@ class MessageAssembler {
     return dropped;
   }
 
+  /// Memory of all chunks.
   std::size_t bytes() const { return bytes_; }
 
  private:
-  /// Chunks of one message have consecutive numbers: that of the first one tells messages apart.
+  /// The sequence number of the message's first chunk, which identifies the message: chunks of a
+  /// message have consecutive numbers.
   static std::int64_t first_sequence(const Chunk<Message>& chunk) {
     return chunk.sequence - chunk.index;
   }

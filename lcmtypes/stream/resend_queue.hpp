@@ -1,5 +1,5 @@
 #pragma once
-// Which chunk of a stream goes next: a new one, or one that somebody asked for again.
+// Decides whether a sender sends a new chunk next, or resends one that a receiver has requested.
 
 #include <cstdint>
 #include <deque>
@@ -10,25 +10,28 @@
 
 namespace kintsugi {
 
-/// What was asked for and has not been sent since, first asked first. No thread, no clock: times
-/// are seconds that never decrease.
+/// The requested chunks that have not been resent yet, in the order of the requests. It has no
+/// thread and no clock: times are seconds that never decrease.
 class ResendQueue {
  public:
-  /// A request that comes this soon after the chunk was sent has crossed it: not asked for. Below
-  /// the time that a receiver waits before it first asks. Seconds.
+  /// A request that arrives within this time after the chunk was sent is ignored: the receiver sent
+  /// it before the chunk arrived. Shorter than the time that a receiver waits before it requests
+  /// a chunk for the first time.
   static constexpr double kInFlight_s = 0.05;
-  /// While new chunks wait too, one in so many chunks is a resend.
+  /// While new chunks wait, one of so many chunks is a resend.
   static constexpr int kResendEvery = 8;
 
-  /// Somebody asks for `ranges`; what is outside [first, end) cannot be sent. However absurd the
-  /// ranges, the cost is bounded by their number and by what can be sent.
+  /// Adds the requested `ranges`, as far as they are in [first, end): other chunks cannot be sent.
+  /// The cost is bounded by the number of ranges and of chunks in [first, end), whatever was
+  /// requested.
   void want(std::span<const SequenceRange> ranges, std::int64_t first, std::int64_t end,
             double now_s);
 
-  /// Takes what goes next: the number to resend; nothing: a new chunk, or nothing at all.
+  /// Removes and returns the number of the chunk to resend next; nothing: a new chunk is to be
+  /// sent, if there is one.
   std::optional<std::int64_t> next(bool new_chunk_waits);
 
-  /// A chunk was sent, new or again.
+  /// To be called when a chunk was sent, for the first time or again.
   void sent(std::int64_t sequence, double now_s);
 
   bool empty() const { return order_.empty(); }

@@ -6,7 +6,7 @@
 namespace kintsugi {
 namespace {
 
-/// The lowest `count` numbers of the ranges; at least one.
+/// Cuts the ranges to their lowest `count` numbers, at least one.
 std::vector<SequenceRange> first_numbers(std::vector<SequenceRange> ranges, std::int64_t count) {
   for (std::size_t i = 0; i < ranges.size(); ++i) {
     const std::int64_t size = ranges[i].last - ranges[i].first + 1;
@@ -40,7 +40,7 @@ std::vector<SequenceRange> ResendRequests::poll(const SequenceSet& seen, std::in
   if (lowest >= overdue) return {};
 
   if (!asked_ || std::exchange(has_progress_, false)) start_afresh(now_s);
-  if (asked_ && lowest > asked_->last) next_ask_s_ = now_s;  // all that was asked for has come
+  if (asked_ && lowest > asked_->last) next_ask_s_ = now_s;  // everything requested was received
   if (!has_given_up_ && now_s - in_vain_since_s_ >= config_.give_up_after_s) {
     has_given_up_ = true;
     was_heard_ = false;
@@ -60,7 +60,7 @@ void ResendRequests::pause(double now_s) {
   wait_s_ = config_.min_wait_s;
 }
 
-/// Somebody answers, or there is something new to ask for.
+/// The sender answers, or there is something new to request.
 void ResendRequests::start_afresh(double now_s) {
   has_given_up_ = false;
   in_vain_since_s_ = now_s;
@@ -75,9 +75,10 @@ void ResendRequests::note_hearing(bool heard, double now_s) {
   was_heard_ = true;
 }
 
-/// The end of what has been known to exist for first_wait_s.
+/// The end of the numbers that have been known for first_wait_s.
 std::int64_t ResendRequests::overdue_end(std::int64_t end, double now_s) {
-  if (!marks_.empty() && end < marks_.back().end) marks_.clear();  // taken back
+  if (!marks_.empty() && end < marks_.back().end)
+    marks_.clear();  // the sender has corrected itself
   if (marks_.empty() || end > marks_.back().end) marks_.push_back({now_s, end});
   const auto is_overdue = [&](const Mark& mark) {
     return now_s - mark.time_s >= config_.first_wait_s;

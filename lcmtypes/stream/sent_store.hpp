@@ -1,5 +1,5 @@
 #pragma once
-// What a stream has sent, kept for those who missed it.
+// Keeps the chunks that a stream has sent, to resend them.
 
 #include <cstddef>
 #include <cstdint>
@@ -11,8 +11,8 @@
 
 namespace kintsugi {
 
-/// Encoded chunks by sequence number. add() is called from one thread; the rest may be called from
-/// any.
+/// Encoded chunks by sequence number. Only one thread may call add(); any thread may call the other
+/// functions.
 class SentStore {
  public:
   SentStore() = default;
@@ -20,26 +20,26 @@ class SentStore {
   SentStore& operator=(const SentStore&) = delete;
   virtual ~SentStore() = default;
 
-  /// Called for every chunk before it is sent, with consecutive `sequence`.
+  /// Adds a chunk before it is sent; `sequence` is consecutive.
   virtual void add(std::int64_t sequence, ByteView message) = 0;
-  /// The chunk; nothing when it is not kept, or not any more.
+  /// The chunk; nothing if it is not in the store, or no longer.
   virtual std::optional<Bytes> find(std::int64_t sequence) const = 0;
-  /// The oldest sequence number that can still be sent again; next_sequence(): none.
+  /// The lowest sequence number in the store; next_sequence() if it is empty.
   virtual std::int64_t first_sequence() const = 0;
-  /// One past the newest that was added.
+  /// One past the highest sequence number that was added.
   virtual std::int64_t next_sequence() const = 0;
 };
 
-/// The newest chunks, in memory.
+/// Keeps the newest chunks in memory.
 class RecentChunks : public SentStore {
  public:
-  /// Keeps `max_bytes` of encoded chunks, and the newest chunk in any case.
+  /// @param max_bytes of encoded chunks; the newest chunk is kept in any case
   explicit RecentChunks(std::size_t max_bytes) : max_bytes_(max_bytes) {}
 
-  /// From now on; chunks that are too many go at the next add().
+  /// Changes the limit; the next add() removes chunks that exceed it.
   void set_max_bytes(std::size_t max_bytes);
 
-  /// Throws std::invalid_argument when `sequence` is not next_sequence(); the first may be any.
+  /// @throws std::invalid_argument when `sequence` is not next_sequence(); the first may be any
   void add(std::int64_t sequence, ByteView message) override;
   std::optional<Bytes> find(std::int64_t sequence) const override;
   std::int64_t first_sequence() const override;

@@ -1,5 +1,5 @@
 #pragma once
-// A set of the numbers of a stream.
+// A set of sequence numbers.
 
 #include <cstddef>
 #include <cstdint>
@@ -10,21 +10,21 @@
 
 namespace kintsugi {
 
-/// A set of numbers >= 0, kept as disjoint ranges: small while a stream has few gaps.
+/// A set of numbers >= 0, stored as disjoint ranges: it is small if there are few gaps.
 class SequenceSet {
  public:
-  /// False when `number` was there already.
+  /// Returns false if `number` is in the set already.
   bool insert(std::int64_t number);
   /// `range.first` <= `range.last`.
   void insert(SequenceRange range);
   void erase(std::int64_t number);
   bool contains(std::int64_t number) const;
 
-  /// The numbers in [begin, end) that are not there, as at most `max_ranges` ranges, lowest first.
+  /// The numbers in [begin, end) that are not in the set: the lowest `max_ranges` ranges of them.
   std::vector<SequenceRange> missing(std::int64_t begin, std::int64_t end,
                                      std::size_t max_ranges) const;
   std::int64_t count_missing(std::int64_t begin, std::int64_t end) const;
-  /// The lowest number >= `begin` that is not there.
+  /// The lowest number >= `begin` that is not in the set.
   std::int64_t lowest_missing(std::int64_t begin) const;
 
   std::vector<SequenceRange> ranges() const;

@@ -10,8 +10,8 @@
 namespace kintsugi {
 namespace {
 
-// Requests that wait for the thread. More come only from many receivers or a hostile one, while
-// the thread is held up; receivers ask again.
+// Requests that wait for the thread. Only many receivers, or a hostile one, send more while the
+// thread is held up. Further requests are dropped; receivers repeat them.
 constexpr std::size_t kMaxWaitingRequests = 256;
 
 }  // namespace
@@ -70,7 +70,8 @@ void StreamPublisher::publish_state(std::vector<Message> messages) {
   std::vector<StreamSender::Job> jobs;
   jobs.reserve(messages.size());
   for (Message& message : messages) jobs.push_back(job_of(std::move(message)));
-  if (jobs.empty()) throw std::invalid_argument("StreamPublisher: a state without messages");
+  if (jobs.empty())
+    throw std::invalid_argument("StreamPublisher: a full state needs at least one message");
   jobs.front().starts_state = true;
   enqueue(std::move(jobs));
 }
@@ -173,8 +174,8 @@ void StreamPublisher::run() {
   }
 }
 
-/// Takes what others have left for the thread since it last looked; the requests are for the
-/// caller, because what they call must not meet the lock.
+/// Passes new jobs to the sender, and returns the new requests. The caller passes these to the
+/// sender without the lock, because they call on_state_wanted.
 std::vector<ResendRequest> StreamPublisher::hand_over(double now_s) {
   has_news_ = false;
   if (!new_requests_.empty()) last_request_s_ = now_s;

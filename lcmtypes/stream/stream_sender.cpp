@@ -4,19 +4,16 @@
 #include <stdexcept>
 #include <utility>
 
+#include "lcmtypes/base/argument_check.hpp"
 #include "lcmtypes/bus/bus.hpp"
 #include "lcmtypes/channels.hpp"
 
 namespace kintsugi {
 namespace {
 
-// A thread that waits for the token bucket wakes no more often, and then sends several small
-// chunks; as long as the bucket can hold what flows meanwhile.
+// The shortest wait for the token bucket: after it the thread sends several small chunks, so that
+// it does not wake for each. Limited below to the time in which the bucket fills by half.
 constexpr double kMinWait_s = 0.001;
-
-[[noreturn]] void refuse(const std::string& what) {
-  throw std::invalid_argument("StreamPublisher: " + what);
-}
 
 const StreamPublisherConfig& validated(const StreamPublisherConfig& config) {
   config.validate();
@@ -26,17 +23,12 @@ const StreamPublisherConfig& validated(const StreamPublisherConfig& config) {
 }  // namespace
 
 void StreamPublisherConfig::validate() const {
-  if (!(rate_bytes_per_s > 0.0)) {
-    refuse("rate_bytes_per_s is " + std::to_string(rate_bytes_per_s) + ", expected > 0");
-  }
-  if (burst_bytes == 0) refuse("burst_bytes is 0, expected > 0");
-  if (max_chunk_bytes < kMinMaxChunkBytes) {
-    refuse("max_chunk_bytes is " + std::to_string(max_chunk_bytes) + ", expected at least " +
-           std::to_string(kMinMaxChunkBytes));
-  }
-  if (heartbeat_period.count() <= 0) {
-    refuse("heartbeat_period is " + std::to_string(heartbeat_period.count()) + " ms, expected > 0");
-  }
+  require(rate_bytes_per_s > 0.0, "StreamPublisher: rate_bytes_per_s", rate_bytes_per_s, "> 0");
+  require(burst_bytes > 0, "StreamPublisher: burst_bytes", burst_bytes, "> 0");
+  require(max_chunk_bytes >= kMinMaxChunkBytes, "StreamPublisher: max_chunk_bytes", max_chunk_bytes,
+          "at least " + std::to_string(kMinMaxChunkBytes));
+  require(heartbeat_period.count() > 0, "StreamPublisher: heartbeat_period in ms",
+          heartbeat_period.count(), "> 0");
 }
 
 StreamSender::StreamSender(Transmit transmit, std::string channel, std::int64_t session,
@@ -90,7 +82,8 @@ double StreamSender::step(double now_s) {
 
 std::int64_t StreamSender::next_sequence() const { return std::max(sequence_, resumed_end_); }
 
-/// The oldest that can be resent. The store may be ahead, by the chunk that is prepared.
+/// The lowest number that can be resent. The store may have one chunk more than was sent, the
+/// prepared one.
 std::int64_t StreamSender::first_sequence() const {
   return store_ != nullptr ? std::min(store_->first_sequence(), next_sequence()) : next_sequence();
 }
@@ -101,15 +94,15 @@ void StreamSender::compare_with_store() {
   const std::optional<Bytes> stored = store_->find(sequence_);
   if (stored && *stored != encode_next()) {
     throw std::runtime_error(channel_ + ", sequence " + std::to_string(sequence_) +
-                             ": differs from what was sent before: resume with the same device "
-                             "and options");
+                             ": differs from the chunk that was sent before: resume with the same "
+                             "device and options");
   }
   ++counts_.chunks_compared;
   finish_chunk();
 }
 
-/// Decides what goes next, and keeps a new chunk before it goes. Nothing, too, when what was asked
-/// for is no longer kept.
+/// Sets prepared_ to the next chunk, and stores it if it is new. Sets nothing if there is none, or
+/// if the requested one is no longer in the store.
 void StreamSender::prepare() {
   if (const auto sequence = resends_.next(!jobs_.empty())) {
     auto chunk = store_->find(*sequence);

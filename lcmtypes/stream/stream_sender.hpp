@@ -1,5 +1,5 @@
 #pragma once
-// What a StreamPublisher does, without its thread and its clock.
+// The logic of StreamPublisher, without its thread and its clock.
 
 #include <chrono>
 #include <cstddef>
@@ -17,33 +17,35 @@ namespace kintsugi {
 
 struct StreamPublisherConfig {
   double rate_bytes_per_s = 10e6;  ///< of new data and resends together, > 0
-  /// Sent at once after a pause, bytes. Two datagrams: a stock receive buffer holds three.
+  /// Bytes that may be sent at once after a pause. By default two datagrams: a receive buffer of
+  /// the kernel's default size holds three.
   std::size_t burst_bytes = 120'000;
   /// Largest LCM message, bytes: Bus::max_message_bytes().
   std::size_t max_chunk_bytes = kDefaultMaxChunkBytes;
   std::chrono::milliseconds heartbeat_period{200};  ///< > 0
-  std::string map_name;  ///< of the map that the stream is about; empty: several
-  /// Called when somebody asks for a chunk that the store has no more and no full state has
-  /// superseded; as often as it is asked for, from the publisher's thread: must not block. May be
-  /// empty.
+  std::string map_name;  ///< of the map that the stream carries; empty: several maps
+  /// Called at each request for a chunk that is no longer in the store and that no full state
+  /// replaces, from the publisher's thread: it must not block. The owner then publishes a full
+  /// state. May be empty.
   std::function<void()> on_state_wanted;
 
+  /// @throws std::invalid_argument naming the field that is out of its bounds
   void validate() const;
 };
 
 struct StreamPublisherCounts {
   std::int64_t chunks_sent = 0;      ///< new ones
   std::int64_t bytes_sent = 0;       ///< of new chunks
-  std::int64_t chunks_compared = 0;  ///< made again, found in the store, not sent again
-  std::int64_t chunks_resent = 0;    ///< because somebody asked
+  std::int64_t chunks_compared = 0;  ///< of a resumed session: equal to the store, not sent again
+  std::int64_t chunks_resent = 0;    ///< on request
   std::int64_t bytes_resent = 0;
   std::int64_t requests_received = 0;  ///< for this session and channel
-  std::int64_t requests_bad = 0;       ///< did not decode
+  std::int64_t requests_bad = 0;       ///< not decoded
 };
 
-/// Sends the chunks of queued messages in order, resends what is asked for, and says with
-/// heartbeats what exists; under one token bucket. Belongs to one thread, and time is an argument:
-/// seconds that never decrease.
+/// Sends the chunks of queued messages in order, resends requested chunks, and sends heartbeats
+/// that tell which chunks exist; one token bucket limits the rate of all. Only one thread may use
+/// it. Time is an argument: seconds that never decrease.
 class StreamSender {
  public:
   using Config = StreamPublisherConfig;
@@ -53,33 +55,36 @@ class StreamSender {
   struct Job {
     std::int32_t num_chunks = 0;
     std::size_t bytes = 0;
-    bool starts_state = false;  ///< a receiver that has everything from here on lacks nothing
+    bool starts_state = false;  ///< a full state starts here: no earlier chunk is needed
     std::function<Bytes(std::int64_t sequence, std::int32_t index)> encode;
   };
 
-  /// `store` may be null: nothing can be resent.
+  /// @param store may be null: then nothing can be resent
   StreamSender(Transmit transmit, std::string channel, std::int64_t session, const Config& config,
                SentStore* store);
 
   void push(Job job);
   void request(const ResendRequest& request, double now_s);
-  /// A heartbeat at once when everything is sent, unless the last one has said so.
+  /// Sends a heartbeat as soon as everything is sent, unless the last one has announced that
+  /// already.
   void announce() { announce_ = true; }
 
-  /// Does the next thing that is due, at most one message; returns the seconds until it should be
-  /// called again, at the latest. Throws what transmit threw, and std::runtime_error when a chunk
-  /// made again differs from the stored one.
+  /// Does what is due next, and sends at most one message. Returns the seconds after which it must
+  /// be called again.
+  /// @throws what `transmit` throws, and std::runtime_error when a chunk of a resumed session
+  /// differs
+  ///   from the one in the store
   double step(double now_s);
 
-  /// Everything pushed has been sent, and a heartbeat after it.
+  /// Everything that was pushed and a heartbeat after it have been sent.
   bool is_done() const { return jobs_.empty() && announced_ == next_sequence(); }
-  /// One past the newest chunk sent, in this run or an earlier one of the session.
+  /// One past the newest chunk that was sent, in this run or an earlier one of the session.
   std::int64_t next_sequence() const;
   std::size_t queued_bytes() const { return queued_bytes_; }
   const StreamPublisherCounts& counts() const { return counts_; }
 
  private:
-  struct Next {  // what waits for the token bucket
+  struct Next {  // the message that waits for the token bucket
     std::int64_t sequence = 0;
     bool is_resend = false;
     Bytes chunk;

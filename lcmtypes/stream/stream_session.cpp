@@ -6,10 +6,11 @@
 namespace kintsugi {
 namespace {
 
-// Taken and asked for from the lowest missing one on while there is room only for what is next.
+// StreamRoom::kOnlyNext: only so many numbers from the lowest missing one on are kept and
+// requested.
 constexpr std::int64_t kNextChunks = 256;
 
-// Assumed of chunks while none has come.
+// Assumed size of a chunk until one is received.
 constexpr std::int64_t kUsualChunkBytes = 60'000;
 
 }  // namespace
@@ -72,7 +73,7 @@ std::vector<SequenceRange> StreamSession::poll(StreamRoom room, std::int64_t max
   const bool heard = std::exchange(heard_, false);
   auto lost = lost_requests_.poll(seen_, state_, resendable(), limits, heard, now_s);
   if (seen_.lowest_missing(state_) < resendable() && !lost_requests_.has_given_up()) {
-    requests_.pause(now_s);  // the full state that is asked for will supersede the rest too
+    requests_.pause(now_s);  // the requested full state will replace the rest, too
     return lost;
   }
   const auto ranges = requests_.poll(seen_, resendable(), next_, limits, heard, now_s);
@@ -93,7 +94,7 @@ std::int64_t StreamSession::count_given_up() const {
   return count(lost_requests_, state_, resendable()) + count(requests_, resendable(), next_);
 }
 
-/// The lowest number that the sender can resend and that is of use.
+/// The lowest number that the sender can resend and that no full state replaces.
 std::int64_t StreamSession::resendable() const { return std::max(state_, std::min(first_, next_)); }
 
 }  // namespace kintsugi

@@ -1,5 +1,5 @@
 #pragma once
-// The sessions of a stream that a receiver keeps.
+// The sessions of a stream at a receiver.
 
 #include <algorithm>
 #include <cstddef>
@@ -13,7 +13,7 @@
 
 namespace kintsugi {
 
-/// A bounded number of sessions, and the numbers of those that are over.
+/// A bounded number of sessions, and the ids of the sessions that have ended.
 template <BulkMessage Message>
 class StreamSessions {
  public:
@@ -28,9 +28,9 @@ class StreamSessions {
   StreamSessions(const ResendRequests::Config& requests, std::size_t max_sessions)
       : requests_(requests), max_sessions_(max_sessions) {}
 
-  /// The session of which something was heard, a new one if need be; null: it is over. When there
-  /// are too many the one with the fewest chunks goes, of several the one longest silent: so made
-  /// up sessions do not drive out a true one.
+  /// The session of a message that was received; created if it is new, null if it has ended. If
+  /// there are too many sessions, the one with the fewest chunks is dropped, of equal ones the one
+  /// that was silent longest: so invented sessions do not displace real ones.
   Session* heard_of(std::int64_t id) {
     if (over_.contains(id)) return nullptr;
     if (!all_.contains(id) && all_.size() >= max_sessions_) all_.erase(least());
@@ -39,17 +39,17 @@ class StreamSessions {
     return &session;
   }
 
-  /// The session; null: nothing is known of it.
+  /// The session; null if it is unknown.
   const Session* find(std::int64_t id) const {
     const auto session = all_.find(id);
     return session != all_.end() ? &session->second : nullptr;
   }
 
-  /// Frees the session's memory, and remembers that it is over.
+  /// Frees the session's memory; later messages of it are ignored.
   void end(std::int64_t id) {
     all_.erase(id);
     over_.insert(id);
-    if (over_.size() > kMaxOver) over_.erase(over_.begin());  // the oldest
+    if (over_.size() > kMaxOver) over_.erase(over_.begin());  // the oldest session
   }
 
   std::size_t pending_bytes() const {
@@ -77,7 +77,7 @@ class StreamSessions {
   const std::size_t max_sessions_;
   std::map<std::int64_t, Session> all_;
   std::set<std::int64_t> over_;
-  std::int64_t clock_ = 0;  // counts what was heard
+  std::int64_t clock_ = 0;  // counts received messages
 };
 
 }  // namespace kintsugi

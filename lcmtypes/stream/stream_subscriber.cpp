@@ -2,34 +2,32 @@
 
 #include <algorithm>
 #include <optional>
-#include <stdexcept>
 #include <utility>
 
+#include "lcmtypes/base/argument_check.hpp"
 #include "lcmtypes/channels.hpp"
 
 namespace kintsugi {
 namespace {
 
-// An encoded ResendRequest: everything but the channel's name and the ranges, then each of these.
+// Size of an encoded ResendRequest: without the channel's name and the ranges, and of one range.
 constexpr std::size_t kRequestBytes = 64;
 constexpr std::size_t kRequestRangeBytes = 16;
 constexpr std::size_t kMinRequestBytes = kRequestBytes + kMaxStringBytes + kRequestRangeBytes;
 
-void expect_at_least(const char* name, std::size_t value, std::size_t least) {
-  if (value >= least) return;
-  throw std::invalid_argument(std::string("StreamSubscriber: ") + name + " is " +
-                              std::to_string(value) + ", expected at least " +
-                              std::to_string(least));
+void require_at_least(const char* field, std::size_t value, std::size_t least) {
+  require(value >= least, std::string("StreamSubscriber: ") + field, value,
+          "at least " + std::to_string(least));
 }
 
 }  // namespace
 
 template <BulkMessage Message>
 void StreamSubscriberConfig<Message>::validate() const {
-  expect_at_least("max_pending_bytes", max_pending_bytes, 1);
-  expect_at_least("max_sessions", max_sessions, 1);
-  expect_at_least("max_gaps_per_session", max_gaps_per_session, 1);
-  expect_at_least("max_request_bytes", max_request_bytes, kMinRequestBytes);
+  require_at_least("max_pending_bytes", max_pending_bytes, 1);
+  require_at_least("max_sessions", max_sessions, 1);
+  require_at_least("max_gaps_per_session", max_gaps_per_session, 1);
+  require_at_least("max_request_bytes", max_request_bytes, kMinRequestBytes);
 }
 
 template <BulkMessage Message>
@@ -71,7 +69,8 @@ bool StreamSubscriber<Message>::handle(const std::string& channel, ByteView mess
   return true;
 }
 
-/// Takes the chunk in; returns all those of its message when it was the last one missing.
+/// Keeps the chunk, if it is new and wanted. Returns all chunks of its message if it was the last
+/// missing one, else nothing.
 template <BulkMessage Message>
 std::vector<Chunk<Message>> StreamSubscriber<Message>::add(Chunk<Message> chunk) {
   const StreamRoom room = ask_for_room();
@@ -80,7 +79,7 @@ std::vector<Chunk<Message>> StreamSubscriber<Message>::add(Chunk<Message> chunk)
   const std::lock_guard lock(mutex_);
   if (!is_wanted) {
     ++counts_.chunks_unwanted;
-    // A heartbeat that did not name its map may have made it known.
+    // A heartbeat without a map name may have created the session.
     if (sessions_.find(id) != nullptr) sessions_.end(id);
     return {};
   }

@@ -1,5 +1,5 @@
 #pragma once
-// Complete bulk messages out of the chunks of a numbered stream, live or from a log.
+// Receives a numbered stream of bulk messages, from the bus or from a log.
 
 #include <cstddef>
 #include <cstdint>
@@ -14,63 +14,69 @@
 
 namespace kintsugi {
 
+/// What a receiver has counted, over all sessions.
 struct StreamCounts {
-  std::int64_t chunks_received = 0;   ///< valid and new
-  std::int64_t chunks_duplicate = 0;  ///< seen before, superseded or forgotten: dropped
-  std::int64_t chunks_missing = 0;    ///< known to exist and not there, now
-  std::int64_t chunks_given_up = 0;   ///< of the missing ones: nobody answers, now
-  std::int64_t chunks_refused = 0;    ///< no room for them; they come again when there is
-  std::int64_t chunks_unwanted = 0;   ///< of sessions that are not wanted
-  std::int64_t messages_bad = 0;      ///< did not decode, or did not fit their neighbours
+  std::int64_t chunks_received = 0;  ///< valid and new
+  std::int64_t chunks_duplicate =
+      0;  ///< received before, replaced by a full state, or of a forgotten session: dropped
+  std::int64_t chunks_missing = 0;   ///< at present: known to exist, not received
+  std::int64_t chunks_given_up = 0;  ///< of these: the sender does not answer
+  std::int64_t chunks_refused = 0;   ///< dropped for lack of memory, requested again later
+  std::int64_t chunks_unwanted = 0;  ///< of sessions that are not wanted
+  std::int64_t messages_bad = 0;     ///< not decoded, or in conflict with other chunks
   std::int64_t messages_complete = 0;
   std::int64_t heartbeats = 0;
   std::int64_t requests_sent = 0;
 };
 
-/// What is missing of one session of a stream.
+/// The missing chunks of one session of a stream.
 struct StreamGap {
   std::int64_t session = 0;
   std::int64_t first_sequence = 0;    ///< the oldest that the sender can still resend
   std::int64_t next_sequence = 0;     ///< one past the newest known to exist
-  std::int64_t chunks_given_up = 0;   ///< nobody answers for so many of them
+  std::int64_t chunks_given_up = 0;   ///< of the missing ones: the sender does not answer
   std::vector<SequenceRange> ranges;  ///< lowest first, at most kMaxResendRanges
 };
 
 template <BulkMessage Message>
 struct StreamSubscriberConfig {
-  /// Chunks of incomplete messages, bytes. Beyond it only what is missing lowest in a session is
-  /// taken; the rest is asked for again later. So memory is this and one message.
+  /// Memory of incomplete messages. Beyond it only the missing chunks with the lowest numbers of a
+  /// session are kept, the others are requested again later. So the memory is bounded by this and
+  /// the size of one message.
   std::size_t max_pending_bytes = std::size_t{1} << 30U;
-  std::size_t max_sessions = 64;  ///< beyond it the one with the fewest chunks is forgotten
-  /// Beyond it no chunk is taken that opens another gap: it is asked for again later.
+  std::size_t max_sessions = 64;  ///< beyond it the one with the fewest chunks is dropped
+  /// Beyond it a chunk that would create another gap is not kept, but requested again later.
   std::size_t max_gaps_per_session = 65'536;
 
   ResendRequests::Config requests;
   std::size_t max_request_bytes = 1'400;  ///< of one request, which should fit one datagram
-  /// Asked for at a time, about. So others are answered soon too, and little is sent in vain when
-  /// this receiver goes away.
+  /// About so many bytes are requested at a time, so that other receivers are answered soon, too,
+  /// and little is resent for nothing if this receiver ends.
   std::int64_t max_asked_bytes = 2'000'000;
-  std::int64_t receiver = 0;  ///< number of this process, said in its requests
+  std::int64_t receiver = 0;  ///< number of this process in its requests
 
-  /// How much the caller can take now; called for every chunk, without a lock. Empty: kPlenty.
+  /// How much memory the caller has for further messages. Called for every chunk, without a lock.
+  /// Empty: kPlenty.
   std::function<StreamRoom()> room;
-  /// Whether the session of a message with this header (no bulk data) is wanted; all headers of a
-  /// session give the same answer. Called for every chunk, without a lock. Empty: all are.
+  /// Whether the caller wants the session of a message with this header, which has no bulk data. It
+  /// must give the same answer for all messages of a session. Called for every chunk, without a
+  /// lock. Empty: all sessions are wanted.
   std::function<bool(const Message& header)> wanted;
-  /// A session whose heartbeats name another map is ignored. Empty: none is.
+  /// Heartbeats of other maps are ignored. Empty: none are.
   std::string wanted_map_name;
 
+  /// @throws std::invalid_argument naming the field that is out of its bounds
   void validate() const;
 };
 
-/// Puts the chunks of one channel together, per session; no matter in which order, how often or
-/// between which others they come; and says what to ask for again. Memory holds only what arrived,
-/// up to a bound.
+/// Joins the chunks of one channel to messages, in each session for itself, and requests missing
+/// chunks. Chunks may arrive in any order and repeatedly; the messages that result depend only on
+/// what was published. Memory is bounded (see max_pending_bytes).
 ///
-/// handle() and poll() belong to one thread; the rest may be called from any. `on_message` gets
-/// each message once, when its last chunk arrives; a slice that is sent again with a higher
-/// revision is another message. `on_bad` (may be empty) gets the reason why something was dropped.
-/// What a receiver ends up with depends on nothing but what was published.
+/// Only one thread may call handle() and poll(); any thread may call the other functions.
+/// `on_message` is called once with each message, when its last chunk arrives; a slice that is sent
+/// again with a higher revision is another message. `on_bad` (may be empty) is called with the
+/// reason whenever a message or chunk is dropped as invalid.
 template <BulkMessage Message>
 class StreamSubscriber {
  public:
@@ -81,35 +87,34 @@ class StreamSubscriber {
   StreamSubscriber(std::string channel, OnMessage on_message, OnBad on_bad = {},
                    const Config& config = {});
 
-  /// Subscribes to the channel and the heartbeats of `bus`; this must outlive bus.handle().
+  /// From now on bus.handle() passes messages of the channel and heartbeats to handle(). This must
+  /// outlive the last bus.handle().
   void subscribe(Bus& bus);
 
-  /// One LCM message, from a log for instance; true when it was on the stream's channel or a
-  /// heartbeat. Whatever is in it, only the callbacks may throw.
+  /// Handles one LCM message, for instance of a log. Returns true if it is on the stream's channel
+  /// or a heartbeat. Invalid messages are counted; only the callbacks may throw.
   bool handle(const std::string& channel, ByteView message);
 
-  /// What to ask for now, each to be sent on RESEND_REQUEST; for a BusThread's tick, whether or not
-  /// something came. `now_s` is a PatientClock's. A reader of a log does not call it.
+  /// The requests to send now on RESEND_REQUEST. To be called regularly, for instance in the tick
+  /// of a BusThread; not when a log is read. `now_s` is the time of a PatientClock.
   std::vector<ResendRequest> poll(double now_s);
-  /// Sends what poll() gives.
+  /// Sends the requests of poll().
   void ask(Bus& bus, double now_s);
 
   StreamCounts counts() const;
   std::size_t pending_bytes() const;  ///< of incomplete messages
-  /// The sessions with something missing.
+  /// The sessions with missing chunks.
   std::vector<StreamGap> gaps() const;
-  /// Nothing that is known to exist of the session is missing; false when nothing is known of it.
-  /// Of its newest message the last chunks may be still to come.
+  /// No chunk that is known to exist of the session is missing; false if the session is unknown.
+  /// The last chunks of its newest message may not be known yet.
   bool is_complete(std::int64_t session) const;
-  /// Something of the session is missing, and all of it has been given up for now.
+  /// Chunks of the session are missing, and all of them have been given up for now.
   bool has_given_up(std::int64_t session) const;
 
-  /// What an earlier run of this receiver has of the session: it is not missing, and does not come
-  /// again.
+  /// Declares chunks as received by an earlier run of this receiver: they are not requested.
   void restore(std::int64_t session, const std::vector<SequenceRange>& ranges);
 
-  /// Nothing more of the session is wanted: its memory is freed, what comes of it counts as
-  /// duplicate.
+  /// Ignores the session from now on: its memory is freed, and its chunks count as duplicates.
   void forget(std::int64_t session);
 
  private:

@@ -1,4 +1,5 @@
-// An example of a client: follows the segments of a map through time, from the bus or a log.
+// kintsugi-segment-events: prints how the segments of a map change over time, from the bus or a
+// log. An example of a client of the segmenter.
 
 #include <chrono>
 #include <cstddef>
@@ -30,12 +31,12 @@ struct Options {
   std::string json_file;
 };
 
-/// To who runs it; nothing when there is nothing to say.
+/// Prints a message to standard error, unless it is empty.
 void say(const std::string& text) {
   if (!text.empty()) std::cerr << "kintsugi-segment-events: " << text << '\n';
 }
 
-/// Until a stop signal, or the end of the map.
+/// Receives until a stop signal, or the end of the map.
 void listen(SegmentListener& listener, const Options& options) {
   constexpr std::chrono::milliseconds kTickPeriod(20);
   Bus bus(options.url);
@@ -53,7 +54,7 @@ void listen(SegmentListener& listener, const Options& options) {
   }
 }
 
-/// All that can be read; says what cannot.
+/// Reads the log up to its end or first damage, which it reports. False: it is damaged.
 bool read_log(SegmentListener& listener, const std::string& path) {
   LogReader log(path);
   while (const auto event = log.next()) {
@@ -91,20 +92,20 @@ int run(const Options& options) {
 int main(int argc, char** argv) {
   kintsugi::Options options;
   CLI::App app(
-      "Prints which segments of a map appear, merge, split and go, and at the end the table of "
-      "those that there are. Exit status 1: updates are missing, or the log is damaged.");
-  auto* url =
-      app.add_option("--lcm-url", options.url, "Bus; default: LCM_DEFAULT_URL, or this host's");
+      "Prints which segments of a map are created, merged, split and retired, and at the end the "
+      "table of all segments. Exit status 1: updates are missing, or the log is damaged.");
+  auto* url = app.add_option("--lcm-url", options.url,
+                             "URL of the bus; default: LCM_DEFAULT_URL, or multicast on this host");
   app.add_option("--log", options.log, "Read this LCM log instead of the bus")->excludes(url);
   app.add_option("--map-name", options.map_name,
-                 "Follow the map with this name (default: the first that is heard)");
+                 "Follow the map with this name (default: the first that is received)");
   app.add_flag("--exit-on-final", options.exit_on_final,
-               "Exit when the map is complete, and not only on Ctrl-C");
-  app.add_flag("--grown", options.grown, "A line for each segment that grew, too");
-  app.add_flag("--quiet", options.quiet, "Only the table at the end");
-  app.add_option("--top", options.num_listed, "Segments in the table that is printed")
+               "Exit when the map is complete, not only on Ctrl-C");
+  app.add_flag("--grown", options.grown, "Print a line for each segment that grew, too");
+  app.add_flag("--quiet", options.quiet, "Print only the table at the end");
+  app.add_option("--top", options.num_listed, "Number of segments in the printed table")
       ->capture_default_str();
-  app.add_option("--json", options.json_file, "The whole table into this file, as JSON");
+  app.add_option("--json", options.json_file, "Write the whole table to this file, as JSON");
   CLI11_PARSE(app, argc, argv);
   try {
     kintsugi::install_stop_signals();

@@ -1,4 +1,4 @@
-// Shows a person how far a run is, and tells a script when it has finished.
+// kintsugi-status: shows the progress of a run, and tells a script when the run has finished.
 
 #include <cstdio>
 #include <exception>
@@ -23,7 +23,7 @@ namespace {
 
 constexpr std::int64_t kSecond_us = 1'000'000;
 constexpr int kNoProgress = 2;     // exit status
-constexpr int kInterrupted = 130;  // as shells have it
+constexpr int kInterrupted = 130;  // the exit status that shells use
 
 struct Options {
   std::string url;
@@ -47,7 +47,7 @@ void subscribe_statuses(Bus& bus, Progress& progress, std::optional<StatusLog>& 
   subscribe<ViewerStatus>(bus, channels::kViewerStatus, keep);
 }
 
-/// In a terminal each line replaces the one before; elsewhere they follow each other.
+/// Prints lines: in a terminal each line replaces the one before, elsewhere they follow each other.
 class LinePrinter {
  public:
   LinePrinter() : in_terminal_(isatty(STDOUT_FILENO) == 1) {}
@@ -81,7 +81,7 @@ class LinePrinter {
   bool line_open_ = false;
 };
 
-/// Seconds since something moved.
+/// Seconds since the last progress.
 double idle_s(const Progress& progress, std::int64_t start_us) {
   const std::int64_t since_us = progress.last_progress_us().value_or(start_us);
   return static_cast<double>(wall_clock_us() - since_us) / 1e6;
@@ -122,7 +122,7 @@ bool is_lingering(const Status& status) {
   return true;
 }
 
-/// Until each of the named processes has said something.
+/// Waits until each of the named processes has sent a status.
 int wait_until_ready(const Options& options) {
   Bus bus(options.url);
   std::vector<std::string> silent = options.until_ready;
@@ -131,14 +131,14 @@ int wait_until_ready(const Options& options) {
       if (!options.lingering || is_lingering(status)) std::erase(silent, name);
     };
   };
-  subscribe<MapperStatus>(bus, channels::kMapperStatus, heard("mapper"));
-  subscribe<SegmenterStatus>(bus, channels::kSegmenterStatus, heard("segmenter"));
-  subscribe<ViewerStatus>(bus, channels::kViewerStatus, heard("viewer"));
+  subscribe<MapperStatus>(bus, channels::kMapperStatus, heard(MapperStatus::kProcess));
+  subscribe<SegmenterStatus>(bus, channels::kSegmenterStatus, heard(SegmenterStatus::kProcess));
+  subscribe<ViewerStatus>(bus, channels::kViewerStatus, heard(ViewerStatus::kProcess));
   const std::int64_t start_us = wall_clock_us();
   while (!stop_requested()) {
     if (silent.empty()) return 0;
     if (options.timeout_s > 0.0 && wall_clock_us() - start_us >= options.timeout_s * kSecond_us) {
-      std::cerr << "kintsugi-status: nothing heard from the " << silent.front() << " in "
+      std::cerr << "kintsugi-status: no status received from the " << silent.front() << " in "
                 << options.timeout_s << " s" << std::endl;
       return kNoProgress;
     }
@@ -153,21 +153,22 @@ int wait_until_ready(const Options& options) {
 int main(int argc, char** argv) {
   kintsugi::Options options;
   CLI::App app("Shows the progress of mapper, segmenter and viewer, one line a second.");
-  app.add_option("--lcm-url", options.url, "Bus; default: LCM_DEFAULT_URL, or this host's");
+  app.add_option("--lcm-url", options.url,
+                 "URL of the bus; default: LCM_DEFAULT_URL, or multicast on this host");
   app.add_option("--map-name", options.map_name,
-                 "Watch the map with this name (default: the first that is heard)");
+                 "Watch the map with this name (default: the first that is received)");
   auto* once = app.add_flag("--once", options.once, "Print one line and exit");
   app.add_flag("--until-finished", options.until_finished,
                "Exit 0 when mapper and segmenter have finished, 2 without progress")
       ->excludes(once);
   app.add_flag("--viewer", options.viewer, "Wait for the viewer too");
   app.add_option("--until-ready", options.until_ready,
-                 "Exit 0 when each of these has been heard: mapper, segmenter, viewer")
+                 "Exit 0 when each of these has sent a status: mapper, segmenter, viewer")
       ->delimiter(',')
       ->check(CLI::IsMember({"mapper", "segmenter", "viewer"}));
-  app.add_option("--log", options.log_file, "Every number in every status into this file, CSV");
+  app.add_option("--log", options.log_file, "Append every field of every status to this CSV file");
   app.add_flag("--lingering", options.lingering,
-               "With --until-ready: and has nothing left to publish");
+               "With --until-ready: and has published everything");
   app.add_option("--timeout", options.timeout_s,
                  "Seconds without progress until giving up; 0: never")
       ->check(CLI::NonNegativeNumber)

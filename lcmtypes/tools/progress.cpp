@@ -9,12 +9,12 @@
 namespace kintsugi {
 namespace {
 
-// Statuses come about once a second; a process that misses five has a problem.
+// A status is sent at least once a second: without any for so long there is a problem.
 constexpr double kSilence_s = 5.0;
 
-constexpr std::size_t kMaxMaps = 16;  // that are told apart
+constexpr std::size_t kMaxMaps = 16;  // other maps whose names are kept
 
-/// The named process and how often it has been started again.
+/// How often the process was restarted; empty: never.
 std::string restarts_text(const char* process, int restarts) {
   if (restarts == 0) return {};
   if (restarts == 1) return format(" | %s restarted", process);
@@ -26,7 +26,7 @@ std::string problem_text(const char* process, const std::string& problem) {
                          : std::string(" | PROBLEM of the ") + process + ": " + problem;
 }
 
-/// A later run of a process has a larger session number.
+/// Each run of a process has a larger session number than the one before it.
 template <class Status>
 bool is_later_run(const std::optional<Status>& before, const Status& status) {
   return before && status.session > before->session;
@@ -70,19 +70,19 @@ std::string Progress::unfinished(bool with_viewer) const {
     names += std::string(names.empty() ? "" : ", ") + process + " " + why;
   };
   if (!mapper_) {
-    add("mapper", "not heard of");
+    add("mapper", "sends no status");
   } else if (!mapper_->finished) {
     add("mapper", "not finished");
   }
   if (!segmenter_) {
-    add("segmenter", "not heard of");
+    add("segmenter", "sends no status");
   } else if (!segmenter_->finished) {
     add("segmenter", "not finished");
   } else if (mapper_ && segmenter_->map_session != mapper_->session) {
     add("segmenter", "finished another map");
   }
   if (with_viewer && !viewer_) {
-    add("viewer", "not heard of");
+    add("viewer", "sends no status");
   } else if (with_viewer && !viewer_->finished) {
     add("viewer", "not finished");
   } else if (with_viewer && mapper_ && viewer_->map_session != mapper_->session) {
@@ -108,7 +108,7 @@ std::int64_t Progress::work_done() const {
 void Progress::note_progress(std::int64_t now_us) {
   last_heard_us_ = now_us;
   const std::int64_t work = work_done();
-  // Less than before is progress too: a process was started again.
+  // Less than before is progress, too: a process was restarted.
   if (work != work_done_) last_progress_us_ = now_us;
   work_done_ = work;
 }
@@ -122,7 +122,7 @@ std::optional<double> Progress::time_left_s() const {
         static_cast<double>(mapper_->frames_total - mapper_->frames_read) / mapper_->frame_rate_hz;
   }
   if (segmenter_) {
-    // What waits now is segmented while the mapper goes on, or after it.
+    // The slices that wait are segmented while the mapper continues, or after it.
     left_s = std::max(
         left_s, static_cast<double>(segmenter_->lag_slices) * segmenter_->slice_mean_ms / 1000.0);
   }
@@ -130,7 +130,7 @@ std::optional<double> Progress::time_left_s() const {
 }
 
 std::string Progress::line(std::int64_t now_us) const {
-  if (!heard_anything()) return "waiting: nothing heard on the bus yet";
+  if (!heard_anything()) return "waiting: no status received yet";
   std::string text = (mapper_ ? text_of(*mapper_) : "no mapper") + " | " +
                      (segmenter_ ? text_of(*segmenter_) : "no segmenter");
   if (viewer_) text += " | " + text_of(*viewer_);

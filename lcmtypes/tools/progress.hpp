@@ -1,20 +1,20 @@
 #pragma once
-// What the status messages of a run say about how far it is.
+// The progress of a run, from the statuses of its processes.
 
 #include <cstdint>
 #include <optional>
 #include <set>
 #include <string>
 
-#include "lcmtypes/messages.hpp"
+#include "lcmtypes/statuses.hpp"
 
 namespace kintsugi {
 
-/// The newest status of each process that works on one map. Times `now_us` are the caller's,
+/// The newest status of each process that works on one map. `now_us` is the caller's clock in
 /// microseconds.
 class Progress {
  public:
-  /// `map_name` empty: the map that a mapper is heard of first.
+  /// @param map_name empty: the map of the first mapper that sends a status
   explicit Progress(const std::string& map_name = "") {
     if (!map_name.empty()) map_name_ = map_name;
   }
@@ -23,31 +23,32 @@ class Progress {
   void update(const SegmenterStatus& status, std::int64_t now_us);
   void update(const ViewerStatus& status, std::int64_t now_us);
 
+  /// A status of any process was received.
   bool heard_anything() const { return mapper_ || segmenter_ || viewer_; }
 
-  /// Mapper and segmenter of one session, and the viewer if asked for, have said so.
+  /// Mapper and segmenter have finished the same session, and so has the viewer if `with_viewer`.
   bool finished(bool with_viewer) const;
 
-  /// Who has not finished: for a person.
+  /// The processes that have not finished, as text for a person; empty: all have.
   std::string unfinished(bool with_viewer) const;
 
-  /// When a counter last moved, or a process finished; nothing before anything was heard.
+  /// When a counter last changed or a process finished; nothing before the first status.
   std::optional<std::int64_t> last_progress_us() const { return last_progress_us_; }
 
-  /// Seconds until all is mapped and segmented, at the present rates; nothing when not known.
+  /// Seconds until everything is mapped and segmented, at the present rates; nothing: unknown.
   std::optional<double> time_left_s() const;
 
-  /// One line for a person: frames, state, slices, store, segments, lag, rates, losses, restarts,
-  /// problems, time left.
+  /// One line of text for a person: frames, state, slices, size of the log, segments, lag, rates,
+  /// losses, restarts, problems, time left.
   std::string line(std::int64_t now_us) const;
 
  private:
-  /// Sum of everything that counts up in a run.
+  /// Sum of all counters that only grow during a run.
   std::int64_t work_done() const;
   void note_progress(std::int64_t now_us);
 
   bool is_watched(const std::string& map_name);
-  /// A segmenter or viewer that has not heard of a map yet is of any.
+  /// A segmenter or viewer that has not received any map yet has no map name, and counts as ours.
   bool is_of_other_map(const std::string& map_name) const {
     return map_name_ && !map_name.empty() && map_name != *map_name_;
   }
@@ -58,7 +59,7 @@ class Progress {
   std::optional<MapperStatus> mapper_;
   std::optional<SegmenterStatus> segmenter_;
   std::optional<ViewerStatus> viewer_;
-  int mapper_restarts_ = 0;  // as new sessions
+  int mapper_restarts_ = 0;  // sessions after the first
   int segmenter_restarts_ = 0;
   int viewer_restarts_ = 0;
   std::int64_t work_done_ = -1;

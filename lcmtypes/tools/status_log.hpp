@@ -1,24 +1,23 @@
 #pragma once
-// Every status of a run in a file, for programs that compare runs.
+// All statuses of a run in a CSV file, for programs that compare runs.
 
-#include <cstdint>
 #include <filesystem>
 #include <fstream>
 
-#include "lcmtypes/messages.hpp"
+#include "lcmtypes/statuses.hpp"
 
 namespace kintsugi {
 
-/// A CSV file `utime_us,process,field,value`: a line for each number in each status, and for what
-/// is a problem, with the name it has on the bus; yes and no are 1 and 0.
+/// A CSV file `utime_us,process,field,value` with a line for each field of each status. The field
+/// has its name on the bus; a boolean is 1 or 0, a text is between double quotes.
 class StatusLog {
  public:
-  /// Goes on with the file when it is there. Throws std::runtime_error when it cannot be written.
+  /// Appends to the file if it exists. @throws std::runtime_error when it cannot be written
   explicit StatusLog(const std::filesystem::path& path);
 
-  void append(const MapperStatus& status);
-  void append(const SegmenterStatus& status);
-  void append(const ViewerStatus& status);
+  /// Status: MapperStatus, SegmenterStatus or ViewerStatus.
+  template <class Status>
+  void append(const Status& status);
 
  private:
   std::ofstream out_;

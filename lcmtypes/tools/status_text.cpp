@@ -16,26 +16,17 @@ std::string megabytes(std::int64_t bytes) {
   return format("%.0f MB", 1e-6 * static_cast<double>(bytes));
 }
 
-const char* name(TrackingState state) {
-  switch (state) {
-    case TrackingState::kStarting:
-      return "starting";
-    case TrackingState::kTracking:
-      return "tracking";
-    case TrackingState::kLost:
-      return "LOST";
-    case TrackingState::kGiven:
-      return "given poses";
-  }
-  return "?";
+std::string state_text(TrackingState state) {
+  if (state == TrackingState::kLost) return "LOST";
+  return std::string(to_string(state)) + (state == TrackingState::kGiven ? " poses" : "");
 }
 
-/// ", 5 lost"; nothing when there are none.
+/// For instance ", 5 lost"; empty when `value` is 0.
 std::string some(std::int64_t value, const char* what) {
   return value > 0 ? ", " + count(value) + " " + what : std::string();
 }
 
-/// What a receiver lacks and how that goes.
+/// What a receiver still lacks.
 template <class Status>
 std::string reception_text(const Status& status) {
   constexpr std::int64_t kNoticeable = 10'000'000;  // bytes
@@ -55,8 +46,9 @@ std::string text_of(const MapperStatus& status) {
         "/%lld (%.0f %%)", static_cast<long long>(status.frames_total),
         100.0 * static_cast<double>(status.frames_read) / static_cast<double>(status.frames_total));
   }
-  text += status.finished ? std::string(" mapped")
-                          : format(" %s %.1f Hz", name(status.state), status.frame_rate_hz);
+  text += status.finished
+              ? std::string(" mapped")
+              : " " + state_text(status.state) + format(" %.1f Hz", status.frame_rate_hz);
   if (!status.finished && !status.loss_reason.empty()) text += " (" + status.loss_reason + ")";
   text += some(status.frames_lost, "lost") + some(status.frames_dropped, "dropped") + " | " +
           count(status.slices_published) + " slices " + count(status.points_published) + " points";

@@ -1,13 +1,13 @@
 #pragma once
-// Statuses in words: what matters to a person, in part of a line.
+// Statuses as text for a person: part of a line each, with the most important fields.
 
 #include <string>
 
-#include "lcmtypes/messages.hpp"
+#include "lcmtypes/statuses.hpp"
 
 namespace kintsugi {
 
-/// Capitals say that something is lost, or that a person must see to it.
+/// Capital letters mark what is lost, or what a person must attend to.
 std::string text_of(const MapperStatus& status);
 std::string text_of(const SegmenterStatus& status);
 std::string text_of(const ViewerStatus& status);

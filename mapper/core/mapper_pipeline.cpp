@@ -15,10 +15,6 @@ Eigen::AlignedBox3d region_of(const TsdfVolume& volume) {
   return {volume.center_W() - reach, volume.center_W() + reach};
 }
 
-bool is_located(TrackingState state) {
-  return state == TrackingState::kTracking || state == TrackingState::kGiven;
-}
-
 }  // namespace
 
 void MapperPipeline::Config::validate() const {

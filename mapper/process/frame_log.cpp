@@ -7,7 +7,7 @@
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 
-#include "mapper/process/run_statistics.hpp"
+#include "lcmtypes/base/process_memory.hpp"
 #include "mapper/process/state_text.hpp"
 
 namespace kintsugi::mapper {
@@ -24,7 +24,7 @@ std::string header() {
 std::string line_of(const RgbdFrame& frame, const TrackingResult& tracking, std::size_t num_slices,
                     const FrameTimings& timings) {
   std::string line = fmt::format("{},{},{},{}", frame.frame_index, frame.utime,
-                                 state_text(tracking.state), reason_text(tracking));
+                                 to_string(tracking.state), reason_text(tracking));
   const auto add_ms = [&line](double ms) { line += fmt::format(",{:.3f}", ms); };
   add_ms(timings.frame_ms);
   add_ms(timings.cpu_ms);
@@ -41,7 +41,7 @@ std::string line_of(const RgbdFrame& frame, const TrackingResult& tracking, std:
   for (const double metres : {quality.rms_m, quality.sigma_m}) {
     line += fmt::format(",{:.6f}", metres);
   }
-  const double memory_mb = 1e-6 * static_cast<double>(resident_memory_bytes());
+  const double memory_mb = 1e-6 * static_cast<double>(process_memory().resident_bytes);
   return line + fmt::format(",{},{},{},{:.1f}\n", tracking.iterations, quality.undetermined,
                             num_slices, memory_mb);
 }

@@ -52,10 +52,6 @@ MapperPipeline::Config pipeline_config(const Options& options, MapFiles& map_fil
   return config;
 }
 
-bool is_located(TrackingState state) {
-  return state == TrackingState::kTracking || state == TrackingState::kGiven;
-}
-
 }  // namespace
 
 MapperProcess::MapperProcess(const Options& options, SessionStore& store, Resumption& resumption)
@@ -213,7 +209,7 @@ void MapperProcess::log_change_of_state(const FrameResult& result, const RgbdFra
         frame.frame_index, reason_text(tracking), quality.overlap_share, quality.inlier_share,
         quality.behind_share, quality.in_front_share, 1e3 * quality.rms_m, 1e3 * quality.sigma_m);
   } else {
-    spdlog::info("frame {}: {}", frame.frame_index, state_text(tracking.state));
+    spdlog::info("frame {}: {}", frame.frame_index, to_string(tracking.state));
   }
 }
 

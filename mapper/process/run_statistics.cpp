@@ -2,10 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 
-#include <unistd.h>
-
+#include "lcmtypes/base/process_memory.hpp"
 #include "mapper/process/state_text.hpp"
 
 namespace kintsugi::mapper {
@@ -28,7 +26,7 @@ void RunStatistics::add(const TrackingResult& tracking, const FrameTimings& timi
   loss_reason_ = reason_text(tracking);
   undetermined_ = tracking.quality.undetermined;
   ++frames_;
-  if (state_ == TrackingState::kTracking || state_ == TrackingState::kGiven) ++frames_tracked_;
+  if (is_located(state_)) ++frames_tracked_;
   if (state_ == TrackingState::kLost) ++frames_lost_;
   frame_ms_ += timings.frame_ms;
   cpu_ms_ += timings.cpu_ms;
@@ -51,7 +49,7 @@ void RunStatistics::report(MapperStatus& status) {
   status.frames_tracked = frames_tracked_;
   status.frames_lost = frames_lost_;
   status.frames_relocalised = frames_relocalised_;
-  status.memory_bytes = resident_memory_bytes();
+  status.memory_bytes = process_memory().resident_bytes;
   status.frame_rate_hz = elapsed_s > 0.0 ? frames / elapsed_s : 0.0;
   std::sort(frame_times_ms_.begin(), frame_times_ms_.end());
   status.frame_p50_ms = quantile(frame_times_ms_, 0.50);
@@ -68,14 +66,6 @@ void RunStatistics::report(MapperStatus& status) {
   status.publish_ms = mean(sums_.publish_ms);
   sums_ = {};
   frame_times_ms_.clear();
-}
-
-std::int64_t resident_memory_bytes() {
-  std::ifstream statm("/proc/self/statm");
-  std::int64_t total_pages = 0;
-  std::int64_t resident_pages = 0;
-  if (!(statm >> total_pages >> resident_pages)) return 0;
-  return resident_pages * sysconf(_SC_PAGESIZE);
 }
 
 }  // namespace kintsugi::mapper

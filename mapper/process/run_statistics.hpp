@@ -46,7 +46,4 @@ class RunStatistics {
   Stopwatch report_clock_;
 };
 
-/// Resident memory of this process, bytes, from /proc/self/statm; 0 where there is none.
-std::int64_t resident_memory_bytes();
-
 }  // namespace kintsugi::mapper

@@ -2,20 +2,6 @@
 
 namespace kintsugi::mapper {
 
-std::string_view state_text(TrackingState state) {
-  switch (state) {
-    case TrackingState::kStarting:
-      return "starting";
-    case TrackingState::kTracking:
-      return "tracking";
-    case TrackingState::kLost:
-      return "lost";
-    case TrackingState::kGiven:
-      return "given";
-  }
-  return "";
-}
-
 std::string_view reason_text(const TrackingResult& tracking) {
   if (tracking.state != TrackingState::kLost) return "";
   // Without a reason it was not registered: poses are given, and there is none for this frame.

@@ -7,9 +7,6 @@
 
 namespace kintsugi::mapper {
 
-/// "starting", "tracking", "lost", "given".
-std::string_view state_text(TrackingState state);
-
 /// Why a lost frame was not believed; empty for any other.
 std::string_view reason_text(const TrackingResult& tracking);
 

@@ -1,14 +1,14 @@
-"""The segments of a map as a client knows them, from SEGMENT_UPDATE alone."""
+"""The segments of a map as a client knows them from SEGMENT_UPDATE alone."""
 
 from segment_updates import CREATED, MERGED, RETIRED, SPLIT
 
 
 class SegmentTable:
-    """The segments of one map, from updates in any order, each once or more often.
+    """The segments of one map. Updates may be applied in any order and repeatedly.
 
-    The rules are those of SegmentTable in lcmtypes/client/segment_table.hpp, which says why they hold: an
-    id that is gone does not come back, of what is told of a segment the newest counts, and what an
-    update that lists all segments does not list is gone.
+    It follows the same rules as SegmentTable in lcmtypes/client/segment_table.hpp, which explains them:
+    an id that no longer exists is never used again, the newest statistics of a segment hold, and a
+    segment that is missing in an update that lists all segments no longer exists.
     """
 
     def __init__(self):
@@ -20,7 +20,7 @@ class SegmentTable:
         self.gone = set()
 
     def apply(self, update):
-        """False when the update is of an older session than the table: ignored."""
+        """Returns False if the update is ignored, because it is of an older session than the table."""
         if self.newest:
             age, present = self.age(update), self.age(self.newest)
             if age < present:
@@ -32,11 +32,11 @@ class SegmentTable:
         self.is_final = self.is_final or update.header.is_final
         for event in update.events:
             self.apply_event(event, update.header.slice_id)
-        for told in update.statistics:
-            self.apply_statistics(told, update.sequence)
+        for statistics in update.statistics:
+            self.apply_statistics(statistics, update.sequence)
         if update.lists_all() and update.sequence > self.listed:
             self.listed = update.sequence
-            self.segments = {i: told for i, told in self.segments.items() if told[0] >= self.listed}
+            self.segments = {i: entry for i, entry in self.segments.items() if entry[0] >= self.listed}
         return True
 
     @staticmethod
@@ -53,24 +53,25 @@ class SegmentTable:
             self.gone.add(gone)
             self.segments.pop(gone, None)
 
-    def apply_statistics(self, told, sequence):
-        if told.id in self.gone or sequence < self.listed:
+    def apply_statistics(self, statistics, sequence):
+        segment_id = statistics.id
+        if segment_id in self.gone or sequence < self.listed:
             return
-        if sequence > self.segments.get(told.id, (-1,))[0]:
-            self.segments[told.id] = (sequence, told)
+        if sequence > self.segments.get(segment_id, (-1,))[0]:
+            self.segments[segment_id] = (sequence, statistics)
 
     def statistics(self):
-        """Of every segment that there is, by ascending id."""
+        """The statistics of every existing segment, by ascending id."""
         return [self.segments[i][1] for i in sorted(self.segments)]
 
     def problem(self, assembler):
-        """What is missing; empty: nothing."""
+        """What is missing, as text; empty: nothing."""
         if not self.newest:
-            return "no segment update was heard"
+            return "no segment update was received"
         header = self.newest.header
         missing = assembler.num_missing(header.session, self.listed + 1)
         if missing > 0:
-            return "%d chunks of updates are missing, and this program cannot ask for them" % missing
+            return "%d chunks of updates are missing, and this program cannot request them" % missing
         if len(self.segments) != header.num_segments:
             return "the table has %d segments, the map %d" % (len(self.segments),
                                                               header.num_segments)

@@ -1,5 +1,4 @@
-"""What happened to segments, and which there are, as text and as JSON; the same as
-kintsugi-segment-events writes."""
+"""Segment updates and tables as text and as JSON, the same as kintsugi-segment-events writes."""
 
 import json
 import struct
@@ -23,15 +22,15 @@ def event_text(event, changed):
     text = {CREATED: "  {0} created", GROWN: "  {0} grown", MERGED: "  {1} merged into {0}",
             SPLIT: "  {1} split off {0}", RETIRED: "  {0} retired"}[event.type]
     text = text.format(event.segment_id, event.other_id)
-    told = changed.get(event.other_id if event.type == SPLIT else event.segment_id)
-    return text + (": %d points at %.2f %.2f %.2f m" % (told.points, *told.centroid) if told else "")
+    subject = changed.get(event.other_id if event.type == SPLIT else event.segment_id)
+    return text + (": %d points at %.2f %.2f %.2f m" % (subject.points, *subject.centroid) if subject else "")
 
 
 def print_update(update, with_grown):
     if not update.events and not update.statistics:
         return
     print(summary_text(update))
-    changed = {told.id: told for told in update.statistics}
+    changed = {row.id: row for row in update.statistics}
     for event in update.events:
         if event.type != GROWN or with_grown:
             print(event_text(event, changed))
@@ -46,21 +45,21 @@ def print_table(table, num_listed):
     print("map '%s' of session %d: %d slices, %d points, %d segments%s" % (
         header.map_name, header.map_session, header.num_slices, header.num_points,
         len(table.segments), ", complete" if table.is_final else ""))
-    rows = sorted(table.statistics(), key=lambda told: -told.points)[:num_listed]
+    rows = sorted(table.statistics(), key=lambda row: -row.points)[:num_listed]
     if rows:
         print("      id    points  area m^2   centroid in W, m         box, m              "
               "colour        slices")
-    for told in rows:
-        sides = [high - low for low, high in zip(told.box_min, told.box_max)]
+    for row in rows:
+        sides = [high - low for low, high in zip(row.box_min, row.box_max)]
         print("%8d %9d %9.3f   %6.2f %6.2f %6.2f   %5.2f %5.2f %5.2f   %3d %3d %3d   %d-%d" % (
-            told.id, told.points, told.area, *told.centroid, *sides, *told.mean_color,
-            told.first_slice, told.last_slice))
+            row.id, row.points, row.area, *row.centroid, *sides, *row.mean_color,
+            row.first_slice, row.last_slice))
     if len(table.segments) > len(rows):
         print("and %d smaller ones" % (len(table.segments) - len(rows)))
 
 
 def readable(value):
-    """The shortest decimals that mean this float32, as in segments.json."""
+    """The fewest decimals that identify this float32, as in segments.json."""
     for digits in range(1, 10):
         text = "%.*g" % (digits, value)
         if struct.pack("<f", float(text)) == struct.pack("<f", value):
@@ -68,12 +67,15 @@ def readable(value):
     return value
 
 
-def segment_json(told, born):
-    entry = {"id": told.id, "points": told.points}
-    for name in ("box_min", "box_max", "centroid", "mean_normal"):
-        entry[name] = [readable(value) for value in getattr(told, name)]
-    entry.update(mean_color=told.mean_color, area=readable(told.area),
-                 first_slice=told.first_slice, last_slice=told.last_slice, born=born)
+def field_json(value):
+    if isinstance(value, tuple):
+        return [field_json(element) for element in value]
+    return readable(value) if isinstance(value, float) else value
+
+
+def segment_json(statistics, born):
+    entry = {name: field_json(value) for name, value in statistics._asdict().items()}
+    entry["born"] = born
     return entry
 
 
@@ -82,8 +84,8 @@ def write_json(table, is_whole, path):
     names = ("map_name", "map_session", "session", "num_slices", "num_points", "num_segments")
     document = {name: getattr(header, name) for name in names}
     document.update(complete=table.is_final, whole=is_whole)
-    document["segments"] = [segment_json(told, table.born.get(told.id))
-                            for told in table.statistics()]
+    document["segments"] = [segment_json(row, table.born.get(row.id))
+                            for row in table.statistics()]
     with open(path, "w", encoding="utf-8") as file:
         json.dump(document, file, indent=1)
         file.write("\n")

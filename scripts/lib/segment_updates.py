@@ -1,6 +1,7 @@
-"""From LCM messages to whole segment_update_t: events of a log, checksums, chunks.
+"""From LCM messages to complete segment_update_t: events of a log, checksums, chunks.
 
-Needs the types that lcm-gen makes for Python, and nothing else beyond the standard library.
+Needs the modules that the build writes into share/python: `kintsugi`, the message types that lcm-gen
+generates, and `kintsugi_layout`, the packed records. Apart from these only the standard library.
 """
 
 import os
@@ -12,10 +13,9 @@ CHANNEL = "SEGMENT_UPDATE"
 HEARTBEAT = "HEARTBEAT"
 CREATED, GROWN, MERGED, SPLIT, RETIRED = range(5)
 
-# The records in the payload of an update; kintsugi_segment_update_t.lcm says what they are.
+# Records in the payload of an update; kintsugi_segment_update_t.lcm describes them.
 LABEL_BYTES, RUN_BYTES = 4, 20
 EVENT = struct.Struct("<III")
-STATISTICS = struct.Struct("<II12f3Bxfii")
 Event = namedtuple("Event", "type segment_id other_id")
 
 
@@ -23,38 +23,50 @@ class BadMessage(Exception):
     """A message that cannot be used."""
 
 
-class Statistics:
-    """What is known of one segment: metres, frame W."""
+class StatisticsRecord:
+    """Reads the packed statistics of segments: metres, frame W.
 
-    def __init__(self, values):
-        self.id, self.points = values[:2]
-        self.box_min, self.box_max, self.centroid, self.mean_normal = (
-            values[i:i + 3] for i in range(2, 14, 3))
-        self.mean_color = values[14:17]
-        self.area, self.first_slice, self.last_slice = values[17:]
+    `layout` is the generated module kintsugi_layout. A record becomes a namedtuple with its fields;
+    a vector is a tuple of numbers.
+    """
+
+    def __init__(self, layout):
+        self.format = struct.Struct(layout.STATISTICS_FORMAT)
+        self.lengths = [length for _, length in layout.STATISTICS_FIELDS]
+        self.type = namedtuple("Statistics", [name for name, _ in layout.STATISTICS_FIELDS])
+
+    def read_all(self, data):
+        return [self.read(values) for values in self.format.iter_unpack(data)]
+
+    def read(self, values):
+        fields, place = [], 0
+        for length in self.lengths:
+            fields.append(values[place:place + length] if length else values[place])
+            place += max(1, length)
+        return self.type(*fields)
 
 
 class Update:
-    """A whole update: header (the fields of its first chunk), events, statistics."""
+    """A complete update: header (the fields of its first chunk), events, statistics."""
 
-    def __init__(self, header, payload):
+    def __init__(self, header, payload, record):
         self.header = header
         self.sequence = header.sequence
         place = header.num_labels * LABEL_BYTES + header.num_runs * RUN_BYTES
         end = place + header.num_events * EVENT.size
         self.events = [Event(*values) for values in EVENT.iter_unpack(payload[place:end])]
-        self.statistics = [Statistics(values) for values in STATISTICS.iter_unpack(payload[end:])]
+        self.statistics = record.read_all(payload[end:])
         for event in self.events:
             if event.type > RETIRED:
                 raise BadMessage("segment_update_t: event type is %d" % event.type)
 
     def lists_all(self):
-        """The last update of a full state does, and any other that changed every segment."""
+        """True if it has statistics of every segment of the map, as the last update of a full state."""
         return len(self.statistics) == self.header.num_segments
 
 
 class LogReader:
-    """Channel and data of each event in an LCM log, as far as it can be read."""
+    """Iterates over the channel and data of each event in an LCM log, up to its first damage."""
 
     HEADER = struct.Struct(">IqqII")  # sync word, number, time, bytes of the channel, of the data
     SYNC_WORD = 0xEDA1DA01
@@ -62,7 +74,7 @@ class LogReader:
 
     def __init__(self, path):
         self.path = path
-        self.damage = ""  # after the last event: where and how it is damaged; empty: it is whole
+        self.damage = ""  # after the iteration: where and how it is damaged; empty: it is not
 
     def __iter__(self):
         with open(self.path, "rb") as file:
@@ -94,8 +106,8 @@ class LogReader:
 
 
 def check_checksum(data):
-    """Every message carries, behind LCM's fingerprint of 8 bytes, the CRC-32 (zlib's) of itself,
-    computed with that field 0."""
+    """Behind LCM's fingerprint of 8 bytes, every message has the CRC-32 (as zlib computes it) of its
+    bytes, computed with that field 0. Raises BadMessage."""
     if len(data) < 12:
         raise BadMessage("a message of %d bytes" % len(data))
     claimed = int.from_bytes(data[8:12], "big")
@@ -106,6 +118,9 @@ def check_checksum(data):
 
 def decode(message_type, data):
     """Raises BadMessage."""
+    if data[:8] != message_type._get_packed_fingerprint():  # depends on the fields of the type
+        raise BadMessage("%s: the fingerprint is that of another type, or the message was sent or "
+                         "recorded by another version of Kintsugi" % message_type.__name__)
     check_checksum(data)
     try:
         return message_type.decode(data)
@@ -114,18 +129,20 @@ def decode(message_type, data):
 
 
 class Assembler:
-    """Puts the chunks of updates together, whatever their order and however often they come."""
+    """Joins the chunks of updates, which may arrive in any order and repeatedly."""
 
     OF_CHUNK = {"checksum", "sequence", "chunk_index", "first_byte", "num_bytes", "data"}
 
-    def __init__(self, types):
-        self.types = types  # the module that lcm-gen has made
-        self.pending = {}   # (session, number of the first chunk) -> {index: chunk}
-        self.seen = {}      # session -> numbers of the chunks that came
-        self.ranges = {}    # session -> (the first that is not superseded, one past the newest)
+    def __init__(self, types, layout):
+        self.types = types    # the module that lcm-gen generates
+        self.layout = layout  # the module kintsugi_layout
+        self.record = StatisticsRecord(layout)
+        self.pending = {}     # (session, number of the first chunk) -> {index: chunk}
+        self.seen = {}        # session -> numbers of the received chunks
+        self.ranges = {}      # session -> (the first that is needed, one past the newest)
 
     def handle(self, channel, data):
-        """The update that this message completes; None: it completes none. Raises BadMessage."""
+        """Returns the update that this message completes; None: it completes none. Raises BadMessage."""
         if channel == HEARTBEAT:
             beat = decode(self.types.heartbeat_t, data)
             if beat.channel == CHANNEL:
@@ -135,13 +152,17 @@ class Assembler:
         return None
 
     def add(self, chunk):
+        if chunk.records_version != self.layout.RECORDS_VERSION:
+            raise BadMessage("segment_update_t has records of version %d, this program knows version %d: "
+                             "it was sent or recorded by another version of Kintsugi"
+                             % (chunk.records_version, self.layout.RECORDS_VERSION))
         seen = self.seen.setdefault(chunk.session, set())
         self.note(chunk.session, 0, chunk.sequence + 1)
         if chunk.sequence in seen:
             return None
         chunks = self.pending.setdefault((chunk.session, chunk.sequence - chunk.chunk_index), {})
         if any(self.header(other) != self.header(chunk) for other in chunks.values()):
-            raise BadMessage("chunk %d is of another update than those beside it" % chunk.sequence)
+            raise BadMessage("chunk %d has another header than other chunks of its update" % chunk.sequence)
         seen.add(chunk.sequence)
         chunks[chunk.chunk_index] = chunk
         if len(chunks) < chunk.num_chunks:
@@ -153,10 +174,10 @@ class Assembler:
         first = chunks[0]
         payload = b"".join(bytes(chunk.data) for chunk in chunks)
         expected = (first.num_labels * LABEL_BYTES + first.num_runs * RUN_BYTES +
-                    first.num_events * EVENT.size + first.num_statistics * STATISTICS.size)
+                    first.num_events * EVENT.size + first.num_statistics * self.record.format.size)
         if len(payload) != expected:
             raise BadMessage("an update of %d bytes, expected %d" % (len(payload), expected))
-        return Update(first, payload)
+        return Update(first, payload, self.record)
 
     def header(self, chunk):
         return [getattr(chunk, name) for name in chunk.__slots__ if name not in self.OF_CHUNK]
@@ -166,7 +187,7 @@ class Assembler:
         self.ranges[session] = (max(known[0], first), max(known[1], end))
 
     def num_missing(self, session, since):
-        """Chunks that exist and have not come, of those numbered from `since` on."""
+        """Number of missing chunks among those numbered from `since` on."""
         first, end = self.ranges[session]
         first = max(first, since)
         return max(0, end - first) - sum(1 for number in self.seen[session] if number >= first)

@@ -1,7 +1,11 @@
 #include "segmenter/io/segments_csv.hpp"
 
+#include <algorithm>
+#include <array>
+#include <cstdint>
 #include <ostream>
 #include <string>
+#include <string_view>
 
 #include "lcmtypes/base/atomic_file.hpp"
 #include "lcmtypes/base/number_text.hpp"
@@ -36,21 +40,61 @@ void for_each_box_field(const OrientedBox& box, const Fn& fn) {
   for_each_component("oriented_q", q_WB.vec(), fn);
 }
 
+// Columns of one field of the statistics, by its type.
+template <class Fn>
+void write_statistic(const std::string& name, float value, const Fn& fn) {
+  fn(name, shortest_text(value));
+}
+template <class Fn>
+void write_statistic(const std::string& name, std::int32_t value, const Fn& fn) {
+  fn(name, std::to_string(value));
+}
+template <class Fn>
+void write_statistic(const std::string& name, std::uint32_t value, const Fn& fn) {
+  fn(name, std::to_string(value));
+}
+template <class Fn>
+void write_statistic(const std::string& name, const float (&vector)[3], const Fn& fn) {
+  for_each_component(name, vector, fn);
+}
+template <class Fn>
+void write_statistic(const std::string& /*name*/, const std::uint8_t (&color)[3], const Fn& fn) {
+  fn("red", std::to_string(color[0]));
+  fn("green", std::to_string(color[1]));
+  fn("blue", std::to_string(color[2]));
+}
+
+/// The statistics that come before the oriented box, in this order; all others come near the end.
+constexpr std::array<std::string_view, 8> kFirstStatistics = {
+    "id", "points", "area", "centroid", "mean_normal", "mean_color", "box_min", "box_max"};
+
+template <class Fn>
+void for_each_first_statistic(const SegmentStatistics& statistics, const Fn& fn) {
+  for (const std::string_view name : kFirstStatistics) {
+    SegmentStatistics::visit_fields(
+        [&](const StatisticsField& field, const auto& value) {
+          if (field.name == name) write_statistic(field.name, value, fn);
+        },
+        statistics);
+  }
+}
+
+template <class Fn>
+void for_each_other_statistic(const SegmentStatistics& statistics, const Fn& fn) {
+  SegmentStatistics::visit_fields(
+      [&](const StatisticsField& field, const auto& value) {
+        if (std::ranges::count(kFirstStatistics, field.name) == 0) {
+          write_statistic(field.name, value, fn);
+        }
+      },
+      statistics);
+}
+
 /// Calls fn(name, text) for each column.
 template <class Fn>
 void for_each_field(const SegmentDescription& segment, const Fn& fn) {
-  const SegmentStatistics& s = segment.statistics;
   const PlaneFit& plane = segment.shape.plane;
-  fn("id", std::to_string(s.segment_id));
-  fn("points", std::to_string(s.num_points));
-  fn("area", shortest_text(s.area_m2));
-  for_each_component("centroid", s.centroid_W, fn);
-  for_each_component("mean_normal", s.mean_normal_W, fn);
-  fn("red", std::to_string(s.mean_color[0]));
-  fn("green", std::to_string(s.mean_color[1]));
-  fn("blue", std::to_string(s.mean_color[2]));
-  for_each_component("box_min", s.box_min_W, fn);
-  for_each_component("box_max", s.box_max_W, fn);
+  for_each_first_statistic(segment.statistics, fn);
   for_each_box_field(segment.shape.box, fn);
   fn("planar", segment.shape.is_planar ? "1" : "0");
   for_each_component("plane_normal", plane.normal_W, fn);
@@ -58,8 +102,7 @@ void for_each_field(const SegmentDescription& segment, const Fn& fn) {
   fn("plane_rms", shortest_text(static_cast<float>(plane.rms_m)));
   fn("plane_inliers", shortest_text(static_cast<float>(plane.inlier_share)));
   fn("neighbours", ids_text(segment.neighbours));
-  fn("first_slice", std::to_string(s.first_slice));
-  fn("last_slice", std::to_string(s.last_slice));
+  for_each_other_statistic(segment.statistics, fn);
   fn("changed_slice", std::to_string(segment.last_change.slice_id));
   fn("changed_utime", std::to_string(segment.last_change.utime));
 }

@@ -1,23 +1,9 @@
 #include "segmenter/process/process_status.hpp"
 
-#include <fstream>
-
-#include <unistd.h>
-
+#include "lcmtypes/base/process_memory.hpp"
 #include "lcmtypes/bus/bus.hpp"
 
 namespace kintsugi::segmenter {
-namespace {
-
-std::int64_t resident_memory_bytes() {
-  std::ifstream statm("/proc/self/statm");
-  std::int64_t total_pages = 0;
-  std::int64_t resident_pages = 0;
-  statm >> total_pages >> resident_pages;
-  return resident_pages * sysconf(_SC_PAGESIZE);
-}
-
-}  // namespace
 
 SegmenterStatus make_status(const SessionMaps::Counts& maps, const StreamCounts& slices,
                             const UpdatePublisher::Counts& updates) {
@@ -46,7 +32,7 @@ SegmenterStatus make_status(const SessionMaps::Counts& maps, const StreamCounts&
   status.states_sent = updates.states;
   status.state_bytes = updates.state_bytes;
   status.messages_bad = slices.messages_bad + updates.stream.requests_bad + maps.dropped;
-  status.memory_bytes = resident_memory_bytes();
+  status.memory_bytes = process_memory().resident_bytes;
   status.slice_ms = map.slice_ms;
   status.slice_mean_ms = map.slice_mean_ms;
   status.slice_max_ms = map.slice_max_ms;

@@ -14,7 +14,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     std::size_t bytes = 0;
     while (const auto event = log.next()) bytes += event->channel.size() + event->data.size();
     require(bytes < size, "events are no larger than the log");
-    require(log.damage().has_value() != (log.bytes_read() == log.bytes_total()),
+    require(log.damage().has_value() != (log.bytes_read() == static_cast<std::int64_t>(size)),
             "what is not read is damaged");
   } catch (const std::runtime_error&) {
   }

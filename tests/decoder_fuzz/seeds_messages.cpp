@@ -71,9 +71,11 @@ Seeds request_seeds() {
 Seeds stored_session_seeds() {
   CloudSlice slice = testing::example_slice(60, 0);
   slice.kind = SliceKind::kFinal;
+  MapperStatus status = testing::example_mapper_status();
+  status.session = slice.session;
   std::vector<LoggedMessage> events = {
       {mapper::kOptionsChannel, mapper::encode_options(slice.session, {{"resolution", "0.01"}})},
-      {channels::kMapperStatus, encode(testing::example_mapper_status())},
+      {channels::kMapperStatus, encode(status)},
       {channels::kCameraPose, encode(testing::example_camera_pose())}};
   append_chunks(channels::kCloudSlice, slice, 0, events);
   RgbdFrameMessage frame = testing::example_frame(40, 30);

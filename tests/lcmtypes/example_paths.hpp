@@ -1,5 +1,5 @@
 #pragma once
-// Camera paths for the tests of their errors.
+// Camera paths for tests of trajectory errors.
 
 #include <Eigen/Geometry>
 #include <cmath>
@@ -9,7 +9,7 @@
 
 namespace kintsugi::testing {
 
-/// A pose every 33,333 us, 10 cm apart, turning by 0.1 rad about z.
+/// A pose every 33,333 us, each 10 cm further and turned by 0.1 rad about z.
 inline Trajectory helix(int poses) {
   Trajectory trajectory;
   for (int i = 0; i < poses; ++i) {
@@ -37,7 +37,7 @@ inline Eigen::Vector3d random_vector(std::mt19937_64& random) {
   return {x, y, random_number(random)};
 }
 
-/// Up to `reach_m` away on each axis, turned by up to `reach_rad` about each.
+/// A random pose: moved by up to `reach_m` along each axis, turned by up to `reach_rad` about each.
 inline Pose random_pose(std::mt19937_64& random, double reach_m = 5.0, double reach_rad = 1.5) {
   const Eigen::Vector3d turn = reach_rad * random_vector(random);
   Pose X = Pose::Identity();

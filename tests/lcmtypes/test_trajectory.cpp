@@ -33,7 +33,7 @@ StampedPose at_x(std::int64_t utime, double x, double angle_rad = 0.0) {
 }
 
 TEST(ParseSeconds, IsExactToTheMicrosecond) {
-  // As a double times 1e6 the first would be off by up to 0.1 us and could truncate.
+  // A double times 1e6 would have an error of up to 0.1 us, and could be truncated.
   EXPECT_EQ(parse_seconds_us("1341836537.655691"), 1341836537655691);
   EXPECT_EQ(parse_seconds_us("0.1"), 100000);
   EXPECT_EQ(parse_seconds_us("12"), 12000000);
@@ -43,14 +43,14 @@ TEST(ParseSeconds, IsExactToTheMicrosecond) {
   EXPECT_EQ(parse_seconds_us("-1.5"), -1500000);
 }
 
-TEST(ParseSeconds, RefusesWhatIsNoDecimalNumber) {
+TEST(ParseSeconds, RefusesTextsThatAreNoDecimalNumber) {
   for (const char* text :
        {"", ".", ".5", "-", "nan", "1e9", "1.2.3", "0x10", "1.5s", "+1", "99999999999999999999"}) {
     EXPECT_EQ(parse_seconds_us(text), std::nullopt) << text;
   }
 }
 
-TEST(ReadTum, TakesCommentsAndBlankLines) {
+TEST(ReadTum, IgnoresCommentsAndBlankLines) {
   const Trajectory trajectory = read(
       "# a comment\n\n"
       "1.5 1 2 3 0 0 0 1\n"
@@ -63,7 +63,7 @@ TEST(ReadTum, TakesCommentsAndBlankLines) {
       1e-12);
 }
 
-TEST(ReadTum, NamesFileLineAndFault) {
+TEST(ReadTum, ErrorsNameFileLineAndReason) {
   const std::string good = "1 0 0 0 0 0 0 1\n";
   EXPECT_THAT(error_of(good + "2 0 0 0 0 0 1\n"), HasSubstr("path.txt:2: 7 fields, expected 8"));
   EXPECT_THAT(error_of(good + "2 0 0 0 0 0 0 1 9\n"), HasSubstr("path.txt:2: 9 fields"));
@@ -78,7 +78,7 @@ TEST(ReadTum, NamesFileLineAndFault) {
   EXPECT_THAT(error_of("# nothing\n"), HasSubstr("path.txt: holds no pose"));
 }
 
-TEST(WriteTum, IsReadBackAsItWas) {
+TEST(WriteTum, CanBeReadBack) {
   Trajectory trajectory = {at_x(1341836537655691, 0.123456789, 0.5), at_x(1341836537655692, -7)};
   std::ostringstream out;
   write_tum(out, trajectory);
@@ -100,7 +100,7 @@ TEST(PoseAt, InterpolatesBetweenNearPoses) {
   EXPECT_NEAR(Eigen::AngleAxisd(pose->linear()).angle(), 0.1, 1e-12);
 }
 
-TEST(PoseAt, TakesTheNearOneOrNone) {
+TEST(PoseAt, UsesTheOnlyNearPoseOrNone) {
   const Trajectory trajectory = {at_x(0, 0.0), at_x(100000, 1.0)};
   EXPECT_DOUBLE_EQ(pose_at(trajectory, 0)->translation().x(), 0.0);
   EXPECT_DOUBLE_EQ(pose_at(trajectory, 20000)->translation().x(), 0.0);

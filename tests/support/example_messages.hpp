@@ -1,9 +1,10 @@
 #pragma once
-// One filled example of each message of the contract; every field differs from its default.
+// An example of each message, in which every field differs from its default.
 
 #include <cstdint>
 #include <random>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "lcmtypes/messages.hpp"
@@ -43,6 +44,31 @@ inline CloudSlice example_slice(int num_points, std::int32_t id = 7) {
   return slice;
 }
 
+/// Gives each field of the statistics a valid value of its own, other than its default.
+inline SegmentStatistics example_statistics(std::uint32_t segment_id) {
+  struct Filler {
+    int number = 0;  // of the value
+
+    void fill(float& value) { value = 0.25F * static_cast<float>(++number); }
+    void fill(std::int32_t& value) { value = ++number; }
+    void fill(std::uint32_t& value) { value = static_cast<std::uint32_t>(++number); }
+    void fill(std::uint8_t& value) { value = static_cast<std::uint8_t>(++number); }
+  };
+  SegmentStatistics statistics;
+  Filler filler;
+  SegmentStatistics::visit_fields(
+      [&filler](const StatisticsField& /*field*/, auto& value) {
+        if constexpr (std::is_array_v<std::remove_reference_t<decltype(value)>>) {
+          for (auto& element : value) filler.fill(element);
+        } else {
+          filler.fill(value);
+        }
+      },
+      statistics);
+  statistics.segment_id = segment_id;
+  return statistics;
+}
+
 inline SegmentUpdate example_update(int num_labels, std::int32_t slice_id = 7) {
   SegmentUpdate update;
   update.utime = 1'700'000'000'123'456;
@@ -61,17 +87,7 @@ inline SegmentUpdate example_update(int num_labels, std::int32_t slice_id = 7) {
     if (i % 5 == 0) update.runs.push_back({slice_id, i, 5, id, 1});
     if (i % 7 == 0) update.events.push_back({SegmentEventType::kMerged, id, id + 1});
     if (i % 11 == 0) {
-      SegmentStatistics statistics;
-      statistics.segment_id = id;
-      statistics.num_points = 500;
-      statistics.box_max_W[1] = 0.5F;
-      statistics.centroid_W[2] = 0.25F;
-      statistics.mean_normal_W[0] = 1.0F;
-      statistics.mean_color[2] = 200;
-      statistics.area_m2 = 0.05F;
-      statistics.first_slice = 1;
-      statistics.last_slice = slice_id;
-      update.statistics.push_back(statistics);
+      update.statistics.push_back(example_statistics(id));
     }
   }
   return update;
@@ -126,9 +142,7 @@ inline SegmentQuery example_query() {
 
 inline DescribedSegment example_described_segment(std::uint32_t id) {
   DescribedSegment segment;
-  segment.statistics.segment_id = id;
-  segment.statistics.num_points = 500;
-  segment.statistics.area_m2 = 0.05F;
+  segment.statistics = example_statistics(id);
   segment.last_change_utime = 9'500'000 + id;
   segment.oriented_box_center_W[1] = 0.25F;
   for (int axis = 0; axis < 3; ++axis) {
@@ -172,116 +186,34 @@ inline CameraPose example_camera_pose() {
   return {7'000'000, 42, 210, TrackingState::kTracking, example_pose()};
 }
 
-inline MapperStatus example_mapper_status() {
-  MapperStatus status;
-  status.utime = 1;
-  status.session = 42;
-  status.map_name = "office";
-  status.device = "synthetic://office";
-  status.state = TrackingState::kLost;
-  status.finished = true;
-  status.lingering = true;
-  status.loss_reason = "too few inliers";
-  status.frames_read = 2;
-  status.frames_total = 3;
-  status.frames_tracked = 4;
-  status.frames_lost = 5;
-  status.frames_relocalised = 6;
-  status.frames_dropped = 7;
-  status.frames_resumed = 40;
-  status.keyframes = 8;
-  status.undetermined = 3;
-  status.slices_published = 10;
-  status.points_published = 11;
-  status.chunks_published = 12;
-  status.chunks_resent = 41;
-  status.requests_received = 42;
-  status.store_bytes = 43;
-  status.store_waiting_bytes = 44;
-  status.store_lost_chunks = 45;
-  status.store_problem = "no space left";
-  status.blocks = 13;
-  status.memory_bytes = 14;
-  status.volume_bytes = 15;
-  status.queue_bytes = 16;
-  status.frame_rate_hz = 20.5;
-  status.frame_p50_ms = 21.5;
-  status.frame_p99_ms = 22.5;
-  status.cpu_ms = 23.5;
-  status.read_ms = 24.5;
-  status.convert_ms = 25.5;
-  status.prepare_ms = 26.5;
-  status.track_ms = 27.5;
-  status.shift_ms = 28.5;
-  status.integrate_ms = 29.5;
-  status.raycast_ms = 30.5;
-  status.extract_ms = 31.5;
-  status.publish_ms = 32.5;
+/// Gives each field of a status a valid value of its own, other than its default.
+struct StatusFiller {
+  int number = 0;  ///< of the field
+
+  void fill(bool& value) const { value = true; }
+  void fill(TrackingState& value) const { value = TrackingState::kLost; }
+  void fill(std::int32_t& value) const { value = 1 + number % 6; }
+  void fill(std::int64_t& value) const { value = 100 + number; }
+  void fill(double& value) const { value = number + 0.5; }
+  void fill(std::string& value) const { value = "text " + std::to_string(number); }
+};
+
+template <class Status>
+Status example_status() {
+  Status status;
+  StatusFiller filler;
+  Status::visit_fields(
+      [&filler](const StatusField& /*field*/, auto& value) {
+        ++filler.number;
+        filler.fill(value);
+      },
+      status);
   return status;
 }
 
-inline SegmenterStatus example_segmenter_status() {
-  SegmenterStatus status;
-  status.utime = 1;
-  status.session = 43;
-  status.map_session = 42;
-  status.map_name = "office";
-  status.mode = "voting";
-  status.finished = true;
-  status.slices_received = 2;
-  status.slices_segmented = 3;
-  status.slices_corrected = 21;
-  status.lag_slices = 4;
-  status.points = 5;
-  status.points_rejected = 6;
-  status.segments = 7;
-  status.chunks_received = 8;
-  status.chunks_duplicate = 9;
-  status.chunks_missing = 10;
-  status.messages_bad = 11;
-  status.memory_bytes = 12;
-  status.slice_ms = 13.5;
-  status.slice_mean_ms = 14.5;
-  status.slice_max_ms = 15.5;
-  status.slices_missing = 16;
-  status.lingering = true;
-  status.maps = 22;
-  status.queue_bytes = 23;
-  status.chunks_refused = 24;
-  status.chunks_given_up = 25;
-  status.requests_sent = 26;
-  status.chunks_resent = 27;
-  status.requests_received = 28;
-  status.states_sent = 29;
-  status.state_bytes = 30;
-  status.problem = "cannot write segments.ply";
-  return status;
-}
-
-inline ViewerStatus example_viewer_status() {
-  ViewerStatus status;
-  status.utime = 1;
-  status.session = 45;
-  status.map_session = 42;
-  status.map_name = "office";
-  status.finished = true;
-  status.slices_received = 2;
-  status.updates_applied = 3;
-  status.lag_slices = 4;
-  status.queue_bytes = 5;
-  status.points = 6;
-  status.segments = 7;
-  status.snapshots_written = 8;
-  status.chunks_missing = 9;
-  status.chunks_refused = 10;
-  status.chunks_given_up = 11;
-  status.requests_sent = 12;
-  status.messages_bad = 13;
-  status.memory_bytes = 14;
-  status.render_ms = 15.5;
-  status.problem = "cannot write final.png";
-  return status;
-}
+inline MapperStatus example_mapper_status() { return example_status<MapperStatus>(); }
+inline SegmenterStatus example_segmenter_status() { return example_status<SegmenterStatus>(); }
+inline ViewerStatus example_viewer_status() { return example_status<ViewerStatus>(); }
 
 inline Heartbeat example_heartbeat() { return {1, 42, "CLOUD_SLICE", 3, 17, 5, "office"}; }
 

@@ -6,12 +6,12 @@
 #include <string>
 #include <thread>
 
+#include "lcmtypes/base/process_memory.hpp"
 #include "lcmtypes/base/stop_signal.hpp"
 #include "lcmtypes/bus/bus.hpp"
 #include "lcmtypes/bus/bus_thread.hpp"
 #include "lcmtypes/channels.hpp"
 #include "lcmtypes/stream/stream_publisher.hpp"
-#include "mapper/process/run_statistics.hpp"
 #include "mapper/session/session_store.hpp"
 #include "mapper/session/stored_stream.hpp"
 #include "tests/support/bus_program.hpp"
@@ -176,7 +176,7 @@ class SlicePlayer {
     status.chunks_published = stream_.chunks_published();
     status.chunks_resent = counts.chunks_resent;
     status.requests_received = counts.requests_received;
-    status.memory_bytes = mapper::resident_memory_bytes();
+    status.memory_bytes = process_memory().resident_bytes;
     status.queue_bytes = static_cast<std::int64_t>(stream_.queued_bytes());
     status.store_bytes = store.size_bytes;
     status.store_waiting_bytes = store.waiting_bytes;

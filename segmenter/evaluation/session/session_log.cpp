@@ -100,7 +100,7 @@ void measure_path(const LoggedSession& logged, RecordedSession& session) {
   std::vector<Pose> path;
   std::int64_t first_us = slices.front()->utime;
   for (const auto& [utime, pose] : logged.poses) {
-    if (pose.state != TrackingState::kTracking && pose.state != TrackingState::kGiven) continue;
+    if (!is_located(pose.state)) continue;
     if (path.empty()) first_us = std::min(first_us, utime);
     path.push_back(pose.X_WC);
   }

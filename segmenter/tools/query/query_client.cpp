@@ -25,10 +25,6 @@ std::int64_t random_client() {
   return std::uniform_int_distribution<std::int64_t>(1)(device);
 }
 
-bool is_located(const CameraPose& pose) {
-  return pose.state == TrackingState::kTracking || pose.state == TrackingState::kGiven;
-}
-
 }  // namespace
 
 QueryClient::QueryClient(const std::string& lcm_url)
@@ -92,8 +88,8 @@ std::string QueryClient::silence(Seconds timeout, int times_asked) const {
 HeardCamera QueryClient::hear_camera(std::int64_t map_session, Seconds timeout) {
   subscribe<CameraPose>(bus_, channels::kCameraPose, [this, map_session](const CameraPose& pose) {
     if (map_session != 0 && pose.session != map_session) return;
-    if (is_located(pose)) pose_ = pose;
-    camera_is_lost_ = !is_located(pose);
+    if (is_located(pose.state)) pose_ = pose;
+    camera_is_lost_ = !is_located(pose.state);
   });
   bus_.subscribe(channels::kRgbdFrame, [this](ByteView data) {
     try {

@@ -26,7 +26,7 @@ std::size_t num_files(const fs::path& folder) {
       std::distance(fs::directory_iterator(folder), fs::directory_iterator{}));
 }
 
-TEST(AtomicFile, AppearsUnderItsNameWhenCommitted) {
+TEST(AtomicFile, HasItsNameAfterCommit) {
   const TemporaryFolder folder;
   AtomicFile file(folder / "map.ply");
   file.stream() << "new";
@@ -36,7 +36,7 @@ TEST(AtomicFile, AppearsUnderItsNameWhenCommitted) {
   EXPECT_EQ(num_files(folder.path()), 1U);
 }
 
-TEST(AtomicFile, LeavesTheOldContentAndNothingElseWithoutCommit) {
+TEST(AtomicFile, LeavesOnlyTheOldContentWithoutCommit) {
   const TemporaryFolder folder;
   std::ofstream(folder / "map.ply") << "old";
   {
@@ -49,7 +49,7 @@ TEST(AtomicFile, LeavesTheOldContentAndNothingElseWithoutCommit) {
   EXPECT_EQ(num_files(folder.path()), 1U);
 }
 
-TEST(AtomicFile, LetsALibraryWriteThePartialFileUnderTheSameExtension) {
+TEST(AtomicFile, GivesThePartialFileTheSameExtension) {
   const TemporaryFolder folder;
   AtomicFile file(folder / "run.final.png");
   EXPECT_EQ(file.partial_path().extension(), ".png");
@@ -76,7 +76,7 @@ TEST(AtomicFile, WritesMoreThanItsBufferInOrder) {
   EXPECT_EQ(content(folder / "map.ply"), expected);
 }
 
-TEST(AtomicFile, NamesTheFolderThatIsMissing) {
+TEST(AtomicFile, TheErrorNamesAMissingFolder) {
   const TemporaryFolder folder;
   AtomicFile file(folder / "no" / "map.ply");
   try {

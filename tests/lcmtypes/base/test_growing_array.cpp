@@ -5,7 +5,7 @@
 
 #include "lcmtypes/base/growing_array.hpp"
 
-namespace kintsugi::segmenter {
+namespace kintsugi {
 namespace {
 
 TEST(GrowingArray, IsEmptyAtFirst) {
@@ -51,4 +51,4 @@ TEST(GrowingArray, CanBeMoved) {
 }
 
 }  // namespace
-}  // namespace kintsugi::segmenter
+}  // namespace kintsugi

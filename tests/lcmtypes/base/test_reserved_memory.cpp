@@ -6,9 +6,8 @@
 #include <gtest/gtest.h>
 
 #include "lcmtypes/base/reserved_memory.hpp"
-#include "mapper/core/volume/tsdf_block_pool.hpp"
 
-namespace kintsugi::mapper {
+namespace kintsugi {
 namespace {
 
 TEST(ReservedMemory, GrowsInPlaceAndStartsAtZero) {
@@ -25,7 +24,7 @@ TEST(ReservedMemory, GrowsInPlaceAndStartsAtZero) {
   EXPECT_GE(memory.committed_bytes(), 10'000'000U);
 }
 
-TEST(ReservedMemory, GivesMemoryBackAndStartsAnew) {
+TEST(ReservedMemory, IsZeroAgainAfterRelease) {
   ReservedMemory memory(std::size_t{1} << 24);
   memory.commit(1000);
   std::memset(memory.data(), 0xFF, 1000);
@@ -35,7 +34,7 @@ TEST(ReservedMemory, GivesMemoryBackAndStartsAnew) {
   EXPECT_EQ(memory.data()[999], std::byte{0});
 }
 
-TEST(ReservedMemory, EndsWhereItWasReserved) {
+TEST(ReservedMemory, ThrowsBeyondTheReservedRange) {
   ReservedMemory memory(5000);
   memory.commit(5000);
   EXPECT_EQ(memory.committed_bytes(), 5000U);
@@ -53,20 +52,5 @@ TEST(ReservedMemory, CanBeMoved) {
   EXPECT_EQ(assigned.data()[3], std::byte{9});
 }
 
-TEST(TsdfBlockPool, KeepsBlocksOneAfterTheOther) {
-  TsdfBlockPool pool;
-  for (int i = 0; i < 3000; ++i) {
-    const BlockSlot slot = pool.take(make_block_coord(i, 0, 0));
-    ASSERT_EQ(&pool.voxels(slot), &pool.voxels(0) + slot);
-    pool.voxels(slot).voxels[0] = static_cast<Voxel>(i);
-  }
-  for (BlockSlot slot = 0; slot < pool.end(); ++slot) {
-    ASSERT_EQ(pool.voxels(slot).voxels[0], static_cast<Voxel>(slot));
-  }
-  pool.give_back(1234);
-  EXPECT_EQ(pool.take({}), 1234);
-  EXPECT_EQ(pool.voxels(1234).voxels[0], 0U) << "a recycled block is empty";
-}
-
 }  // namespace
-}  // namespace kintsugi::mapper
+}  // namespace kintsugi

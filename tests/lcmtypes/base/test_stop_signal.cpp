@@ -7,7 +7,7 @@
 namespace kintsugi {
 namespace {
 
-TEST(StopSignal, AreFlagsToPoll) {
+TEST(StopSignal, SetsFlagsThatCanBePolled) {
   install_stop_signals();
   EXPECT_FALSE(stop_requested());
   EXPECT_FALSE(take_write_request());

@@ -39,8 +39,8 @@ SegmentUpdate telling(SegmentUpdate update, const std::vector<std::uint32_t>& id
   return update;
 }
 
-/// Slice n brings segments 40n + 1 to 40n + 40, which merge into the first of them with the next
-/// slice: several chunks each.
+/// The update of slice n creates segments 40n + 1 to 40n + 40, and merges those of the slice before
+/// into the first of them. Each update has several chunks.
 SegmentUpdate update_of(std::int32_t slice_id) {
   constexpr std::uint32_t kNew = 40;
   const auto first = static_cast<std::uint32_t>(slice_id) * kNew + 1;
@@ -56,7 +56,7 @@ SegmentUpdate update_of(std::int32_t slice_id) {
   return update;
 }
 
-/// The messages of updates that are published one after the other.
+/// The LCM messages of updates that are published one after the other.
 class Stream {
  public:
   void publish(const SegmentUpdate& update) {
@@ -82,7 +82,7 @@ class SegmentListenerTest : public ::testing::Test {
       "", [this](const SegmentUpdate& update) { slices_heard_.push_back(update.slice_id); }};
 };
 
-TEST_F(SegmentListenerTest, HasTheTableWhateverTheOrderOfChunks) {
+TEST_F(SegmentListenerTest, HasTheSameTableForAnyOrderOfChunks) {
   for (std::int32_t slice = 0; slice < 6; ++slice) stream_.publish(update_of(slice));
   ASSERT_GE(stream_.next_sequence(), 3 * 6) << "expected several chunks an update";
   EXPECT_THAT(listener_.problem(), HasSubstr("no segment update"));
@@ -95,7 +95,7 @@ TEST_F(SegmentListenerTest, HasTheTableWhateverTheOrderOfChunks) {
   EXPECT_EQ(slices_heard_.size(), 6U);
 }
 
-TEST_F(SegmentListenerTest, SaysWhatIsMissingUntilAStateComes) {
+TEST_F(SegmentListenerTest, ReportsMissingUpdatesUntilAFullState) {
   for (std::int32_t slice = 0; slice < 4; ++slice) stream_.publish(update_of(slice));
   for (std::size_t i = 0; i < stream_.messages().size(); ++i) {
     if (i != 5) hear(stream_.messages()[i]);
@@ -112,7 +112,7 @@ TEST_F(SegmentListenerTest, SaysWhatIsMissingUntilAStateComes) {
   EXPECT_EQ(listener_.table().segments().size(), 2U);
 }
 
-TEST_F(SegmentListenerTest, MissesWhatIsNewerThanTheState) {
+TEST_F(SegmentListenerTest, ReportsMissingUpdatesAfterTheFullState) {
   stream_.publish(telling(an_update(0, 2), {1, 2}));
   stream_.publish(telling(an_update(1, 2), {2}));
   stream_.publish(telling(an_update(2, 2), {1}));
@@ -122,7 +122,7 @@ TEST_F(SegmentListenerTest, MissesWhatIsNewerThanTheState) {
   EXPECT_FALSE(listener_.is_whole());
 }
 
-TEST_F(SegmentListenerTest, DropsWhatHasAnotherChecksum) {
+TEST_F(SegmentListenerTest, DropsMessagesWithAWrongChecksum) {
   stream_.publish(update_of(0));
   Bytes spoilt = stream_.messages()[0];
   spoilt.back() ^= 1U;
@@ -153,7 +153,7 @@ TEST_F(SegmentListenerTest, FollowsOneMapAndItsNewestSegmenter) {
   EXPECT_EQ(listener_.problem(), "");
 }
 
-TEST(SegmentTableText, NamesEachEventWithWhatItIsAbout) {
+TEST(SegmentTableText, HasALineForEachEventWithItsSegments) {
   SegmentUpdate update = an_update(12, 3);
   update.num_points = 500;
   update.slice_revision = 2;

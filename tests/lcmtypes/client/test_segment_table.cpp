@@ -18,8 +18,8 @@ constexpr std::int64_t kMapSession = 7;
 
 using Statistics = std::map<std::uint32_t, SegmentStatistics>;
 
-/// A map whose segments come, grow, shrink, merge, split and go at random, several at a time, and
-/// what a segmenter would say of it.
+/// A map whose segments are created, grow, shrink, merge, split and are retired at random, several
+/// in one step; and the updates that a segmenter publishes of it.
 class World {
  public:
   explicit World(unsigned seed) : random_(seed) {}
@@ -47,7 +47,7 @@ class World {
         update.events.push_back({SegmentEventType::kGrown, id, 0});
         changed.push_back(id);
       } else if (what == 1) {
-        changed.push_back(take());  // lost some points, of which no event tells
+        changed.push_back(take());  // lost some points, for which there is no event
       } else if (what == 2) {
         const std::uint32_t heir = take();
         const std::uint32_t gone = take();
@@ -127,8 +127,8 @@ class World {
 
   std::mt19937 random_;
   Statistics segments_;
-  std::map<std::uint32_t, std::uint32_t> parents_;  // of all that were born
-  std::map<std::uint32_t, std::uint32_t> heirs_;    // of all that are gone
+  std::map<std::uint32_t, std::uint32_t> parents_;  // of all segments so far
+  std::map<std::uint32_t, std::uint32_t> heirs_;    // of all that no longer exist
   std::uint32_t next_id_ = 1;
   std::uint32_t num_told_ = 0;
   std::int32_t num_updates_ = 0;
@@ -195,7 +195,7 @@ TEST(SegmentTable, KnowsParentsEndsAndHeirs) {
   EXPECT_FALSE(table.heir(world.next_id()));
 }
 
-TEST(SegmentTable, IsTheSameInWhateverOrderAndHoweverOftenUpdatesCome) {
+TEST(SegmentTable, IsIndependentOfTheOrderAndRepetitionOfUpdates) {
   for (unsigned seed = 30; seed < 50; ++seed) {
     World world(seed);
     std::vector<SegmentUpdate> updates = steps(world, 60);
@@ -213,12 +213,12 @@ TEST(SegmentTable, IsTheSameInWhateverOrderAndHoweverOftenUpdatesCome) {
   }
 }
 
-TEST(SegmentTable, WhoComesLateHasAllSegmentsFromTheFullStateOn) {
+TEST(SegmentTable, ALateClientHasAllSegmentsFromTheFullStateOn) {
   for (unsigned seed = 60; seed < 80; ++seed) {
     World world(seed);
-    steps(world, 100);  // not heard
+    steps(world, 100);  // not received
     SegmentTable table;
-    // What is heard before the state says nothing of most segments.
+    // Updates before the full state have statistics of few segments.
     for (const SegmentUpdate& update : steps(world, 2)) table.apply(update);
     EXPECT_FALSE(table.has_all_segments());
     const std::vector<SegmentUpdate> state = world.describe();
@@ -232,7 +232,7 @@ TEST(SegmentTable, WhoComesLateHasAllSegmentsFromTheFullStateOn) {
   }
 }
 
-TEST(SegmentTable, AfterLossesIsRightAgainWithTheNextFullState) {
+TEST(SegmentTable, IsCorrectAgainWithTheNextFullStateAfterLosses) {
   int num_wrong = 0;
   for (unsigned seed = 90; seed < 110; ++seed) {
     World world(seed);
@@ -248,15 +248,15 @@ TEST(SegmentTable, AfterLossesIsRightAgainWithTheNextFullState) {
     num_wrong += statistics_in(table) != world.segments() ? 1 : 0;
     for (const SegmentUpdate& update : world.describe()) table.apply(update);
     ASSERT_EQ(statistics_in(table), world.segments()) << "seed " << seed;
-    // What was superseded and comes after all brings nobody back.
+    // A late update from before the full state creates no segments.
     for (const SegmentUpdate& update : lost) table.apply(update);
     ASSERT_EQ(statistics_in(table), world.segments()) << "seed " << seed;
   }
   EXPECT_EQ(num_wrong, 20) << "the losses took nothing away, so nothing was tested";
 }
 
-TEST(SegmentTable, LacksSegmentsUntilAllSlicesOfARunHaveCome) {
-  // Two slices segmented in one: events and statistics come with the last.
+TEST(SegmentTable, LacksSegmentsUntilAllUpdatesOfOneRunAreApplied) {
+  // Two slices that were segmented together: the last update has the events and statistics.
   SegmentTable table;
   table.apply(an_update(0, 2, {}, {}));
   EXPECT_FALSE(table.has_all_segments());
@@ -265,7 +265,7 @@ TEST(SegmentTable, LacksSegmentsUntilAllSlicesOfARunHaveCome) {
   EXPECT_TRUE(table.has_all_segments());
 }
 
-TEST(SegmentTable, ANewerSessionBeginsItAnewAndAnOlderOneIsIgnored) {
+TEST(SegmentTable, ANewerSessionClearsItAndAnOlderOneIsIgnored) {
   SegmentTable table;
   table.apply(an_update(9, 1, {{SegmentEventType::kMerged, 1, 4}}, {1}));
   SegmentUpdate of_restarted = an_update(0, 2, {}, {1, 2});
@@ -295,7 +295,7 @@ TEST(SegmentTable, DoesNotFollowHeirsInACircle) {
   EXPECT_FALSE(table.heir(3));
 }
 
-TEST(SegmentTable, KnowsWhenASegmentChangedUnlessAStateToldIt) {
+TEST(SegmentTable, KnowsWhenASegmentChangedUnlessFromAFullState) {
   SegmentTable table;
   SegmentUpdate state = an_update(5, 2, {}, {1, 2});
   SegmentUpdate update = an_update(6, 2, {{SegmentEventType::kGrown, 2, 0}}, {2});

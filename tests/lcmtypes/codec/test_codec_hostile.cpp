@@ -19,8 +19,8 @@ using namespace testing;  // NOLINT: the examples
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-// A decoder keeps the message a few times over (LCM's struct, ours, the identity) and builds a
-// text when it refuses; a count that is believed would take megabytes.
+// A decoder holds the message a few times (as LCM's struct, as ours, as the identity), and makes a
+// text when it refuses one. A decoder that trusts a count would take megabytes.
 std::size_t allocation_limit(std::size_t message_bytes) { return 8 * message_bytes + 16'384; }
 
 struct Subject {
@@ -55,13 +55,14 @@ std::vector<Subject> subjects() {
           bulk("snapshot", example_snapshot(50))};
 }
 
-/// As a sender would make it that means harm: what the message says is false, its checksum right.
+/// The message of a malicious sender: with invalid content, and the right checksum.
 Bytes with_checksum(Bytes message) {
   if (message.size() >= codec::kChecksumEnd) codec::set_checksum(message);
   return message;
 }
 
-/// True when `data` decodes. Anything but a DecodeError, or a large allocation, fails the test.
+/// True if `data` decodes. An exception other than DecodeError or a large allocation fails the
+/// test.
 bool decodes(const Subject& subject, ByteView data) {
   bool valid = false;
   const std::size_t allocated = allocated_by([&] {
@@ -116,7 +117,7 @@ TEST(CodecHostile, AChangedByteAnywhereIsRefused) {
   }
 }
 
-TEST(CodecHostile, OnlyRawFramesMayComeWithoutAChecksum) {
+TEST(CodecHostile, OnlyRawFramesMayHaveNoChecksum) {
   for (const Subject& subject : subjects()) {
     Bytes message = subject.message;
     std::fill_n(message.begin() + codec::kChecksumPlace, 4, std::uint8_t{0});
@@ -124,7 +125,7 @@ TEST(CodecHostile, OnlyRawFramesMayComeWithoutAChecksum) {
   }
 }
 
-TEST(CodecHostile, MutationsDecodeOrAreRefusedAndNothingElse) {
+TEST(CodecHostile, AMutatedMessageEitherDecodesOrIsRefused) {
   std::mt19937 random(1);
   for (const Subject& subject : subjects()) {
     int valid = 0;
@@ -135,13 +136,13 @@ TEST(CodecHostile, MutationsDecodeOrAreRefusedAndNothingElse) {
       }
       valid += decodes(subject, with_checksum(mutated)) ? 1 : 0;
     }
-    // The fields without bounds (times, points) may change freely; the others must be caught.
+    // Fields without bounds (times, points) may change; changes of other fields must be refused.
     EXPECT_GT(valid, 0) << subject.name;
     EXPECT_LT(valid, 4'000) << subject.name;
   }
 }
 
-TEST(CodecHostile, EveryFourBytesMayClaimToBeAHugeCount) {
+TEST(CodecHostile, AHugeCountAnywhereAllocatesLittle) {
   for (const Subject& subject : subjects()) {
     for (const std::uint32_t claim : {0x7FFFFFFFU, 0x77359400U, 0x80000000U, 0xFFFFFFFFU, 0U}) {
       for (std::size_t place = codec::kChecksumEnd; place + 4 <= subject.message.size(); ++place) {
@@ -162,7 +163,7 @@ TEST(CodecHostile, RandomBytesAreRefused) {
     for (int trial = 0; trial < 200; ++trial) {
       Bytes noise(random() % 400);
       for (auto& byte : noise) byte = static_cast<std::uint8_t>(random());
-      // With the right fingerprint, so that more than the fingerprint is tried.
+      // With the right fingerprint, so that the checks behind it are tested.
       if (noise.size() >= 8 && trial % 2 == 0) {
         std::copy_n(subject.message.begin(), 8, noise.begin());
       }
@@ -186,7 +187,7 @@ std::string refusal(Message message, const Change& change) {
   return "accepted";
 }
 
-TEST(CodecBounds, NameTypeFieldValueAndBound) {
+TEST(CodecBounds, ErrorsNameTypeFieldValueAndBound) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THAT(refusal(example_slice(1), [](CloudSlice& s) { s.resolution_m = 0; }),
               AllOf(HasSubstr("cloud_slice_t.resolution_m"), HasSubstr("is 0,"), HasSubstr("..")));
@@ -282,7 +283,7 @@ TEST(CodecBounds, NameTypeFieldValueAndBound) {
               HasSubstr("last is 4"));
 }
 
-TEST(CodecBounds, AMessageThatLiesInOneFieldIsRefusedWithThatField) {
+TEST(CodecBounds, AnInvalidFieldIsNamedInTheError) {
   Bytes message = encode(example_camera_pose());
   message[8 + 4 + 24] = 9;  // state: after fingerprint, checksum, utime, session, frame_index
   try {
@@ -293,7 +294,7 @@ TEST(CodecBounds, AMessageThatLiesInOneFieldIsRefusedWithThatField) {
   }
 }
 
-TEST(CodecBounds, AnyTextCanBeMadeToFit) {
+TEST(CodecBounds, FittingTextMakesAnyTextValid) {
   SegmenterStatus status = example_segmenter_status();
   status.problem = fitting_text("cannot write:\n\tno space" + std::string(2'000, '!'));
   const SegmenterStatus received = decode<SegmenterStatus>(encode(status));
@@ -301,7 +302,7 @@ TEST(CodecBounds, AnyTextCanBeMadeToFit) {
   EXPECT_EQ(received.problem.size(), kMaxStringBytes);
 }
 
-TEST(CodecBounds, TwentyBytesThatClaimTwoBillionPointsTakeNothing) {
+TEST(CodecBounds, ATruncatedMessageAllocatesNothing) {
   Bytes message = encode_chunk(example_slice(1), 0, 0, kDefaultMaxChunkBytes);
   message.resize(20);
   const std::size_t allocated =

@@ -65,7 +65,7 @@ TEST(CodecRoundTrip, BulkMessagesKeepEveryFieldWhateverTheChunkSize) {
   expect_round_trip(example_snapshot(123'457));
 }
 
-TEST(CodecRoundTrip, UpdateKnowsTheSequenceOfItsFirstChunk) {
+TEST(CodecRoundTrip, AnUpdateHasTheSequenceNumberOfItsFirstChunk) {
   EXPECT_EQ(join(chunks_of(example_update(5'000), 10'000)).sequence, 1000);
 }
 
@@ -82,7 +82,7 @@ TEST(CodecRoundTrip, LongestNamesLeaveRoomForAPayloadInTheSmallestChunk) {
   expect_round_trip(answer);
 }
 
-TEST(CodecRoundTrip, PointsMayHoldAnyValue) {
+TEST(CodecRoundTrip, PointsMayHaveAnyValue) {
   CloudSlice slice = example_slice(2);
   slice.points_W[0].x = std::numeric_limits<float>::infinity();
   slice.points_W[1].nz = -std::numeric_limits<float>::infinity();

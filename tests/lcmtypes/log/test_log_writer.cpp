@@ -1,4 +1,4 @@
-// Logs being written: what LCM itself reads from them, whole events only, and places to read again.
+// Writing logs: LCM itself can read them, events are complete, and data can be read back.
 
 #include <filesystem>
 #include <fstream>
@@ -22,7 +22,7 @@ using kintsugi::testing::FileSizeLimit;
 using kintsugi::testing::TemporaryFolder;
 using ::testing::HasSubstr;
 
-/// How many events our reader finds; it must find no damage.
+/// The number of events that LogReader finds; it must find no damage.
 int count_events(const std::filesystem::path& path) {
   LogReader reader(path);
   int events = 0;
@@ -56,7 +56,7 @@ TEST(LogWriter, IsReadByLcmEventByEvent) {
   EXPECT_EQ(log.readNextEvent(), nullptr);
 }
 
-TEST(LogWriter, ReadsAgainWhatItSaidWhereItPutIt) {
+TEST(LogWriter, ReadsBackDataAtItsPlace) {
   LogWriter writer = LogWriter::temporary(std::filesystem::temp_directory_path());
   std::vector<std::int64_t> places;
   places.reserve(50);
@@ -68,7 +68,7 @@ TEST(LogWriter, ReadsAgainWhatItSaidWhereItPutIt) {
   EXPECT_THROW(writer.read(places.back(), 1'000'000), std::runtime_error);
 }
 
-TEST(LogWriter, WritesAnEventWholeOrNotAtAll) {
+TEST(LogWriter, WritesAnEventCompletelyOrNotAtAll) {
   const TemporaryFolder folder;
   const auto path = folder / "a.lcm";
   LogWriter writer = LogWriter::create(path);
@@ -90,7 +90,7 @@ TEST(LogWriter, WritesAnEventWholeOrNotAtAll) {
   EXPECT_EQ(count_events(path), 3);
 }
 
-TEST(LogWriter, GoesOnBehindAHalfWrittenEvent) {
+TEST(LogWriter, ContinuesAfterAnIncompleteEvent) {
   const TemporaryFolder folder;
   const auto path = folder / "a.lcm";
   {
@@ -113,7 +113,7 @@ TEST(LogWriter, GoesOnBehindAHalfWrittenEvent) {
   }
 }
 
-TEST(LogWriter, RefusesWhatIsNotItsOwn) {
+TEST(LogWriter, RefusesExistingMissingAndLockedFiles) {
   const TemporaryFolder folder;
   const auto path = folder / "a.lcm";
   EXPECT_THROW(LogWriter::open(path), std::system_error) << "not there";

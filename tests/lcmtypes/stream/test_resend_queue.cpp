@@ -15,7 +15,7 @@ using ::testing::ElementsAre;
 
 constexpr std::int64_t kEnd = 100;
 
-/// Takes everything there is while no new chunk waits.
+/// Takes all resends while no new chunk waits.
 std::vector<std::int64_t> drain(ResendQueue& queue) {
   std::vector<std::int64_t> sequences;
   while (const auto sequence = queue.next(false)) sequences.push_back(*sequence);
@@ -26,7 +26,7 @@ void want(ResendQueue& queue, const std::vector<SequenceRange>& ranges, double n
   queue.want(ranges, 0, kEnd, now_s);
 }
 
-TEST(ResendQueue, ServesWhoAskedFirstFirstAndEachNumberOnce) {
+TEST(ResendQueue, ResendsInTheOrderOfRequestsAndEachNumberOnce) {
   ResendQueue queue;
   want(queue, {{10, 12}}, 1.0);
   want(queue, {{3, 4}, {11, 13}}, 1.0);
@@ -35,7 +35,7 @@ TEST(ResendQueue, ServesWhoAskedFirstFirstAndEachNumberOnce) {
   EXPECT_TRUE(queue.empty());
 }
 
-TEST(ResendQueue, TakesARequestThatCrossedItsAnswerForAnswered) {
+TEST(ResendQueue, IgnoresARequestShortlyAfterTheChunkWasSent) {
   ResendQueue queue;
   queue.sent(5, 1.0);
   want(queue, {{4, 6}}, 1.0 + 0.9 * ResendQueue::kInFlight_s);
@@ -44,16 +44,16 @@ TEST(ResendQueue, TakesARequestThatCrossedItsAnswerForAnswered) {
   EXPECT_THAT(drain(queue), ElementsAre(5));
 }
 
-TEST(ResendQueue, LetsNewChunksPassButEveryEighthIsAResend) {
+TEST(ResendQueue, EveryEighthChunkIsAResendWhileNewChunksWait) {
   ResendQueue queue;
   want(queue, {{0, 9}}, 1.0);
   int resends = 0;
   for (int i = 0; i < 40; ++i) resends += queue.next(true) ? 1 : 0;
   EXPECT_EQ(resends, 5);
-  EXPECT_EQ(drain(queue).size(), 5U);  // nothing else to send: all at once
+  EXPECT_EQ(drain(queue).size(), 5U);  // no new chunk waits: all at once
 }
 
-TEST(ResendQueue, IsBoundedByWhatCanBeSentHoweverAbsurdTheRequest) {
+TEST(ResendQueue, IsBoundedByWhatCanBeSentForAnyRequest) {
   ResendQueue queue;
   const std::vector<SequenceRange> absurd(kMaxResendRanges, {0, kMaxSequence});
   for (int i = 0; i < 100; ++i) queue.want(absurd, 20, 70, 1.0);

@@ -40,12 +40,12 @@ struct Schedule {
   }
 };
 
-// A poll comes up to a tick late, and the next waits from there.
+// A poll is up to one tick late, and the next wait starts there.
 auto at_times(const std::vector<double>& times_s) {
   return Pointwise(DoubleNear(kTick_s * static_cast<double>(times_s.size() + 1)), times_s);
 }
 
-TEST(ResendRequests, WaitsForWhatIsOnlyOutOfOrder) {
+TEST(ResendRequests, WaitsForChunksThatAreOnlyOutOfOrder) {
   Schedule schedule;
   schedule.end = 3;
   schedule.arrive(0);
@@ -56,7 +56,7 @@ TEST(ResendRequests, WaitsForWhatIsOnlyOutOfOrder) {
   EXPECT_THAT(schedule.asked_s, IsEmpty());
 }
 
-TEST(ResendRequests, AsksAfterAWhileAndLessAndLessOften) {
+TEST(ResendRequests, AsksAfterAWaitAndLessAndLessOften) {
   Schedule schedule;
   schedule.end = 10;
   for (const int sequence : {0, 1, 4, 9}) schedule.arrive(sequence);
@@ -66,7 +66,7 @@ TEST(ResendRequests, AsksAfterAWhileAndLessAndLessOften) {
   EXPECT_FALSE(schedule.requests.has_given_up());
 }
 
-TEST(ResendRequests, AsksSoonAgainWhenAnswersCome) {
+TEST(ResendRequests, AsksSoonAgainAfterAnAnswer) {
   Schedule schedule;
   schedule.end = 10;
   schedule.run_until(1.6);
@@ -76,7 +76,7 @@ TEST(ResendRequests, AsksSoonAgainWhenAnswersCome) {
   EXPECT_THAT(schedule.asked_s, at_times({1.7, 1.8, 2.0}));
 }
 
-TEST(ResendRequests, AnArrivalThatWasNotAskedForIsNoAnswer) {
+TEST(ResendRequests, AChunkThatWasNotRequestedIsNoAnswer) {
   Schedule schedule;
   schedule.end = 10;
   schedule.arrive(9);
@@ -88,7 +88,7 @@ TEST(ResendRequests, AnArrivalThatWasNotAskedForIsNoAnswer) {
   EXPECT_THAT(schedule.asked_s, IsEmpty());
 }
 
-TEST(ResendRequests, GivesUpWhatNobodyAnswersAndTriesAgainWhileTheSenderIsHeard) {
+TEST(ResendRequests, GivesUpWithoutAnswersAndTriesAgainWhileTheSenderIsHeard) {
   Schedule schedule;
   schedule.end = 10;
   schedule.run_until(5.2);
@@ -103,7 +103,7 @@ TEST(ResendRequests, GivesUpWhatNobodyAnswersAndTriesAgainWhileTheSenderIsHeard)
   EXPECT_LE(schedule.asked_s.size(), 1U);
 }
 
-TEST(ResendRequests, AnAnswerAfterGivingUpBringsEverythingBack) {
+TEST(ResendRequests, AnAnswerAfterGivingUpRestartsTheRequests) {
   Schedule schedule;
   schedule.end = 10;
   schedule.run_until(16.0);
@@ -114,7 +114,7 @@ TEST(ResendRequests, AnAnswerAfterGivingUpBringsEverythingBack) {
   EXPECT_EQ(schedule.asked_s.size(), 1U);
 }
 
-TEST(ResendRequests, ASenderThatIsBackIsAskedAtOnce) {
+TEST(ResendRequests, AReturnedSenderIsAskedAtOnce) {
   Schedule schedule;
   schedule.end = 10;
   schedule.heard = false;
@@ -127,7 +127,7 @@ TEST(ResendRequests, ASenderThatIsBackIsAskedAtOnce) {
   EXPECT_FALSE(schedule.requests.has_given_up());
 }
 
-TEST(ResendRequests, TimeWithoutRoomIsNotTimeInVain) {
+TEST(ResendRequests, TimeWithoutMemoryDoesNotCountTowardsGivingUp) {
   Schedule schedule;
   schedule.end = 10;
   schedule.run_until(1.0);
@@ -139,7 +139,7 @@ TEST(ResendRequests, TimeWithoutRoomIsNotTimeInVain) {
   EXPECT_FALSE(schedule.asked_s.empty());
 }
 
-TEST(ResendRequests, AsksForALimitedNumberAndForMoreAsSoonAsThatHasCome) {
+TEST(ResendRequests, AsksForALimitedNumberAndThenForMore) {
   Schedule schedule;
   schedule.end = 100;
   schedule.arrive(2);
@@ -166,7 +166,7 @@ TEST(ResendRequests, AsksForNothingBeyondItsLimits) {
   EXPECT_EQ(schedule.last.back(), (SequenceRange{9, 9}));
 }
 
-TEST(ResendRequests, StartsAnewWithEachGapOnceAllIsThere) {
+TEST(ResendRequests, StartsAnewWithEachGapAfterEverythingIsReceived) {
   Schedule schedule;
   schedule.end = 1;
   schedule.run_until(3.0);

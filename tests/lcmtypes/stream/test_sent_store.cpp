@@ -11,7 +11,7 @@ Bytes chunk(std::int64_t sequence, std::size_t size) {
   return Bytes(size, static_cast<std::uint8_t>(sequence));
 }
 
-TEST(RecentChunks, KeepsTheNewestWithinItsBound) {
+TEST(RecentChunks, KeepsTheNewestWithinItsLimit) {
   RecentChunks store(1'000);
   EXPECT_EQ(store.first_sequence(), 0);
   EXPECT_EQ(store.next_sequence(), 0);
@@ -37,7 +37,7 @@ TEST(RecentChunks, KeepsTheNewestEvenWhenItIsTooLarge) {
   EXPECT_EQ(store.find(1), chunk(1, 5'000));
 }
 
-TEST(RecentChunks, FollowsABoundThatChanges) {
+TEST(RecentChunks, FollowsALimitThatChanges) {
   RecentChunks store(1'000);
   store.set_max_bytes(2'000);
   for (std::int64_t sequence = 0; sequence < 25; ++sequence) {
@@ -49,7 +49,7 @@ TEST(RecentChunks, FollowsABoundThatChanges) {
   EXPECT_EQ(store.first_sequence(), 23);
 }
 
-TEST(RecentChunks, RefusesAHole) {
+TEST(RecentChunks, RefusesAGapInTheNumbers) {
   RecentChunks store(1'000);
   store.add(7, chunk(7, 10));
   EXPECT_THROW(store.add(9, chunk(9, 10)), std::invalid_argument);

@@ -8,7 +8,7 @@
 namespace kintsugi {
 namespace {
 
-TEST(SequenceSet, NamesTheGapsUpToAnEnd) {
+TEST(SequenceSet, FindsTheGapsUpToAnEnd) {
   SequenceSet set;
   for (const std::int64_t number : {2, 3, 7}) EXPECT_TRUE(set.insert(number));
   EXPECT_EQ(set.missing(0, 10, 100), (std::vector<SequenceRange>{{0, 1}, {4, 6}, {8, 9}}));

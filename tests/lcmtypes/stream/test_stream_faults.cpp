@@ -1,4 +1,4 @@
-// Reliable streams on a simulated network: whatever fails, every message arrives once.
+// Reliable streams over a simulated network: whatever fails, every message is received once.
 
 #include <algorithm>
 #include <functional>
@@ -13,7 +13,7 @@ namespace {
 
 using namespace testing;  // NOLINT: the network and the examples
 
-TEST(StreamFaults, DuplicatesAndDisorderMakeNoDifferenceAndNoRequests) {
+TEST(StreamFaults, DuplicatesAndDisorderCauseNoRequests) {
   Simulation simulation;
   RecentChunks store(kAll);
   SimulatedSender sender(simulation, chunks_of(kFrame), &store);
@@ -25,7 +25,7 @@ TEST(StreamFaults, DuplicatesAndDisorderMakeNoDifferenceAndNoRequests) {
   EXPECT_GT(receiver.subscriber.counts().chunks_duplicate, 100);
 }
 
-TEST(StreamFaults, AStoppedReceiverCatchesUpAndDelaysNobody) {
+TEST(StreamFaults, AStoppedReceiverCatchesUpWithoutDelayingOthers) {
   for (const double stop_s : {0.5, 10.0}) {
     Simulation simulation;
     RecentChunks store(kAll);
@@ -44,7 +44,7 @@ TEST(StreamFaults, AStoppedReceiverCatchesUpAndDelaysNobody) {
   }
 }
 
-TEST(StreamFaults, WhoComesLateGetsEverythingWhileTheOthersAreServed) {
+TEST(StreamFaults, ALateReceiverGetsEverythingWhileOthersAreServed) {
   Simulation simulation;
   RecentChunks store(kAll);
   SimulatedSender sender(simulation, chunks_of(kDatagram), &store);
@@ -53,7 +53,7 @@ TEST(StreamFaults, WhoComesLateGetsEverythingWhileTheOthersAreServed) {
   simulation.run_until(15.0);
   sender.join({.loss = 0.02}, 2);
   simulation.run_until(20.0);
-  // What the early one misses meanwhile is not behind all that the late one misses.
+  // The early receiver does not have to wait until the late one has everything.
   simulation.run_until(21.5);
   EXPECT_TRUE(has_each_once(early, 400));
   ASSERT_TRUE(completes(simulation, sender, 400, 60.0));
@@ -61,7 +61,7 @@ TEST(StreamFaults, WhoComesLateGetsEverythingWhileTheOthersAreServed) {
   EXPECT_LT(simulation.now_s(), 35.0);
 }
 
-TEST(StreamFaults, ManySmallMessagesAreCaughtUpWithToo) {
+TEST(StreamFaults, ALateReceiverGetsManySmallMessages) {
   Simulation simulation;
   RecentChunks store(kAll);
   SimulatedSender sender(simulation, chunks_of(kDatagram), &store);
@@ -71,13 +71,13 @@ TEST(StreamFaults, ManySmallMessagesAreCaughtUpWithToo) {
   ASSERT_TRUE(completes(simulation, sender, 5'000, 10.0));
 }
 
-TEST(StreamFaults, ASaturatedStreamStillAnswersAndStaysLive) {
+TEST(StreamFaults, ASaturatedStreamSendsBothNewChunksAndResends) {
   Simulation simulation;
   RecentChunks store(kAll);
   SimulatedSender sender(simulation, chunks_of(kDatagram), &store);
   SimulatedReceiver& receiver = sender.join({.loss = 0.05}, 1);
-  SimulatedReceiver& late = sender.join({.loss = 1.0}, 2);  // from 2 s on it wants everything
-  publish_over(simulation, sender, 400, 9'000, 0.1);        // 115 MB at once: 11.5 s of the bucket
+  SimulatedReceiver& late = sender.join({.loss = 1.0}, 2);  // from 2 s on it requests everything
+  publish_over(simulation, sender, 400, 9'000, 0.1);  // 115 MB at once: 11.5 s at the bucket's rate
   simulation.at(2.0, [&] { late.link.loss = 0.0; });
   simulation.run_until(8.0);
   const auto& counts = sender.sender().counts();
@@ -89,13 +89,13 @@ TEST(StreamFaults, ASaturatedStreamStillAnswersAndStaysLive) {
   ASSERT_TRUE(completes(simulation, sender, 400, 60.0));
 }
 
-TEST(StreamFaults, ASenderThatIsKilledAndResumedGoesOnWithItsNumbers) {
+TEST(StreamFaults, AKilledAndResumedSenderContinuesItsNumbers) {
   Simulation simulation;
   RecentChunks store(kAll);
   SimulatedSender sender(simulation, chunks_of(kDatagram), &store);
   SimulatedReceiver& receiver = sender.join({.loss = 0.05}, 1);
   std::mt19937 random(7);
-  int published = 0;  // what a run of the sender has published, again after each kill
+  int published = 0;  // by one run of the sender, which starts again after each kill
   std::function<void()> publish_next = [&] {
     if (sender.is_running() && published < 200) sender.publish(example_slice(9'000, published++));
     simulation.after(0.03, publish_next);
@@ -107,7 +107,7 @@ TEST(StreamFaults, ASenderThatIsKilledAndResumedGoesOnWithItsNumbers) {
       sender.crash();
       published = 0;
     });
-    // The last time for so long that the receiver gives up.
+    // The last pause is so long that the receiver gives up.
     simulation.at(time_s + (kill < 4 ? 0.3 : 8.0), [&] {
       sender.start();
       for (int id = 0; id < 60; ++id) sender.publish(example_slice(9'000, published++));
@@ -120,9 +120,9 @@ TEST(StreamFaults, ASenderThatIsKilledAndResumedGoesOnWithItsNumbers) {
   EXPECT_EQ(receiver.subscriber.counts().chunks_given_up, 0);
 }
 
-TEST(StreamFaults, AFullStateStandsInForWhatTheStoreHasNoMore) {
+TEST(StreamFaults, AFullStateReplacesChunksThatAreNotInTheStore) {
   Simulation simulation;
-  RecentChunks store(2'000'000);  // 7 slices or so
+  RecentChunks store(2'000'000);  // about 7 slices
   std::int64_t states_wanted = 0;
   StreamPublisherConfig config = chunks_of(kDatagram);
   config.on_state_wanted = [&] { ++states_wanted; };
@@ -138,7 +138,7 @@ TEST(StreamFaults, AFullStateStandsInForWhatTheStoreHasNoMore) {
   sender.publish(example_slice(20'000, 1'000), true);
   sender.publish(example_slice(9'000, 1'001));
   simulation.run_until(8.0);
-  EXPECT_LE(states_wanted, wanted_before + 3);  // until the heartbeat has told the receiver
+  EXPECT_LE(states_wanted, wanted_before + 3);  // until the receiver has a heartbeat
   EXPECT_EQ(late.times_received[1'000], 1);
   EXPECT_EQ(late.times_received[1'001], 1);
   EXPECT_TRUE(late.subscriber.is_complete(42));
@@ -149,7 +149,7 @@ TEST(StreamFaults, AFullStateStandsInForWhatTheStoreHasNoMore) {
   EXPECT_EQ(late.requests, asked);
 }
 
-TEST(StreamFaults, AStoreThatForgetsLeavesAGapThatIsGivenUpAndNothingElse) {
+TEST(StreamFaults, OnlyChunksThatAreNotInTheStoreAreGivenUp) {
   Simulation simulation;
   RecentChunks store(2'000'000);
   SimulatedSender sender(simulation, chunks_of(kDatagram), &store);
@@ -161,7 +161,7 @@ TEST(StreamFaults, AStoreThatForgetsLeavesAGapThatIsGivenUpAndNothingElse) {
   store.set_max_bytes(kAll);
   publish_over(simulation, sender, 400, 9'000, 20.0, 100);
   simulation.run_until(30.0);
-  // Where others are answered all the time, what nobody has any more is given up all the same.
+  // Chunks that no sender has are given up, even while other requests are answered.
   const auto gaps = receiver.subscriber.gaps();
   ASSERT_EQ(gaps.size(), 1U);
   EXPECT_LT(gaps[0].ranges.back().last, gaps[0].first_sequence);
@@ -169,12 +169,12 @@ TEST(StreamFaults, AStoreThatForgetsLeavesAGapThatIsGivenUpAndNothingElse) {
   for (int id = 100; id < 500; ++id) EXPECT_EQ(receiver.times_received[id], 1) << id;
 }
 
-TEST(StreamFaults, NobodyIsAskedForLongWhenNobodyAnswers) {
+TEST(StreamFaults, RequestsStopWhenNobodyAnswers) {
   Simulation simulation;
   RecentChunks store(kAll);
   SimulatedSender replay(simulation, chunks_of(kDatagram), &store);
   SimulatedReceiver& receiver = replay.join({.loss = 0.1}, 1);
-  receiver.on_request = [](const ResendRequest&) {};  // what is replayed cannot answer
+  receiver.on_request = [](const ResendRequest&) {};  // a replayed log cannot answer
   publish_over(simulation, replay, 100, 9'000, 4.0);
   simulation.run_until(4.5);
   EXPECT_GT(receiver.requests, 0);
@@ -186,7 +186,7 @@ TEST(StreamFaults, NobodyIsAskedForLongWhenNobodyAnswers) {
   EXPECT_LE(receiver.requests, 20);
   const std::int64_t requests = receiver.requests;
   simulation.run_until(110.0);
-  EXPECT_LE(receiver.requests, requests + 11);  // one every 10 s, while heartbeats are heard
+  EXPECT_LE(receiver.requests, requests + 11);  // one every 10 s, while heartbeats are received
   replay.crash();
   simulation.run_until(115.0);
   const std::int64_t at_the_end = receiver.requests;
@@ -194,7 +194,7 @@ TEST(StreamFaults, NobodyIsAskedForLongWhenNobodyAnswers) {
   EXPECT_LE(receiver.requests, at_the_end + 1);
 }
 
-TEST(StreamFaults, WithoutRoomNothingIsTakenAskedForOrGivenUp) {
+TEST(StreamFaults, WithoutMemoryNothingIsKeptRequestedOrGivenUp) {
   Simulation simulation;
   RecentChunks store(kAll);
   SimulatedSender sender(simulation, chunks_of(kDatagram), &store);
@@ -218,7 +218,7 @@ TEST(StreamFaults, WithoutRoomNothingIsTakenAskedForOrGivenUp) {
   ASSERT_TRUE(completes(simulation, sender, 100, 20.0));
 }
 
-TEST(StreamFaults, AConsumerWithLittleRoomGetsSlicesInOrderAndEverythingInTheEnd) {
+TEST(StreamFaults, AConsumerWithLittleMemoryGetsAllSlicesInOrder) {
   constexpr int kRoom = 4;
   Simulation simulation;
   RecentChunks store(kAll);
@@ -246,12 +246,12 @@ TEST(StreamFaults, AConsumerWithLittleRoomGetsSlicesInOrderAndEverythingInTheEnd
   EXPECT_EQ(next, 100);
   EXPECT_TRUE(has_each_once(receiver, 100));
   EXPECT_GT(receiver.subscriber.counts().chunks_refused, 0);
-  // The consumer's own bound, and what of the 256 chunks that are next completes meanwhile.
+  // The consumer's own limit, and the slices that the next 256 chunks complete meanwhile.
   EXPECT_LE(most_waiting, kRoom + 256 / 5 + 1);
   EXPECT_EQ(receiver.subscriber.counts().chunks_given_up, 0);
 }
 
-TEST(StreamFaults, AbsurdHeartbeatsCostNothingAndAreForgotten) {
+TEST(StreamFaults, AbsurdHeartbeatsCostLittleAndAreForgotten) {
   Simulation simulation;
   RecentChunks store(kAll);
   SimulatedSender sender(simulation, chunks_of(kDatagram), &store);

@@ -1,4 +1,4 @@
-// How much reliable streams send again, by loss, size of chunks and number of receivers.
+// How much a reliable stream resends, by loss, chunk size and number of receivers.
 
 #include <cstdio>
 #include <tuple>
@@ -15,10 +15,10 @@ using namespace testing;  // NOLINT: the network and the examples
 /// Loss, chunk size, receivers.
 class Loss : public ::testing::TestWithParam<std::tuple<double, std::size_t, int>> {};
 
-// What is sent again over what is lost. Above 1: chunks that were asked for twice, or came late.
+// Resent over lost chunks. It is above 1 when chunks are requested twice, or late.
 constexpr double kMaxResendFactor = 1.1;
 
-TEST_P(Loss, EverySliceArrivesOnceAndLittleIsSentInVain) {
+TEST_P(Loss, EverySliceIsReceivedOnceAndLittleIsResentForNothing) {
   const auto [loss, chunk_bytes, num_receivers] = GetParam();
   Simulation simulation;
   RecentChunks store(kAll);
@@ -26,7 +26,8 @@ TEST_P(Loss, EverySliceArrivesOnceAndLittleIsSentInVain) {
   for (int i = 0; i < num_receivers; ++i) {
     sender.join({.loss = loss}, 100U + static_cast<std::uint32_t>(i));
   }
-  // 8 MB/s of the 10 MB/s that the bucket lets pass; large chunks are few, so for longer.
+  // 8 MB/s of the 10 MB/s that the bucket allows. For longer with large chunks, because they are
+  // few.
   const bool is_large = chunk_bytes == kDatagram;
   const int count = is_large ? 200 : 400;
   const int num_points = is_large ? 9'000 : 300;

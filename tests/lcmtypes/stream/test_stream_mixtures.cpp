@@ -1,4 +1,4 @@
-// Every fault of the network and of the processes at once, by seed.
+// All faults of the network and of the processes at once, by seed.
 
 #include <algorithm>
 #include <functional>
@@ -14,7 +14,8 @@ namespace {
 using namespace testing;  // NOLINT: the network and the examples
 
 constexpr int kNumSlices = 150;
-constexpr double kFaults_s = 12.0;  // then the network still loses, but nobody is stopped or killed
+constexpr double kFaults_s =
+    12.0;  // after that the network still loses messages, but no process is stopped or killed
 
 class Mixture : public ::testing::TestWithParam<std::uint32_t> {
  protected:
@@ -22,7 +23,7 @@ class Mixture : public ::testing::TestWithParam<std::uint32_t> {
     return std::uniform_real_distribution<double>(from, to)(random_);
   }
 
-  /// Delays may be longer than a receiver waits, and than the sender takes for in flight.
+  /// Delays may be longer than a receiver waits, and longer than ResendQueue::kInFlight_s.
   Link any_link() {
     return {uniform(0.0, 0.3), uniform(0.0, 0.1), uniform(0.0, 0.3), uniform(0.0, 0.3),
             uniform(0.0, 0.05)};
@@ -35,7 +36,8 @@ class Mixture : public ::testing::TestWithParam<std::uint32_t> {
     if (random_() % 2 == 0) config.max_asked_bytes = 200'000;
     config.room = [this, lacks = random_() % 2 == 0] {
       if (!lacks || simulation_.now_s() > kFaults_s) return StreamRoom::kPlenty;
-      return StreamRoom{static_cast<int>(2.0 * simulation_.now_s()) % 3};  // another each 0.5 s
+      return StreamRoom{static_cast<int>(2.0 * simulation_.now_s()) %
+                        3};  // another value every 0.5 s
     };
     return config;
   }
@@ -46,7 +48,7 @@ class Mixture : public ::testing::TestWithParam<std::uint32_t> {
     simulation_.at(begin_s + uniform(0.1, 4.0), [&] { receiver.go_on(); });
   }
 
-  /// The sender publishes a slice now and then, and all of them again after each kill.
+  /// The sender publishes slices at random times, and all of them again after each kill.
   void publish_and_be_killed() {
     publish_next_ = [this] {
       if (sender_.is_running() && published_ < kNumSlices) {
@@ -72,7 +74,7 @@ class Mixture : public ::testing::TestWithParam<std::uint32_t> {
   std::function<void()> publish_next_;
 };
 
-TEST_P(Mixture, EverySliceArrivesOnceEverywhere) {
+TEST_P(Mixture, EveryReceiverGetsEverySliceOnce) {
   for (std::uint32_t i = 0; i < 2; ++i)
     stop_now_and_then(sender_.join(any_link(), i, any_limits()));
   simulation_.at(uniform(1.0, 10.0), [this] { sender_.join(any_link(), 2, any_limits()); });

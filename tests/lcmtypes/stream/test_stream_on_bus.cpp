@@ -1,4 +1,4 @@
-// Reliable streams over a real bus that loses messages, in a network namespace of the test's own.
+// Reliable streams over a real bus that loses messages, in a network namespace of their own.
 
 #include <chrono>
 #include <functional>
@@ -26,7 +26,7 @@ using namespace testing;  // NOLINT: the examples and the private bus
 constexpr int kNumSlices = 20;
 constexpr int kNumPoints = 20'000;  // 640 kB: 11 datagrams
 
-// Less than two datagrams fit: what comes while the receiver is busy is lost.
+// Less than two datagrams fit: messages are lost while the receiver is busy.
 constexpr char kTinyReceiveBuffer[] = "&recv_buf_size=65536";
 
 bool becomes_true(const std::function<bool()>& condition) {
@@ -36,7 +36,7 @@ bool becomes_true(const std::function<bool()>& condition) {
   return condition();
 }
 
-/// A process that receives the stream, on a connection and in a thread of its own.
+/// A receiver of the stream, with its own connection and thread.
 class Receiver {
  public:
   explicit Receiver(const std::string& url_options = "") : bus_(kPrivateBusUrl + url_options) {
@@ -47,7 +47,7 @@ class Receiver {
   bool has_all() const {
     return subscriber_.counts().messages_complete == kNumSlices && subscriber_.is_complete(42);
   }
-  /// Each slice as it was sent, once.
+  /// True if each slice was received once and unchanged.
   bool is_right() {
     thread_->stop();
     for (int id = 0; id < kNumSlices; ++id) {
@@ -65,10 +65,10 @@ class Receiver {
   StreamSubscriber<CloudSlice> subscriber_{channels::kCloudSlice, [this](CloudSlice slice) {
                                              slices_.emplace(slice.id, std::move(slice));
                                            }};
-  std::optional<BusThread> thread_;  // last: stops before the rest goes
+  std::optional<BusThread> thread_;  // last: it is stopped before the rest is destroyed
 };
 
-/// A process that sends, faster than a tiny receive buffer takes it, and answers.
+/// A sender that is faster than a tiny receive buffer, and answers requests.
 class Sender {
  public:
   explicit Sender(double rate_bytes_per_s = 100e6) {
@@ -115,7 +115,7 @@ TEST_F(StreamOnBus, TwoReceiversWithTinyBuffersMissNothing) {
   EXPECT_TRUE(other.is_right());
 }
 
-TEST_F(StreamOnBus, WhoComesWhenAllIsSentGetsAllOfIt) {
+TEST_F(StreamOnBus, AReceiverThatJoinsAfterTheEndGetsEverything) {
   Sender sender;
   sender.publish_all();
   const double before_s = sender.stream().time_since_request_s();
@@ -127,7 +127,7 @@ TEST_F(StreamOnBus, WhoComesWhenAllIsSentGetsAllOfIt) {
   EXPECT_TRUE(late.is_right());
 }
 
-TEST_F(StreamOnBus, AReceiverThatComesInTheMiddleDoesNotHoldUpTheOther) {
+TEST_F(StreamOnBus, AReceiverThatJoinsInTheMiddleDoesNotDelayTheOther) {
   Receiver early(kTinyReceiveBuffer);
   Sender sender(20e6);
   std::thread publishing([&] { sender.publish_all(); });

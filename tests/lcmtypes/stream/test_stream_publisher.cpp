@@ -13,7 +13,7 @@ namespace {
 using namespace testing;  // NOLINT: the examples and recordings
 using ::testing::IsEmpty;
 
-TEST(StreamPublisher, NumbersChunksWithoutGapsAndHeartbeatsTheNext) {
+TEST(StreamPublisher, NumbersChunksWithoutGapsAndAnnouncesTheNextNumber) {
   Recording recording;
   {
     StreamPublisher publisher(recording.transmit(), channels::kCloudSlice, 42, fast());
@@ -36,7 +36,7 @@ TEST(StreamPublisher, NumbersChunksWithoutGapsAndHeartbeatsTheNext) {
   EXPECT_EQ(recording.heartbeats.back().channel, channels::kCloudSlice);
 }
 
-TEST(StreamPublisher, SendsTheSameBytesForTheSameMessagesHoweverPaced) {
+TEST(StreamPublisher, SendsTheSameBytesAtAnyRate) {
   const std::vector<CloudSlice> slices = {example_slice(700, 0), example_slice(20, 1)};
   StreamPublisher::Config slow = fast();
   slow.rate_bytes_per_s = 500'000.0;
@@ -48,7 +48,7 @@ TEST(StreamPublisher, SendsTheSameBytesForTheSameMessagesHoweverPaced) {
   EXPECT_EQ(recording.chunks, chunks_of(slices));
 }
 
-TEST(StreamPublisher, SendsWhatIsQueuedBeforeItGoesAway) {
+TEST(StreamPublisher, SendsQueuedMessagesBeforeItIsDestroyed) {
   Recording recording;
   {
     StreamPublisher publisher(recording.transmit(), channels::kCloudSlice, 42, fast());
@@ -77,7 +77,7 @@ TEST(StreamPublisher, StoresEachChunkBeforeItIsSent) {
   EXPECT_EQ(recording.heartbeats.back().first_sequence, 0);
 }
 
-TEST(StreamPublisher, RefusesBadMessagesAtTheCall) {
+TEST(StreamPublisher, RefusesInvalidMessagesInPublish) {
   Recording recording;
   StreamPublisher publisher(recording.transmit(), channels::kCloudSlice, 42, fast());
   CloudSlice bad = example_slice(10);
@@ -90,7 +90,7 @@ TEST(StreamPublisher, RefusesBadMessagesAtTheCall) {
   EXPECT_THAT(recording.chunks, IsEmpty());
 }
 
-TEST(StreamPublisher, ThrowsAtFlushAndPublishWhatSendingThrew) {
+TEST(StreamPublisher, ThrowsTheErrorOfSendingInFlushAndPublish) {
   StreamPublisher publisher(
       [](const std::string& channel, ByteView) {
         if (channel == channels::kCloudSlice) throw std::runtime_error("the network is down");
@@ -113,7 +113,7 @@ TEST(StreamPublisher, ValidatesItsConfiguration) {
   }
 }
 
-TEST(StreamPublisher, AnswersRequestsForItsSessionAndChannelOnly) {
+TEST(StreamPublisher, AnswersOnlyRequestsForItsSessionAndChannel) {
   Recording recording;
   RecentChunks store(10'000'000);
   StreamPublisher publisher(recording.transmit(), channels::kCloudSlice, 42, fast(), &store);
@@ -131,7 +131,7 @@ TEST(StreamPublisher, AnswersRequestsForItsSessionAndChannelOnly) {
   EXPECT_EQ(publisher.chunks_published(), published);
 }
 
-TEST(StreamPublisher, GoesOnWithTheSessionOfItsStore) {
+TEST(StreamPublisher, ResumesTheSessionOfItsStore) {
   const std::vector<CloudSlice> slices = example_slices(4, 300);
   RecentChunks store(10'000'000);
   Recording first;
@@ -159,7 +159,7 @@ TEST(StreamPublisher, GoesOnWithTheSessionOfItsStore) {
   EXPECT_THROW(third.publish(slices[0]), std::runtime_error);
 }
 
-TEST(StreamPublisher, MayPublishAStateWhenItIsToldThatOneIsWanted) {
+TEST(StreamPublisher, CanPublishAFullStateWhenOneIsWanted) {
   Recording recording;
   RecentChunks store(10'000);  // the last two chunks
   std::atomic<bool> is_wanted = false;

@@ -1,4 +1,4 @@
-// What a publisher does, step by step, without its thread.
+// The steps of a publisher, without its thread.
 
 #include <optional>
 #include <vector>
@@ -18,7 +18,7 @@ using ::testing::IsEmpty;
 
 constexpr std::size_t kChunkBytes = 1'000;
 
-/// A sender of chunks that are their own number, and all that it sends.
+/// A sender whose chunks have their number as content, and everything that it has sent.
 struct Sending {
   std::vector<std::int64_t> sequences;
   std::vector<double> times_s;
@@ -101,7 +101,7 @@ TEST(StreamSender, ResendsFromItsStoreOnly) {
   EXPECT_EQ(without.heartbeats.back().first_sequence, 10);
 }
 
-TEST(StreamSender, PassesOverWhatItsStoreHasLost) {
+TEST(StreamSender, SkipsChunksThatItsStoreHasLost) {
   struct Holed : RecentChunks {
     using RecentChunks::RecentChunks;
     std::optional<Bytes> find(std::int64_t sequence) const override {
@@ -113,7 +113,7 @@ TEST(StreamSender, PassesOverWhatItsStoreHasLost) {
   sending.run_until(1.0);
   sending.sequences.clear();
   sending.ask({{0, 92}});
-  sending.run_until(1.01);  // at once, without a wait for each hole
+  sending.run_until(1.01);  // at once, without a wait for each lost chunk
   EXPECT_THAT(sending.sequences, ElementsAre(90, 91, 92));
 
   sending.sequences.clear();
@@ -123,7 +123,7 @@ TEST(StreamSender, PassesOverWhatItsStoreHasLost) {
   EXPECT_EQ(sending.sequences.size(), 80U);
 }
 
-TEST(StreamSender, PacesNewChunksAndResendsTogether) {
+TEST(StreamSender, LimitsTheRateOfNewChunksAndResendsTogether) {
   RecentChunks store(1'000'000);
   StreamPublisherConfig config;
   config.rate_bytes_per_s = 50.0 * kChunkBytes;
@@ -133,15 +133,15 @@ TEST(StreamSender, PacesNewChunksAndResendsTogether) {
   sending.run_until(1.0);
   sending.ask({{0, 30}});
   sending.run_until(3.0);
-  // The burst, and the rate of 50 a second for 3 s.
+  // The burst, and 50 per second for 3 s.
   EXPECT_NEAR(static_cast<double>(sending.sequences.size()), 152.0, 2.0);
   EXPECT_NEAR(static_cast<double>(sending.sender.counts().chunks_resent), 100.0 / 8.0, 1.0);
   for (std::size_t i = 3; i < sending.times_s.size(); ++i) {
-    ASSERT_GE(sending.times_s[i] - sending.times_s[i - 3], 0.019) << i;  // three in 20 ms
+    ASSERT_GE(sending.times_s[i] - sending.times_s[i - 3], 0.019) << i;  // at most three in 20 ms
   }
 }
 
-TEST(StreamSender, GoesOnWithAStoredSessionAndSendsNothingTwice) {
+TEST(StreamSender, ResumesAStoredSessionAndSendsNothingTwice) {
   RecentChunks store(1'000'000);
   for (std::int64_t sequence = 0; sequence < 5; ++sequence) {
     store.add(sequence, Sending::chunk(sequence));
@@ -149,7 +149,8 @@ TEST(StreamSender, GoesOnWithAStoredSessionAndSendsNothingTwice) {
   Sending sending(&store);
   EXPECT_EQ(sending.sender.next_sequence(), 5);
   sending.run_until(0.1);
-  EXPECT_EQ(sending.heartbeats.back().next_sequence, 5);  // served before anything is made again
+  EXPECT_EQ(sending.heartbeats.back().next_sequence,
+            5);  // announced before any chunk is published again
   sending.ask({{1, 2}});
   sending.push(3);
   sending.push(4);
@@ -160,7 +161,7 @@ TEST(StreamSender, GoesOnWithAStoredSessionAndSendsNothingTwice) {
   EXPECT_EQ(store.next_sequence(), 7);
 }
 
-TEST(StreamSender, TellsASessionThatIsMadeAgainDifferently) {
+TEST(StreamSender, DetectsAResumedSessionThatDiffers) {
   RecentChunks store(1'000'000);
   for (std::int64_t sequence = 0; sequence < 5; ++sequence) {
     store.add(sequence, Sending::chunk(sequence));
@@ -177,7 +178,7 @@ TEST(StreamSender, TellsASessionThatIsMadeAgainDifferently) {
   }
 }
 
-TEST(StreamSender, AStateSupersedesWhatWentBefore) {
+TEST(StreamSender, AFullStateReplacesWhatWasSentBefore) {
   RecentChunks store(1'000'000);
   StreamPublisherConfig config = Sending::fast();
   int states_wanted = 0;
@@ -190,7 +191,7 @@ TEST(StreamSender, AStateSupersedesWhatWentBefore) {
   EXPECT_EQ(sending.heartbeats.back().state_sequence, 5);
   EXPECT_EQ(sending.heartbeats.back().next_sequence, 10);
   sending.sequences.clear();
-  sending.ask({{0, 5}});  // by somebody who has not heard of it
+  sending.ask({{0, 5}});  // by a receiver that does not know of it yet
   sending.run_until(1.1);
   EXPECT_THAT(sending.sequences, ElementsAre(5));
   EXPECT_EQ(states_wanted, 0);
@@ -202,7 +203,7 @@ TEST(StreamSender, AStateSupersedesWhatWentBefore) {
   EXPECT_EQ(states_wanted, 0);
   sending.ask({{8, kMaxSequence}});
   EXPECT_EQ(states_wanted, 0);
-  sending.ask({{6, 6}});  // gone from the store, and of the state
+  sending.ask({{6, 6}});  // no longer in the store, and part of the full state
   EXPECT_EQ(states_wanted, 1);
 }
 

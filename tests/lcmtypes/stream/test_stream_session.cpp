@@ -17,7 +17,7 @@ Heartbeat beat(std::int64_t first, std::int64_t next, std::int64_t state = 0) {
 
 StreamSession a_session() { return StreamSession(ResendRequests::Config{}); }
 
-TEST(StreamSession, BelievesASecondHeartbeatThatTakesSomethingBack) {
+TEST(StreamSession, AcceptsALowerHeartbeatWhenTheNextOneConfirmsIt) {
   StreamSession session = a_session();
   session.hear(beat(0, 10));
   session.hear(beat(0, 8));  // late
@@ -30,7 +30,7 @@ TEST(StreamSession, BelievesASecondHeartbeatThatTakesSomethingBack) {
   EXPECT_EQ(session.next_sequence(), 13);
 }
 
-TEST(StreamSession, AFalseChunkIsForgottenToo) {
+TEST(StreamSession, AnInvalidChunkIsForgottenToo) {
   StreamSession session = a_session();
   session.hear(beat(0, 10));
   session.note(std::int64_t{1} << 47);
@@ -42,7 +42,7 @@ TEST(StreamSession, AFalseChunkIsForgottenToo) {
   EXPECT_TRUE(session.is_complete());
 }
 
-TEST(StreamSession, MissesNothingBelowAState) {
+TEST(StreamSession, MissesNothingBeforeAFullState) {
   StreamSession session = a_session();
   session.hear(beat(0, 10));
   session.keep(9, 100);
@@ -52,28 +52,28 @@ TEST(StreamSession, MissesNothingBelowAState) {
   EXPECT_TRUE(session.has(3));
 }
 
-TEST(StreamSession, AlwaysTakesWhatIsMissingLowestIfThereIsAnyRoom) {
+TEST(StreamSession, TakesTheLowestMissingChunkIfThereIsAnyMemory) {
   StreamSession session = a_session();
   session.hear(beat(0, 10'000));
   for (std::int64_t sequence = 1; sequence < 100; sequence += 2) session.keep(sequence, 100);
   constexpr std::size_t kMaxGaps = 50;
   EXPECT_TRUE(session.takes(0, StreamRoom::kPlenty, kMaxGaps));
-  EXPECT_TRUE(session.takes(100, StreamRoom::kPlenty, kMaxGaps));   // opens no gap
-  EXPECT_FALSE(session.takes(200, StreamRoom::kPlenty, kMaxGaps));  // would open one too many
+  EXPECT_TRUE(session.takes(100, StreamRoom::kPlenty, kMaxGaps));   // creates no gap
+  EXPECT_FALSE(session.takes(200, StreamRoom::kPlenty, kMaxGaps));  // would create one too many
   EXPECT_TRUE(session.takes(200, StreamRoom::kPlenty, kMaxGaps + 1));
   EXPECT_TRUE(session.takes(0, StreamRoom::kOnlyNext, kMaxGaps));
   EXPECT_FALSE(session.takes(1'000, StreamRoom::kOnlyNext, 1'000));
   EXPECT_FALSE(session.takes(0, StreamRoom::kNone, kMaxGaps));
 }
 
-TEST(StreamSession, MissesNothingThatAnEarlierRunHas) {
+TEST(StreamSession, MissesNothingThatAnEarlierRunHasReceived) {
   StreamSession session = a_session();
   session.restore({{0, 499}, {600, 699}});
   EXPECT_EQ(session.next_sequence(), 700);
   EXPECT_EQ(session.chunks_kept(), 600);
   EXPECT_TRUE(session.has(499));
   session.hear(beat(0, 1'000));
-  // One chunk more tells how large they are; what the earlier run had says nothing of that.
+  // The size of chunks is known from one further chunk only, not from restored ones.
   session.keep(999, 60'000);
   session.poll(StreamRoom::kPlenty, 600'000, 100, 0.0);
   const auto ranges = session.poll(StreamRoom::kPlenty, 600'000, 100, 0.1);
@@ -81,7 +81,7 @@ TEST(StreamSession, MissesNothingThatAnEarlierRunHas) {
   EXPECT_EQ(ranges[0], (SequenceRange{500, 509}));
 }
 
-/// Polls for `duration_s`; the sender is heard and answers what it can: from number 5 on.
+/// Polls for `duration_s`. The sender is heard, and resends chunks from number 5 on.
 std::vector<double> times_of_asking_for_the_rest(StreamSession& session, double duration_s) {
   std::vector<double> times_s;
   for (double now_s = 0.0; now_s < duration_s; now_s += 0.02) {
@@ -97,16 +97,16 @@ std::vector<double> times_of_asking_for_the_rest(StreamSession& session, double 
   return times_s;
 }
 
-TEST(StreamSession, GivesUpWhatIsLostAndThenAsksForTheRest) {
+TEST(StreamSession, GivesUpLostChunksAndThenAsksForTheRest) {
   StreamSession session = a_session();
   const auto times_s = times_of_asking_for_the_rest(session, 10.0);
   EXPECT_EQ(times_s.size(), 995U);
-  EXPECT_GE(times_s.front(), 5.0);  // a full state might have come
+  EXPECT_GE(times_s.front(), 5.0);  // meanwhile a full state could have come
   EXPECT_EQ(session.count_given_up(), 5);
   EXPECT_TRUE(session.has_given_up());
 }
 
-TEST(StreamSession, AsksForNothingThatAFullStateSupersedes) {
+TEST(StreamSession, AsksForNothingThatAFullStateReplaces) {
   StreamSession session = a_session();
   EXPECT_TRUE(times_of_asking_for_the_rest(session, 2.0).empty());
   session.hear(beat(5, 1'000, 999));

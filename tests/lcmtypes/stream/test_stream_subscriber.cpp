@@ -33,7 +33,7 @@ struct Receiver {
   }
 };
 
-TEST(StreamSubscriber, PutsShuffledAndDuplicatedChunksTogether) {
+TEST(StreamSubscriber, JoinsShuffledAndDuplicatedChunks) {
   const std::vector<CloudSlice> slices = {example_slice(2'000, 0), example_slice(0, 1),
                                           example_slice(900, 2), example_slice(1, 3)};
   std::vector<Bytes> chunks = chunks_of(slices);
@@ -58,7 +58,7 @@ TEST(StreamSubscriber, PutsShuffledAndDuplicatedChunksTogether) {
   }
 }
 
-TEST(StreamSubscriber, ReportsWhatIsMissingAndCompletesWhenItComes) {
+TEST(StreamSubscriber, ReportsMissingChunksUntilTheyAreReceived) {
   const CloudSlice slice = example_slice(1'000, 0);
   const std::vector<Bytes> chunks = chunks_of({slice});
   ASSERT_GE(chunks.size(), 8U);
@@ -78,7 +78,7 @@ TEST(StreamSubscriber, ReportsWhatIsMissingAndCompletesWhenItComes) {
   EXPECT_TRUE(receiver.slices[0] == slice);
 }
 
-TEST(StreamSubscriber, LearnsFromHeartbeatsWhatNeverCame) {
+TEST(StreamSubscriber, LearnsOfMissingChunksFromHeartbeats) {
   Receiver receiver;
   const auto beat = [&](const Heartbeat& heartbeat) {
     receiver.stream.handle(channels::kHeartbeat, encode(heartbeat));
@@ -94,7 +94,7 @@ TEST(StreamSubscriber, LearnsFromHeartbeatsWhatNeverCame) {
   EXPECT_EQ(receiver.stream.counts().chunks_missing, 5);
 }
 
-TEST(StreamSubscriber, KeepsSessionsApart) {
+TEST(StreamSubscriber, SeparatesSessions) {
   CloudSlice one = example_slice(500, 0);
   CloudSlice other = example_slice(500, 1);
   other.session = 77;
@@ -122,7 +122,7 @@ TEST(StreamSubscriber, CountsAndDropsBadMessages) {
   EXPECT_EQ(receiver.stream.counts().messages_bad, 2);
   EXPECT_THAT(receiver.reasons, SizeIs(2));
   EXPECT_FALSE(receiver.stream.handle("SNAPSHOT", Bytes{}));
-  // A chunk with the number of another message's chunk.
+  // A chunk with the sequence number of another message's chunk.
   const auto one = chunks_of({example_slice(500, 0)});
   const auto other = chunks_of({example_slice(500, 1)});
   receiver.receive(one[0]);
@@ -132,20 +132,20 @@ TEST(StreamSubscriber, CountsAndDropsBadMessages) {
   EXPECT_THAT(receiver.slices, SizeIs(1));
 }
 
-TEST(StreamSubscriber, RecoversFromAFalseChunkAmongTrueOnes) {
+TEST(StreamSubscriber, RecoversFromAnInvalidChunkAmongValidOnes) {
   Receiver receiver;
   CloudSlice other = example_slice(500, 0);
   other.utime += 1;
   const auto true_chunks = chunks_of({example_slice(500, 0)});
   receiver.receive(chunks_of({other})[1]);
-  for (int round = 0; round < 2; ++round) receiver.receive(true_chunks);  // sent, and sent again
+  for (int round = 0; round < 2; ++round) receiver.receive(true_chunks);  // sent and resent
   ASSERT_THAT(receiver.slices, SizeIs(1));
   EXPECT_TRUE(receiver.slices[0] == example_slice(500, 0));
   EXPECT_EQ(receiver.stream.counts().messages_bad, 1);
   EXPECT_EQ(receiver.stream.counts().chunks_missing, 0);
 }
 
-TEST(StreamSubscriber, ForgetsASessionForGood) {
+TEST(StreamSubscriber, IgnoresAForgottenSession) {
   Receiver receiver;
   const auto chunks = chunks_of({example_slice(500, 0), example_slice(500, 1)});
   receiver.receive(chunks[1]);
@@ -172,9 +172,9 @@ TEST(StreamSubscriber, IgnoresTheSessionsOfOtherMaps) {
   };
   beat(42, "office");
   EXPECT_EQ(receiver.stream.counts().chunks_missing, 0);
-  beat(42, "");  // may be any map's
+  beat(42, "");  // may be of any map
   EXPECT_EQ(receiver.stream.counts().chunks_missing, 50);
-  receiver.receive(chunks_of({example_slice(500, 0)})[0]);  // of the office
+  receiver.receive(chunks_of({example_slice(500, 0)})[0]);  // of map "office"
   EXPECT_EQ(receiver.stream.counts().chunks_unwanted, 1);
   EXPECT_EQ(receiver.stream.counts().chunks_missing, 0);
   beat(42, "");
@@ -203,7 +203,7 @@ TEST(StreamSubscriber, CutsItsRequestsToTheSizeOfADatagram) {
   EXPECT_EQ(receiver.stream.counts().requests_sent, static_cast<std::int64_t>(requests.size()));
 }
 
-TEST(StreamSubscriber, MadeUpSessionsDoNotDriveOutATrueOne) {
+TEST(StreamSubscriber, InventedSessionsDoNotDisplaceARealOne) {
   StreamSubscriber<CloudSlice>::Config config;
   config.max_sessions = 8;
   Receiver receiver(config);
@@ -218,7 +218,7 @@ TEST(StreamSubscriber, MadeUpSessionsDoNotDriveOutATrueOne) {
   EXPECT_LE(receiver.stream.gaps().size(), 7U);
 }
 
-TEST(StreamSubscriber, TakesOnlyWhatIsMissingLowestBeyondItsMemoryBound) {
+TEST(StreamSubscriber, KeepsOnlyTheLowestMissingChunksBeyondItsMemoryLimit) {
   StreamSubscriber<CloudSlice>::Config config;
   config.max_pending_bytes = 20'000;
   Receiver receiver(config);
@@ -236,13 +236,13 @@ TEST(StreamSubscriber, TakesOnlyWhatIsMissingLowestBeyondItsMemoryBound) {
   EXPECT_EQ(before.chunks_received + before.chunks_refused, offered);
   EXPECT_EQ(before.chunks_missing, 899 - before.chunks_received);
   EXPECT_GT(receiver.stream.pending_bytes(), config.max_pending_bytes);
-  receiver.receive(chunks);  // what was refused comes again
+  receiver.receive(chunks);  // the refused chunks are resent
   EXPECT_THAT(receiver.slices, SizeIs(300));
   EXPECT_EQ(receiver.stream.counts().chunks_missing, 0);
   EXPECT_EQ(receiver.stream.pending_bytes(), 0U);
 }
 
-TEST(StreamSubscriber, ForgetsTheSessionLongestSilent) {
+TEST(StreamSubscriber, DropsTheSessionThatWasSilentLongest) {
   StreamSubscriber<CloudSlice>::Config config;
   config.max_sessions = 2;
   Receiver receiver(config);
@@ -254,7 +254,7 @@ TEST(StreamSubscriber, ForgetsTheSessionLongestSilent) {
   EXPECT_EQ(receiver.stream.gaps()[0].session, 2);
 }
 
-TEST(StreamSubscriber, RefusesWhatWouldOpenTooManyGaps) {
+TEST(StreamSubscriber, RefusesChunksThatWouldCreateTooManyGaps) {
   StreamSubscriber<CloudSlice>::Config config;
   config.max_gaps_per_session = 4;
   Receiver receiver(config);
@@ -267,7 +267,7 @@ TEST(StreamSubscriber, RefusesWhatWouldOpenTooManyGaps) {
   EXPECT_EQ(receiver.stream.counts().chunks_missing, 0);
 }
 
-TEST(Stream, CarriesTheOtherBulkMessagesToo) {
+TEST(Stream, CarriesAllBulkMessages) {
   const auto carried = [](const auto& message) {
     using Message = std::remove_cvref_t<decltype(message)>;
     std::vector<Message> received;

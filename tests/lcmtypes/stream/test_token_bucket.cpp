@@ -5,7 +5,7 @@
 namespace kintsugi {
 namespace {
 
-TEST(TokenBucket, LetsTheBurstPassAtOnceAndThenTheRate) {
+TEST(TokenBucket, AllowsTheBurstAtOnceAndThenTheRate) {
   TokenBucket bucket(1000.0, 500.0);
   EXPECT_EQ(bucket.delay_s(500.0, 0.0), 0.0);
   bucket.take(500.0, 0.0);
@@ -14,13 +14,13 @@ TEST(TokenBucket, LetsTheBurstPassAtOnceAndThenTheRate) {
   EXPECT_EQ(bucket.delay_s(250.0, 0.25), 0.0);
 }
 
-TEST(TokenBucket, NeverHoldsMoreThanTheBurst) {
+TEST(TokenBucket, NeverSavesMoreThanTheBurst) {
   TokenBucket bucket(1000.0, 500.0);
   bucket.take(500.0, 1e6);
   EXPECT_DOUBLE_EQ(bucket.delay_s(500.0, 1e6), 0.5);
 }
 
-TEST(TokenBucket, WhatIsLargerThanTheBurstPassesWhenFullAndIsPaidOff) {
+TEST(TokenBucket, AMessageLargerThanTheBurstDelaysTheNextOne) {
   TokenBucket bucket(1000.0, 500.0);
   EXPECT_EQ(bucket.delay_s(2000.0, 0.0), 0.0);
   bucket.take(2000.0, 0.0);
@@ -34,7 +34,7 @@ TEST(TokenBucket, KeepsTheRateOverAnyNumberOfMessages) {
     now_s += bucket.delay_s(60'000.0, now_s);
     bucket.take(60'000.0, now_s);
   }
-  // All but the burst waited for its turn; rounding of a thousand sums.
+  // All but the burst had to wait; the tolerance is the rounding of a thousand sums.
   EXPECT_NEAR(now_s, (1000 * 60'000.0 - 100'000.0) / 1e6, 1e-9);
 }
 

@@ -35,7 +35,7 @@ SegmenterStatus segmenter(std::int64_t lag, bool finished) {
   return status;
 }
 
-TEST(Progress, SaysInOneLineWhatAPersonWantsToKnow) {
+TEST(Progress, HasTheMostImportantFieldsInOneLine) {
   Progress progress;
   EXPECT_THAT(progress.line(0), HasSubstr("waiting"));
   progress.update(mapper(250, false), 0);
@@ -52,7 +52,7 @@ TEST(Progress, SaysInOneLineWhatAPersonWantsToKnow) {
   EXPECT_THAT(progress.line(9'000'000), HasSubstr("silent for 9 s"));
 }
 
-TEST(Progress, NamesLosses) {
+TEST(Progress, ReportsLosses) {
   Progress progress;
   MapperStatus lost = mapper(250, false);
   lost.state = TrackingState::kLost;
@@ -71,7 +71,7 @@ TEST(Progress, NamesLosses) {
                     HasSubstr("5 chunks MISSING"), HasSubstr("2 bad messages")));
 }
 
-TEST(Progress, TellsOfStoreRestartsAndProblems) {
+TEST(Progress, ReportsTheLogRestartsAndProblems) {
   Progress progress;
   MapperStatus stored = mapper(250, false);
   stored.store_bytes = 12'000'000;
@@ -100,7 +100,7 @@ TEST(Progress, TellsOfStoreRestartsAndProblems) {
                     Not(HasSubstr("mapper restarted"))));
 }
 
-TEST(Progress, WatchesTheMapHeardFirstOrTheOneThatIsNamed) {
+TEST(Progress, WatchesTheFirstMapOrTheNamedOne) {
   MapperStatus cellar = mapper(7, false);
   cellar.map_name = "cellar";
   MapperStatus room = mapper(250, false);
@@ -121,7 +121,7 @@ TEST(Progress, WatchesTheMapHeardFirstOrTheOneThatIsNamed) {
                                    HasSubstr("11 segmented")));
 }
 
-TEST(Progress, TimeLeftComesFromTheSlowerOfTheTwo) {
+TEST(Progress, TimeLeftIsThatOfTheSlowerProcess) {
   Progress progress;
   EXPECT_FALSE(progress.time_left_s());
   progress.update(mapper(900, false), 0);
@@ -134,14 +134,14 @@ TEST(Progress, TimeLeftComesFromTheSlowerOfTheTwo) {
   EXPECT_FALSE(progress.time_left_s());
 }
 
-TEST(Progress, IsFinishedWhenAllHaveSaidSoForTheSameMap) {
+TEST(Progress, IsFinishedWhenAllHaveFinishedTheSameMap) {
   Progress progress;
   progress.update(segmenter(0, true), 0);
   EXPECT_FALSE(progress.finished(false));
   progress.update(mapper(1'000, true), 0);
   EXPECT_TRUE(progress.finished(false));
   EXPECT_FALSE(progress.finished(true));
-  EXPECT_EQ(progress.unfinished(true), "viewer not heard of");
+  EXPECT_EQ(progress.unfinished(true), "viewer sends no status");
   ViewerStatus viewer;
   progress.update(viewer, 0);
   EXPECT_EQ(progress.unfinished(true), "viewer not finished");
@@ -159,7 +159,7 @@ TEST(Progress, IsFinishedWhenAllHaveSaidSoForTheSameMap) {
   EXPECT_EQ(progress.unfinished(false), "segmenter finished another map");
 }
 
-TEST(Progress, MovesOnlyWhenACounterMoves) {
+TEST(Progress, NeedsAChangedCounterForProgress) {
   Progress progress;
   EXPECT_FALSE(progress.last_progress_us());
   progress.update(mapper(1, false), 10);

@@ -21,7 +21,7 @@ std::vector<std::string> lines_of(const std::filesystem::path& file) {
   return lines;
 }
 
-TEST(StatusLog, HasALineForEachNumber) {
+TEST(StatusLog, HasALineForEachField) {
   const testing::TemporaryFolder folder;
   const auto file = folder.path() / "status.csv";
   StatusLog log(file);
@@ -30,13 +30,15 @@ TEST(StatusLog, HasALineForEachNumber) {
   mapper.session = 1'795'297'648'789'758;  // a wall clock in microseconds: no digit may be lost
   mapper.finished = true;
   mapper.frame_p50_ms = 12.5;
+  mapper.state = TrackingState::kLost;
+  mapper.loss_reason = "too few inliers";
   log.append(mapper);
   SegmenterStatus segmenter;
   segmenter.utime = 6;
   segmenter.lag_slices = 3;
   segmenter.problem = "\"map\", full";
   log.append(segmenter);
-  StatusLog(file).append(ViewerStatus{});  // one that goes on with the file
+  StatusLog(file).append(ViewerStatus{});  // appends to the file
 
   const auto lines = lines_of(file);
   EXPECT_EQ(lines.front(), "utime_us,process,field,value");
@@ -44,12 +46,14 @@ TEST(StatusLog, HasALineForEachNumber) {
   EXPECT_THAT(lines, Contains("5,mapper,session,1795297648789758"));
   EXPECT_THAT(lines, Contains("5,mapper,finished,1"));
   EXPECT_THAT(lines, Contains("5,mapper,frame_p50_ms,12.500000"));
+  EXPECT_THAT(lines, Contains("5,mapper,state,\"lost\""));
+  EXPECT_THAT(lines, Contains("5,mapper,loss_reason,\"too few inliers\""));
   EXPECT_THAT(lines, Contains("6,segmenter,lag_slices,3"));
   EXPECT_THAT(lines, Contains("6,segmenter,problem,\"\"\"map\"\", full\""));
   EXPECT_THAT(lines, Contains("0,viewer,memory_bytes,0"));
 }
 
-TEST(StatusLog, SaysWhatCannotBeWritten) {
+TEST(StatusLog, ThrowsWhenTheFileCannotBeWritten) {
   EXPECT_THROW(StatusLog("/nonexistent/status.csv"), std::runtime_error);
 }
 

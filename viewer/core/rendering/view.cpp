@@ -102,7 +102,7 @@ View parse_view(const std::string& text) {
 }
 
 void FollowedCamera::update(const CameraPose& pose, const Eigen::Vector3d& up_W) {
-  if (pose.state == TrackingState::kStarting || pose.state == TrackingState::kLost) return;
+  if (!is_located(pose.state)) return;
   if (has_pose() && pose.utime <= utime_) return;
   constexpr double kTimeConstant_s = 1.0;
   const Eigen::Vector3d position_W = pose.X_WC.translation();

@@ -5,7 +5,7 @@
 namespace kintsugi::viewer {
 
 bool HeardPoses::add(const CameraPose& pose) {
-  if (pose.state == TrackingState::kStarting || pose.state == TrackingState::kLost) return false;
+  if (!is_located(pose.state)) return false;
   if (newest_ && pose.utime <= newest_->utime) return false;
   if (heard_.empty() || pose.utime - heard_.back().last_utime > kMaxPause_us) {
     heard_.push_back({pose.utime, pose.utime});

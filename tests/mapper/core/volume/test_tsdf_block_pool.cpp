@@ -62,5 +62,20 @@ TEST(TsdfBlockPool, LeavesTheMemoryOfLoansThatOutliveIt) {
   EXPECT_EQ(voxels->voxels[3], 77U);
 }
 
+TEST(TsdfBlockPool, KeepsBlocksOneAfterTheOther) {
+  TsdfBlockPool pool;
+  for (int i = 0; i < 3000; ++i) {
+    const BlockSlot slot = pool.take(make_block_coord(i, 0, 0));
+    ASSERT_EQ(&pool.voxels(slot), &pool.voxels(0) + slot);
+    pool.voxels(slot).voxels[0] = static_cast<Voxel>(i);
+  }
+  for (BlockSlot slot = 0; slot < pool.end(); ++slot) {
+    ASSERT_EQ(pool.voxels(slot).voxels[0], static_cast<Voxel>(slot));
+  }
+  pool.give_back(1234);
+  EXPECT_EQ(pool.take({}), 1234);
+  EXPECT_EQ(pool.voxels(1234).voxels[0], 0U) << "a recycled block is empty";
+}
+
 }  // namespace
 }  // namespace kintsugi::mapper
