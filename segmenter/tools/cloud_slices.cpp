@@ -3,6 +3,8 @@
 #include <map>
 #include <span>
 
+#include "segmenter/core/ids/slice_labels.hpp"
+
 namespace kintsugi::segmenter {
 namespace {
 

@@ -6,6 +6,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "mapper/output/map_writers.hpp"
+#include "segmenter/core/make_engine.hpp"
 #include "segmenter/io/labelled_ply_writer.hpp"
 #include "segmenter/io/saved_map.hpp"
 #include "tests/decoder_fuzz/input_file.hpp"
@@ -119,7 +120,7 @@ Seeds saved_map_seeds() {
     config.mode = mode;
     segmenter::SegmentMap map(config, 99, slices[0]);
     map.add(slices);
-    segmenter::save_map(map, path);
+    segmenter::write_map_state(map.state(), path);
     seeds[std::string(mode)] = bytes_of(contents(path));
   }
   return seeds;

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "lcmtypes/base/process_memory.hpp"
+#include "segmenter/core/make_engine.hpp"
 
 namespace kintsugi::segmenter {
 namespace {

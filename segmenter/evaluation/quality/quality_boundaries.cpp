@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "segmenter/core/graph/make_neighbour_index.hpp"
 #include "segmenter/core/graph/neighbour_index.hpp"
 #include "segmenter/core/points/point_cloud.hpp"
 #include "segmenter/evaluation/quality/quality_overlap.hpp"

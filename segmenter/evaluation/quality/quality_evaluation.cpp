@@ -5,8 +5,9 @@
 #include <stdexcept>
 #include <utility>
 
+#include "segmenter/core/make_engine.hpp"
+#include "segmenter/core/parameters/presets.hpp"
 #include "segmenter/core/points/point_cloud.hpp"
-#include "segmenter/core/presets.hpp"
 
 namespace kintsugi::segmenter {
 namespace {

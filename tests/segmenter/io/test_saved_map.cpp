@@ -11,7 +11,9 @@
 
 #include <gmock/gmock.h>
 
+#include "segmenter/core/make_engine.hpp"
 #include "segmenter/io/saved_map.hpp"
+#include "tests/segmenter/changed_parameters.hpp"
 #include "tests/segmenter/process/slice_session.hpp"
 #include "tests/support/allocation_limit.hpp"
 #include "tests/support/message_equality.hpp"
@@ -84,7 +86,7 @@ TEST_P(SavedMap, GoesOnAsIfItHadNeverBeenSaved) {
   SegmentMap map(config_of(GetParam()), 99, groups[0][0]);
   std::vector<std::unique_ptr<SegmentMap>> resumed;  // at each step so far
   for (const auto& group : groups) {
-    save_map(map, folder / "map");
+    write_map_state(map.state(), folder / "map");
     resumed.push_back(load_map(folder / "map"));
     expect_same(*resumed.back(), map);
     const auto updates = map.add(group);
@@ -92,11 +94,11 @@ TEST_P(SavedMap, GoesOnAsIfItHadNeverBeenSaved) {
       EXPECT_EQ(other->add(group), updates);
     }
   }
-  save_map(map, folder / "map");
+  write_map_state(map.state(), folder / "map");
   const std::string bytes = contents(folder / "map");
   for (const auto& other : resumed) {
     expect_same(*other, map);
-    save_map(*other, folder / "other");
+    write_map_state(other->state(), folder / "other");
     EXPECT_EQ(contents(folder / "other"), bytes);
   }
   EXPECT_TRUE(map.is_complete());
@@ -109,27 +111,35 @@ TEST_P(SavedMap, KeepsWhatItIs) {
   slices[2].revision = 8;
   SegmentMapConfig config = config_of(GetParam());
   config.engine.neighbour_search = NeighbourSearch::kFlann;
-  config.engine.beta = 0.5;
-  config.engine.color_weight = 0.003;
-  config.engine.min_points = 7.0;
   SegmentMap map(config, 99, slices[0]);
   map.add(slices);
-  save_map(map, folder / "map");
+  write_map_state(map.state(), folder / "map");
   const auto loaded = load_map(folder / "map");
   EXPECT_EQ(loaded->session(), 99);
   EXPECT_EQ(loaded->map_session(), 5);
   EXPECT_EQ(loaded->map_name(), "map");
   EXPECT_EQ(loaded->config().mode, GetParam());
   EXPECT_EQ(loaded->config().engine.threshold, 0.002);
-  EXPECT_EQ(loaded->config().engine.beta, 0.5);
-  EXPECT_EQ(loaded->config().engine.color_weight, 0.003);
-  EXPECT_EQ(loaded->config().engine.min_points, 7.0);
   EXPECT_EQ(loaded->config().engine.resolution_m, static_cast<double>(0.01F));
   EXPECT_EQ(loaded->config().engine.neighbour_search, NeighbourSearch::kFlann);
   EXPECT_TRUE(loaded->has_final_slice());
   ASSERT_EQ(loaded->cloud().slices().size(), 3U);
   EXPECT_EQ(loaded->cloud().slices()[2].revision, 8);
   EXPECT_THROW(loaded->add(slices), std::invalid_argument);  // they are in it
+}
+
+TEST(SavedMapState, KeepsEveryParameterThatDecidesThePartition) {
+  const TemporaryFolder folder;
+  for (const auto& [changed, engine] : testing::changed_parameters()) {
+    SegmentMapState state;
+    state.config.engine = engine;
+    write_map_state(state, folder / "map");
+    const EngineConfig read = read_map_state(folder / "map").config.engine;
+    for (const EngineParameter& parameter : kMapParameters) {
+      EXPECT_EQ(read.*parameter.value, engine.*parameter.value)
+          << parameter.name << " where " << changed.name << " was changed";
+    }
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Modes, SavedMap,

@@ -287,7 +287,7 @@ TEST_F(ProcessFaults, ASavedMapOfAnotherSessionIsKeptAsideAndTheNewOneBegins) {
   const auto newer = wavy_session(4, 300, 6, 2);
   SegmentMap saved({}, 1, older[0]);
   saved.add({older.data(), 3});
-  save_map(saved, folder_ / "map.kseg");
+  write_map_state(saved.state(), folder_ / "map.kseg");
   SegmenterProcess::Config config = on_the_bus(folder_, "exact");
   config.files.save_file = config.resume_file = folder_ / "map.kseg";
   Listener listener(config);

@@ -7,7 +7,7 @@
 #include <lcm/lcm-cpp.hpp>
 
 #include "lcmtypes/channels.hpp"
-#include "segmenter/core/presets.hpp"
+#include "segmenter/core/parameters/presets.hpp"
 #include "segmenter/io/ply_reader.hpp"
 #include "segmenter/process/process_status.hpp"
 #include "segmenter/process/segmenter_process.hpp"
@@ -205,7 +205,7 @@ TEST_F(SegmenterProgram, AuditsModeExactAndNoOther) {
   EXPECT_EQ(result.exit_code, 0) << result.output;
   const auto refused = run(log + " --mode voting");
   EXPECT_EQ(refused.exit_code, 1);
-  EXPECT_THAT(refused.output, HasSubstr("audit is on, but mode is 'voting'"));
+  EXPECT_THAT(refused.output, HasSubstr("audit is on, and mode is 'voting'"));
 }
 
 TEST_F(SegmenterProgram, RefusesParametersOutOfRange) {

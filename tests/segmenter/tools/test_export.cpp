@@ -40,7 +40,7 @@ class Export : public ::testing::Test {
     SegmentMap map({}, 77, slices[0]);
     for (const CloudSlice& slice : slices) map.add({&slice, 1});
     map_ = take_snapshot(map);
-    save_map(map, folder_ / "map.kseg");
+    write_map_state(map.state(), folder_ / "map.kseg");
     write_map_files(map_, folder_.path(), "segments");
   }
 

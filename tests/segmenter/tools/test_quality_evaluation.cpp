@@ -9,7 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "segmenter/core/presets.hpp"
+#include "segmenter/core/parameters/presets.hpp"
 #include "segmenter/evaluation/quality/quality_evaluation.hpp"
 #include "segmenter/evaluation/quality/quality_plots.hpp"
 #include "segmenter/evaluation/quality/quality_tables.hpp"
@@ -161,7 +161,7 @@ TEST(QualityEvaluation, NamesWhatIsWrong) {
     return ThrowsMessage<std::invalid_argument>(HasSubstr(what));
   };
   EXPECT_THAT(evaluate_with({}), fails_with("presets is empty"));
-  EXPECT_THAT(evaluate_with({"cups"}), fails_with("preset is \"cups\""));
+  EXPECT_THAT(evaluate_with({"cups"}), fails_with("preset is 'cups'"));
   EXPECT_THAT(evaluate_with({"paper", "paper"}), fails_with("'paper' twice"));
   EXPECT_THAT(evaluate_with({"labels"}), fails_with("room.lcm has no segment_id"));
   QualityEvaluationConfig config;
@@ -234,7 +234,7 @@ TEST_F(QualityProgram, NamesWhatIsWrong) {
   const std::string truth = " --ground-truth " + path("room.ply");
   expect_error(" --presets paper", "--presets requires --ground-truth");
   expect_error(truth, "no line 'comment instance 6 structure|object NAME'");
-  expect_error(truth + " --presets cups", "preset is \"cups\"");
+  expect_error(truth + " --presets cups", "preset is 'cups'");
   expect_error(truth + " --min-instance-points 0", "min_instance_points is 0");
   expect_error(" --ground-truth " + path("absent.ply"), "absent.ply: no such file");
 }
