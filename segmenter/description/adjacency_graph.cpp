@@ -14,7 +14,7 @@
 namespace kintsugi::segmenter {
 namespace {
 
-/// Two segments, the smaller id in the high half: in the order of edges.
+/// Two segment ids, the smaller one in the high half: ordered as AdjacencyEdges.
 using SegmentPair = std::uint64_t;
 
 SegmentPair pair_of(std::uint32_t a, std::uint32_t b) {
@@ -25,7 +25,7 @@ std::uint32_t second_of(SegmentPair pair) { return static_cast<std::uint32_t>(pa
 
 using PairCounts = std::unordered_map<SegmentPair, std::int64_t>;
 
-/// Counts the neighbours with different segments among `points` for which keep(id, id) holds.
+/// Counts pairs of neighbours in two different segments for which keep(id, id) holds.
 template <class Keep>
 std::map<SegmentPair, std::int64_t> count_pairs(const LabelledCloud& cloud,
                                                 std::span<const PointIndex> points,
@@ -57,7 +57,7 @@ std::map<SegmentPair, std::int64_t> count_pairs(const LabelledCloud& cloud,
 bool is_near(const CloudPoint& point, const SegmentStatistics& segment, double radius_m) {
   const std::array<float, 3> p_W{point.x, point.y, point.z};
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    // As in point_rows.hpp: distances are rounded, so a trifle more than r may be within it.
+    // Distances are rounded, so points slightly more than r apart may be neighbours.
     const double reach_m = 1.001 * radius_m;
     if (p_W[axis] < segment.box_min_W[axis] - reach_m ||
         p_W[axis] > segment.box_max_W[axis] + reach_m) {

@@ -1,5 +1,5 @@
 #pragma once
-// Which segments touch each other, and along how much of their boundary.
+// Which segments touch each other, and by how many pairs of points.
 
 #include <cstdint>
 #include <vector>
@@ -25,10 +25,11 @@ struct AdjacencyGraph {
   bool operator==(const AdjacencyGraph&) const = default;
 };
 
-/// Of the whole cloud, by all cores. The same whatever their number.
+/// The graph of the whole cloud. It is computed in parallel; the result is the same for any number
+/// of threads.
 AdjacencyGraph adjacency_graph(const LabelledCloud& cloud);
 
-/// A segment that another one touches.
+/// A neighbour of a given segment.
 struct SegmentNeighbour {
   std::uint32_t segment_id = kNoSegment;
   std::int64_t num_pairs = 0;  ///< as in AdjacencyEdge
@@ -36,9 +37,8 @@ struct SegmentNeighbour {
   bool operator==(const SegmentNeighbour&) const = default;
 };
 
-/// The neighbours of one segment, by ascending id. Of `segment` the id and the axis-aligned box
-/// count, which must be those of the cloud: points that are not within r of the box are passed
-/// over.
+/// The neighbours of one segment, by ascending id. Of `segment` only the id and the axis-aligned
+/// box are used: points that are not within r of the box are skipped.
 std::vector<SegmentNeighbour> neighbours_of(const LabelledCloud& cloud,
                                             const SegmentStatistics& segment);
 

@@ -8,7 +8,7 @@ namespace kintsugi::segmenter {
 LabelledCloud labelled_cloud(const SegmentMap& map) {
   const std::span<const std::uint32_t> ids = map.segment_ids().ids();
   const EngineConfig& engine = map.config().engine;
-  // Points that came with an update that failed have no id yet.
+  // Points of an update that failed have no id.
   return {map.cloud().points_W().first(ids.size()), ids, static_cast<float>(engine.resolution_m),
           engine.radius_m()};
 }

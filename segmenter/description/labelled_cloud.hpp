@@ -10,11 +10,11 @@ namespace kintsugi::segmenter {
 class SegmentMap;
 struct MapSnapshot;
 
-/// A view of points that carry segment ids: of a live map, a saved one or a labelled file. Valid as
-/// long as what it was made of, and as that does not change.
+/// Points with segment ids, as spans into a live map, a saved map or a labelled file. Valid as long
+/// as their source exists and does not change.
 struct LabelledCloud {
   std::span<const CloudPoint> points_W;
-  std::span<const std::uint32_t> segment_ids;  ///< of each; kNoSegment: the point is not looked at
+  std::span<const std::uint32_t> segment_ids;  ///< by point; kNoSegment: the point is ignored
   float resolution_m = 0.0F;                   ///< voxel size, > 0
   float radius_m = 0.0F;                       ///< r: points closer than this are neighbours, > 0
 };

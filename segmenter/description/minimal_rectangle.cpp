@@ -18,8 +18,8 @@ bool is_left_turn(const Vector2d& a, const Vector2d& b, const Vector2d& c) {
   return ab.x() * ac.y() - ab.y() * ac.x() > 0.0;
 }
 
-/// Appends the corners of the hull that points in this order, by x or against it, have on their
-/// right; the last point is left to the other half.
+/// Appends the corners of one half of the hull: the lower one for points sorted by ascending x, the
+/// upper one for descending x. The last point belongs to the other half.
 template <class Iterator>
 void append_half_hull(Iterator point, const Iterator& end, Polygon& hull) {
   const std::size_t first = hull.size();
@@ -33,7 +33,7 @@ void append_half_hull(Iterator point, const Iterator& end, Polygon& hull) {
   hull.pop_back();
 }
 
-/// The corners, anticlockwise (Andrew's monotone chain); of a single place that one.
+/// The corners, anticlockwise (Andrew's monotone chain). For equal points it is one corner.
 Polygon convex_hull(Polygon points) {
   std::sort(points.begin(), points.end(), [](const Vector2d& a, const Vector2d& b) {
     return std::pair(a.x(), a.y()) < std::pair(b.x(), b.y());

@@ -14,7 +14,8 @@
 namespace kintsugi::segmenter {
 namespace {
 
-/// The place of a segment in what is sorted by id; if it is not there, where it would be.
+/// The index of a segment in `segments`, which is sorted by id; where it would be if it is not
+/// there.
 std::size_t find_segment(std::span<const SegmentStatistics> segments, std::uint32_t segment_id) {
   const auto found = std::partition_point(
       segments.begin(), segments.end(),
@@ -71,7 +72,7 @@ std::vector<std::vector<SegmentNeighbour>> neighbours_by_segment(
     const AdjacencyGraph& graph, std::span<const SegmentStatistics> segments) {
   std::vector<std::vector<SegmentNeighbour>> neighbours(segments.size());
   const auto place_of = [&](std::uint32_t id) { return find_segment(segments, id); };
-  // By ascending (a, b): those with a smaller id than the segment itself come first.
+  // Edges are sorted by (a, b). So the neighbours with smaller ids are appended first.
   for (const AdjacencyEdge& edge : graph.edges) {
     neighbours[place_of(edge.b)].push_back({edge.a, edge.num_pairs});
   }

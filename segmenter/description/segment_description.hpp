@@ -1,5 +1,5 @@
 #pragma once
-// All that people ask of a segment.
+// Statistics, shape and neighbours of segments.
 
 #include <cstdint>
 #include <optional>
@@ -21,20 +21,19 @@ struct SegmentDescription {
   std::vector<SegmentNeighbour> neighbours;  ///< by ascending id
 };
 
-/// Describes one segment of a map as it is now; nothing when no segment has this id. Takes time in
-/// proportion to the points of the map (to look which are near), of the segment and of the
-/// surroundings of its box.
+/// Describes one segment of a map as it is now; nothing when no segment has this id. Takes time
+/// proportional to the points of the map.
 std::optional<SegmentDescription> describe_segment(const SegmentMap& map, std::uint32_t segment_id);
-/// The same for a copy of a map, which another thread may look at, or one that was read from files.
+/// The same for a copy of a map, or one that was read from files.
 std::optional<SegmentDescription> describe_segment(const MapSnapshot& map,
                                                    std::uint32_t segment_id);
 
-/// Describes every segment, by ascending id, by all cores: far cheaper than one after the other.
+/// Describes all segments, by ascending id, in parallel: much faster than one after the other.
 std::vector<SegmentDescription> describe_segments(const MapSnapshot& map);
-/// The same of what is known already.
-/// @param segments of the cloud: all of them, by ascending id
-/// @param last_changes of each; or none: not known
-/// @param graph of the cloud
+/// The same from statistics and a graph that are already known.
+/// @param segments all segments of the cloud, by ascending id
+/// @param last_changes of each segment; empty: not known
+/// @param graph the adjacency graph of the cloud
 std::vector<SegmentDescription> describe_segments(const LabelledCloud& cloud,
                                                   std::span<const SegmentStatistics> segments,
                                                   std::span<const LastChange> last_changes,

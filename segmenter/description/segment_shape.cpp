@@ -20,8 +20,8 @@ using Eigen::Vector3d;
 
 Vector3d position(const CloudPoint& p) { return {p.x, p.y, p.z}; }
 
-// Sums are integers in fixed point: so they do not depend on the order of points. Below 2^45: a
-// coordinate is below 2^20 m (admission.hpp). Products of two, and 2^32 of them, fit in 128 bits.
+// Sums are integers in fixed point, so that they do not depend on the order of points. A coordinate
+// is below 2^20 m (admission.hpp), so below 2^45 units; 2^32 products of two fit in 128 bits.
 __extension__ using WideInteger = __int128;
 constexpr double kUnitsPerMetre = 16777216.0;  // 2^24: 60 nm, half a float32 step at 1 m
 
@@ -69,7 +69,7 @@ Matrix3d principal_axes(std::span<const CloudPoint> points_W,
   return Eigen::SelfAdjointEigenSolver<Matrix3d>(scatter).eigenvectors();
 }
 
-/// `v` or -v: that whose first component that is not zero is positive.
+/// `v` or -v: the one whose first non-zero component is positive.
 Vector3d with_positive_start(const Vector3d& v) {
   for (const double component : v) {
     if (component != 0.0) return component > 0.0 ? v : Vector3d(-v);
@@ -95,7 +95,7 @@ Vector3d facing_free_space(const Vector3d& normal_W, std::span<const CloudPoint>
   }
   const Vector3d sum_W(static_cast<double>(sum[0]), static_cast<double>(sum[1]),
                        static_cast<double>(sum[2]));
-  // Below it rounding decides the side.
+  // Below this cosine, rounding decides the side.
   const double min_cosine = 1e-6 * kUnits * static_cast<double>(points_W.size());
   const double cosine = normal_W.dot(sum_W);
   if (std::abs(cosine) < min_cosine) return with_positive_start(normal_W);
@@ -107,7 +107,7 @@ struct Interval {
   double max = -std::numeric_limits<double>::infinity();
 };
 
-/// Completes `plane`; returns between which heights above it the points are.
+/// Sets rms_m and inlier_share of `plane`. Returns the range of the points' heights above it.
 Interval measure_plane(std::span<const CloudPoint> points_W, float resolution_m, PlaneFit& plane) {
   Interval heights;
   WideInteger sum_of_squares = 0;
@@ -125,7 +125,7 @@ Interval measure_plane(std::span<const CloudPoint> points_W, float resolution_m,
   return heights;
 }
 
-/// Around the points' smallest rectangle in the plane.
+/// The box whose base is the smallest rectangle around the points' projections onto the plane.
 OrientedBox box_on_plane(std::span<const CloudPoint> points_W, const PlaneFit& plane,
                          const Interval& heights, const Vector3d& centroid_W) {
   const Vector3d u_W = plane.normal_W.unitOrthogonal();

@@ -2,6 +2,8 @@
 
 #include <map>
 
+#include "segmenter/core/ids/slice_labels.hpp"
+
 namespace kintsugi::segmenter {
 namespace {
 

@@ -1,6 +1,6 @@
 #include "segmenter/io/map_files.hpp"
 
-#include <string_view>
+#include <string>
 #include <vector>
 
 #include "lcmtypes/base/atomic_file.hpp"
@@ -53,8 +53,24 @@ Json segment_json(const SegmentDescription& segment) {
   return json;
 }
 
-std::string_view name_of(NeighbourSearch search) {
-  return search == NeighbourSearch::kGrid ? "grid" : "flann";
+/// By name, and behind a parameter what follows from it. Lengths are given as the float32 that is
+/// computed with.
+Json parameters_json(const EngineConfig& engine) {
+  Json json;
+  for (const EngineParameter& parameter : kMapParameters) {
+    if (parameter.value == &EngineConfig::resolution_m) {
+      json["resolution"] = readable(static_cast<float>(engine.resolution_m));
+    } else if (parameter.value == &EngineConfig::radius_factor) {
+      json["radius"] = readable(engine.radius_m());
+    } else {
+      json[std::string(parameter.name)] = engine.*parameter.value;
+    }
+    if (parameter.value == &EngineConfig::min_points) {
+      json["fragment_limit"] = engine.fragment_limit();
+    }
+  }
+  json["neighbours"] = name_of(engine.neighbour_search);
+  return json;
 }
 
 std::int64_t count_rejected(const std::vector<SliceRecord>& slices) {
@@ -65,18 +81,8 @@ std::int64_t count_rejected(const std::vector<SliceRecord>& slices) {
 
 Json header_json(const MapSnapshot& map) {
   const SegmentMapState& state = map.state;
-  const EngineConfig& engine = state.config.engine;
   return {{"mode", state.config.mode},
-          {"parameters",
-           {{"threshold", engine.threshold},
-            {"scale", engine.scale},
-            {"color_weight", engine.color_weight},
-            {"min_points", engine.min_points},
-            {"fragment_limit", engine.fragment_limit()},
-            {"beta", engine.beta},
-            {"resolution", readable(static_cast<float>(engine.resolution_m))},
-            {"radius", readable(engine.radius_m())},
-            {"neighbours", name_of(engine.neighbour_search)}}},
+          {"parameters", parameters_json(state.config.engine)},
           {"map_name", state.map_name},
           {"map_session", state.map_session},
           {"session", state.session},

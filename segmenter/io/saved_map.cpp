@@ -19,6 +19,7 @@ namespace {
 // that are in the map (SequenceRange); the checksum. A change of any of this is a new version.
 constexpr std::array<char, 8> kMagic = {'K', 'S', 'E', 'G', 'M', 'A', 'P', '\n'};
 constexpr std::uint32_t kVersion = 3;
+static_assert(kMapParameters.size() == 7, "other parameters are a new version of the file");
 
 struct Start {
   std::array<char, 8> magic = kMagic;
@@ -29,13 +30,7 @@ struct Start {
 struct Header {
   std::int64_t session = 0;
   std::int64_t map_session = 0;
-  double threshold = 0.0;
-  double scale = 0.0;
-  double color_weight = 0.0;
-  double min_points = 0.0;
-  double beta = 0.0;
-  double resolution_m = 0.0;
-  double radius_factor = 0.0;
+  std::array<double, kMapParameters.size()> parameters{};
   std::int32_t final_slice_id = 0;
   std::uint32_t next_id = 0;
   std::uint32_t num_mode_bytes = 0;
@@ -58,17 +53,12 @@ static_assert(sizeof(Start) == 16 && sizeof(Header) == 112 && sizeof(SliceHeader
               "no padding, which would be written with whatever is in it");
 
 Header header_of(const SegmentMapState& state) {
-  const EngineConfig& engine = state.config.engine;
   Header header;
   header.session = state.session;
   header.map_session = state.map_session;
-  header.threshold = engine.threshold;
-  header.scale = engine.scale;
-  header.color_weight = engine.color_weight;
-  header.min_points = engine.min_points;
-  header.beta = engine.beta;
-  header.resolution_m = engine.resolution_m;
-  header.radius_factor = engine.radius_factor;
+  for (std::size_t i = 0; i < kMapParameters.size(); ++i) {
+    header.parameters[i] = state.config.engine.*kMapParameters[i].value;
+  }
   header.final_slice_id = state.final_slice_id;
   header.next_id = state.next_id;
   header.num_mode_bytes = static_cast<std::uint32_t>(state.config.mode.size());
@@ -124,13 +114,9 @@ Header read_header(RecordReader& file) {
 
 SegmentMapConfig config_of(const Start& start, const Header& header) {
   SegmentMapConfig config;
-  config.engine.threshold = header.threshold;
-  config.engine.scale = header.scale;
-  config.engine.color_weight = header.color_weight;
-  config.engine.min_points = header.min_points;
-  config.engine.beta = header.beta;
-  config.engine.resolution_m = header.resolution_m;
-  config.engine.radius_factor = header.radius_factor;
+  for (std::size_t i = 0; i < kMapParameters.size(); ++i) {
+    config.engine.*kMapParameters[i].value = header.parameters[i];
+  }
   config.engine.neighbour_search = static_cast<NeighbourSearch>(start.neighbour_search);
   return config;
 }

@@ -1,5 +1,5 @@
 #pragma once
-// A segment map in one file, to be gone on with later.
+// A segment map in one file, to be continued later.
 
 #include <filesystem>
 #include <memory>
@@ -10,7 +10,8 @@
 namespace kintsugi::segmenter {
 
 /// Writes beside `path` and renames, so that under `path` there is the old file or all of the new.
-/// The same state gives the same bytes. Throws std::runtime_error naming the file and the reason.
+/// The same state gives the same bytes.
+/// @throws std::runtime_error naming the file and the reason
 void write_map_state(const SegmentMapState& state, const std::filesystem::path& path);
 
 /// Reads what write_map_state() wrote. Counts are held against the size of the file, and all of it
@@ -23,9 +24,10 @@ SegmentMapState read_map_state(const std::filesystem::path& path);
 std::unique_ptr<SegmentMap> make_map(const SegmentMapState& state,
                                      const std::filesystem::path& path);
 
-/// Both in one. A loaded map continues exactly as the saved one would have: partition, thetas, ids,
-/// events and statistics are the same. Also refuses a file whose points give other segments than it
-/// says.
+/// The map whose state is in the file. From then on its partition, thetas, ids, events and
+/// statistics are those of the map that was saved.
+/// @throws std::runtime_error as read_map_state() and make_map(); also when the points give other
+///   segments than those in the file
 std::unique_ptr<SegmentMap> load_map(const std::filesystem::path& path);
 
 }  // namespace kintsugi::segmenter

@@ -5,7 +5,7 @@
 namespace kintsugi::segmenter {
 namespace {
 
-/// That of no point when the block has none of the segment.
+/// The extent of the points in the block; empty when the block has none of the segment.
 Extent extent_of(std::uint32_t block, const PointCloud& cloud, std::span<const std::uint32_t> ids,
                  std::uint32_t segment_id) {
   Extent extent;
@@ -46,7 +46,7 @@ void BlockExtents::refresh(std::span<const std::uint32_t> blocks, const PointClo
   }
 }
 
-Extent BlockExtents::fold() const {
+Extent BlockExtents::combined() const {
   Extent extent;
   for (const Block& block : blocks_) extent.include(block.extent);
   return extent;

@@ -9,19 +9,19 @@
 
 namespace kintsugi::segmenter {
 
-/// The extent of one large segment by blocks of places in the cloud. When points leave a segment of
-/// a million, only their blocks are looked at again, and the extents of some thousand blocks
-/// folded.
+/// The extent of one large segment, by blocks of PointIndices. When points leave a segment of a
+/// million, only their blocks are scanned again; then the extents of some thousand blocks are
+/// combined.
 class BlockExtents {
  public:
   static constexpr PointIndex kBlockPoints = 256;
 
-  /// Looks at `blocks` again, ascending: the points there that have `segment_id` in `ids`.
+  /// Scans `blocks`, given in ascending order, for the points that have `segment_id` in `ids`.
   void refresh(std::span<const std::uint32_t> blocks, const PointCloud& cloud,
                std::span<const std::uint32_t> ids, std::uint32_t segment_id);
 
-  /// Of all blocks.
-  [[nodiscard]] Extent fold() const;
+  /// The extent of all blocks together.
+  [[nodiscard]] Extent combined() const;
 
   [[nodiscard]] std::size_t bytes() const { return blocks_.capacity() * sizeof(Block); }
 

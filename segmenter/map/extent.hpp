@@ -33,7 +33,7 @@ struct Extent {
 
   [[nodiscard]] bool is_empty() const { return first_slice > last_slice; }
 
-  /// Whether the extent may shrink when `point`, which it includes, goes.
+  /// Whether the extent may shrink when `point`, which it includes, is removed.
   [[nodiscard]] bool touches(const CloudPoint& point, std::int32_t slice_id) const {
     const std::array<float, 3> p_W{point.x, point.y, point.z};
     for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -4,12 +4,12 @@
 
 namespace kintsugi::segmenter {
 
-/// The slice with which a segment last got, lost or exchanged points: of the last SegmentUpdate
-/// that has statistics of it. LastChange{}: not known.
+/// The last slice with which points of a segment came, left or moved: that of the last
+/// SegmentUpdate with statistics of the segment. LastChange{}: not known.
 struct LastChange {
   std::int64_t utime = 0;  ///< device time of that slice, microseconds
   std::int32_t slice_id = -1;
-  std::int32_t reserved = 0;  ///< zero; there is no padding, for files
+  std::int32_t reserved = 0;  ///< zero; instead of padding, since files hold this struct
 
   bool operator==(const LastChange&) const = default;
 };

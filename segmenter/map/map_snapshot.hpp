@@ -1,5 +1,5 @@
 #pragma once
-// A segment map at one moment, to be written while the map goes on.
+// A copy of a segment map, to be written while the map changes.
 
 #include <cstdint>
 #include <vector>
@@ -8,20 +8,21 @@
 
 namespace kintsugi::segmenter {
 
-/// All that files tell of a map. A copy, so that another thread can write it.
+/// Everything that files hold of a map. It is a copy, so that another thread can write it.
 struct MapSnapshot {
   SegmentMapState state;
-  bool is_complete = false;                 ///< the final slice and every earlier one are in it
+  bool is_complete = false;                 ///< it has the final slice and every earlier one
   std::vector<SegmentStatistics> segments;  ///< by ascending id
 };
 
-/// Into `snapshot`, whose memory is used again: fresh memory takes most of the time of a copy.
+/// Copies into `snapshot` and reuses its memory: most of the time of a copy goes into new memory.
 void take_snapshot(const SegmentMap& map, MapSnapshot& snapshot);
 MapSnapshot take_snapshot(const SegmentMap& map);
 
-/// Of a map that is not gone on with: no engine runs, and segments are what `state` says they are.
-/// Throws std::invalid_argument naming what is wrong when a segment has a point whose position
-/// cannot be used, or when `state` has last changes, but not one for each segment.
+/// A snapshot of a map that will not be continued: no engine runs, and the segments are those of
+/// `state`.
+/// @throws std::invalid_argument naming the reason when a segment has a point with an inadmissible
+///   position, or when `state` has last changes, but not one for each segment
 MapSnapshot make_snapshot(SegmentMapState state);
 
 }  // namespace kintsugi::segmenter

@@ -4,6 +4,9 @@
 #include <stdexcept>
 #include <utility>
 
+#include "segmenter/core/ids/slice_labels.hpp"
+#include "segmenter/core/make_engine.hpp"
+
 namespace kintsugi::segmenter {
 namespace {
 
@@ -119,12 +122,12 @@ void SegmentMap::check(const CloudSlice& slice) const {
   const SliceRecord* const record = cloud_.find_slice(slice.id);
   if (record != nullptr && slice.revision <= record->revision) {
     throw std::invalid_argument(name + " of revision " + std::to_string(slice.revision) +
-                                " is in the map already, in revision " +
+                                " is already in the map, in revision " +
                                 std::to_string(record->revision));
   }
 }
 
-// What is known before the engine has run.
+// The fields that are known before the engine has run.
 SegmentUpdate SegmentMap::begin_update(const CloudSlice& slice) const {
   SegmentUpdate update;
   update.utime = slice.utime;

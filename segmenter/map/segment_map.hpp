@@ -18,42 +18,42 @@
 
 namespace kintsugi::segmenter {
 
-/// Composes cloud, engine, segment ids and statistics. Replaying the updates of a map, labels and
-/// then runs of each, gives the labels that segment_ids() has.
+/// Combines cloud, engine, segment ids and statistics. A listener that applies the labels and
+/// then the runs of each update, in order, has the labels of segment_ids().
 class SegmentMap {
  public:
-  /// @param session of this segmenter
+  /// @param session id of this run of the segmenter
   /// @param first a slice of the map, for its name, mapper session and resolution; it is not added
   /// @throws std::invalid_argument for an invalid config or a resolution that is not > 0
   SegmentMap(const SegmentMapConfig& config, std::int64_t session, const CloudSlice& first);
 
-  /// Goes on where the map was whose state() this is.
-  /// @throws std::invalid_argument naming what is wrong when it is no state of a map
+  /// Continues the map whose state() this is.
+  /// @throws std::invalid_argument naming the reason when `state` is inconsistent
   explicit SegmentMap(const SegmentMapState& state);
 
   SegmentMap(const SegmentMap&) = delete;  // the engine refers to the cloud
   SegmentMap& operator=(const SegmentMap&) = delete;
 
-  /// Adds slices and runs the engine once for all of them. A slice that is in the map in a lower
-  /// revision is replaced: its points move. Returns one update for each slice, in order: each has
-  /// the labels of its own points as they are after all of them; relabelled points of other slices,
-  /// events and statistics come with the last.
+  /// Adds slices and runs the engine once for all of them. A slice that is in the map with a lower
+  /// revision is replaced: its points move. Returns one update for each slice, in order. Each has
+  /// the labels of its own points after all slices were added. The last one also has the relabelled
+  /// points of other slices, the events and the statistics.
   ///
-  /// @throws std::invalid_argument, and adds nothing, when a slice is of another session or
-  ///   resolution, is in the map already in this revision or a higher one, or comes twice
+  /// @throws std::invalid_argument, and adds nothing, when a slice has another session or
+  ///   resolution, is in the map with this or a higher revision, or comes twice
   std::vector<SegmentUpdate> add(std::span<const CloudSlice> slices);
 
-  /// A hint, before add(): `slice` is what the add() after it will bring.
+  /// A hint, given before an add(): the add() after that one will probably bring `slice`.
   void look_ahead(const CloudSlice& slice) { engine_->look_ahead(slice.points_W); }
 
-  /// The whole map for a listener that knows nothing of it: an update for each slice, in the order
-  /// of their arrival; the statistics of all segments come with the last.
+  /// The whole map as updates for a listener that has none of it: one for each slice, in order of
+  /// arrival. The last one has the statistics of all segments.
   [[nodiscard]] std::vector<SegmentUpdate> describe() const;
 
-  /// What a SegmentMap can be made of again. After add() has thrown it is good to look at only:
-  /// points that were to come have kNoSegment then.
+  /// Everything that another SegmentMap needs to continue this one. If the engine failed in add(),
+  /// the state can only be looked at: the points of that call have kNoSegment.
   [[nodiscard]] SegmentMapState state() const;
-  /// The same into the memory that `state` has: several times as fast when it is enough.
+  /// The same into existing memory, which is several times as fast if it is large enough.
   void copy_state(SegmentMapState& state) const;
 
   /// The join threshold theta of a segment that has points.
@@ -79,9 +79,9 @@ class SegmentMap {
   [[nodiscard]] std::int64_t session() const { return session_; }
   [[nodiscard]] std::int64_t map_session() const { return map_session_; }
   [[nodiscard]] const std::string& map_name() const { return map_name_; }
-  /// Another number after each change.
+  /// A number that changes with every add().
   [[nodiscard]] std::int64_t version() const { return version_; }
-  /// Chunks of the slice stream that are in the map.
+  /// The chunks of the slice stream that are in the map.
   [[nodiscard]] const SequenceSet& chunks() const { return chunks_; }
 
  private:

@@ -1,12 +1,12 @@
 #pragma once
-// A segment map as plain data: to be saved, and to be gone on with.
+// A segment map as plain data, to be saved and continued.
 
 #include <cstdint>
 #include <string>
 #include <vector>
 
 #include "lcmtypes/messages.hpp"
-#include "segmenter/core/engine/engine.hpp"
+#include "segmenter/core/parameters/engine_config.hpp"
 #include "segmenter/core/points/point_cloud.hpp"
 #include "segmenter/map/last_change.hpp"
 
@@ -14,34 +14,35 @@ namespace kintsugi::segmenter {
 
 struct SegmentMapConfig {
   std::string mode = "exact";  ///< one of engine_modes()
-  EngineConfig engine;         ///< its resolution_m is replaced by that of the slices
+  EngineConfig engine;         ///< resolution_m is replaced by that of the slices
 
-  /// Throws std::invalid_argument naming field, value and bound.
+  /// @throws std::invalid_argument naming field, value and bound
   void validate() const;
 };
 
-/// Everything that decides what a SegmentMap will tell: one made from its state tells the same as
-/// the map itself from then on. A copy: 36 bytes a point. Of the config, a file of it leaves out
-/// what decides on time alone (rebuild_share and the like) and audit.
+/// Everything that future updates of a SegmentMap depend on: a map made of its state gives the same
+/// updates as the map itself. It is a copy of 36 bytes for each point. Of the config, a file holds
+/// kMapParameters, the mode and the neighbour search.
 struct SegmentMapState {
   SegmentMapConfig config;
-  std::int64_t session = 0;  ///< of the segmenter
-  std::int64_t map_session = 0;
+  std::int64_t session = 0;      ///< of the segmenter
+  std::int64_t map_session = 0;  ///< of the mapper
   std::string map_name;
   std::int32_t final_slice_id = -1;  ///< -1: not seen
-  std::uint32_t next_id = 1;         ///< the segment id to be given next
+  std::uint32_t next_id = 1;         ///< the next new segment id
 
-  /// Chunks of the slice stream that are in the map, ascending: they need not be sent again.
+  /// Chunks of the slice stream that are in the map and need not be sent again; ascending.
   std::vector<SequenceRange> chunks;
 
-  std::vector<SliceRecord> slices;         ///< in order of arrival; `first` is a place in points_W
-  std::vector<CloudPoint> points_W;        ///< accepted points, slice after slice
+  std::vector<SliceRecord> slices;   ///< in order of arrival; `first` is an index into points_W
+  std::vector<CloudPoint> points_W;  ///< accepted points, slice after slice
   std::vector<std::uint32_t> segment_ids;  ///< of each of points_W
 
-  /// Of each segment by ascending id. A SegmentMap has them; a snapshot may do without.
+  /// Of each segment, by ascending id. Of a SegmentMap always; empty in a snapshot without them.
   std::vector<LastChange> last_changes;
 
-  /// Mode `voting`, else empty: theta of each segment by ascending id. It depends on the history.
+  /// Mode `voting`: theta of each segment, by ascending id, since it depends on the past. Else
+  /// empty.
   std::vector<double> thetas;
 };
 

@@ -9,8 +9,8 @@
 namespace kintsugi::segmenter {
 namespace {
 
-// A segment of more points than this keeps its extent by blocks: looking at all of them takes
-// longer than a face of its box is worth. One of less than half as many does no longer.
+// A segment of more points than this keeps its extent by blocks, because a scan of all its points
+// whenever one leaves a face of its box takes too long. Below half as many it stops doing so.
 constexpr std::int64_t kLargePoints = 1024;
 
 }  // namespace
@@ -40,7 +40,7 @@ std::vector<std::uint32_t> SegmentStatisticsTable::apply(const PointCloud& cloud
   return changed_ids;
 }
 
-/// Returns what was touched, ascending, each once.
+/// Updates the sums. Returns the segments and blocks that were touched, ascending, each once.
 std::vector<SegmentStatisticsTable::Touched> SegmentStatisticsTable::add_up(
     const PointCloud& cloud, std::span<const IdChange> changes) {
   std::vector<Touched> touched;
@@ -70,7 +70,7 @@ std::vector<SegmentStatisticsTable::Touched> SegmentStatisticsTable::add_up(
   return touched;
 }
 
-/// `blocks` are those where the segment gained or lost points.
+/// `blocks` are those in which the segment gained or lost points.
 void SegmentStatisticsTable::refresh_extent(const PointCloud& cloud, const SegmentIds& ids,
                                             std::uint32_t segment_id,
                                             std::span<const std::uint32_t> blocks) {
@@ -95,7 +95,7 @@ void SegmentStatisticsTable::refresh_extent(const PointCloud& cloud, const Segme
 
   sums.extent_is_stale = false;
   if (is_large) {
-    sums.extent = by_block->second.fold();
+    sums.extent = by_block->second.combined();
   } else {
     sums.extent = {};
     SliceFinder slice_of(cloud);

@@ -1,5 +1,5 @@
 #pragma once
-// What is known about each segment, kept up to date as points change segment.
+// Statistics of each segment, updated as points change segment.
 
 #include <cstdint>
 #include <map>
@@ -17,30 +17,30 @@
 
 namespace kintsugi::segmenter {
 
-/// Statistics of every segment, and the slice with which it last changed. Statistics are those of
-/// segment_sums.hpp: the very ones that summing from scratch would give.
+/// The statistics of every segment (SegmentSums), and the slice with which it last changed. They
+/// are to the bit what summing from scratch would give.
 class SegmentStatisticsTable {
  public:
   /// @param resolution_m voxel size, > 0: a point stands for resolution_m^2 of surface
   explicit SegmentStatisticsTable(float resolution_m) : resolution_m_(resolution_m) {}
 
-  /// Takes over `changes`, which came with the slice that `now` names; `cloud` and `ids` are those
-  /// after them. Returns the ids of the segments that changed and still have points, ascending;
-  /// `now` is their last change from here on. Costs time in proportion to the changes; only
-  /// for segments that lost a point on the face of their box a little that grows with their size.
+  /// Applies `changes`, after which `cloud` and `ids` are as given. Returns the ids of the segments
+  /// that changed and still have points, ascending; `now` becomes their last change. Takes time
+  /// proportional to the changes, plus a small part of its points for each segment that lost a
+  /// point on a face of its box.
   std::vector<std::uint32_t> apply(const PointCloud& cloud, const SegmentIds& ids,
                                    std::span<const IdChange> changes, const LastChange& now = {});
 
-  /// Of a segment that has points.
+  /// The statistics of a segment that has points.
   [[nodiscard]] SegmentStatistics operator()(std::uint32_t segment_id) const;
   [[nodiscard]] LastChange last_change(std::uint32_t segment_id) const;
 
-  /// Of every segment that has points, by ascending id.
+  /// Of all segments that have points, by ascending id.
   [[nodiscard]] std::vector<SegmentStatistics> all() const;
   [[nodiscard]] std::vector<LastChange> last_changes() const;
 
-  /// Takes over what last_changes() was for the same segments. Throws std::invalid_argument when
-  /// it is not one for each.
+  /// Sets what last_changes() returned for the same segments.
+  /// @throws std::invalid_argument unless there is one for each segment
   void set_last_changes(std::span<const LastChange> last_changes);
 
   /// Memory in use.
@@ -48,10 +48,10 @@ class SegmentStatisticsTable {
 
  private:
   struct Sums : SegmentSums {
-    bool extent_is_stale = false;  ///< a point that touched it has left
+    bool extent_is_stale = false;  ///< a point on its border has left
     LastChange last_change;
   };
-  /// A segment and a block of places in the cloud where it gained or lost points.
+  /// A segment and a block of PointIndices (BlockExtents) in which it gained or lost points.
   struct Touched {
     std::uint32_t segment_id;
     std::uint32_t block;
@@ -70,7 +70,7 @@ class SegmentStatisticsTable {
 
   float resolution_m_;
   GrowingArray<std::uint32_t> place_;               ///< in sums_, by segment id
-  GrowingArray<Sums> sums_{1};                      ///< place 0: of the ids that have no points
+  GrowingArray<Sums> sums_{1};                      ///< place 0: for all ids without points
   std::vector<std::uint32_t> free_places_;          ///< in sums_
   std::map<std::uint32_t, BlockExtents> by_block_;  ///< of large segments, by id
 };

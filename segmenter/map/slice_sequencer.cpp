@@ -1,25 +1,23 @@
 #include "segmenter/map/slice_sequencer.hpp"
 
 #include <algorithm>
-#include <stdexcept>
 #include <string>
 #include <utility>
+
+#include "lcmtypes/base/argument_check.hpp"
 
 namespace kintsugi::segmenter {
 namespace {
 
-void require_positive(const char* field, std::chrono::milliseconds value) {
-  if (value.count() <= 0) {
-    throw std::invalid_argument(std::string(field) + " is " + std::to_string(value.count()) +
-                                " ms, must be > 0");
-  }
+void check_positive(const char* field, std::chrono::milliseconds value) {
+  require(value.count() > 0, field, std::to_string(value.count()) + " ms", "> 0");
 }
 
 }  // namespace
 
 void SliceSequencer::Config::validate() const {
-  require_positive("gap_timeout", gap_timeout);
-  require_positive("correction_quiet", correction_quiet);
+  check_positive("gap_timeout", gap_timeout);
+  check_positive("correction_quiet", correction_quiet);
 }
 
 SliceSequencer::SliceSequencer(const Config& config, Revisions done)
@@ -77,7 +75,7 @@ SliceSequencer::Verdict SliceSequencer::correct(CloudSlice slice, Clock::time_po
   return Verdict::kCorrected;
 }
 
-// In the place of one that waits.
+// Replaces a waiting slice.
 void SliceSequencer::put(CloudSlice& place, CloudSlice slice) {
   waiting_bytes_ += bytes_of(slice);
   waiting_bytes_ -= bytes_of(place);
@@ -102,19 +100,19 @@ std::optional<SliceGroup> SliceSequencer::pop(Clock::time_point now, Outlook out
   if (ready_.empty() || (outlook != Outlook::kEnded && may_grow(now))) {
     return std::nullopt;
   }
-  SliceGroup run = std::move(ready_.front());
+  SliceGroup group = std::move(ready_.front());
   ready_.pop_front();
-  num_ready_ -= std::ssize(run.slices);
-  for (const CloudSlice& slice : run.slices) {
+  num_ready_ -= std::ssize(group.slices);
+  for (const CloudSlice& slice : group.slices) {
     waiting_bytes_ -= bytes_of(slice);
   }
-  if (!run.is_correction) {
+  if (!group.is_correction) {
     last_progress_ = now;
   }
-  return run;
+  return group;
 }
 
-// Whether the first run in ready_ waits for more corrections.
+// Whether the first group in ready_ waits for more corrections.
 bool SliceSequencer::may_grow(Clock::time_point now) const {
   return ready_.size() == 1 && ready_.front().is_correction &&
          now - last_correction_ < config_.correction_quiet &&

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "segmenter/core/graph/neighbour_index.hpp"
+#include "segmenter/core/graph/make_neighbour_index.hpp"
 #include "segmenter/core/points/admission.hpp"
 #include "segmenter/preprocess/nearest_neighbours.hpp"
 

@@ -1,5 +1,5 @@
 #pragma once
-// The k nearest neighbours of points, by FLANN.
+// The k nearest neighbours of points (FLANN).
 
 #include <cstdint>
 #include <memory>
@@ -35,12 +35,12 @@ class NearestNeighbours {
   std::unique_ptr<Tree> tree_;
 };
 
-/// Spacing of the points on their surfaces, what a cloud's voxel size is taken for when nobody says
-/// it: the side of the square that one point has to itself, by the disc that holds 12 neighbours
-/// (as many as a point of a square grid has within 2 steps); the median over at most 100,000
-/// points, evenly spread over the cloud's order. The distance to the nearest point alone would
-/// mislead: a voxel that is crossed in x, y and z holds three points close together. 0: nothing to
-/// go by.
+/// The spacing of points on their surfaces, which serves as voxel size of a cloud if none is given:
+/// the side of the square of surface for each point. It is computed from the disc that contains 12
+/// neighbours (as many as a point of a square grid has within 2 steps), as the median over at most
+/// 100,000 points that are evenly spread over the order of the cloud. The distance to the nearest
+/// point would not do: a voxel whose x, y and z edges are all crossed has three points close
+/// together. 0 for clouds of 12 points or fewer.
 float median_spacing_m(std::span<const CloudPoint> points_W);
 
 }  // namespace kintsugi::segmenter

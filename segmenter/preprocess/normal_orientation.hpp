@@ -1,5 +1,5 @@
 #pragma once
-// Turning normals of unknown sign so that they agree.
+// Orients normals of unknown sign consistently.
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -12,7 +12,7 @@
 
 namespace kintsugi::segmenter {
 
-/// The few nearest neighbours of each point.
+/// The nearest neighbours of each point, up to kDegree.
 class NeighbourGraph {
  public:
   static constexpr std::size_t kDegree = 8;
@@ -34,9 +34,9 @@ class NeighbourGraph {
   std::vector<std::array<std::uint32_t, kDegree>> neighbours_;
 };
 
-/// Flips normals to agree along a minimum spanning forest of `graph` (edges cost 1 - |n_i . n_j|),
-/// and then each tree so that most of its normals face `viewpoint_W`. Points whose normal is zero
-/// are left alone.
+/// Flips normals so that they agree along a minimum spanning forest of `graph` (edges cost
+/// 1 - |n_i . n_j|), then each tree as a whole so that most of its normals face `viewpoint_W`.
+/// Normals that are zero stay zero.
 void orient_normals(std::span<CloudPoint> points_W, const NeighbourGraph& graph,
                     const Eigen::Vector3d& viewpoint_W);
 

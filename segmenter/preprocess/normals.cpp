@@ -2,13 +2,12 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <stdexcept>
-#include <string>
 #include <vector>
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include "lcmtypes/base/argument_check.hpp"
 #include "segmenter/preprocess/nearest_neighbours.hpp"
 #include "segmenter/preprocess/normal_orientation.hpp"
 
@@ -17,7 +16,7 @@ namespace {
 
 Eigen::Vector3d position_W(const CloudPoint& p) { return {p.x, p.y, p.z}; }
 
-// Least-variance direction of the points; zero when they lie on a line.
+// The direction of least variance; zero when the points lie on a line.
 Eigen::Vector3d plane_normal(std::span<const CloudPoint> points_W,
                              std::span<const std::uint32_t> neighbours) {
   // Relative to the nearest one, so that nothing cancels far from the origin.
@@ -59,13 +58,8 @@ Eigen::Vector3d mean_position_W(std::span<const CloudPoint> points_W) {
 }  // namespace
 
 void NormalsConfig::validate() const {
-  if (num_neighbours < 3) {
-    throw std::invalid_argument("num_neighbours is " + std::to_string(num_neighbours) +
-                                ", must be >= 3");
-  }
-  if (viewpoint_W && !viewpoint_W->allFinite()) {
-    throw std::invalid_argument("viewpoint_W is not finite");
-  }
+  require(num_neighbours >= 3, "num_neighbours", num_neighbours, ">= 3");
+  require(!viewpoint_W || viewpoint_W->allFinite(), "viewpoint_W is not finite");
 }
 
 std::int64_t estimate_normals(std::span<CloudPoint> points_W, const NormalsConfig& config,

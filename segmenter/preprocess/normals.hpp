@@ -1,5 +1,5 @@
 #pragma once
-// Normals for clouds that come without.
+// Computes normals for clouds that have none.
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -13,11 +13,11 @@ namespace kintsugi::segmenter {
 
 struct NormalsConfig {
   int num_neighbours = 20;  ///< k of the principal component analysis, >= 3
-  /// Normals are to face this place, W: where the sensor was. Absent: the mean of all points, as
-  /// in a room seen from inside.
+  /// Normals are turned towards this point, W, where the sensor was. By default the mean of all
+  /// points, which suits a room seen from inside.
   std::optional<Eigen::Vector3d> viewpoint_W = std::nullopt;
 
-  /// Throws std::invalid_argument naming field, value and bound.
+  /// @throws std::invalid_argument naming field, value and bound
   void validate() const;
 };
 
@@ -28,11 +28,11 @@ struct NormalsConfig {
 /// 1 - |n_i . n_j|, a normal is turned to agree with its neighbour's (Hoppe et al. 1992); each tree
 /// is then turned as a whole so that most of its normals face the viewpoint.
 ///
-/// A neighbourhood that lies on a line or in one place has no normal: that point's becomes zero.
+/// If a neighbourhood lies on a line or in one place, the normal of its point becomes zero.
 /// The result does not depend on the number of threads.
 ///
 /// @param points_W all with finite positions
-/// @param progress called from one thread with the share that is done, 0 to 1
+/// @param progress called from one thread with the share of the work that is done, 0 to 1
 /// @return the number of points without a normal
 std::int64_t estimate_normals(std::span<CloudPoint> points_W, const NormalsConfig& config,
                               const std::function<void(double)>& progress = {});

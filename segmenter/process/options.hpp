@@ -30,10 +30,10 @@ struct Options {
 /// stderr).
 std::variant<Options, int> parse_options(int argc, const char* const* argv);
 
-/// --mode, --audit, --preset (`default_preset` unless given), --threshold, --scale, --color-weight,
-/// --min-points, --radius-factor, --beta and --neighbours, into `config`, whose other values are
-/// the defaults. A value that is given counts, whatever the preset and wherever it stands. Ranges
-/// are checked by config.validate().
+/// Adds --mode, --audit, --preset (`default_preset` unless given), --neighbours and an option for
+/// each of kMapParameters that does not come with slices. They set `config`; a parameter that is
+/// given counts, whatever the preset and wherever in the line it stands. Bounds are checked by
+/// config.validate().
 void add_segmentation_options(CLI::App& app, SegmentMapConfig& config,
                               std::string_view default_preset = "objects");
 

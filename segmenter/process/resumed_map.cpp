@@ -1,6 +1,7 @@
 #include "segmenter/process/resumed_map.hpp"
 
 #include <stdexcept>
+#include <string>
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -12,21 +13,19 @@ namespace {
 
 void require_same(const std::filesystem::path& file, const SegmentMapConfig& saved,
                   const SegmentMapConfig& wanted) {
-  const auto require = [&](const char* option, const auto& was, const auto& is) {
+  const auto require = [&](const std::string& option, const auto& was, const auto& is) {
     if (was != is) {
       throw std::runtime_error(
           fmt::format("'{}' was saved with {} {}, and here it is {}: give {} {} "
-                      "to go on with it",
+                      "to resume it",
                       file.string(), option, was, is, option, was));
     }
   };
   require("--mode", saved.mode, wanted.mode);
-  require("--threshold", saved.engine.threshold, wanted.engine.threshold);
-  require("--scale", saved.engine.scale, wanted.engine.scale);
-  require("--color-weight", saved.engine.color_weight, wanted.engine.color_weight);
-  require("--min-points", saved.engine.min_points, wanted.engine.min_points);
-  require("--beta", saved.engine.beta, wanted.engine.beta);
-  require("--radius-factor", saved.engine.radius_factor, wanted.engine.radius_factor);
+  for (const EngineParameter& parameter : kMapParameters) {
+    if (parameter.comes_with_slices) continue;
+    require(option_name(parameter), saved.engine.*parameter.value, wanted.engine.*parameter.value);
+  }
 }
 
 }  // namespace

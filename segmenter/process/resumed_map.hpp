@@ -9,9 +9,9 @@
 
 namespace kintsugi::segmenter {
 
-/// The map in `file`, to be gone on with under `config` as segmenter session `session`. Throws
-/// std::runtime_error naming the file when it is no saved map, or one of another mode or of other
-/// parameters; those that decide on time alone may differ.
+/// The map in `file`, to be continued under `config` as segmenter session `session`.
+/// @throws std::runtime_error naming the file when it is no saved map, or was saved with another
+///   mode or another of kMapParameters
 std::unique_ptr<SegmentMap> resume_map(const std::filesystem::path& file,
                                        const SegmentMapConfig& config, std::int64_t session);
 

@@ -16,7 +16,7 @@ namespace kintsugi::segmenter {
 namespace {
 
 constexpr double kDefaultRadius_vox = 2.0;
-// Beyond so many, describing all segments of the map costs less than these one after the other.
+// For more segments it is faster to describe all segments of the map in parallel.
 constexpr std::size_t kFewSegments = 8;
 
 Eigen::Vector3d vector(const double (&v)[3]) { return {v[0], v[1], v[2]}; }
@@ -26,7 +26,7 @@ void copy_vector(const Vector& from, float (&to)[3]) {
   for (int axis = 0; axis < 3; ++axis) to[axis] = static_cast<float>(from[axis]);
 }
 
-/// The places in MapSnapshot::segments of the ids that are there, ascending.
+/// The indices in MapSnapshot::segments of the ids that exist, ascending.
 std::vector<std::size_t> places_of(const MapSnapshot& map, std::vector<std::uint32_t> ids) {
   std::sort(ids.begin(), ids.end());
   ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
@@ -51,9 +51,9 @@ std::optional<Hit> find_hit(const LabelledCloud& cloud, const SegmentQuery& quer
   return visible_point(cloud, {vector(query.point_W), vector(query.direction_W)}, radius_m);
 }
 
-/// The segments at the query's place; a hit goes into `answer`.
-std::vector<std::size_t> look(const MapSnapshot& map, const SegmentQuery& query,
-                              SegmentAnswer& answer, double& distance_m) {
+/// The segments at the place of the query. If a point was hit, it is entered into `answer`.
+std::vector<std::size_t> find_segments(const MapSnapshot& map, const SegmentQuery& query,
+                                       SegmentAnswer& answer, double& distance_m) {
   const LabelledCloud cloud = labelled_cloud(map);
   switch (query.place) {
     case QueryPlace::kPoint:
@@ -79,7 +79,7 @@ std::vector<std::size_t> look(const MapSnapshot& map, const SegmentQuery& query,
   return all;
 }
 
-/// Descriptions of segments: of few one after the other, of many all at once.
+/// The descriptions of the segments with these indices.
 std::vector<SegmentDescription> describe(const MapSnapshot& map,
                                          const std::vector<std::size_t>& places) {
   std::vector<SegmentDescription> descriptions;
@@ -151,9 +151,9 @@ SegmentAnswer begin_answer(const MapSnapshot& map, const SegmentQuery& query) {
 SegmentAnswer answer(const MapSnapshot& map, const SegmentQuery& query) {
   SegmentAnswer answer = begin_answer(map, query);
   double distance_m = 0.0;
-  std::vector<std::size_t> places = look(map, query, answer, distance_m);
+  std::vector<std::size_t> places = find_segments(map, query, answer, distance_m);
   if (query.changed_since > 0) {
-    const auto& changes = map.state.last_changes;  // none in files that do not keep them
+    const auto& changes = map.state.last_changes;  // empty for files that do not have them
     std::erase_if(places, [&](std::size_t place) {
       return changes.empty() || changes[place].utime <= query.changed_since;
     });
@@ -166,7 +166,7 @@ SegmentAnswer answer(const MapSnapshot& map, const SegmentQuery& query) {
     limit(query, places);
   }
   std::vector<SegmentDescription> segments = describe(map, places);
-  if (query.only_planar) {  // which is known only now
+  if (query.only_planar) {  // known only after the segments are described
     std::erase_if(segments, [](const auto& segment) { return !segment.shape.is_planar; });
     answer.num_matching = std::ssize(segments);
     limit(query, segments);

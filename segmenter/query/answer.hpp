@@ -1,5 +1,5 @@
 #pragma once
-// The answer of a map to a question about its segments.
+// The answer to a query about the segments of a map.
 
 #include "lcmtypes/messages.hpp"
 
@@ -7,12 +7,12 @@ namespace kintsugi::segmenter {
 
 struct MapSnapshot;
 
-/// What `map` has to say to `query`, whose fields are within the bounds of the codec. Everything
-/// but SegmentAnswer::utime is filled in; the same for the same map and query. Which map is meant
-/// is the caller's to find out: map_name and map_session of the query are not looked at.
+/// Answers `query`, whose fields must be within the bounds of the codec, from `map`. Sets every
+/// field except SegmentAnswer::utime. The answer depends only on map and query. map_name and
+/// map_session of the query are ignored: choose_map() finds the map that is meant.
 ///
-/// Takes time in proportion to the points of the map; with only_planar, or many segments to
-/// describe, some hundred nanoseconds for each.
+/// Takes time proportional to the points of the map; with only_planar, or for many segments, some
+/// hundred nanoseconds for each point.
 SegmentAnswer answer(const MapSnapshot& map, const SegmentQuery& query);
 
 }  // namespace kintsugi::segmenter

@@ -6,7 +6,7 @@
 namespace kintsugi::segmenter {
 namespace {
 
-/// Brown-Conrady: from the normalised image plane to the same as the lens shows it.
+/// The Brown-Conrady model: maps undistorted to distorted normalised image coordinates.
 Eigen::Vector2d distorted(const std::array<double, 5>& lens, const Eigen::Vector2d& x) {
   const auto [k1, k2, p1, p2, k3] = lens;
   const double r2 = x.squaredNorm();
@@ -16,7 +16,7 @@ Eigen::Vector2d distorted(const std::array<double, 5>& lens, const Eigen::Vector
           x.y() * radial + p1 * (r2 + 2.0 * x.y() * x.y()) + 2.0 * p2 * xy};
 }
 
-/// Solves distorted(x) = seen; false when the iteration does not come to rest there.
+/// Solves distorted(x) = seen. False when the iteration does not converge.
 bool undistort(const std::array<double, 5>& lens, const Eigen::Vector2d& seen, Eigen::Vector2d& x) {
   constexpr int kMaxIterations = 100;
   constexpr double kTolerance = 1e-9;  // a millionth of a pixel
@@ -54,7 +54,7 @@ Ray pixel_ray(const Intrinsics& intrinsics, const Pose& X_WC, double u_px, doubl
                              (v_px - intrinsics.cy) / intrinsics.fy);
   Eigen::Vector2d x;
   if (!undistort(intrinsics.distortion, seen, x)) {
-    refuse(u_px, v_px, "is where the lens model has no direction");
+    refuse(u_px, v_px, "is where the lens model cannot be inverted");
   }
   return {X_WC.translation(), X_WC.linear() * x.homogeneous().normalized()};
 }

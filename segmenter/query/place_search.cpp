@@ -18,11 +18,11 @@ void for_each_point(const LabelledCloud& cloud, const Visit& visit) {
   }
 }
 
-/// Where a ray meets the disc of a point.
+/// The intersection of a ray with the disc of a point.
 struct Crossing {
   std::size_t point = 0;
   double t_m = 0.0;         ///< along the ray
-  double off_center_m = 0;  ///< from the point
+  double off_center_m = 0;  ///< distance of the intersection from the point
 };
 
 std::optional<Crossing> cross(const Ray& ray, const CloudPoint& point, std::size_t place,
@@ -38,7 +38,7 @@ std::optional<Crossing> cross(const Ray& ray, const CloudPoint& point, std::size
   if (slope >= 0.0) return std::nullopt;  // seen from behind
   const double t_m = normal_W.dot(to_point_W) / slope;
   const double off_center_m = (t_m * ray.direction_W - to_point_W).norm();
-  // Written so that the quotient of a normal across the ray, which may be anything, fails.
+  // Written so that NaN, the result for a normal perpendicular to the ray, fails.
   if (!(t_m >= 0.0 && off_center_m <= radius_m)) return std::nullopt;
   return Crossing{place, t_m, off_center_m};
 }
@@ -84,7 +84,7 @@ std::vector<std::uint32_t> segments_in_box(const LabelledCloud& cloud,
                                            const Eigen::AlignedBox3d& box_W) {
   std::vector<std::uint32_t> ids;
   for_each_point(cloud, [&](std::size_t i, const Eigen::Vector3d& p_W) {
-    // Neighbours in the cloud mostly are of one segment: so the list stays short.
+    // Consecutive points are mostly of one segment, so this keeps the list short.
     const std::uint32_t id = cloud.segment_ids[i];
     if (box_W.contains(p_W) && (ids.empty() || ids.back() != id)) ids.push_back(id);
   });

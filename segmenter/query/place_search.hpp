@@ -1,5 +1,5 @@
 #pragma once
-// Which segments are at a place of the map.
+// Finds the points and segments at a place in the map.
 
 #include <Eigen/Geometry>
 #include <cstdint>
@@ -10,10 +10,10 @@
 
 namespace kintsugi::segmenter {
 
-/// A point of the map that a query found.
+/// A point that a search found.
 struct Hit {
-  std::size_t point = 0;    ///< place in the cloud
-  double distance_m = 0.0;  ///< from the point that was asked for; or along the ray
+  std::size_t point = 0;    ///< index in the cloud
+  double distance_m = 0.0;  ///< from the given point, or along the ray
 };
 
 /// A ray from `origin_W` along `direction_W`, which is a unit vector.
@@ -22,19 +22,19 @@ struct Ray {
   Eigen::Vector3d direction_W = Eigen::Vector3d::UnitZ();
 };
 
-/// The point of a segment that is nearest to `point_W`, not farther than `radius_m`; of equally
-/// near ones the first in the cloud.
+/// The point of a segment that is nearest to `point_W` and at most `radius_m` away; of equally near
+/// ones the first in the cloud.
 std::optional<Hit> nearest_point(const LabelledCloud& cloud, const Eigen::Vector3d& point_W,
                                  double radius_m);
 
 /// The point of a segment that a camera at the ray's origin sees along it.
 ///
-/// Each point stands for a disc in its tangent plane that is seen from the side of its normal only;
-/// a point without a normal faces the ray. The first disc that the ray meets decides how far the
-/// surface is; of those met within another radius behind it, the one whose centre is nearest to
-/// where the ray meets it is the answer (of equally near ones the first in the cloud). Discs of
-/// `radius_m` / 2 are tried first, and those of `radius_m` where the ray passes between all of
-/// them: so an object is not seen wider than it is where there is something behind it.
+/// Each point stands for a disc in its tangent plane, which is visible only from the side of its
+/// normal; a point without a normal faces the ray. The first disc that the ray meets gives the
+/// distance of the surface. Of the discs that the ray meets up to one disc radius behind it, the
+/// result is the one whose centre is nearest to the intersection; of equally near ones the first in
+/// the cloud. Discs of `radius_m` / 2 are tried first, then discs of `radius_m` if the ray meets
+/// none: so an object does not look wider than it is in front of something else.
 std::optional<Hit> visible_point(const LabelledCloud& cloud, const Ray& ray, double radius_m);
 
 /// The segments with a point in the box or on its faces, by ascending id.

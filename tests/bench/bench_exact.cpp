@@ -14,7 +14,7 @@
 #include <CLI/CLI.hpp>
 #include <oneapi/tbb/global_control.h>
 
-#include "segmenter/core/presets.hpp"
+#include "segmenter/core/parameters/presets.hpp"
 #include "tests/bench/bench_exact_corrections.hpp"
 #include "tests/bench/bench_exact_report.hpp"
 #include "tests/bench/bench_exact_slices.hpp"

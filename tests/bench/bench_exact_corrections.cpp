@@ -5,6 +5,7 @@
 #include <cmath>
 #include <iostream>
 
+#include "segmenter/core/make_engine.hpp"
 #include "tests/bench/bench_exact_report.hpp"
 #include "tests/fuzz/partition.hpp"
 #include "tests/fuzz/random.hpp"

@@ -5,6 +5,7 @@
 #include <iostream>
 
 #include "segmenter/core/ids/segment_ids.hpp"
+#include "segmenter/core/make_engine.hpp"
 #include "segmenter/map/segment_statistics.hpp"
 #include "tests/bench/bench_exact_report.hpp"
 
@@ -84,7 +85,7 @@ void print_slices(const std::string& mode, const std::vector<SliceTimes>& slices
   print_times("engine", sample(slices, [](const SliceTimes& s) { return s.engine_ms; }));
   print_times("- neighbours",
               sample(slices, [](const SliceTimes& s) { return s.run.neighbours_ms; }));
-  print_times("- joins", sample(slices, [](const SliceTimes& s) { return s.run.replay_ms; }));
+  print_times("- joins", sample(slices, [](const SliceTimes& s) { return s.run.joins_ms; }));
   print_times("- names", sample(slices, [](const SliceTimes& s) { return s.run.naming_ms; }));
   print_times("- fragments",
               sample(slices, [](const SliceTimes& s) { return s.run.fragments_ms; }));
@@ -114,15 +115,15 @@ void print_map(const std::string& mode, const SegmentedMap& map,
 
 void write_csv(const std::filesystem::path& file, const std::vector<SliceTimes>& slices) {
   std::ofstream out(file);
-  out << "slice,map_points,points,total_ms,cpu_ms,neighbours_ms,replay_ms,naming_ms,fragments_ms,"
+  out << "slice,map_points,points,total_ms,cpu_ms,neighbours_ms,joins_ms,naming_ms,fragments_ms,"
          "ids_ms,"
          "statistics_ms,edges,joins,explored,rebuilt\n";
   for (std::size_t k = 0; k < slices.size(); ++k) {
     const SliceTimes& s = slices[k];
     out << k << ',' << s.num_points_before << ',' << s.num_points << ',' << s.total_ms() << ','
-        << s.cpu_ms << ',' << s.run.neighbours_ms << ',' << s.run.replay_ms << ','
-        << s.run.naming_ms << ',' << s.run.fragments_ms << ',' << s.ids_ms << ',' << s.statistics_ms
-        << ',' << s.run.num_edges << ',' << s.run.num_joins << ',' << s.run.num_explored << ','
+        << s.cpu_ms << ',' << s.run.neighbours_ms << ',' << s.run.joins_ms << ',' << s.run.naming_ms
+        << ',' << s.run.fragments_ms << ',' << s.ids_ms << ',' << s.statistics_ms << ','
+        << s.run.num_edges << ',' << s.run.num_joins << ',' << s.run.num_explored << ','
         << s.run.is_rebuilt << '\n';
   }
   if (!out) throw std::runtime_error(file.string() + ": cannot be written");

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "segmenter/core/engine/engine.hpp"
+#include "segmenter/core/parameters/engine_config.hpp"
 #include "tests/bench/map_generator_file.hpp"
 
 namespace kintsugi::segmenter::bench {

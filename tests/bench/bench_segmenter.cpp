@@ -20,7 +20,9 @@
 
 #include "segmenter/core/engine/engine.hpp"
 #include "segmenter/core/graph/grid_index.hpp"
+#include "segmenter/core/graph/make_neighbour_index.hpp"
 #include "segmenter/core/ids/segment_ids.hpp"
+#include "segmenter/core/make_engine.hpp"
 #include "segmenter/core/points/point_rows.hpp"
 #include "tests/bench/map_generator.hpp"
 #include "tests/segmenter/core/random_clouds.hpp"

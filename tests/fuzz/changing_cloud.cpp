@@ -27,8 +27,6 @@ void ChangingCloud::renew_slice(std::int32_t slice_id) {
   }
   if (cloud_.find_slice(slice_id) == nullptr) {
     cloud_.add_slice(slice_id, points_W);
-  } else if (points_W.empty() && slice_id % 2 == 0) {
-    cloud_.remove_slice(slice_id);
   } else {
     cloud_.replace_slice(slice_id, points_W);
   }

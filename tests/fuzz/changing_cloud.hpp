@@ -9,9 +9,9 @@
 
 namespace kintsugi::segmenter::fuzz {
 
-/// The map of a scenario. Consecutive points of the pool are one slice, which is replaced by what
-/// it has then when some of them come or go: a point that stays gets another index, as if the slice
-/// had come again. With one point a slice, points come and go alone.
+/// The map of a scenario. Consecutive points of the pool are one slice. When some of them come or
+/// go, the slice is replaced: even a point that stays gets another index, as after a correction.
+/// With slices of one point, points come and go one by one.
 class ChangingCloud {
  public:
   explicit ChangingCloud(const Scenario& scenario)
@@ -19,7 +19,7 @@ class ChangingCloud {
         slice_points_(scenario.slice_points),
         is_in_(scenario.pool.size(), false) {}
 
-  /// Applies a step and tells what it changed.
+  /// Applies a step and returns the change of the cloud.
   CloudChange apply(const Step& step);
 
   [[nodiscard]] const PointCloud& cloud() const { return cloud_; }

@@ -6,24 +6,25 @@
 #include <vector>
 
 #include "segmenter/core/engine/engine.hpp"
+#include "segmenter/core/parameters/engine_config.hpp"
 
 namespace kintsugi::segmenter::fuzz {
 
-/// Holds an engine to its word after each update: both partitions (with fragments joined, and
-/// before that) and every theta to the bit are those of batch, and components() and changed() tell
-/// what engine.hpp promises.
+/// Checks an engine after each update: both partitions (before and after fragments are joined) and
+/// every theta must be those of batch, to the bit, and components() and changed() must be as
+/// engine.hpp describes them.
 class EngineCheck {
  public:
   EngineCheck(const SegmentationEngine& engine, const PointCloud& cloud, const EngineConfig& config)
       : engine_(engine), cloud_(cloud), config_(config) {}
 
-  /// @param change what the engine was just told
+  /// @param change the argument of the last update()
   /// @param live the points in the map, ascending
-  /// @return the first thing that is wrong, in words; nothing when all is right
+  /// @return the first error, in words; nothing when there is none
   std::optional<std::string> operator()(const CloudChange& change,
                                         std::span<const PointIndex> live);
 
-  /// The partitions and the thetas alone.
+  /// Checks only the partitions and the thetas.
   [[nodiscard]] std::optional<std::string> partition(std::span<const PointIndex> live) const;
 
  private:
@@ -34,7 +35,7 @@ class EngineCheck {
   const SegmentationEngine& engine_;
   const PointCloud& cloud_;
   EngineConfig config_;
-  std::vector<ComponentId> mirror_;  ///< components(), kept by changed() alone
+  std::vector<ComponentId> mirror_;  ///< components(), updated only at the points in changed()
 };
 
 }  // namespace kintsugi::segmenter::fuzz

@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "segmenter/core/make_engine.hpp"
+
 namespace kintsugi::segmenter::fuzz {
 namespace {
 
@@ -60,7 +62,7 @@ class FaultyEngine final : public SegmentationEngine {
         if (change.removed.empty()) return false;
         components_[change.removed.front()] = 0;
         return true;
-      case Fault::kChangeUntold:
+      case Fault::kChangeLeftOut:
         if (changed_.empty()) return false;
         changed_.pop_back();
         return true;

@@ -8,15 +8,15 @@
 
 namespace kintsugi::segmenter::fuzz {
 
-/// What goes wrong, once, in an engine that is right otherwise.
+/// An error that happens once in an engine that is correct otherwise.
 enum class Fault : std::uint8_t {
   kNone,
   kWrongLabel,      ///< a point is in the component of another
   kWrongTheta,      ///< theta of one component is off by one bit
   kGoneStays,       ///< a removed point keeps its component
-  kChangeUntold,    ///< changed() leaves a point out
+  kChangeLeftOut,   ///< changed() leaves a point out
   kChangeMadeUp,    ///< changed() has a point whose component kept its name
-  kNameOutOfRange,  ///< a component is called size()
+  kNameOutOfRange,  ///< a component has the name size()
   kThrows,
 };
 

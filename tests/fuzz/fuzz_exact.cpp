@@ -1,9 +1,9 @@
-// Takes an engine through random scenarios and holds it against batch after every step:
+// Runs an engine through random scenarios and compares it with batch after every step:
 //
 //   fuzz_exact --steps 50000 --map office.ply --map loop.ply
 //
-// Ends with the number of steps checked. A failure is made smaller, printed, and saved as a file
-// that --replay takes.
+// Prints the number of steps at the end. A scenario that fails is shrunk, printed, and saved as a
+// file for --replay.
 
 #include <chrono>
 #include <exception>
@@ -39,23 +39,25 @@ constexpr int kTimeout_s = 60;  // a scenario takes about one second
 
 Options parse_command_line(int argc, char** argv) {
   Options options;
-  CLI::App app("Random maps, after every step held against batch");
+  CLI::App app("Runs an engine over random maps and compares it with batch after every step");
   app.add_option("--mode", options.mode, "engine to check")->capture_default_str();
-  app.add_option("--seed", options.seed, "of the first scenario; the next ones count up")
+  app.add_option("--seed", options.seed, "seed of the first scenario; each next one is higher by 1")
       ->capture_default_str();
-  app.add_option("--steps", options.steps, "to check")->capture_default_str();
-  app.add_option("--minutes", options.minutes, "go on for so long instead");
-  app.add_option("--map", options.maps,
-                 "take pieces of these (PLY with normals, .bin); rooms of our own otherwise")
+  app.add_option("--steps", options.steps, "number of steps to check")->capture_default_str();
+  app.add_option("--minutes", options.minutes, "run for this time instead of --steps");
+  app.add_option(
+         "--map", options.maps,
+         "cut scenarios out of these maps (PLY with normals, .bin); default: generated rooms")
       ->check(CLI::ExistingFile);
-  app.add_option("--max-points", options.bounds.max_points, "of a cloud")->capture_default_str();
+  app.add_option("--max-points", options.bounds.max_points, "largest number of points of a cloud")
+      ->capture_default_str();
   app.add_option("--replay", options.replay, "run this scenario only")->check(CLI::ExistingFile);
   app.add_option("--failures", options.failures, "folder for scenarios that fail")
       ->check(CLI::ExistingDirectory)
       ->capture_default_str();
-  app.add_option("--max-failures", options.max_failures, "stop after so many")
+  app.add_option("--max-failures", options.max_failures, "stop after this number of failures")
       ->capture_default_str();
-  app.add_option("--shrink-trials", options.shrink_trials, "to make a failing scenario smaller")
+  app.add_option("--shrink-trials", options.shrink_trials, "limit for shrinking a failing scenario")
       ->capture_default_str();
   try {
     app.parse(argc, argv);
@@ -132,7 +134,7 @@ int fuzz(const Options& options) {
   std::cout << options.mode << ": " << num_steps << " steps of " << num_scenarios
             << " scenarios checked against batch (seeds " << options.seed << " to "
             << options.seed + num_scenarios - 1 << ", " << static_cast<int>(seconds()) << " s; "
-            << num_rebuilt << " steps built anew): " << num_failures << " failures" << std::endl;
+            << num_rebuilt << " steps rebuilt): " << num_failures << " failures" << std::endl;
   return num_failures == 0 ? 0 : 1;
 }
 

@@ -1,6 +1,7 @@
 #include "tests/fuzz/partition.hpp"
 
 #include "segmenter/core/batch/batch_engine.hpp"
+#include "segmenter/core/parameters/engine_config.hpp"
 
 namespace kintsugi::segmenter::fuzz {
 

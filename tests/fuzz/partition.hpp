@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "segmenter/core/engine/engine.hpp"
+#include "segmenter/core/parameters/engine_config.hpp"
 
 namespace kintsugi::segmenter::fuzz {
 
@@ -14,7 +15,7 @@ struct Partition {
   std::vector<double> thetas;
 };
 
-/// By Algorithm 1 over `points_W` and nothing else, fragments as they are.
+/// Algorithm 1 over `points_W`, without the fragment step.
 Partition batch_partition(std::span<const CloudPoint> points_W, const EngineConfig& config);
 
 /// By mode batch over the points of `cloud`, before fragments are joined and after. The k-th of the
@@ -26,7 +27,7 @@ struct BatchPartitions {
 BatchPartitions batch_partitions(const PointCloud& cloud, std::span<const PointIndex> live,
                                  const EngineConfig& config);
 
-/// What the engine says of the points `live` in one of its partitions.
+/// One of the partitions of an engine, restricted to the points `live`.
 Partition partition_of(const SegmentationEngine& engine, std::span<const ComponentId> components,
                        std::span<const PointIndex> live);
 

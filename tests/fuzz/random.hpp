@@ -8,7 +8,7 @@
 
 namespace kintsugi::segmenter::fuzz {
 
-/// The draws a scenario is made of; the same for the same seed wherever it is built.
+/// Random numbers for scenarios, the same for the same seed with every standard library.
 class Random {
  public:
   explicit Random(std::uint64_t seed) : generator_(seed) {}

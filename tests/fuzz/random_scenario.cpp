@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "segmenter/core/graph/neighbour_index.hpp"
+#include "segmenter/core/parameters/engine_config.hpp"
 #include "tests/fuzz/random.hpp"
 #include "tests/fuzz/random_cloud.hpp"
 #include "tests/segmenter/core/random_clouds.hpp"
@@ -24,11 +25,11 @@ EngineConfig random_config(Random& random) {
   if (random.chance(0.4)) config.scale = random.log_uniform(1e-5, 2e-1);
   if (random.chance(0.6)) config.color_weight = random.log_uniform(1e-4, 1e-1);
   if (random.chance(0.75)) config.min_points = std::floor(random.log_uniform(1.0, 500.0));
-  // Replayed, whatever the cost; or given up in the middle and built anew.
+  // Always by change propagation; or the propagation is given up in the middle and rebuilds.
   if (random.chance(0.8)) config.rebuild_share = 1e9;
   if (random.chance(0.2)) {
     config.explore_share = 0.0;
-    config.explore_at_least = static_cast<std::int64_t>(random.log_uniform(1.0, 300.0)) - 1;
+    config.explore_at_least = std::floor(random.log_uniform(1.0, 300.0)) - 1.0;
   }
   return config;
 }

@@ -13,11 +13,10 @@ struct ScenarioBounds {
   std::size_t max_steps = 40;
 };
 
-/// What happens to a map in its life, drawn from `seed`: slices come in portions of any size;
-/// points leave one by one, many at once, a ball of them, or all; they come back to their place;
-/// they move, alone, as slices that are replaced, or as a rigid piece, which later moves back; a
-/// place is taken twice; nothing happens. Several of these may fall into one update. The cloud is
-/// one of random_cloud().
+/// A random scenario over a random_cloud(): slices of any size come; points leave one by one, many
+/// at once, a ball of them, or all; they come back; they move, one by one, as slices that are
+/// replaced, or as a rigid piece, which may later move back; two points are in the same place;
+/// nothing happens. Several of these may happen in one update.
 Scenario random_scenario(std::uint64_t seed, const ScenarioBounds& bounds,
                          std::span<const CloudPoint> map_W);
 

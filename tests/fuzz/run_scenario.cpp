@@ -2,6 +2,7 @@
 
 #include <exception>
 
+#include "segmenter/core/make_engine.hpp"
 #include "tests/fuzz/changing_cloud.hpp"
 #include "tests/fuzz/engine_check.hpp"
 
@@ -9,7 +10,8 @@ namespace kintsugi::segmenter::fuzz {
 
 EngineFactory engine_factory(const std::string& mode) {
   return [mode](const PointCloud& cloud, const EngineConfig& config) {
-    // Small clouds change by large parts: without this, mode `exact` would build all anew.
+    // Large parts of small clouds change: without this, mode `exact` would always rebuild its
+    // state.
     EngineConfig incremental = config;
     incremental.rebuild_share = 1e9;
     return make_engine(mode, cloud, incremental);

@@ -7,8 +7,16 @@
 #include <stdexcept>
 #include <string>
 
+#include "segmenter/core/parameters/engine_config.hpp"
+
 namespace kintsugi::segmenter::fuzz {
 namespace {
+
+template <typename Fn>
+void for_each_parameter(const Fn& fn) {
+  for (const EngineParameter& parameter : kMapParameters) fn(parameter);
+  for (const EngineParameter& parameter : kSpeedParameters) fn(parameter);
+}
 
 void write_indices(std::ostream& out, const char* name, const std::vector<PoolIndex>& indices) {
   out << name << ' ' << indices.size();
@@ -55,11 +63,10 @@ std::vector<PoolIndex> read_indices(std::istream& in, const char* name, std::siz
 
 void write_scenario(std::ostream& out, const Scenario& scenario) {
   out.precision(std::numeric_limits<double>::max_digits10);
-  const EngineConfig& config = scenario.config;
-  out << "config " << config.threshold << ' ' << config.scale << ' ' << config.color_weight << ' '
-      << config.min_points << ' ' << config.resolution_m << ' ' << config.radius_factor << ' '
-      << config.rebuild_share << ' ' << config.explore_share << ' ' << config.explore_at_least
-      << '\n';
+  out << "config";
+  for_each_parameter(
+      [&](const EngineParameter& parameter) { out << ' ' << scenario.config.*parameter.value; });
+  out << '\n';
   out << "slice_points " << scenario.slice_points << '\n';
   out << "points " << scenario.pool.size() << '\n';
   for (const CloudPoint& p : scenario.pool) {
@@ -76,13 +83,9 @@ void write_scenario(std::ostream& out, const Scenario& scenario) {
 Scenario read_scenario(std::istream& in) {
   Scenario scenario;
   expect_word(in, "config");
-  EngineConfig& config = scenario.config;
-  for (double* const value : {&config.threshold, &config.scale, &config.color_weight,
-                              &config.min_points, &config.resolution_m, &config.radius_factor,
-                              &config.rebuild_share, &config.explore_share}) {
-    *value = read_number<double>(in, "a parameter");
-  }
-  config.explore_at_least = read_number<std::int64_t>(in, "a number of points");
+  for_each_parameter([&](const EngineParameter& parameter) {
+    scenario.config.*parameter.value = read_number<double>(in, std::string(parameter.name));
+  });
   expect_word(in, "slice_points");
   scenario.slice_points = read_number<std::size_t>(in, "the number of points in a slice");
   if (scenario.slice_points == 0) throw std::runtime_error("scenario: slice_points is 0");

@@ -9,7 +9,7 @@
 
 namespace kintsugi::segmenter::fuzz {
 
-/// Points whose edges have the weights one wants.
+/// Points whose edges have given weights.
 ///
 /// They stand on a lattice in a plane, 15 mm apart: with a radius of 20 mm those side by side are
 /// neighbours, those across a square (21 mm) are not. All normals are upright, so that no edge is

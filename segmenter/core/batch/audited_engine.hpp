@@ -9,20 +9,20 @@
 
 namespace kintsugi::segmenter {
 
-/// An engine is not in agreement with batch.
+/// An engine gave another result than batch.
 class AuditError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Holds an engine against batch: after each update every label and every theta must be the same,
-/// to the bit, with fragments joined and before that. Costs a batch run an update.
+/// Compares an engine with batch: after each update every label and every theta must be the same,
+/// to the bit, before and after fragments are joined. Each update costs a run of batch.
 class AuditedEngine final : public SegmentationEngine {
  public:
   AuditedEngine(std::unique_ptr<SegmentationEngine> engine, const PointCloud& cloud,
                 const EngineConfig& config);
 
-  /// Throws AuditError, naming the first point that differs.
+  /// @throws AuditError naming the first point that differs
   RunStatistics update(const CloudChange& change) override;
   void look_ahead(std::span<const CloudPoint> slice_W) override { engine_->look_ahead(slice_W); }
   std::span<const ComponentId> components() const override { return engine_->components(); }

@@ -1,7 +1,8 @@
 #include "segmenter/core/batch/batch_engine.hpp"
 
 #include "segmenter/core/fragments/fragment_step.hpp"
-#include "segmenter/core/graph/graph.hpp"
+#include "segmenter/core/graph/build_graph.hpp"
+#include "segmenter/core/graph/make_neighbour_index.hpp"
 
 namespace kintsugi::segmenter {
 
@@ -33,8 +34,8 @@ RunStatistics BatchEngine::update(const CloudChange& change) {
           .num_iterations = 1};
 }
 
-/// Marks the points that are there in components_; returns the names there were, none for new
-/// points.
+/// Marks the points in the cloud in components_. Returns the names before the change; kNoComponent
+/// for new points.
 std::vector<ComponentId> BatchEngine::take_over(const CloudChange& change) {
   if (index_) {
     index_->remove(change.removed);
@@ -53,8 +54,8 @@ std::vector<ComponentId> BatchEngine::take_over(const CloudChange& change) {
 
 void BatchEngine::join_fragments_of(std::span<const PointIndex> points) {
   FragmentForest forest(components_, config_.fragment_limit());
-  FragmentObserver nobody;
-  join_fragments(cloud_, points, components_, config_, forest, nobody);
+  FragmentObserver no_observer;
+  join_fragments(cloud_, points, components_, config_, forest, no_observer);
   joined_.assign(components_.size(), kNoComponent);
   for (const PointIndex i : points) joined_[i] = components_[forest.namer(forest.find_point(i))];
 }
@@ -63,12 +64,13 @@ BatchStatistics BatchEngine::segment(std::span<const PointIndex> points) {
   forest_ = SegmentForest(config_.threshold, config_.scale);
   forest_.grow(cloud_.size());
   if (index_) {
-    const std::vector<Edge> edges = build_graph(cloud_, *index_, config_);
+    const std::vector<Edge> edges =
+        build_graph(cloud_, *index_, config_.edge_weight(), config_.max_weight());
     return {.num_edges = static_cast<std::int64_t>(edges.size()),
             .num_joins = join_segments(edges, forest_)};
   }
-  JoinObserver nobody;
-  return segment_points(cloud_, points, config_, forest_, nobody);
+  JoinObserver no_observer;
+  return segment_points(cloud_, points, config_, forest_, no_observer);
 }
 
 double BatchEngine::theta(ComponentId component) const {

@@ -6,11 +6,13 @@
 #include "segmenter/core/batch/batch_segmentation.hpp"
 #include "segmenter/core/batch/segment_forest.hpp"
 #include "segmenter/core/engine/engine.hpp"
+#include "segmenter/core/graph/neighbour_index.hpp"
+#include "segmenter/core/parameters/engine_config.hpp"
 
 namespace kintsugi::segmenter {
 
-/// Mode `batch`: Algorithm 1 and the fragment step, if there is one, over all points there are,
-/// from scratch at each update. The reference.
+/// Mode `batch`, the reference: each update runs Algorithm 1, and the fragment step if the config
+/// has one, over all points.
 class BatchEngine final : public SegmentationEngine {
  public:
   BatchEngine(const PointCloud& cloud, const EngineConfig& config);
@@ -32,10 +34,10 @@ class BatchEngine final : public SegmentationEngine {
 
   const PointCloud& cloud_;
   EngineConfig config_;
-  std::unique_ptr<NeighbourIndex> index_;  ///< none for the grid: all neighbours are found at once
+  std::unique_ptr<NeighbourIndex> index_;  ///< null for kGrid, which segment_points() does without
   SegmentForest forest_;
-  std::vector<ComponentId> components_;  ///< by the smallest point of each
-  std::vector<ComponentId> joined_;  ///< the same with fragments joined; none where they are not
+  std::vector<ComponentId> components_;  ///< each named by its smallest point
+  std::vector<ComponentId> joined_;      ///< with fragments joined; empty without a fragment step
   std::vector<PointIndex> changed_;
 };
 

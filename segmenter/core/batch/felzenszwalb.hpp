@@ -12,18 +12,17 @@
 
 namespace kintsugi::segmenter {
 
-/// Is told, in the order in which they are looked at, of all edges between two segments. Edges
-/// within one segment are passed over.
+/// Called for each edge between two different segments, in the order in which edges are decided.
 class JoinObserver {
  public:
   virtual ~JoinObserver() = default;
-  /// `host` and `guest` were the roots of the two segments; the host's stays a root.
+  /// `host` and `guest` were the roots of the two segments. `host` stays a root.
   virtual void joined(const Edge& /*edge*/, PointIndex /*host*/, PointIndex /*guest*/) {}
   virtual void rejected(const Edge& /*edge*/) {}
 };
 
-/// Copies the edges between two segments. Most edges lie inside one when their turn comes: only
-/// what this leaves needs to be sorted.
+/// Appends the edges between two different segments to `between`. Most edges lie inside a segment
+/// when their turn comes, and need not be sorted.
 inline void append_edges_between_segments(std::span<const Edge> edges, SegmentForest& forest,
                                           std::vector<Edge>& between) {
   constexpr std::size_t kAhead = 16;
@@ -36,9 +35,8 @@ inline void append_edges_between_segments(std::span<const Edge> edges, SegmentFo
   }
 }
 
-/// Algorithm 1, lines 6-13: sorts `edges` in ascending order (AscendingWeight), takes one after the
-/// other and joins what may be joined. Returns the number of joins. `observer` is a JoinObserver or
-/// has its functions.
+/// Algorithm 1, lines 6-13: sorts `edges` (AscendingWeight) and joins the segments of each edge if
+/// both are alive. Returns the number of joins. `observer` is a JoinObserver or has its functions.
 template <typename Observer>
 std::int64_t join_in_order(std::span<Edge> edges, SegmentForest& forest, Observer&& observer) {
   std::int64_t num_joins = 0;
@@ -63,7 +61,7 @@ std::int64_t join_in_order(std::span<Edge> edges, SegmentForest& forest, Observe
   return num_joins;
 }
 
-/// join_in_order() for any number of edges: many of them are sorted bucket by bucket.
+/// As join_in_order(). Where there are many edges, they are sorted bucket by bucket.
 template <typename Observer>
 std::int64_t join_segments(std::span<const Edge> edges, SegmentForest& forest,
                            Observer&& observer) {
@@ -90,8 +88,8 @@ inline std::int64_t join_segments(std::span<const Edge> edges, SegmentForest& fo
   struct {
     void joined(const Edge& /*edge*/, PointIndex /*host*/, PointIndex /*guest*/) const {}
     void rejected(const Edge& /*edge*/) const {}
-  } nobody;
-  return join_segments(edges, forest, nobody);
+  } no_observer;
+  return join_segments(edges, forest, no_observer);
 }
 
 }  // namespace kintsugi::segmenter

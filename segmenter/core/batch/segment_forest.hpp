@@ -9,8 +9,8 @@
 
 namespace kintsugi::segmenter {
 
-/// Disjoint sets of points, each with its size and its join threshold theta (Eq. 3): the state of
-/// Algorithm 1. `threshold` is T, `scale` is k.
+/// The state of Algorithm 1: disjoint sets of points (segments), each with its size and its join
+/// threshold theta (Eq. 3). `threshold` is T, `scale` is k.
 class SegmentForest {
  public:
   SegmentForest(double threshold, double scale) : threshold_(threshold), scale_(scale) {}
@@ -23,11 +23,12 @@ class SegmentForest {
   }
   PointIndex size() const { return static_cast<PointIndex>(nodes_.size()); }
 
-  /// Makes `point` a segment of its own (Algorithm 1, line 4). Its whole set must be reset so, or
-  /// the points left behind would still hang on it.
+  /// Makes `point` a segment of its own (Algorithm 1, line 4). All points of its old segment must
+  /// be reset, because some may have it as parent.
   void reset(PointIndex point) { nodes_[point] = {threshold_, 1, point}; }
 
-  /// Puts `point`, a singleton, into the set of `root`, which has this theta: a set that was saved.
+  /// Restores a saved segment: puts `point`, a singleton, into that of `root`, which has this
+  /// theta.
   void restore(PointIndex point, PointIndex root, double theta) {
     nodes_[point].parent = root;
     if (point != root) ++nodes_[root].size;
@@ -41,7 +42,7 @@ class SegmentForest {
     }
     return point;
   }
-  /// Tells the processor that find(point) comes soon.
+  /// To be called some time before find(point), so that the memory is in the cache.
   void prefetch(PointIndex point) const { __builtin_prefetch(&nodes_[point]); }
   /// As find(), without shortening the paths.
   PointIndex root(PointIndex point) const {
@@ -49,21 +50,21 @@ class SegmentForest {
     return point;
   }
 
-  /// Points of the segment of `root`, also after it has been joined to another.
+  /// Points of the segment of `root`; if that has joined another one, the points it had then.
   std::uint32_t size_at(PointIndex root) const { return nodes_[root].size; }
 
   /// theta of the segment of `root`, a result of find().
   double theta_at(PointIndex root) const { return nodes_[root].theta; }
 
-  /// Joins the segments of i and j if they are two and `weight` is below both thresholds
-  /// (Algorithm 1, lines 7-11); tells whether it did.
+  /// Joins the segments of i and j if they are different and `weight` is below both thresholds
+  /// (Algorithm 1, lines 7-11). Returns whether it did.
   bool join(PointIndex i, PointIndex j, float weight) {
     PointIndex host = find(i);
     PointIndex guest = find(j);
     return host != guest && join_roots(host, guest, weight);
   }
-  /// As join(), for two different roots. Where it joins, `host` is the one that stays a root: that
-  /// of the larger segment, the first of the two when they are equal.
+  /// As join(), for two different roots. If it joins, they are swapped as needed so that `host` is
+  /// the one that stays a root: that of the larger segment, or the first one if they are equal.
   bool join_roots(PointIndex& host, PointIndex& guest, float weight) {
     const double w = weight;
     if (!(w < nodes_[host].theta && w < nodes_[guest].theta)) return false;
@@ -78,7 +79,7 @@ class SegmentForest {
 
  private:
   struct Node {
-    double theta;  ///< of the set that it is, or was, the root of; as is size
+    double theta;  ///< theta and size are of the segment of which it is, or was, the root
     std::uint32_t size;
     PointIndex parent;  ///< itself: a root
   };

@@ -5,13 +5,14 @@
 
 namespace kintsugi::segmenter {
 
-/// An engine that keeps the neighbours of its points, for a layer on top of it.
+/// An engine that keeps an index of the neighbours of its points, which a layer on top of it can
+/// use.
 class IncrementalEngine : public SegmentationEngine {
  public:
-  /// Of the points at the last update().
+  /// Holds the points of the last update.
   virtual const NeighbourIndex& neighbour_index() const = 0;
 
-  /// Some point of a component that there is.
+  /// Any one point of an existing component.
   virtual PointIndex point_of(ComponentId component) const = 0;
 };
 

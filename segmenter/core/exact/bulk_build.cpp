@@ -14,8 +14,8 @@ namespace {
 
 constexpr std::size_t kPointsPerTask = 8192;
 
-/// Writes down what happens: joins as tree edges with their owners, in order, and beside them what
-/// else there is to know of the guests.
+/// Records a run of Algorithm 1: joins as tree edges with their owners, in order, with the host and
+/// size of each guest beside them; rejected edges as watches.
 class Recorder final : public JoinObserver {
  public:
   Recorder(SegmentForest& forest, State& state, std::size_t num_points)
@@ -32,13 +32,13 @@ class Recorder final : public JoinObserver {
   void rejected(const Edge& edge) override {
     const PointIndex root_j = forest_.find(edge.j);
     const bool is_j_frozen = !(static_cast<double>(edge.weight) < forest_.theta_at(root_j));
-    // A frozen component never changes again: its root will stay the root.
+    // A frozen component never changes again, so its root stays the root.
     state_.watches.insert(is_j_frozen ? root_j : forest_.find(edge.i),
                           is_j_frozen ? edge.j : edge.i, EdgeKey::of(edge.weight, edge.i, edge.j));
   }
 
-  /// Enters the joins into the vertices. The children of a host are a list for now, the last one
-  /// first: `history` of the host begins it, `left` goes on.
+  /// Enters the joins into the vertices. The guests of a host are a linked list at first, the last
+  /// one in front: from `history` of the host along `left`.
   void enter_joins() {
     Vertices& vertices = state_.vertices;
     for (TreeEdgeId id = 0; id < guests_.size(); ++id) {
@@ -75,13 +75,13 @@ class Recorder final : public JoinObserver {
   std::vector<Guest> guests_;  ///< by tree edge
 };
 
-/// Makes a balanced tree of the children that the recorder has listed.
-void build_history(PointIndex host, State& state, std::vector<PointIndex>& children) {
-  children.clear();
-  PointIndex child = std::exchange(state.vertices[host].history, kNone);
-  for (; child != kNone; child = state.vertices[child].left) children.push_back(child);
-  std::reverse(children.begin(), children.end());
-  state.forest.build_history(host, children);
+/// Turns the list of guests that the recorder made into a balanced tree.
+void build_history(PointIndex host, State& state, std::vector<PointIndex>& guests) {
+  guests.clear();
+  PointIndex guest = std::exchange(state.vertices[host].history, kNone);
+  for (; guest != kNone; guest = state.vertices[guest].left) guests.push_back(guest);
+  std::reverse(guests.begin(), guests.end());
+  state.forest.build_history(host, guests);
 }
 
 }  // namespace
@@ -96,9 +96,9 @@ BatchStatistics build_state(const PointCloud& cloud, std::span<const PointIndex>
 
   using Range = oneapi::tbb::blocked_range<std::size_t>;
   oneapi::tbb::parallel_for(Range(0, points.size(), kPointsPerTask), [&](const Range& range) {
-    std::vector<PointIndex> children;
+    std::vector<PointIndex> guests;
     for (const PointIndex x : points.subspan(range.begin(), range.size())) {
-      if (state.vertices[x].history != kNone) build_history(x, state, children);
+      if (state.vertices[x].history != kNone) build_history(x, state, guests);
     }
   });
   return statistics;

@@ -7,8 +7,8 @@
 
 namespace kintsugi::segmenter::exact {
 
-/// Builds the state of the engine from scratch by Algorithm 1 over `points`, in little more than
-/// its own time. `state` is clear; is_gone of all others.
+/// Builds the state of the engine by Algorithm 1 over `points`, in little more than the time of
+/// Algorithm 1 alone. `state` must be clear, and all other vertices marked as gone.
 BatchStatistics build_state(const PointCloud& cloud, std::span<const PointIndex> points,
                             const EngineConfig& config, State& state);
 

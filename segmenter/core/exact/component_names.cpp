@@ -11,7 +11,9 @@
 namespace kintsugi::segmenter::exact {
 namespace {
 
-std::uint32_t& place(Vertex& v) { return v.visit; }  // in the list at hand, while names are given
+// While names are given, the scratch field holds the vertex's position in the list of roots or
+// touched vertices.
+std::uint32_t& position(Vertex& v) { return v.visit; }
 
 }  // namespace
 
@@ -19,21 +21,21 @@ void ComponentNames::update(std::vector<PointIndex>& touched, std::span<const Po
   changed_.clear();
   names_.resize(vertices_.size(), kNoComponent);
   std::erase_if(touched, [&](PointIndex x) { return vertices_[x].is_gone != 0; });
-  // A root has a say in what its component is called, even if only others in it were touched.
+  // The root counts when its component is named, even if only other vertices in it were touched.
   for (std::size_t k = 0; k < touched.size(); ++k) {
     const PointIndex root = forest_.root(touched[k]);
     if (!vertices_[root].is_touched) touched.push_back(root);
     vertices_[root].is_touched = 1;
-    place(vertices_[touched[k]]) = static_cast<std::uint32_t>(k);
+    position(vertices_[touched[k]]) = static_cast<std::uint32_t>(k);
   }
   const std::vector<ComponentId> new_names = give_names(count_pieces(touched), touched, removed);
   for (const PointIndex x : touched) {
-    const ComponentId name = new_names[place(vertices_[forest_.root(x)])];
+    const ComponentId name = new_names[position(vertices_[forest_.root(x)])];
     if (names_[x] != name) relabel_piece(x, name);
   }
   for (const PointIndex x : touched) {
     vertices_[x].is_touched = 0;
-    place(vertices_[x]) = 0;
+    position(vertices_[x]) = 0;
   }
   for (const PointIndex x : removed) vertices_[x].is_touched = 0;
   std::sort(changed_.begin(), changed_.end());
@@ -45,7 +47,7 @@ void ComponentNames::update_all(std::span<const PointIndex> removed) {
   std::vector<PointIndex> roots;
   for (PointIndex x = 0; x < vertices_.size(); ++x) {
     if (vertices_[x].is_gone || !vertices_.is_root(x)) continue;
-    place(vertices_[x]) = static_cast<std::uint32_t>(roots.size());
+    position(vertices_[x]) = static_cast<std::uint32_t>(roots.size());
     roots.push_back(x);
   }
   const std::vector<std::uint32_t> components = find_components();
@@ -62,10 +64,10 @@ void ComponentNames::update_all(std::span<const PointIndex> removed) {
   for (PointIndex x = 0; x < vertices_.size(); ++x) {
     if (components[x] != kNone) set_name(x, new_names[components[x]]);
   }
-  for (const PointIndex root : roots) place(vertices_[root]) = 0;
+  for (const PointIndex root : roots) position(vertices_[root]) = 0;
 }
 
-/// For each point the place of its root; kNone for those that are gone.
+/// By point: the position of its root; kNone for points that are gone.
 std::vector<std::uint32_t> ComponentNames::find_components() const {
   std::vector<std::uint32_t> components(vertices_.size(), kNone);
   oneapi::tbb::parallel_for(std::size_t{0}, components.size(), [&](std::size_t i) {
@@ -75,8 +77,8 @@ std::vector<std::uint32_t> ComponentNames::find_components() const {
   return components;
 }
 
-/// A piece is a touched vertex and what hangs on it down to the next touched ones: no point of it
-/// has been anywhere else, so all of it had one name.
+/// A piece is a touched vertex and everything below it down to the next touched ones. The hosts
+/// inside it did not change, so all its points had one name.
 std::vector<ComponentNames::Share> ComponentNames::count_pieces(
     std::span<const PointIndex> touched) const {
   std::vector<Share> shares(touched.size());
@@ -94,8 +96,8 @@ std::vector<ComponentNames::Share> ComponentNames::count_pieces(
   return shares;
 }
 
-/// The name of each component that has a share, at its place in `roots`: the one most of its points
-/// had, if no other component has more points of that name; else one that is free.
+/// The new name of each component that has a share, by its position in `roots`: the name that most
+/// of its points had, if no other component has more points of that name; else a free one.
 std::vector<ComponentId> ComponentNames::give_names(std::vector<Share> shares,
                                                     std::span<const PointIndex> roots,
                                                     std::span<const PointIndex> removed) {
@@ -145,7 +147,7 @@ std::vector<ComponentId> ComponentNames::give_names(std::vector<Share> shares,
   return new_names;
 }
 
-/// Names that touched or removed points had, and nobody keeps, are free again.
+/// Frees the names that touched or removed points had and no component keeps.
 void ComponentNames::release_names(std::span<const Share> shares,
                                    std::span<const PointIndex> removed,
                                    const std::vector<ComponentId>& kept) {
@@ -165,8 +167,8 @@ void ComponentNames::relabel_piece(PointIndex top, ComponentId name) {
     const PointIndex x = stack.back();
     stack.pop_back();
     set_name(x, name);
-    forest_.history().for_each_child(x, [&](PointIndex child) {
-      if (!vertices_[child].is_touched) stack.push_back(child);
+    forest_.history().for_each_guest(x, [&](PointIndex guest) {
+      if (!vertices_[guest].is_touched) stack.push_back(guest);
     });
   }
 }

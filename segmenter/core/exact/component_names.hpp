@@ -11,18 +11,19 @@
 namespace kintsugi::segmenter::exact {
 
 /// Names the components so that few points change name: a component keeps the name that most of
-/// its points had, and only pieces that hung elsewhere before are relabelled. So a run costs time
-/// in proportion to the vertices it touched and the points that changed component, also when the
-/// root of a segment of a million points is another now.
+/// its points had, and only the points that were in another component before are relabelled. So the
+/// time of an update is proportional to the touched vertices and the points that changed component,
+/// even if the root of a segment of a million points changes.
 class ComponentNames {
  public:
   ComponentNames(Vertices& vertices, const JoinForest& forest)
       : vertices_(vertices), forest_(forest) {}
 
-  /// Takes over a run. `touched`: the vertices whose host changed or that lost a guest, the added
-  /// ones among them; all are is_touched, and none is afterwards. `removed` are gone.
+  /// Names the components after a run of ChangePropagation. `touched` are the added vertices and
+  /// all whose host or guests changed; all are marked is_touched, and unmarked here. `removed` are
+  /// gone.
   void update(std::vector<PointIndex>& touched, std::span<const PointIndex> removed);
-  /// Takes over a forest that was built anew, with all its points.
+  /// The same after the whole forest was rebuilt.
   void update_all(std::span<const PointIndex> removed);
 
   std::span<const ComponentId> of_points() const { return names_.span(); }
@@ -37,7 +38,7 @@ class ComponentNames {
  private:
   /// Points of one component that had one name before.
   struct Share {
-    std::uint32_t component;  ///< place of its root in the list at hand
+    std::uint32_t component;  ///< position of its root in the list that names are given to
     ComponentId old_name;
     std::uint32_t num_points;
   };
@@ -54,8 +55,8 @@ class ComponentNames {
   Vertices& vertices_;
   const JoinForest& forest_;
   GrowingArray<ComponentId> names_;  ///< of points
-  GrowingArray<PointIndex> roots_;   ///< of names in use
-  std::vector<ComponentId> free_;
+  GrowingArray<PointIndex> roots_;   ///< by name, where it is in use
+  std::vector<ComponentId> free_;    ///< names that are not in use
   std::vector<PointIndex> changed_;
 };
 

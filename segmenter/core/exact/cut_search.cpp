@@ -5,8 +5,8 @@
 namespace kintsugi::segmenter::exact {
 namespace {
 
-// Undoing a later join costs about what looking at a point does, and there is one for every few
-// points that a component still is to gain.
+// To take back a join costs about as much as to explore a point. A future of n points has about
+// one join for every 8 of them.
 constexpr std::uint32_t kFuturePointsPerJoin = 8;
 
 }  // namespace
@@ -33,8 +33,8 @@ void CutSearch::finish() {
   families_.resize(1);
 }
 
-/// Explores the unexplored points of one of the two old components; the main point of the other
-/// then is the main point of both.
+/// Explores the unexplored points of one of the two old components. The main point of the other
+/// becomes the main point of both.
 void CutSearch::explore_smaller(PointIndex& main_u, PointIndex& main_v, const EdgeKey& time) {
   const Search& smaller = search_smaller(main_u, main_v, time);
   PointIndex& kept = &smaller == &sides_[0] ? main_v : main_u;
@@ -50,7 +50,7 @@ void CutSearch::explore_smaller(PointIndex& main_u, PointIndex& main_v, const Ed
   }
 }
 
-/// Searches both old components in turns, and returns the search that ends first.
+/// Searches both old components alternately, and returns the search that is complete first.
 CutSearch::Search& CutSearch::search_smaller(PointIndex from_u, PointIndex from_v,
                                              const EdgeKey& time) {
   for (Search& side : sides_) {
@@ -75,7 +75,7 @@ void CutSearch::expand(Search& search, const EdgeKey& time) {
 }
 
 void CutSearch::reach(Search& search, PointIndex x, const EdgeKey& time) {
-  vertices_[x].visit = 1;  // the two old components have no point in common
+  vertices_[x].visit = 1;  // one mark is enough: the two old components share no point
   search.points.push_back(x);
   ++search.cost;
   if (is_explored(x) || forest_.is_absorbed_up_to(x, time)) return;
@@ -103,12 +103,12 @@ std::uint32_t CutSearch::find_family(PointIndex x) {
   return family;
 }
 
-/// A point of the old component of x that is not explored; kNone when there is none.
+/// An unexplored point of the old component of x; kNone when there is none.
 PointIndex CutSearch::main_point(PointIndex x) {
   if (!is_explored(x)) return x;
   std::uint32_t family = find_family(x);
   while (families_[family].main != kNone && is_explored(families_[family].main)) {
-    // It has been explored since: its family knows the next one.
+    // The main point was explored meanwhile, so its family knows another one.
     const std::uint32_t next = find_family(families_[family].main);
     assert(next != family);
     families_[family].parent = next;

@@ -10,38 +10,38 @@
 
 namespace kintsugi::segmenter::exact {
 
-/// Finds which points must look at their edges again because an edge of the old tree does not join
-/// any more.
+/// Finds which points must be explored because an edge of the old tree does not join any more.
 ///
-/// The old component P of a point at a time is what the old tree connects by edges up to then. An
-/// edge inside P was skipped in the old state, and nobody remembers it; when P has fallen apart it
-/// may join the pieces. Looking at the edges of a point anew is called exploring it. The invariant
-/// that makes the engine exact: the points of P that are not explored are in one component now, at
-/// every time and for every P. So an edge inside P that was skipped either is inside a component
-/// again, or it has an end that is explored, and is in the queue.
+/// The old component P of a point at a time is the part of the old tree that edges up to then
+/// connect. An edge inside P was skipped in the old run and is not stored. If P has fallen apart,
+/// it may now join the pieces. Hence the invariant, which makes the engine exact: at every time,
+/// and for every P, the points of P that are not explored are in one component now. An old edge
+/// inside P therefore either lies inside a component again, or one of its ends is explored and the
+/// edge is in the queue.
 ///
-/// The invariant can break only where the old tree joins two old components P and Q. reconcile()
-/// restores it there: if their unexplored points are in two components, it explores the smaller
-/// one of P and Q. As it is done when the time of each edge comes, and not for the whole of the old
-/// tree when the first edge is rejected, it stops as soon as a replacement has been found; it costs
-/// what the two components had in points then, not what the segment has in the end.
+/// The invariant can break only where the old tree joins two old components P and Q. There
+/// reconcile() restores it: if their unexplored points are in two components now, it explores those
+/// of the smaller one of P and Q. This happens at the time of each old tree edge, not for the whole
+/// old tree when the first edge is rejected. So it stops as soon as other edges connect the pieces
+/// again, and it costs what P or Q have in points at that time, not what the segment has in the
+/// end.
 ///
-/// Explored points belong to families; each family knows a point of the same old component that is
-/// not explored, its main point.
+/// Explored points are grouped into families. A family knows its main point: an unexplored point of
+/// the same old component.
 class CutSearch {
  public:
   CutSearch(Vertices& vertices, const TreeEdges& edges, const JoinForest& forest)
       : vertices_(vertices), edges_(edges), forest_(forest) {}
 
-  /// A point that is gone counts as explored: it has no edges any more.
+  /// A removed point counts as explored, since it has no edges left.
   void set_gone(PointIndex x) { mark(x, new_family(kNone)); }
 
-  /// To be called just after `time`, the key of the old tree's edge (u, v), once it is known
-  /// whether that joins. Returns the points to explore: their edges after `time` are to be queued,
-  /// the later joins of representatives among them to be undone.
+  /// To be called for each edge (u, v) of the old tree that is looked at, at its key `time`, after
+  /// it was decided. Returns the points to explore: their edges after `time` must be queued, and
+  /// the futures of the representatives among them taken back.
   const std::vector<PointIndex>& reconcile(PointIndex u, PointIndex v, const EdgeKey& time);
 
-  /// Ends the run: forgets what was explored.
+  /// Ends the run: no point is explored any more.
   void finish();
 
   bool is_explored(PointIndex x) const { return vertices_[x].family != 0; }
@@ -49,10 +49,10 @@ class CutSearch {
 
  private:
   struct Family {
-    std::uint32_t parent;  ///< itself: a family of its own
+    std::uint32_t parent;  ///< union-find: the family that it was merged into, or itself
     PointIndex main;       ///< kNone: every point of the old component is explored
   };
-  /// One of the two searches: the old component of a point, breadth first.
+  /// One of the two searches, breadth first over the old component of a point.
   struct Search {
     std::vector<PointIndex> points;
     std::size_t num_expanded = 0;
@@ -71,7 +71,7 @@ class CutSearch {
   Vertices& vertices_;
   const TreeEdges& edges_;
   const JoinForest& forest_;
-  std::vector<Family> families_{1};  ///< by number; 0 is none
+  std::vector<Family> families_{1};  ///< by number; 0 means no family
   std::vector<PointIndex> explored_;
   Search sides_[2];
   std::vector<PointIndex> to_explore_;

@@ -8,10 +8,10 @@
 
 namespace kintsugi::segmenter::exact {
 
-/// Where an edge stands in the order in which Algorithm 1 takes the edges: by weight, ties by the
-/// two points, smaller first. It is also the time at which things happen in the engine's history.
+/// The position of an edge in the order in which Algorithm 1 takes the edges: by weight, ties by
+/// the two points, the smaller one first. It serves as time in the history of joins.
 struct EdgeKey {
-  std::uint32_t weight_bits = UINT32_MAX;  ///< a float32 >= 0: its bits order as its value does
+  std::uint32_t weight_bits = UINT32_MAX;  ///< of a float32 >= 0, which are ordered as its values
   PointIndex a = UINT32_MAX;               ///< < b
   PointIndex b = UINT32_MAX;
 
@@ -27,7 +27,7 @@ struct EdgeKey {
   }
 };
 
-/// After every edge.
+/// Later than every edge.
 inline constexpr EdgeKey kNever{};
 
 }  // namespace kintsugi::segmenter::exact

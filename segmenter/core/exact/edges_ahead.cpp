@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "segmenter/core/graph/edge_weight.hpp"
+#include "segmenter/core/graph/make_neighbour_index.hpp"
 
 namespace kintsugi::segmenter::exact {
 
@@ -20,7 +20,7 @@ void EdgesAhead::finish() {
 }
 
 EdgesAhead::Found EdgesAhead::find(std::vector<CloudPoint> slice_W) const {
-  const double color_weight = config_.color_weight;
+  const EdgeWeight weight_of = config_.edge_weight();
   const double max_weight = config_.max_weight();
   Found found;
   found.slice.add_slice(0, slice_W);
@@ -31,13 +31,13 @@ EdgesAhead::Found EdgesAhead::find(std::vector<CloudPoint> slice_W) const {
   own_index->visit(all, [&](PointIndex i, std::span<const PointIndex> neighbours) {
     for (const PointIndex j : neighbours) {
       if (j < i) continue;
-      const float weight = edge_weight(found.slice[i], found.slice[j], color_weight);
+      const float weight = weight_of(found.slice[i], found.slice[j]);
       if (weight < max_weight) found.inner.push_back({weight, i, j});
     }
   });
   index_.visit_places(found.slice.points_W(), [&](PointIndex i, std::span<const PointIndex> near) {
     for (const PointIndex j : near) {
-      const float weight = edge_weight(found.slice[i], cloud_[j], color_weight);
+      const float weight = weight_of(found.slice[i], cloud_[j]);
       if (weight < max_weight) found.outer.push_back({weight, i, j});
     }
   });

@@ -5,32 +5,33 @@
 #include <span>
 #include <vector>
 
-#include "segmenter/core/engine/engine.hpp"
 #include "segmenter/core/exact/edge_key.hpp"
 #include "segmenter/core/graph/neighbour_index.hpp"
+#include "segmenter/core/parameters/engine_config.hpp"
 #include "segmenter/core/points/point_cloud.hpp"
 
 namespace kintsugi::segmenter::exact {
 
-/// Finds the edges of points that are to be added later, on a thread of its own.
+/// Finds the edges of points that will be added later, in a thread of its own.
 class EdgesAhead {
  public:
-  /// `cloud` and `index` must not change between start() and finish(). Edges of max_weight()
-  /// and more are left out.
+  /// `cloud` and `index` must not change between start() and finish(). Only edges below
+  /// max_weight() are found.
   EdgesAhead(const PointCloud& cloud, const NeighbourIndex& index, const EngineConfig& config)
       : cloud_(cloud), index_(index), config_(config) {}
   ~EdgesAhead() {
-    if (search_.valid()) search_.wait();  // what it throws is nobody's any more
+    if (search_.valid()) search_.wait();  // without get(): a destructor must not throw its error
   }
 
-  /// Begins to look for the edges among the points of a slice, and between them and the points in
-  /// the index.
+  /// Starts the search for the edges among the points of a slice, and between these and the points
+  /// in the index.
   void start(std::span<const CloudPoint> slice_W);
-  /// Waits for what start() began; throws what it threw.
+  /// Waits for the end of the search.
+  /// @throws what the search threw
   void finish();
 
-  /// The edges, if `added`, points of the cloud, are those of start(); nothing otherwise. Nothing
-  /// may have come into the index, or left it, since start().
+  /// The edges that were found, if the points `added` of the cloud are those of start(); nothing
+  /// otherwise. The index must be as it was at start().
   std::optional<std::vector<EdgeKey>> take(std::span<const PointIndex> added);
 
  private:
@@ -38,12 +39,12 @@ class EdgesAhead {
   struct AheadEdge {
     float weight;
     PointIndex i;
-    PointIndex other;  ///< of the slice, or of the cloud
+    PointIndex other;  ///< point of the slice (inner) or of the cloud (outer)
   };
   struct Found {
-    PointCloud slice;  ///< its points that can be segmented, by their places in it
-    std::vector<AheadEdge> inner;
-    std::vector<AheadEdge> outer;
+    PointCloud slice;              ///< without its inadmissible points
+    std::vector<AheadEdge> inner;  ///< between two points of the slice
+    std::vector<AheadEdge> outer;  ///< between the slice and the cloud
   };
 
   Found find(std::vector<CloudPoint> slice_W) const;

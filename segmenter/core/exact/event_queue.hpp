@@ -10,11 +10,11 @@
 
 namespace kintsugi::segmenter::exact {
 
-/// What is to be looked at, at the key of an edge. At one key, in this order.
+/// What there is to do at the time of an edge; at one time in this order.
 enum class EventKind : std::uint32_t {
-  kTreeEdge,   ///< a tree edge whose join may not hold, or not as it was; argument: its id
-  kPlainEdge,  ///< an edge that may join; no argument
-  kHeap,       ///< a watch of a touched segment; argument: the holder of the heap
+  kTreeEdge,   ///< decide a tree edge again; argument: its id
+  kPlainEdge,  ///< decide an edge that has joined nothing so far; no argument
+  kHeap,       ///< offer the watched edges of a segment that changed; argument: holder of the heap
 };
 
 struct Event {
@@ -28,14 +28,14 @@ struct Event {
   }
 };
 
-/// Sorts keys; in time proportional to their number, but for those of equal weight.
+/// Sorts keys, in linear time except among keys of equal weight.
 void sort_keys(std::vector<EdgeKey>& keys);
 
-/// The events of a run in order. Most are known at its start, the edges of the new points: those
-/// are sorted once; the others, a few hundred, come and go in a binary heap.
+/// The events of a run in order. Most of them, the edges of the new points, are known at its start
+/// and sorted once. The others, a few hundred, are kept in a binary heap.
 class EventQueue {
  public:
-  /// Begins a run. `edges`, in any order, are its plain edges.
+  /// Begins a run with these plain edges, in any order.
   void start(std::vector<EdgeKey> edges) {
     edges_ = std::move(edges);
     sort_keys(edges_);
@@ -50,7 +50,7 @@ class EventQueue {
 
   bool empty() const { return next_ == edges_.size() && heap_.empty(); }
 
-  /// The earliest event, which there is.
+  /// Removes and returns the earliest event. The queue must not be empty.
   Event pop() {
     if (next_ < edges_.size()) {
       const Event edge{.key = edges_[next_]};
@@ -65,7 +65,7 @@ class EventQueue {
     return event;
   }
 
-  /// The plain edge that comes `ahead` edges from now; nullptr when there are not so many.
+  /// The plain edge that is `ahead` edges from now; nullptr when there are not so many.
   const EdgeKey* upcoming(std::size_t ahead) const {
     return edges_.size() - next_ > ahead ? &edges_[next_ + ahead] : nullptr;
   }

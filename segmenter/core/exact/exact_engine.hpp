@@ -5,44 +5,67 @@
 #include <vector>
 
 #include "segmenter/core/engine/incremental_engine.hpp"
+#include "segmenter/core/exact/change_propagation.hpp"
 #include "segmenter/core/exact/component_names.hpp"
 #include "segmenter/core/exact/edges_ahead.hpp"
-#include "segmenter/core/exact/replay.hpp"
 #include "segmenter/core/exact/state.hpp"
 
 namespace kintsugi::segmenter {
 
-/// Mode `exact`: the partition and every theta are those of `batch` after each update, at a cost
+/// Mode `exact`: after each update the partition and every theta are those of `batch`, at a cost
 /// that depends on the change and hardly on the size of the map.
 ///
-/// How it works. Algorithm 1 takes the edges of the graph in ascending order and joins components
-/// while both are alive. What matters of that is remembered (exact::State), as a history in which
-/// the key of an edge is the time at which it was looked at:
+/// Terms, used in all of exact/:
 ///
-///   JoinForest   who absorbed whom and when; the component of a point at any time
-///   JoinHistory  the joins of each host in order, with the sizes up to which they hold
-///   TreeEdges    the edges that joined: a spanning tree of each segment
-///   WatchHeaps   the edges between two segments, kept by a side that blocks them
+///   key, time      Algorithm 1 takes the edges in ascending order of their keys: weight, then the
+///                  two points (EdgeKey). The key of an edge is the time at which it is decided.
+///   theta          the join threshold of a component: T for a single point, w + k/size after a
+///                  join at weight w (Eq. 3).
+///   alive, frozen  a component is alive at an edge whose weight is below its theta, else frozen.
+///                  An edge joins two different components if both are alive. Since weights
+///                  ascend, a frozen component never becomes alive again.
+///   host, guest    of two components that join. The guest is absorbed: its representative hangs
+///                  below that of the host from then on.
+///   representative the vertex (= point) that stands for a component at a given time.
+///   join forest    the vertices with their hosts. A root represents a final component: a segment.
+///   history        of a host: the guests that it absorbed, by time.
+///   future         of a vertex at a time: the guests that it absorbs later, and its own absorption
+///                  if that is later.
+///   tree edge      an edge that joined two components. Those of a segment are a spanning tree;
+///                  the old tree is the one from before the update.
+///   watch heap     the edges that a segment blocked because it was frozen, lightest first.
+///   explore        to look at all later edges of a point again, in the neighbour index.
 ///
-/// All other edges lie inside a segment; they are found again in the neighbour index when needed.
-/// An update runs Algorithm 1 again only where its outcome can differ (exact::Replay): the new
-/// edges, joins whose sizes changed, watched edges of segments that changed; and where an old tree
-/// edge no longer joins, the edges of the points that have to be looked at again
-/// (exact::CutSearch). exact::ComponentNames tells which points changed component.
+/// The state between two updates (exact::State) is the history of the last run of Algorithm 1:
+///
+///   JoinForest     the host of each vertex and the time of its absorption; so the component of a
+///                  point at any time
+///   JoinHistory    the guests of each host by time, with the sizes up to which the joins hold
+///   TreeEdges      the tree edges
+///   WatchHeaps     the edges between two segments, each kept by one that blocks it
+///
+/// All other edges lie inside a segment and are not stored: the neighbour index finds them again.
+/// An update runs Algorithm 1 again only where its outcome can differ (exact::ChangePropagation):
+/// at new edges, at joins whose sizes changed, at watched edges of segments that changed, and,
+/// where an old tree edge no longer joins, at the edges of explored points (exact::CutSearch).
+/// exact::ComponentNames derives which points changed component.
 ///
 /// Why it is exact, in short (F: final theta of a component):
-/// 1. Edges come in ascending order and theta of a component only matters at the weight at hand, so
-///    a component that is frozen at one edge (weight >= theta) never joins again: an edge joins, or
-///    is inside a component, iff its weight is below both F. Equal weights may come in any order.
-/// 2. A join that was made stays made unless its components changed: sizes decide (first_broken),
-///    or what they consist of does, and that only through an edge which is itself an event.
-/// 3. A blocked edge stays blocked until the blocker changes; then its heap is opened.
-/// 4. An edge inside a component stays so unless the tree falls apart: CutSearch's invariant.
+/// 1. A component that is frozen at one edge never joins again. So an edge joins, or lies inside a
+///    component, if and only if its weight is below both F. Edges of equal weight may come in any
+///    order.
+/// 2. A join stays as it is unless one of its components changes, either in size, which
+///    JoinHistory::first_broken() finds, or in its points, which only happens at an edge that is
+///    itself looked at.
+/// 3. A blocked edge stays blocked until the segment that blocks it changes. Then its watch heap is
+///    looked at.
+/// 4. An edge inside a component stays inside unless the tree falls apart there, which the
+///    invariant of CutSearch covers.
 ///
-/// Fragments stay as they are here: FragmentLayer joins them, on top.
+/// Fragments are not joined here: FragmentLayer does that on top.
 ///
-/// Where the change is a large part of the map, or a correction turns out to reach far, the state
-/// is built anew by Algorithm 1 over all points, which costs little more than `batch`.
+/// Where a change is a large part of the map, or a correction turns out to reach far, the state is
+/// rebuilt by Algorithm 1 over all points, which costs little more than `batch`.
 class ExactEngine final : public IncrementalEngine {
  public:
   ExactEngine(const PointCloud& cloud, const EngineConfig& config);
@@ -60,12 +83,12 @@ class ExactEngine final : public IncrementalEngine {
  private:
   bool is_cheaper_to_rebuild(const CloudChange& change) const;
   void add_vertices(const CloudChange& change);
-  void forget_watches_of(std::span<const PointIndex> removed);
+  void erase_watches_of(std::span<const PointIndex> removed);
   void update_index(const CloudChange& change);
   std::vector<exact::EdgeKey> find_new_edges(std::span<const PointIndex> added) const;
-  void begin_to_look_ahead();
-  bool replay(const CloudChange& change, std::vector<exact::EdgeKey> edges,
-              RunStatistics& statistics);
+  void start_look_ahead();
+  bool propagate(const CloudChange& change, std::vector<exact::EdgeKey> edges,
+                 RunStatistics& statistics);
   void rebuild(const CloudChange& change, RunStatistics& statistics);
 
   const PointCloud& cloud_;
@@ -74,9 +97,9 @@ class ExactEngine final : public IncrementalEngine {
   std::unique_ptr<NeighbourIndex> index_;
   exact::EdgeFinder edges_of_;
   exact::EdgesAhead edges_ahead_;
-  std::vector<CloudPoint> next_slice_W_;  ///< what look_ahead() told of
+  std::vector<CloudPoint> next_slice_W_;  ///< the argument of look_ahead()
   exact::State state_;
-  exact::Replay replay_;
+  exact::ChangePropagation propagation_;
   exact::ComponentNames names_;
   std::int64_t num_points_ = 0;
 };

@@ -48,7 +48,7 @@ bool JoinForest::recount(PointIndex guest) {
 
 PointIndex JoinForest::step_down(PointIndex x) {
   const PointIndex heir =
-      history_.first_child_that(x, [&](PointIndex child) { return vertices_[child].is_gone == 0; });
+      history_.first_guest_that(x, [&](PointIndex guest) { return vertices_[guest].is_gone == 0; });
   if (heir == kNone) return kNone;
   const TreeEdgeId edge = vertices_[heir].edge;
   const TreeEdgeId own_edge = vertices_[x].edge;

@@ -8,12 +8,12 @@
 
 namespace kintsugi::segmenter::exact {
 
-/// A union-find that remembers when each join was made (partially persistent: it can be asked
-/// about any time, and the future of a component can be taken back).
+/// A union-find that remembers when each join was made (partially persistent): it can be asked
+/// about any time, and joins after a time can be taken back.
 ///
-/// A vertex stands for a component as its representative, until it is absorbed by `host` at the
-/// key of the tree edge `edge`. Roots never are. Along the hosts keys ascend, so the component of x
-/// at a time is found by climbing while the keys are smaller.
+/// A vertex represents a component until it is absorbed by its host, at the key of its tree edge.
+/// A root is never absorbed. Keys ascend along the hosts, so the component of x at a time is found
+/// by climbing as long as the keys are smaller.
 class JoinForest {
  public:
   JoinForest(Vertices& vertices, TreeEdges& edges, const JoinRule& rule)
@@ -36,7 +36,7 @@ class JoinForest {
     return x;
   }
 
-  /// When x is, or was, absorbed; kNever for a root.
+  /// The time at which x is absorbed; kNever for a root.
   EdgeKey key(PointIndex x) const {
     return vertices_[x].edge == kNone ? kNever : edges_.key(vertices_[x].edge);
   }
@@ -51,35 +51,36 @@ class JoinForest {
     return !vertices_.is_root(x) && !(time < edges_.key(vertices_[x].edge));
   }
 
-  /// Whether the component that x stands for just before `time` is alive: the weight is below its
-  /// theta.
+  /// Whether the component that x represents just before `time` is alive at that edge.
   bool is_alive(PointIndex x, const EdgeKey& time) const {
     const JoinHistory::State state = history_.state_before(x, time);
     return static_cast<double>(time.weight()) < rule_.theta(state.weight, state.size);
   }
 
-  /// `guest`, a root, is absorbed by `host` through `edge`, with all the points it has.
+  /// Makes `guest`, a root, a guest of `host` at the time of `edge`, with all the points it has.
   void absorb(PointIndex host, PointIndex guest, TreeEdgeId edge);
-  /// Frees `guest`: a root again. Returns the host it had.
+  /// Makes `guest` a root again. Returns the host it had.
   PointIndex release(PointIndex guest);
-  /// Frees all children that `host` absorbs after `time`; appends them to `freed`, with the edges
-  /// that held them, in order.
+  /// Makes all guests that `host` absorbs after `time` roots again. Appends them to `freed`, with
+  /// their tree edges, by time.
   struct Freed {
     PointIndex guest;
     TreeEdgeId edge;
   };
   void release_after(PointIndex host, const EdgeKey& time, std::vector<Freed>& freed);
-  /// Counts `guest` in its host with the points it has now; false when that is no change.
+  /// Updates the size that `guest` has in its host; false when it is the same.
   bool recount(PointIndex guest);
-  /// Makes x, which is gone, host of nobody who stays: the first of its children that is not gone
-  /// takes over its later history and its place, and x becomes a guest of it, with the children it
-  /// had before. Returns that child; kNone when all are gone. The components at any time stay what
-  /// they are, but for their representatives.
+  /// Replaces x, a removed point, as a host of points that stay. The first of its guests that is
+  /// not removed takes its place: it becomes the host of x at the time of its own absorption, gets
+  /// the later guests of x, and is absorbed by the host of x. The components stay the same at every
+  /// time; only their representatives change.
+  /// @return that guest; kNone when all guests are removed, and nothing was done
   PointIndex step_down(PointIndex x);
 
-  /// For the bulk construction: `children` of `host`, whose host, edge and size are set.
-  void build_history(PointIndex host, std::span<const PointIndex> children) {
-    history_.build(host, children);
+  /// For the bulk construction: builds the history of `host` from its guests in order, whose host,
+  /// edge and size are set.
+  void build_history(PointIndex host, std::span<const PointIndex> guests) {
+    history_.build(host, guests);
   }
 
  private:

@@ -9,7 +9,7 @@
 namespace kintsugi::segmenter::exact {
 namespace {
 
-/// Priority of a vertex as a node. A mixer of 32 bits: distinct for distinct vertices.
+/// Priority of a vertex as a node of a treap: a bijective mix of 32 bits, so all are distinct.
 std::uint32_t priority(PointIndex x) {
   x *= 0x9E3779B1U;
   x ^= x >> 15;
@@ -50,36 +50,36 @@ void JoinHistory::refresh(PointIndex t) {
   }
 }
 
-void JoinHistory::refresh_path(PointIndex host, PointIndex child) {
-  // Down to the child, then refreshed on the way up. Treaps of n nodes are some 2 ln n deep.
+void JoinHistory::refresh_path(PointIndex host, PointIndex guest) {
+  // First down to the guest, then refresh on the way up. Treaps of n nodes are some 2 ln n deep.
   PointIndex path[128];
   std::size_t depth = 0;
-  for (PointIndex t = vertices_[host].history; t != child;
-       t = is_before(child, t) ? vertices_[t].left : vertices_[t].right) {
+  for (PointIndex t = vertices_[host].history; t != guest;
+       t = is_before(guest, t) ? vertices_[t].left : vertices_[t].right) {
     assert(t != kNone && depth < std::size(path));
     path[depth++] = t;
   }
-  refresh(child);
+  refresh(guest);
   while (depth > 0) refresh(path[--depth]);
 }
 
-/// `next`: the child after it, or kNone when the host's own absorption comes next.
-void JoinHistory::set_capacity(PointIndex child, PointIndex next) {
-  Vertex& v = vertices_[child];
+/// `next`: the guest after it, or kNone when the host's own absorption comes next.
+void JoinHistory::set_capacity(PointIndex guest, PointIndex next) {
+  Vertex& v = vertices_[guest];
   const std::uint32_t next_bits =
-      next != kNone ? vertices_[next].weight_bits : vertices_[vertices_.host(child)].weight_bits;
-  // One less: the host itself is a point that it did not gain.
+      next != kNone ? vertices_[next].weight_bits : vertices_[vertices_.host(guest)].weight_bits;
+  // Minus one, because the host is itself a point of the component, and not gained.
   v.capacity = next_bits == UINT32_MAX ? JoinRule::kUnbounded
                                        : rule_.capacity(std::bit_cast<float>(v.weight_bits),
                                                         std::bit_cast<float>(next_bits)) -
                                              1;
 }
 
-/// The child of `host` right before, or right after, `child`, which need not be in the history.
-PointIndex JoinHistory::neighbour(PointIndex host, PointIndex child, bool before) const {
+/// The guest of `host` just before, or just after, `guest`, which need not be in the history.
+PointIndex JoinHistory::neighbour(PointIndex host, PointIndex guest, bool before) const {
   PointIndex found = kNone;
   for (PointIndex t = vertices_[host].history; t != kNone;) {
-    const bool is_candidate = before ? is_before(t, child) : is_before(child, t);
+    const bool is_candidate = before ? is_before(t, guest) : is_before(guest, t);
     if (is_candidate) found = t;
     t = is_candidate == before ? vertices_[t].right : vertices_[t].left;
   }
@@ -92,9 +92,9 @@ PointIndex JoinHistory::first(PointIndex host) const {
   return t;
 }
 
-void JoinHistory::note_last(PointIndex host) {
-  const PointIndex child = last(host);
-  vertices_[host].last_weight_bits = child == kNone ? 0 : vertices_[child].weight_bits;
+void JoinHistory::store_last_weight(PointIndex host) {
+  const PointIndex guest = last(host);
+  vertices_[host].last_weight_bits = guest == kNone ? 0 : vertices_[guest].weight_bits;
 }
 
 PointIndex JoinHistory::last(PointIndex host) const {
@@ -103,56 +103,56 @@ PointIndex JoinHistory::last(PointIndex host) const {
   return t;
 }
 
-void JoinHistory::insert(PointIndex child) {
-  const PointIndex host = vertices_.host(child);
-  set_capacity(child, neighbour(host, child, false));
-  vertices_[child].left = vertices_[child].right = kNone;
+void JoinHistory::insert(PointIndex guest) {
+  const PointIndex host = vertices_.host(guest);
+  set_capacity(guest, neighbour(host, guest, false));
+  vertices_[guest].left = vertices_[guest].right = kNone;
   Vertex& h = vertices_[host];
-  h.history = insert_below(h.history, child);
-  h.last_weight_bits = std::max(h.last_weight_bits, vertices_[child].weight_bits);
-  const PointIndex previous = neighbour(host, child, true);
+  h.history = insert_below(h.history, guest);
+  h.last_weight_bits = std::max(h.last_weight_bits, vertices_[guest].weight_bits);
+  const PointIndex previous = neighbour(host, guest, true);
   if (previous != kNone) {
-    set_capacity(previous, child);
+    set_capacity(previous, guest);
     refresh_path(host, previous);
   }
 }
 
-PointIndex JoinHistory::insert_below(PointIndex t, PointIndex child) {
-  if (t == kNone || priority(child) > priority(t)) {
-    const Halves halves = split(t, edges_.key(vertices_[child].edge));
-    vertices_[child].left = halves.up_to;
-    vertices_[child].right = halves.after;
-    refresh(child);
-    return child;
+PointIndex JoinHistory::insert_below(PointIndex t, PointIndex guest) {
+  if (t == kNone || priority(guest) > priority(t)) {
+    const Halves halves = split(t, edges_.key(vertices_[guest].edge));
+    vertices_[guest].left = halves.up_to;
+    vertices_[guest].right = halves.after;
+    refresh(guest);
+    return guest;
   }
-  if (is_before(child, t)) {
-    vertices_[t].left = insert_below(vertices_[t].left, child);
+  if (is_before(guest, t)) {
+    vertices_[t].left = insert_below(vertices_[t].left, guest);
   } else {
-    vertices_[t].right = insert_below(vertices_[t].right, child);
+    vertices_[t].right = insert_below(vertices_[t].right, guest);
   }
   refresh(t);
   return t;
 }
 
-void JoinHistory::erase(PointIndex child) {
-  const PointIndex host = vertices_.host(child);
-  vertices_[host].history = erase_below(vertices_[host].history, child);
-  if (vertices_[child].weight_bits == vertices_[host].last_weight_bits) note_last(host);
-  const PointIndex previous = neighbour(host, child, true);
+void JoinHistory::erase(PointIndex guest) {
+  const PointIndex host = vertices_.host(guest);
+  vertices_[host].history = erase_below(vertices_[host].history, guest);
+  if (vertices_[guest].weight_bits == vertices_[host].last_weight_bits) store_last_weight(host);
+  const PointIndex previous = neighbour(host, guest, true);
   if (previous != kNone) {
-    set_capacity(previous, neighbour(host, child, false));
+    set_capacity(previous, neighbour(host, guest, false));
     refresh_path(host, previous);
   }
-  vertices_[child].left = vertices_[child].right = kNone;
+  vertices_[guest].left = vertices_[guest].right = kNone;
 }
 
-PointIndex JoinHistory::erase_below(PointIndex t, PointIndex child) {
+PointIndex JoinHistory::erase_below(PointIndex t, PointIndex guest) {
   assert(t != kNone);
-  if (t == child) return merge(vertices_[t].left, vertices_[t].right);
-  if (is_before(child, t)) {
-    vertices_[t].left = erase_below(vertices_[t].left, child);
+  if (t == guest) return merge(vertices_[t].left, vertices_[t].right);
+  if (is_before(guest, t)) {
+    vertices_[t].left = erase_below(vertices_[t].left, guest);
   } else {
-    vertices_[t].right = erase_below(vertices_[t].right, child);
+    vertices_[t].right = erase_below(vertices_[t].right, guest);
   }
   refresh(t);
   return t;
@@ -189,51 +189,51 @@ JoinHistory::Halves JoinHistory::split(PointIndex t, const EdgeKey& time) {
 }
 
 PointIndex JoinHistory::take_after(PointIndex host, const EdgeKey& time) {
-  const PointIndex final_child = last(host);
-  if (final_child == kNone || is_up_to(final_child, time)) return kNone;
+  const PointIndex last_guest = last(host);
+  if (last_guest == kNone || is_up_to(last_guest, time)) return kNone;
   const Halves halves = split(vertices_[host].history, time);
   vertices_[host].history = halves.up_to;
-  note_last(host);
+  store_last_weight(host);
   update_end(host);
   return halves.after;
 }
 
 void JoinHistory::split_after(PointIndex host, const EdgeKey& time, std::vector<PointIndex>& out) {
-  for_each_in_order(take_after(host, time), [&](PointIndex child) { out.push_back(child); });
+  for_each_in_order(take_after(host, time), [&](PointIndex guest) { out.push_back(guest); });
 }
 
-/// A Cartesian tree from an ordered list: the right spine is kept on a stack.
-void JoinHistory::build(PointIndex host, std::span<const PointIndex> children) {
+/// Builds a Cartesian tree from an ordered list; the stack holds its right spine.
+void JoinHistory::build(PointIndex host, std::span<const PointIndex> guests) {
   assert(vertices_[host].history == kNone);
   std::vector<PointIndex> spine;
-  for (std::size_t k = 0; k < children.size(); ++k) {
-    const PointIndex child = children[k];
-    set_capacity(child, k + 1 < children.size() ? children[k + 1] : kNone);
-    vertices_[child].left = vertices_[child].right = kNone;
+  for (std::size_t k = 0; k < guests.size(); ++k) {
+    const PointIndex guest = guests[k];
+    set_capacity(guest, k + 1 < guests.size() ? guests[k + 1] : kNone);
+    vertices_[guest].left = vertices_[guest].right = kNone;
     PointIndex below = kNone;
-    while (!spine.empty() && priority(child) > priority(spine.back())) {
+    while (!spine.empty() && priority(guest) > priority(spine.back())) {
       below = spine.back();
       refresh(below);
       spine.pop_back();
     }
-    vertices_[child].left = below;
-    if (!spine.empty()) vertices_[spine.back()].right = child;
-    spine.push_back(child);
+    vertices_[guest].left = below;
+    if (!spine.empty()) vertices_[spine.back()].right = guest;
+    spine.push_back(guest);
   }
   while (!spine.empty()) {
     refresh(spine.back());
     vertices_[host].history = spine.back();
     spine.pop_back();
   }
-  note_last(host);
+  store_last_weight(host);
 }
 
 void JoinHistory::append(PointIndex host, PointIndex taken) {
   if (taken == kNone) return;
   PointIndex next = kNone;
-  for_each_in_order(taken, [&](PointIndex child) {
-    vertices_.set_host(child, host);
-    if (next == kNone) next = child;
+  for_each_in_order(taken, [&](PointIndex guest) {
+    vertices_.set_host(guest, host);
+    if (next == kNone) next = guest;
   });
   const PointIndex previous = last(host);
   vertices_[host].history = merge(vertices_[host].history, taken);
@@ -241,20 +241,20 @@ void JoinHistory::append(PointIndex host, PointIndex taken) {
     set_capacity(previous, next);
     refresh_path(host, previous);
   }
-  note_last(host);
+  store_last_weight(host);
   update_end(host);
 }
 
 void JoinHistory::update_end(PointIndex host) {
-  const PointIndex child = last(host);
-  if (child == kNone) return;
-  set_capacity(child, kNone);
-  refresh_path(host, child);
+  const PointIndex guest = last(host);
+  if (guest == kNone) return;
+  set_capacity(guest, kNone);
+  refresh_path(host, guest);
 }
 
 JoinHistory::State JoinHistory::state_before(PointIndex host, const EdgeKey& time) const {
   const Vertex& h = vertices_[host];
-  if (h.last_weight_bits < time.weight_bits) {  // as all was, for whoever has no future
+  if (h.last_weight_bits < time.weight_bits) {  // nothing happens to the host from `time` on
     return {total(host), std::bit_cast<float>(h.last_weight_bits)};
   }
   State state;
@@ -280,12 +280,12 @@ double JoinHistory::final_theta(PointIndex host) const {
 PointIndex JoinHistory::first_broken(PointIndex host) const {
   PointIndex t = vertices_[host].history;
   if (t == kNone) return kNone;
-  const PointIndex first_child = first(host);
-  const double first_weight = std::bit_cast<float>(vertices_[first_child].weight_bits);
-  if (!(first_weight < rule_.threshold)) return first_child;
+  const PointIndex first_guest = first(host);
+  const double first_weight = std::bit_cast<float>(vertices_[first_guest].weight_bits);
+  if (!(first_weight < rule_.threshold)) return first_guest;
   if (vertices_[t].slack >= 0) return kNone;
 
-  std::int32_t gained = 0;  // by everything before the subtree t
+  std::int32_t gained = 0;  // points, by all joins before the subtree t
   while (true) {
     const Vertex& v = vertices_[t];
     if (v.left != kNone && vertices_[v.left].slack < gained) {

@@ -4,22 +4,22 @@
 
 namespace kintsugi::segmenter::exact {
 
-/// The predicate that decides joins (Eq. 3 and Algorithm 1, line 8), in one place. T and k as in
-/// EngineConfig.
+/// The predicate that decides joins: Eq. 3 and Algorithm 1, line 8. T and k as in EngineConfig.
 struct JoinRule {
   double threshold = 0.0;  ///< T
   double scale = 0.0;      ///< k
 
-  /// No bound: the component is alive whatever its size.
+  /// The component is alive whatever its size.
   static constexpr std::int32_t kUnbounded = 1 << 30;
 
-  /// theta of a component of `size` points whose last join had `weight`. A single point had none.
+  /// theta of a component of `size` points whose last join had `weight`, which is ignored for a
+  /// single point.
   double theta(float weight, std::uint32_t size) const {
     return size == 1 ? threshold : static_cast<double>(weight) + scale / static_cast<double>(size);
   }
 
-  /// The most points that a component may have after a join of `weight` to be alive at an edge of
-  /// `next_weight` (>= weight); at least 1, though one point is not a join.
+  /// The most points that a component may have after a join at `weight` to be alive at an edge of
+  /// `next_weight` (>= weight). At least 1, although no join makes a component of one point.
   std::int32_t capacity(float weight, float next_weight) const {
     const double w = next_weight;
     const auto is_alive = [&](double size) {
@@ -28,7 +28,7 @@ struct JoinRule {
     if (next_weight <= weight) return is_alive(kUnbounded) ? kUnbounded : largest(is_alive);
     const double estimate = scale / (w - static_cast<double>(weight));
     if (estimate >= kUnbounded - 2) return kUnbounded;
-    // The division is rounded; the predicate itself decides.
+    // The estimate is rounded, so the predicate itself decides.
     auto size = static_cast<std::uint32_t>(estimate) + 1;
     while (is_alive(size + 1.0)) ++size;
     while (size > 1 && !is_alive(size)) --size;
@@ -36,8 +36,8 @@ struct JoinRule {
   }
 
  private:
-  /// Where k / size vanishes beside a weight, theta is that weight, and even an equal one is too
-  /// much: the largest size, at least 1, for which is_alive(size); not so for kUnbounded.
+  /// The largest size, at least 1, for which is_alive(size), which is false for kUnbounded. Needed
+  /// for equal weights: where k / size is rounded away, theta is the weight itself.
   template <typename IsAlive>
   static std::int32_t largest(const IsAlive& is_alive) {
     std::int32_t largest = 1;

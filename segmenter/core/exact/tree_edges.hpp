@@ -9,14 +9,14 @@
 
 namespace kintsugi::segmenter::exact {
 
-/// The edges that joined something, and among them the old tree: a spanning tree of each segment
-/// as it was when the run began, as lists of edges at each vertex. Ids of released edges are used
+/// The edges that joined two components. Those that did so before the current run, the old tree,
+/// are linked: each vertex has a list of its edges in the old tree. Ids of released edges are used
 /// again.
 class TreeEdges {
  public:
   explicit TreeEdges(Vertices& vertices) : vertices_(vertices) {}
 
-  /// An edge outside the old tree, without an owner.
+  /// Adds an edge that is not in the old tree and has no owner.
   TreeEdgeId add(const EdgeKey& key) {
     TreeEdgeId id = first_free_;
     if (id != kNone) {
@@ -29,7 +29,7 @@ class TreeEdges {
     return id;
   }
 
-  /// The edge must be outside the old tree.
+  /// The edge must not be in the old tree.
   void release(TreeEdgeId id) {
     assert(!is_linked(id));
     edges_[id].next[0] = first_free_;
@@ -37,10 +37,11 @@ class TreeEdges {
   }
 
   const EdgeKey& key(TreeEdgeId id) const { return edges_[id].key; }
-  /// The vertex that was absorbed by this edge; kNone: none is.
+  /// The guest of the join that this edge makes; kNone: it makes none at present.
   PointIndex owner(TreeEdgeId id) const { return edges_[id].owner; }
   void set_owner(TreeEdgeId id, PointIndex owner) { edges_[id].owner = owner; }
 
+  /// Whether the edge is in the old tree.
   bool is_linked(TreeEdgeId id) const { return edges_[id].next[0] != kUnlinked; }
   void link(TreeEdgeId id) {
     for (std::uint32_t side = 0; side < 2; ++side) {
@@ -69,7 +70,7 @@ class TreeEdges {
 
   std::size_t bytes() const { return edges_.bytes(); }
 
-  /// Forgets all, at the vertices excepted.
+  /// Removes all edges. The lists at the vertices are left as they are.
   void clear() {
     edges_.clear();
     first_free_ = kNone;
@@ -81,7 +82,7 @@ class TreeEdges {
   struct TreeEdge {
     EdgeKey key;
     PointIndex owner;
-    std::uint32_t next[2];  // half edge: twice the edge, plus 1 at its end b
+    std::uint32_t next[2];  // by end: next half edge in its list; half edge = 2 * id + (1 at end b)
   };
 
   PointIndex end(TreeEdgeId id, std::uint32_t side) const {

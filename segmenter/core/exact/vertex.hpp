@@ -7,31 +7,32 @@
 
 namespace kintsugi::segmenter::exact {
 
-/// None of whatever an index counts: vertices, tree edges, watches.
+/// No vertex, no tree edge, no watch.
 inline constexpr std::uint32_t kNone = UINT32_MAX;
 
 using TreeEdgeId = std::uint32_t;
 using WatchId = std::uint32_t;
 
-/// When the component that a vertex stands for was absorbed into another, and by whom. Apart from
-/// the rest: finding the component of a point climbs along these, eight to a cache line.
+/// When a vertex was absorbed, and by which host. Stored apart from the rest of the vertex: to find
+/// the component of a point, only these are read, eight to a cache line.
 struct Absorption {
-  PointIndex host = kNone;                 ///< representative that absorbed it; kNone: a root
+  PointIndex host = kNone;                 ///< kNone: a root
   std::uint32_t weight_bits = UINT32_MAX;  ///< of the tree edge that did it
 };
 
-/// What else the engine keeps for a point: one cache line, shared by the parts named at each group.
+/// What else the engine keeps for a point, in one cache line. Each group of members belongs to the
+/// class that is named above it.
 struct alignas(64) Vertex {
-  // JoinForest: its absorption.
+  // JoinForest: its absorption, beside Absorption.
   TreeEdgeId edge = kNone;  ///< the tree edge that did it
-  std::uint32_t size = 0;   ///< points it brought along
+  std::uint32_t size = 0;   ///< points of its component then
 
   // JoinHistory: its node in the history of its host.
   std::uint32_t weight_bits = UINT32_MAX;  ///< as in its Absorption
   PointIndex left = kNone;
   PointIndex right = kNone;
   std::uint32_t sum = 0;      ///< of `size` in the subtree
-  std::int32_t capacity = 0;  ///< the most points the host may have gained up to this join
+  std::int32_t capacity = 0;  ///< see JoinHistory
   std::int32_t slack = 0;     ///< least capacity - points gained, in the subtree
 
   // JoinHistory: its own history.
@@ -39,18 +40,18 @@ struct alignas(64) Vertex {
   std::uint32_t last_weight_bits = 0;  ///< of the last join in it; 0: none
 
   // WatchHeaps.
-  WatchId heap = kNone;     ///< of a root: the edges its segment blocks
-  WatchId watches = kNone;  ///< the entries that stand at this point
+  WatchId heap = kNone;     ///< of a root: the watch heap of its segment
+  WatchId watches = kNone;  ///< first of the watches whose watcher is this point
 
   // TreeEdges.
   std::uint32_t half_edges = kNone;  ///< first of its list
 
-  // One run; all zero between runs, but for is_gone.
-  std::uint32_t family = 0;            ///< CutSearch: of an explored vertex
+  // Used within one run, and zero between runs; except is_gone.
+  std::uint32_t family = 0;            ///< CutSearch: 0 where not explored
   std::uint32_t visit = 0;             ///< scratch of a search
   std::uint32_t is_queued : 1 = 0;     ///< its tree edge is in the event queue
   std::uint32_t is_heap_open : 1 = 0;  ///< its heap takes part in the run
-  std::uint32_t is_touched : 1 = 0;    ///< its host changed, or what hangs on it
+  std::uint32_t is_touched : 1 = 0;    ///< its host or guests changed
   std::uint32_t is_gone : 1 = 0;       ///< not in the cloud (any more)
 };
 static_assert(sizeof(Absorption) == 8 && sizeof(Vertex) == 64);
@@ -59,14 +60,14 @@ static_assert(sizeof(Absorption) == 8 && sizeof(Vertex) == 64);
 class Vertices {
  public:
   std::size_t size() const { return records_.size(); }
-  /// New vertices are gone: not in the cloud yet.
+  /// New vertices are marked as gone: their points are not in the cloud yet.
   void resize(std::size_t size) {
-    Vertex nobody;
-    nobody.is_gone = 1;
-    records_.resize(size, nobody);
+    Vertex absent;
+    absent.is_gone = 1;
+    records_.resize(size, absent);
     absorptions_.resize(size, {});
   }
-  /// Makes x a single point that nothing has happened to.
+  /// Makes x a component of its own, without a history.
   void reset(PointIndex x) {
     records_[x] = {};
     absorptions_[x] = {};
@@ -85,7 +86,7 @@ class Vertices {
   }
   void set_host(PointIndex x, PointIndex host) { absorptions_[x].host = host; }
   void set_free(PointIndex x) { set_absorbed(x, kNone, kNone, UINT32_MAX); }
-  /// Memory is fetched ahead of its use: the absorption, or the rest.
+  /// Prefetch the absorption of x, or the rest of it.
   void prefetch(PointIndex x) const { __builtin_prefetch(&absorptions_.data()[x]); }
   void prefetch_record(PointIndex x) const { __builtin_prefetch(&records_.data()[x]); }
 

@@ -41,7 +41,7 @@ void WatchHeaps::erase(PointIndex watcher, PointIndex other) {
   if (id != kNone) erase(id);
 }
 
-/// Its children, melded into one tree, take its place; none of them is lighter.
+/// Its children, melded into one tree, take its place. They are not lighter than its parent.
 void WatchHeaps::erase(WatchId id) {
   const WatchId heir = meld_children(id);
   const Watch& watch = watches_[id];
@@ -74,7 +74,7 @@ void WatchHeaps::set_top(PointIndex holder, WatchId id) {
   watches_[id].next = holder;
 }
 
-/// Two whole trees; the result's place among siblings is left to the caller.
+/// Melds two trees. The caller links the result to its siblings.
 WatchId WatchHeaps::meld_trees(WatchId a, WatchId b) {
   if (a == kNone) return b;
   if (b == kNone) return a;
@@ -87,7 +87,7 @@ WatchId WatchHeaps::meld_trees(WatchId a, WatchId b) {
   return a;
 }
 
-/// Pairs from left to right, then one into another from right to left.
+/// Melds in pairs from left to right, then the pairs from right to left.
 WatchId WatchHeaps::meld_children(WatchId id) {
   pairs_.clear();
   for (WatchId child = std::exchange(watches_[id].child, kNone); child != kNone;) {

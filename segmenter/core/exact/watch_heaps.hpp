@@ -11,12 +11,13 @@ namespace kintsugi::segmenter::exact {
 
 /// The edges between two segments, each watched by a side that blocks it.
 ///
-/// Each segment has one heap of watches, lightest edge first, at a vertex that is called its
-/// holder (the root, between runs). A watch stands at the point that is the edge's end in the
-/// blocking segment, so that all watches of a point are found and can be taken out of whatever
-/// heap they are in. An edge that has come to lie inside a segment may stay watched until the
-/// segment is alive at it; it then joins nothing. Pairing heaps: melding and insertion cost O(1),
-/// taking out O(log n) amortised.
+/// Each segment has one heap of watches, the lightest edge on top. It belongs to a vertex that is
+/// called its holder: between runs the root. The watcher is that end of the edge which lies in the
+/// blocking segment. Each point has a list of the watches of which it is the watcher, so these can
+/// be removed from whatever heap they are in. An edge that has come to lie inside a segment may
+/// stay watched until the segment is alive at it; it then joins nothing.
+///
+/// The heaps are pairing heaps: meld and insert cost O(1), removal O(log n) amortised.
 class WatchHeaps {
  public:
   explicit WatchHeaps(Vertices& vertices) : vertices_(vertices) {}
@@ -27,30 +28,30 @@ class WatchHeaps {
     EdgeKey key() const { return EdgeKey::of(std::bit_cast<float>(weight_bits), watcher, other); }
 
     std::uint32_t weight_bits;
-    WatchId child;  ///< first child in the heap
-    WatchId next;   ///< next sibling; of the top: its holder
-    WatchId prev;   ///< previous sibling, or the parent; kNone: the top
-    WatchId next_of_watcher;
+    WatchId child;            ///< first child in the heap
+    WatchId next;             ///< next sibling; for the top of a heap: the holder
+    WatchId prev;             ///< previous sibling, or the parent; kNone: it is the top
+    WatchId next_of_watcher;  ///< in the list of the watcher
   };
 
-  /// Watches the edge of `key` at `watcher`, one of its ends, in the heap of `holder`; does
-  /// nothing when `watcher` watches it already.
+  /// Adds a watch of the edge `key` to the heap of `holder`. `watcher` is one end of the edge.
+  /// Nothing happens when it watches the edge already.
   void insert(PointIndex holder, PointIndex watcher, const EdgeKey& key);
 
   bool empty(PointIndex holder) const { return vertices_[holder].heap == kNone; }
-  /// The lightest watch of `holder`, which has one.
+  /// The watch of the lightest edge. The heap must not be empty.
   const Watch& top(PointIndex holder) const { return watches_[vertices_[holder].heap]; }
   const Watch& operator[](WatchId id) const { return watches_[id]; }
   void pop(PointIndex holder) { erase(vertices_[holder].heap); }
   /// Moves all watches of `from` to `to`.
   void meld(PointIndex to, PointIndex from);
 
-  /// Takes out all watches that stand at `watcher`.
+  /// Removes all watches of `watcher`.
   void erase_all_of(PointIndex watcher);
-  /// Takes out the watch of the edge (watcher, other), if `watcher` watches it.
+  /// Removes the watch of the edge (watcher, other), if `watcher` watches it.
   void erase(PointIndex watcher, PointIndex other);
 
-  /// Forgets all, at the vertices excepted.
+  /// Removes all watches. The lists at the vertices are left as they are.
   void clear() {
     watches_.clear();
     first_free_ = kNone;

@@ -10,8 +10,8 @@
 
 namespace kintsugi::segmenter {
 
-/// The partition below the fragment layer as it was when the layer last looked, with the sizes of
-/// its components.
+/// The partition of the engine below the fragment layer, as of the layer's last update, with the
+/// sizes of its components.
 class BaseComponents {
  public:
   /// Components of fewer than `limit` points are fragments.
@@ -29,8 +29,8 @@ class BaseComponents {
 
   void grow(PointIndex num_points) { names_.resize(num_points, kNoComponent); }
 
-  /// Moves a point to another component; kNoComponent: it came, or goes. The point is smaller than
-  /// what grow() was told.
+  /// Moves a point, which is below the size given to grow(), to the component `name`; kNoComponent:
+  /// the point is gone.
   void set(PointIndex point, ComponentId name) {
     if (names_[point] != kNoComponent) --sizes_[names_[point]];
     names_[point] = name;
@@ -43,8 +43,8 @@ class BaseComponents {
 
  private:
   std::int64_t limit_;
-  GrowingArray<ComponentId> names_;    ///< of points
-  GrowingArray<std::uint32_t> sizes_;  ///< by name; 0: there is no such component
+  GrowingArray<ComponentId> names_;    ///< by point
+  GrowingArray<std::uint32_t> sizes_;  ///< in points, by name; 0: there is no such component
 };
 
 }  // namespace kintsugi::segmenter

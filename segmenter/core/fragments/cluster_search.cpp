@@ -3,15 +3,13 @@
 #include <algorithm>
 #include <optional>
 
-#include "segmenter/core/graph/edge_weight.hpp"
-
 namespace kintsugi::segmenter {
 
 ClusterSearch::Found ClusterSearch::operator()(PointIndex from) {
   begin();
   add_component_of(from);
-  std::optional<Edge> last;    // of the edges taken so far, in order
-  std::size_t num_before = 0;  // points when it was taken
+  std::optional<Edge> last;    // the latest, in the order of edges, of those taken so far
+  std::size_t num_before = 0;  // points reached before it
   while (!edges_.empty()) {
     const Edge edge = take_first_edge();
     if (is_seen(edge.j)) continue;
@@ -29,7 +27,7 @@ ClusterSearch::Found ClusterSearch::operator()(PointIndex from) {
 }
 
 void ClusterSearch::begin() {
-  // When the numbers run out, those of four billion searches ago are taken for new ones otherwise.
+  // The number has wrapped around: marks of old searches would count for new ones.
   if (++search_ == 0) {
     for (std::uint32_t& seen : seen_) seen = 0;
     search_ = 1;
@@ -39,7 +37,7 @@ void ClusterSearch::begin() {
   first_to_large_ = Exit::none(Exit::kNowhere);
 }
 
-/// A component is connected: all of it is found from one of its points.
+/// Reaches all points of a component, which is connected, from one of them.
 void ClusterSearch::add_component_of(PointIndex point) {
   NeighbourCursor cursor(index_);
   const ComponentId name = components_[point];
@@ -52,7 +50,7 @@ void ClusterSearch::add_component_of(PointIndex point) {
       if (components_[j] == name) {
         see(j);
       } else {
-        look_at({edge_weight(cloud_[i], cloud_[j], color_weight_), i, j});
+        look_at({weight_of_(cloud_[i], cloud_[j]), i, j});
       }
     });
   }

@@ -10,30 +10,31 @@
 #include "segmenter/core/fragments/clusters.hpp"
 #include "segmenter/core/fragments/edge_order.hpp"
 #include "segmenter/core/fragments/neighbour_cursor.hpp"
+#include "segmenter/core/graph/edge_weight.hpp"
 
 namespace kintsugi::segmenter {
 
-/// Finds the cluster of a fragment as Prim's algorithm finds a minimum spanning tree: takes the
-/// first of the edges that lead out, and the whole component at its other end, until there are as
-/// many points as the limit. Costs as many neighbour searches as there are points below the limit.
+/// Finds the cluster of a fragment (see FragmentLayer) as Prim's algorithm finds a minimum spanning
+/// tree: adds the component at the other end of the first edge that leads out, until the limit
+/// would be reached. Costs one neighbour search for each point of the cluster.
 class ClusterSearch {
  public:
   struct Found {
-    std::span<const PointIndex> points;  ///< until the next search
+    std::span<const PointIndex> points;  ///< valid until the next search
     Exit exit;
   };
 
   ClusterSearch(const PointCloud& cloud, const NeighbourIndex& index,
-                const BaseComponents& components, double color_weight)
+                const BaseComponents& components, const EdgeWeight& weight_of)
       : cloud_(cloud),
         index_(index),
         components_(components),
-        color_weight_(color_weight),
+        weight_of_(weight_of),
         order_(cloud) {}
 
   void grow(PointIndex num_points) { seen_.resize(num_points); }
 
-  /// `from` is a point of a fragment.
+  /// The cluster of the fragment that has the point `from`.
   Found operator()(PointIndex from);
 
   std::size_t bytes() const { return seen_.bytes(); }
@@ -52,13 +53,13 @@ class ClusterSearch {
   const PointCloud& cloud_;
   const NeighbourIndex& index_;
   const BaseComponents& components_;
-  double color_weight_;
+  EdgeWeight weight_of_;
   EdgeOrder order_;
-  std::uint32_t search_ = 0;          ///< number of this search
-  GrowingArray<std::uint32_t> seen_;  ///< by which search a point was seen last
-  std::vector<PointIndex> points_;    ///< seen, component after component
-  std::vector<Edge> edges_;           ///< heap of those that lead out, from i to j
-  Edge first_to_large_;               ///< none after this one is ever taken
+  std::uint32_t search_ = 0;          ///< number of the current search
+  GrowingArray<std::uint32_t> seen_;  ///< by point: number of the last search that reached it
+  std::vector<PointIndex> points_;    ///< reached, component after component
+  std::vector<Edge> edges_;           ///< heap of edges that lead out, from i to j
+  Edge first_to_large_;               ///< first edge to a large component: the search ends there
 };
 
 }  // namespace kintsugi::segmenter

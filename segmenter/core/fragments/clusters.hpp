@@ -16,9 +16,9 @@ namespace kintsugi::segmenter {
 using ClusterId = std::uint32_t;
 inline constexpr ClusterId kNoCluster = UINT32_MAX;
 
-/// How a cluster ends: the edge from its point `i` to point `j` of another component, by which it
-/// comes to the limit. A cluster that never does has an exit heavier than any edge to no point;
-/// `i` then is in the component that it is called after.
+/// The edge by which a cluster reaches the limit: from its point `i` to point `j` of another
+/// component. A cluster that never reaches it has an exit to kNowhere that is heavier than any
+/// edge, and `i` is in the component that gives the cluster its name.
 struct Exit : Edge {
   static constexpr PointIndex kNowhere = UINT32_MAX;
 
@@ -30,28 +30,28 @@ struct Exit : Edge {
   bool is_reverse_of(const Exit& other) const { return i == other.j && j == other.i; }
 };
 
-/// The clusters of the fragment layer: which fragments they consist of and how they end.
+/// The clusters of the fragment layer: their fragments and their exits.
 class Clusters {
  public:
   explicit Clusters(const BaseComponents& components) : components_(components) {}
 
   void grow(PointIndex num_points) { next_.resize(num_points); }
-  /// Forgets all clusters.
+  /// Removes all clusters.
   void clear();
 
-  /// The cluster of a fragment; kNoCluster.
+  /// The cluster of a fragment; kNoCluster where there is none.
   ClusterId of(ComponentId name) const {
     return name < cluster_of_.size() ? cluster_of_[name] - 1 : kNoCluster;
   }
   const Exit& exit(ClusterId cluster) const { return clusters_[cluster].exit; }
 
-  /// `points` are those of some fragments, which are in no cluster.
+  /// Adds a cluster of the fragments that have `points`. They must be in no cluster.
   ClusterId add(std::span<const PointIndex> points, const Exit& exit);
-  /// Takes a cluster apart and appends its points. The names of its fragments must be those that
-  /// they had when it was added.
+  /// Removes a cluster and appends its points to `points`. The names of its fragments must be the
+  /// same as when it was added.
   void dissolve(ClusterId cluster, std::vector<PointIndex>& points);
 
-  /// Calls fn(PointIndex) with each point of a cluster.
+  /// Calls fn(PointIndex) for each point of a cluster.
   template <typename Fn>
   void for_each_point(ClusterId cluster, Fn&& fn) const {
     const PointIndex head = clusters_[cluster].exit.i;
@@ -61,8 +61,8 @@ class Clusters {
       point = next_[point];
     } while (point != head);
   }
-  /// The first of the clusters whose exit leads to `point`, and the one after another of them;
-  /// kNoCluster: there is none.
+  /// The clusters whose exits lead to `point`, as a list: the first one, and the one after
+  /// `cluster`; kNoCluster at the end.
   ClusterId first_to(PointIndex point) const {
     const auto found = first_to_.find(point);
     return found == first_to_.end() ? kNoCluster : found->second;
@@ -74,7 +74,7 @@ class Clusters {
  private:
   struct Cluster {
     Exit exit;
-    // Of those whose exits lead to the same point.
+    // In the list of clusters whose exits lead to the same point.
     ClusterId next = kNoCluster;
     ClusterId previous = kNoCluster;
   };
@@ -85,8 +85,8 @@ class Clusters {
   const BaseComponents& components_;
   std::vector<Cluster> clusters_;
   std::vector<ClusterId> free_;
-  GrowingArray<std::uint32_t> cluster_of_;  ///< by name of a fragment; plus one, 0: none
-  GrowingArray<PointIndex> next_;           ///< point of the same cluster, in a circle
+  GrowingArray<std::uint32_t> cluster_of_;  ///< by name of a fragment: cluster + 1, or 0
+  GrowingArray<PointIndex> next_;           ///< by point: the next one of its cluster, in a circle
   std::unordered_map<PointIndex, ClusterId> first_to_;
 };
 

@@ -17,7 +17,7 @@ void EdgeOrder::sort(std::span<Edge> edges) const {
   }
 }
 
-/// Looks each id up once: a flat surface has many edges of one weight.
+/// Looks up each id only once: a flat surface has many edges of one weight.
 void EdgeOrder::sort_ties(std::span<Edge> edges) const {
   std::vector<std::pair<Ids, Edge>> by_ids;
   by_ids.reserve(edges.size());

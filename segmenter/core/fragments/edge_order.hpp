@@ -10,8 +10,9 @@
 namespace kintsugi::segmenter {
 
 /// The order in which the fragment step takes edges: by ascending weight, equal weights by the
-/// PointIds of their two points, of each edge the smaller first. Here ties matter; and places in
-/// the cloud, which AscendingWeight goes by, depend on how the points came.
+/// PointIds of the two points, the smaller one first. The result of this step does depend on the
+/// order of equal weights. So they must be ordered by PointIds, which persist, and not by
+/// PointIndices as in AscendingWeight, which depend on the order in which points came.
 class EdgeOrder {
  public:
   explicit EdgeOrder(const PointCloud& cloud) : cloud_(cloud) {}
@@ -19,7 +20,7 @@ class EdgeOrder {
   bool operator()(const Edge& a, const Edge& b) const {
     return a.weight != b.weight ? a.weight < b.weight : ids_of(a) < ids_of(b);
   }
-  /// The one with the smaller PointId of the two points of an edge.
+  /// Of the two points of an edge the one with the smaller PointId.
   PointIndex first_point(const Edge& edge) const {
     return cloud_.id_of(edge.i) < cloud_.id_of(edge.j) ? edge.i : edge.j;
   }

@@ -1,15 +1,14 @@
 #include "segmenter/core/fragments/fragment_engine.hpp"
 
-#include <chrono>
+#include "lcmtypes/base/stopwatch.hpp"
 
 namespace kintsugi::segmenter {
 
 RunStatistics FragmentEngine::update(const CloudChange& change) {
   RunStatistics statistics = engine_->update(change);
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch stopwatch;
   layer_.update(change);
-  const auto taken = std::chrono::steady_clock::now() - start;
-  statistics.fragments_ms = std::chrono::duration<double, std::milli>(taken).count();
+  statistics.fragments_ms = stopwatch.elapsed_ms();
   return statistics;
 }
 

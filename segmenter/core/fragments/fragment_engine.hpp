@@ -7,16 +7,16 @@
 
 namespace kintsugi::segmenter {
 
-/// An engine whose fragments are joined to their neighbours: FragmentLayer on top of it.
+/// An engine with a FragmentLayer on top of it, which joins fragments to their neighbours.
 class FragmentEngine final : public SegmentationEngine {
  public:
-  /// `engine` is of the same cloud and config, which has a fragment_limit() > 0.
+  /// `engine` must have the same cloud and config; config.fragment_limit() > 0.
   FragmentEngine(std::unique_ptr<IncrementalEngine> engine, const PointCloud& cloud,
                  const EngineConfig& config)
       : engine_(std::move(engine)), layer_(cloud, *engine_, config) {}
 
   RunStatistics update(const CloudChange& change) override;
-  /// `components` are the unmerged ones.
+  /// `components` are those before fragments are joined.
   void resume(const CloudChange& everything, std::span<const ComponentId> components,
               std::span<const double> thetas) override;
   void look_ahead(std::span<const CloudPoint> slice_W) override { engine_->look_ahead(slice_W); }

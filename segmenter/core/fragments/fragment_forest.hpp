@@ -10,12 +10,13 @@
 
 namespace kintsugi::segmenter {
 
-/// Disjoint sets of components while fragments are joined to their neighbours: the state of the
-/// fragment step. A set of fewer than `limit` points is small.
+/// The state of the fragment step: disjoint sets of components. A set of fewer than `limit` points
+/// is small.
 ///
-/// Each set is called after one of its components. Where a small set joins a large one, that is the
-/// one the large set is called after; where two small ones join, the component of the first point
-/// (by PointId) of the edge. So names follow from the points alone.
+/// Each set is named after one of its components, found by a point of it, the namer. When a small
+/// set joins a large one, the name of the large one stays. When two small ones join, the name is
+/// that of the component of the edge's first point (by PointId). So names depend on the points
+/// alone.
 class FragmentForest {
  public:
   /// `components` by point, kNoComponent for points that are gone; `limit` in points.
@@ -41,11 +42,11 @@ class FragmentForest {
   ComponentId find_point(PointIndex point) { return find(components_[point]); }
   std::uint32_t num_points(ComponentId root) const { return sets_[root].num_points; }
   bool is_small(ComponentId root) const { return num_points(root) < limit_; }
-  /// A point of the component that the set is called after.
+  /// A point of the component that the set is named after.
   PointIndex namer(ComponentId root) const { return sets_[root].namer; }
 
-  /// Joins the sets of two roots, of which at least one is small, along an edge whose first point
-  /// is `first_point`.
+  /// Joins the sets of two roots, at least one of which is small, by an edge whose first point is
+  /// `first_point`.
   void join(ComponentId a, ComponentId b, PointIndex first_point) {
     const bool are_both_small = is_small(a) && is_small(b);
     if (sets_[a].num_points < sets_[b].num_points) std::swap(a, b);

@@ -4,7 +4,6 @@
 
 #include "segmenter/core/fragments/fragment_step.hpp"
 #include "segmenter/core/fragments/rebuild_clusters.hpp"
-#include "segmenter/core/graph/edge_weight.hpp"
 
 namespace kintsugi::segmenter {
 
@@ -16,7 +15,7 @@ FragmentLayer::FragmentLayer(const PointCloud& cloud, const IncrementalEngine& b
       order_(cloud),
       components_(config.fragment_limit()),
       clusters_(components_),
-      search_(cloud, base.neighbour_index(), components_, config.color_weight) {}
+      search_(cloud, base.neighbour_index(), components_, config.edge_weight()) {}
 
 void FragmentLayer::update(const CloudChange& change) {
   grow();
@@ -57,8 +56,8 @@ void FragmentLayer::dissolve(ClusterId cluster) {
   if (cluster != kNoCluster) clusters_.dissolve(cluster, loose_);
 }
 
-/// Clusters that lose or gain points, or whose exits lead to points that go; also those with a
-/// component that is called otherwise now. Names are those of before.
+/// Dissolves the clusters that lose or gain points, that have a component whose name changes, and
+/// those whose exits lead to removed points. components_ must still have the old names.
 void FragmentLayer::dissolve_changed(const CloudChange& change) {
   loose_.clear();
   const auto dissolve_at = [&](PointIndex point) {
@@ -90,20 +89,21 @@ void FragmentLayer::take_over_components(const CloudChange& change) {
   for (const PointIndex i : base_.changed()) move(i, base_.components()[i]);
 }
 
-/// Clusters that a new edge leads out of before their exit.
+/// Dissolves the clusters out of which a new edge leads before their exit.
 void FragmentLayer::dissolve_reached_by(std::span<const PointIndex> added) {
+  const EdgeWeight weight_of = config_.edge_weight();
   NeighbourCursor cursor(base_.neighbour_index());
   for (const PointIndex i : added) {
     cursor.for_each_neighbour(i, [&](PointIndex j) {
       const ClusterId cluster = clusters_.of(components_[j]);
       if (cluster == kNoCluster) return;
-      const Edge edge{edge_weight(cloud_[j], cloud_[i], config_.color_weight), j, i};
+      const Edge edge{weight_of(cloud_[j], cloud_[i]), j, i};
       if (order_(edge, clusters_.exit(cluster))) dissolve(cluster);
     });
   }
 }
 
-/// Of all fragments that have none.
+/// Finds a cluster for each fragment that has none.
 void FragmentLayer::find_clusters() {
   for (const PointIndex i : base_.changed()) find_cluster_of(i);
   for (const ComponentId name : shrunk_) {
@@ -111,7 +111,8 @@ void FragmentLayer::find_clusters() {
       find_cluster_of(base_.point_of(name));
     }
   }
-  for (std::size_t k = 0; k < loose_.size(); ++k) find_cluster_of(loose_[k]);  // more may come
+  for (std::size_t k = 0; k < loose_.size(); ++k)
+    find_cluster_of(loose_[k]);  // find_cluster_of() may append more
 }
 
 void FragmentLayer::find_cluster_of(PointIndex point) {
@@ -122,8 +123,8 @@ void FragmentLayer::find_cluster_of(PointIndex point) {
   queue(clusters_.add(found.points, found.exit));
 }
 
-/// Large components first, then clusters, each after the one that its exit leads to: in the order
-/// of the exits.
+/// Labels large components first, then clusters in the order of their exits: thus each comes after
+/// the one that its exit leads to.
 void FragmentLayer::label_points() {
   const auto label_if_large = [this](PointIndex point) {
     const ComponentId name = components_[point];
@@ -148,7 +149,7 @@ ComponentId FragmentLayer::label_of(ClusterId cluster) const {
   return is_pair ? components_[order_.first_point(exit)] : labels_[exit.j];
 }
 
-/// The clusters whose exits lead to the point follow it.
+/// Also queues the clusters whose exits lead to the point, since they get its label.
 void FragmentLayer::relabel(PointIndex point, ComponentId label) {
   if (!set_label(point, label)) return;
   for (ClusterId c = clusters_.first_to(point); c != kNoCluster; c = clusters_.next_to(c)) {

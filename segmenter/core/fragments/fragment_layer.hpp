@@ -10,40 +10,48 @@
 #include "segmenter/core/fragments/cluster_search.hpp"
 #include "segmenter/core/fragments/clusters.hpp"
 #include "segmenter/core/fragments/edge_order.hpp"
+#include "segmenter/core/parameters/engine_config.hpp"
 
 namespace kintsugi::segmenter {
 
-/// What join_fragments() makes of the partition of an engine, kept up to date: after each update
-/// the same, at a cost that depends on the change.
+/// Keeps the result of join_fragments() up to date as the partition of an engine changes, at a cost
+/// that depends on the change.
 ///
-/// How it works. Take the edges in order (EdgeOrder), and call a fragment's cluster what it has
-/// been joined to just before that came to the limit. Remembered is, for each cluster, its points
-/// and its exit: the edge (x, y) by which it came to the limit, x inside.
+/// Terms. A fragment is a component of fewer than m points, where m is the limit
+/// (EngineConfig::fragment_limit()); all others are large. Take the edges in order (EdgeOrder). The
+/// cluster of a fragment is the set that it has been joined to just before that set reaches m
+/// points. Its exit is the edge (x, y), x inside, by which it reaches m. For each cluster the layer
+/// stores its points and its exit.
 ///
-/// Why it is exact, in short (at an edge: when its turn comes; m: the limit):
-/// 1. No edge of a set of fewer than m points has been passed over, so such a set is a connected
-///    component of the graph of the edges so far. Therefore the clusters are a partition of the
-///    fragments, and each can be found alone: Prim's algorithm takes all edges below the exit
-///    before the exit, and ends with at most m points or at a component that is large by itself.
-/// 2. At its exit, y is in a component of m points or more, or its cluster ends with the same edge.
-///    In the first case y is in a large component, or in a cluster whose exit comes before; large
-///    ones never join each other; so the cluster goes where y is. In the second the two are a new
-///    segment. Following exits therefore ends, and gives the partition.
-/// 3. A cluster stays as it is when (a) its fragments have the points they had, (b) y is there,
-///    (c) no new edge leads out of it before its exit, and (d) with y's side it still comes to m.
-///    update() dissolves those where (a), (b) or (c) fails. Where only (d) does, y's component has
-///    changed or y's cluster was dissolved, so y's new cluster ends after the exit and contains x:
-///    a new cluster dissolves every old one that it meets. (Were an old one wrong and not met, take
-///    the one that ends first: y's cluster ends before it, so it is right, and (d) holds.)
+/// Why it is exact, in short:
+/// 1. A set of fewer than m points joins along every edge that leads out of it. So at each time
+/// such a
+///    set is a connected component of the graph of the edges so far. Therefore the clusters
+///    partition the fragments, and each can be found by itself: Prim's algorithm takes all edges
+///    before the exit first, and ends with at most m points or at a component that is large by
+///    itself.
+/// 2. When the exit is taken, y is in a set of m points or more, or the cluster of y has the same
+///    edge as its exit. In the first case y is in a large component, or in a cluster with an
+///    earlier exit; sets of m points or more never join each other; so the cluster gets the label
+///    of y. In the second case both clusters form a new segment. Following exits therefore ends,
+///    and gives the partition.
+/// 3. A cluster stays valid if (a) its fragments have the same points, (b) y exists, (c) no new
+/// edge
+///    leads out of it before its exit, and (d) together with the side of y it still reaches m.
+///    update() dissolves the clusters for which (a), (b) or (c) fails. If only (d) fails, the
+///    component of y has changed or the cluster of y was dissolved. The new cluster of y then ends
+///    after the exit and contains x, and a new cluster dissolves every old one that it meets.
+///    (Suppose an invalid old cluster were never met. Take the one with the earliest exit: the
+///    cluster of y has an earlier one, so it is valid, and (d) holds; a contradiction.)
 class FragmentLayer {
  public:
-  /// On top of `base`, which must outlive it, as `cloud`.
+  /// `base`, the engine below, and `cloud` must outlive the layer.
   FragmentLayer(const PointCloud& cloud, const IncrementalEngine& base, const EngineConfig& config);
 
-  /// Takes over an update of the base engine with `change`.
+  /// To be called after base.update(change).
   void update(const CloudChange& change);
 
-  /// As those of SegmentationEngine. Each component is called after one of the base engine's.
+  /// As in SegmentationEngine. Each component has the name of one of the base engine's.
   std::span<const ComponentId> components() const { return labels_.span(); }
   std::span<const PointIndex> changed() const { return changed_; }
 
@@ -61,7 +69,7 @@ class FragmentLayer {
   void find_clusters();
   void find_cluster_of(PointIndex point);
 
-  /// Of two clusters: by their exits, those without last.
+  /// Orders clusters by their exits; those without one come last.
   struct LaterExit {
     const FragmentLayer& layer;
     bool operator()(ClusterId a, ClusterId b) const {
@@ -88,10 +96,10 @@ class FragmentLayer {
   GrowingArray<ComponentId> labels_;
   std::vector<PointIndex> changed_;
 
-  // One update.
-  std::vector<PointIndex> loose_;    ///< points of clusters that were dissolved
+  // Used within one update.
+  std::vector<PointIndex> loose_;    ///< points of dissolved clusters
   std::vector<ComponentId> shrunk_;  ///< components that lost points
-  std::vector<ClusterId> to_label_;  ///< heap, the first exit on top
+  std::vector<ClusterId> to_label_;  ///< heap, the earliest exit on top
 };
 
 }  // namespace kintsugi::segmenter

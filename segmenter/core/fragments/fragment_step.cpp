@@ -8,7 +8,6 @@
 
 #include "segmenter/core/fragments/edge_order.hpp"
 #include "segmenter/core/graph/edge_buckets.hpp"
-#include "segmenter/core/graph/edge_weight.hpp"
 #include "segmenter/core/points/point_rows.hpp"
 
 namespace kintsugi::segmenter {
@@ -16,9 +15,9 @@ namespace {
 
 using EdgesByThread = oneapi::tbb::enumerable_thread_specific<EdgeBuckets>;
 
-/// The edges between two components of which one is small.
+/// The edges between two components at least one of which is small. No other can join anything.
 EdgesByThread find_edges(const PointRows& rows, std::span<const ComponentId> components,
-                         const FragmentForest& forest, double color_weight) {
+                         const FragmentForest& forest, EdgeWeight weight_of) {
   struct Component {
     ComponentId name;
     bool is_small;
@@ -39,7 +38,7 @@ EdgesByThread find_edges(const PointRows& rows, std::span<const ComponentId> com
     rows.for_each_pair(row, keep, [&](PointRows::Slot a, PointRows::Slot b) {
       const PointRows::Point& p = rows.points()[a];
       const PointRows::Point& q = rows.points()[b];
-      edges.add({edge_weight(p, q, color_weight), p.index, q.index});
+      edges.add({weight_of(p, q), p.index, q.index});
     });
   });
   return found;
@@ -51,7 +50,7 @@ void join_fragments(const PointCloud& cloud, std::span<const PointIndex> points,
                     std::span<const ComponentId> components, const EngineConfig& config,
                     FragmentForest& forest, FragmentObserver& observer) {
   const PointRows rows(cloud, points, config.radius_m());
-  EdgesByThread found = find_edges(rows, components, forest, config.color_weight);
+  EdgesByThread found = find_edges(rows, components, forest, config.edge_weight());
   const EdgeOrder order(cloud);
   const auto is_joining = [&](ComponentId a, ComponentId b) {
     return a != b && (forest.is_small(a) || forest.is_small(b));

@@ -7,8 +7,8 @@
 
 namespace kintsugi::segmenter {
 
-/// The neighbours of one point after the other, in any index; quick in a grid. Valid until the
-/// index changes.
+/// Finds the neighbours of one point after the other in an index of any kind; fast for a GridIndex.
+/// Valid until the index changes.
 class NeighbourCursor {
  public:
   explicit NeighbourCursor(const NeighbourIndex& index)
@@ -16,7 +16,7 @@ class NeighbourCursor {
     if (grid_ != nullptr) cursor_ = GridIndex::Cursor(*grid_);
   }
 
-  /// Calls fn(PointIndex) with each neighbour of `point`, in no particular order.
+  /// Calls fn(PointIndex) for each neighbour of `point`, in no particular order.
   template <typename Fn>
   void for_each_neighbour(PointIndex point, Fn&& fn) {
     if (grid_ != nullptr) return cursor_.for_each_neighbour(point, fn);
@@ -27,7 +27,7 @@ class NeighbourCursor {
 
  private:
   const NeighbourIndex& index_;
-  const GridIndex* grid_;  ///< the same; none: it is of another kind
+  const GridIndex* grid_;  ///< the same index; null if it is of another kind
   GridIndex::Cursor cursor_;
 };
 

@@ -8,7 +8,7 @@
 namespace kintsugi::segmenter {
 namespace {
 
-/// Keeps the points of each small set in a circle, and writes down a cluster when one ends.
+/// Keeps the points of each small set in a circle, and adds a cluster when it reaches the limit.
 class Recorder final : public FragmentObserver {
  public:
   Recorder(const BaseComponents& components, const FragmentForest& forest, Clusters& clusters)
@@ -18,7 +18,7 @@ class Recorder final : public FragmentObserver {
         next_(components.of_points().size()) {
     for (PointIndex i = 0; i < next_.size(); ++i) {
       if (!components.is_in_fragment(i)) continue;
-      const PointIndex first = forest.namer(components[i]);  // each component is a set yet
+      const PointIndex first = forest.namer(components[i]);  // no sets are joined yet
       next_[i] = i == first ? i : std::exchange(next_[first], i);
     }
   }
@@ -30,7 +30,7 @@ class Recorder final : public FragmentObserver {
     const std::int64_t num_points =
         std::int64_t{forest_.num_points(root_i)} + forest_.num_points(root_j);
     if (is_i_small && is_j_small && num_points < components_.limit()) {
-      std::swap(next_[edge.i], next_[edge.j]);  // makes one circle of two
+      std::swap(next_[edge.i], next_[edge.j]);  // merges the two circles
       return;
     }
     if (is_i_small) add(edge.i, Exit::along(edge));

@@ -4,13 +4,13 @@
 
 #include "segmenter/core/fragments/base_components.hpp"
 #include "segmenter/core/fragments/clusters.hpp"
+#include "segmenter/core/parameters/engine_config.hpp"
 #include "segmenter/core/points/point_cloud.hpp"
 
 namespace kintsugi::segmenter {
 
-/// Makes all clusters anew, by the fragment step over all points. Returns for each point of the
-/// cloud a point of the component that its segment is called after (anything for those that are
-/// gone).
+/// Finds all clusters by the fragment step over all points. Returns for each point of the cloud a
+/// point of the component that its segment is named after; unspecified for points that are gone.
 std::vector<PointIndex> rebuild_clusters(const PointCloud& cloud, const EngineConfig& config,
                                          const BaseComponents& components, Clusters& clusters);
 

@@ -15,8 +15,8 @@ struct Edge {
   bool operator==(const Edge&) const = default;
 };
 
-/// The order in which edges are looked at: ascending weight. Equal weights give the same partition
-/// in any order; the points break ties so that the order, too, is one and the same.
+/// The order in which Algorithm 1 takes the edges. The partition does not depend on the order of
+/// equal weights; ties are broken by the points so that the order itself is unique.
 struct AscendingWeight {
   bool operator()(const Edge& a, const Edge& b) const {
     return std::tie(a.weight, a.i, a.j) < std::tie(b.weight, b.i, b.j);

@@ -12,12 +12,12 @@
 
 namespace kintsugi::segmenter {
 
-/// Edges roughly sorted as they are found: into buckets of ascending weight, in any order within.
-/// A bucket is a chain of chunks, so that it grows without copying.
+/// Edges in buckets of ascending weight, in any order within a bucket. A bucket is a chain of
+/// chunks, so that it grows without copying.
 class EdgeBuckets {
  public:
-  // The upper bits of a float32 that is not negative order as its value does. 64 buckets for each
-  // power of two, fine where most weights are, from squared ones near zero up to T + k.
+  // The upper bits of a float32 >= 0 are ordered as its value. 64 buckets for each power of two are
+  // fine enough for weights from nearly zero up to T + k.
   static constexpr int kShift = 17;
   static constexpr std::size_t kNumBuckets = std::size_t{1} << (31 - kShift);
 
@@ -34,7 +34,7 @@ class EdgeBuckets {
     edges_[bucket.chunk * kChunkEdges + bucket.room] = edge;
   }
 
-  /// Empties a bucket: calls fn(std::span<const Edge>) with all its edges, some at a time.
+  /// Removes the edges of a bucket: calls fn(std::span<const Edge>) for each part of them.
   template <typename Fn>
   void take(std::size_t index, Fn&& fn) {
     Bucket bucket = std::exchange(buckets_[index], {});
@@ -50,8 +50,8 @@ class EdgeBuckets {
   static constexpr std::uint32_t kNoChunk = UINT32_MAX;
 
   struct Bucket {
-    std::uint32_t chunk = kNoChunk;  ///< the last one, filled from its end
-    std::uint32_t room = 0;          ///< in it
+    std::uint32_t chunk = kNoChunk;  ///< the last one, which is filled from its end
+    std::uint32_t room = 0;          ///< free places in it
   };
 
   void start_chunk(Bucket& bucket) {
@@ -70,7 +70,7 @@ class EdgeBuckets {
 
   std::vector<Bucket> buckets_;
   GrowingArray<Edge> edges_;             ///< chunk after chunk
-  std::vector<std::uint32_t> previous_;  ///< of the same bucket, by chunk
+  std::vector<std::uint32_t> previous_;  ///< by chunk: the chunk before it in its bucket
   std::vector<std::uint32_t> free_;      ///< chunks to use again
 };
 

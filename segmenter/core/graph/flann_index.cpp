@@ -14,13 +14,14 @@ namespace {
 constexpr double kTile_m = 1.0;
 constexpr std::size_t kPointsPerTask = 2048;
 
-// FLANN prunes with its own float32 sums, off by a few 2^-24 of r^2 at each level of the tree; it
-// is asked for more than r^2 by far more than that, and every candidate is tested exactly.
+// FLANN prunes with its own float32 sums, whose error is a few 2^-24 of r^2 at each level of the
+// tree. So it is asked for a radius that is larger by much more than that, and every candidate is
+// tested by are_neighbours().
 constexpr float kSlack = 1.0F + 1e-4F;
 
 using KdTree = flann::KDTreeSingleIndex<flann::L2_3D<float>>;
 
-/// Takes what FLANN finds, without the allocations of its own result sets.
+/// Collects what FLANN finds, without the allocations of its own result sets.
 class Candidates final : public flann::ResultSet<float> {
  public:
   Candidates(float squared_radius_m2, std::vector<std::size_t>& found)
@@ -40,7 +41,7 @@ class Candidates final : public flann::ResultSet<float> {
 struct FlannIndex::Tile {
   std::vector<PointIndex> points;
   std::vector<float> positions_W;  ///< three for each point: FLANN keeps a pointer to them
-  std::unique_ptr<KdTree> tree;    ///< none: dirty, or empty
+  std::unique_ptr<KdTree> tree;    ///< null: to be built, or no points
 
   void build(const PointCloud& cloud) {
     positions_W.clear();
@@ -86,7 +87,7 @@ void FlannIndex::remove(std::span<const PointIndex> points) {
   std::unordered_map<Tile*, std::unordered_set<PointIndex>> leaving;
   for (const PointIndex i : points) leaving[tile_at(i).get()].insert(i);
   std::vector<Tile*> dirty;
-  // The order in which trees are built decides nothing.
+  // The result does not depend on the order in which trees are built.
   for (const auto& [tile, gone] : leaving) {  // NOLINT(*-nondeterministic-pointer-iteration-order)
     std::erase_if(tile->points, [&gone = gone](PointIndex i) { return gone.contains(i); });
     tile->tree.reset();

@@ -10,8 +10,8 @@
 
 namespace kintsugi::segmenter {
 
-/// Neighbours by FLANN: one kd-tree for each tile of 1 m. FLANN's single kd-tree cannot take points
-/// in or out well, so the tiles that a change touches are built again, and only those.
+/// Neighbours by FLANN, with a kd-tree for each cubic tile of 1 m. FLANN's single kd-tree hardly
+/// supports changes, so the trees of the tiles that a change touches are built again.
 class FlannIndex final : public NeighbourIndex {
  public:
   FlannIndex(const PointCloud& cloud, float radius_m);

@@ -8,8 +8,8 @@
 namespace kintsugi::segmenter {
 namespace {
 
-// Two neighbours may lie a rounding of float32 further apart than r (relative 2^-22 or so); cells
-// this much wider than r keep them in adjacent cells nevertheless.
+// Two neighbours may be further apart than r by a rounding error of float32 (relative: about
+// 2^-22). Cells that are wider by this factor keep them in adjacent cells.
 constexpr double kCellsPerRadius = 1.0 + 1e-5;
 
 constexpr std::size_t kPointsPerTask = 2048;
@@ -27,7 +27,7 @@ GridIndex::GridIndex(const PointCloud& cloud, float radius_m)
 
 GridIndex::~GridIndex() = default;
 
-/// Makes the block if there is none.
+/// Creates the block if it does not exist.
 GridIndex::Block& GridIndex::block_at(const Cell& block) {
   std::unique_ptr<Tile>& tile = tiles_[tile_of(block)];
   if (!tile) tile = std::make_unique<Tile>();
@@ -49,7 +49,7 @@ void GridIndex::insert(std::span<const PointIndex> points) {
     if (block.num_arrivals++ == 0) touched.push_back(&block);
     block_of_point.push_back(&block);
   }
-  // Room for what comes and no more: a block that points come to is rewritten anyway.
+  // No spare room: a block that gets points is rewritten anyway.
   for (Block* const block : touched) {
     num_entries_ -= block->entries.capacity();
     block->entries.reserve(block->entries.size() + block->num_arrivals);
@@ -64,7 +64,7 @@ void GridIndex::insert(std::span<const PointIndex> points) {
   for (Block* const block : touched) sort_by_row(*block, scratch);
 }
 
-/// Counting sort; entries of a row keep their order.
+/// A stable counting sort.
 void GridIndex::sort_by_row(Block& block, std::vector<Entry>& scratch) const {
   scratch.assign(block.entries.begin(), block.entries.end());
   std::array<std::uint32_t, kNumRows + 1> next{};

@@ -14,15 +14,14 @@
 
 namespace kintsugi::segmenter {
 
-/// Neighbours by a uniform grid of cells a trifle wider than r.
+/// Neighbours by a uniform grid of cells slightly wider than r.
 ///
 ///   tile   8 x 8 x 8 blocks; found by hash
 ///   block  4 x 4 x 4 cells; its points in one run of memory, sorted by row
 ///   row    the 4 cells of a block with the same y and z
 ///
-/// A change touches only the blocks that its points lie in, and costs no more than rewriting these.
-/// Nothing ever is copied or hashed again as a whole but the directory of tiles, whose entries
-/// stand for thousands of points each.
+/// A change rewrites the blocks that its points lie in and nothing else. Only the directory of
+/// tiles is ever rehashed as a whole, and each of its entries stands for thousands of points.
 class GridIndex final : public NeighbourIndex {
  public:
   class Cursor;
@@ -39,8 +38,8 @@ class GridIndex final : public NeighbourIndex {
   void visit_all(const Visit& visit_point) const override;
   std::size_t bytes() const override;
 
-  /// Calls fn(PointIndex) with each neighbour of `point`, in no particular order. Allocates
-  /// nothing. For many points in a row, a Cursor is quicker.
+  /// Calls fn(PointIndex) for each neighbour of `point`, in no particular order, without allocating
+  /// memory. For many points one after the other a Cursor is faster.
   template <typename Fn>
   void for_each_neighbour(PointIndex point, Fn&& fn) const;
 
@@ -57,16 +56,16 @@ class GridIndex final : public NeighbourIndex {
     PointIndex point;
   };
   struct Block {
-    std::array<std::uint32_t, kNumRows + 1> first{};  ///< entry where each row begins; y fastest
-    std::uint32_t num_arrivals = 0;                   ///< zero outside insert()
-    std::vector<Entry> entries;                       ///< by row
+    std::array<std::uint32_t, kNumRows + 1> first{};  ///< by row, y fastest: its first entry
+    std::uint32_t num_arrivals = 0;                   ///< used by insert(), else zero
+    std::vector<Entry> entries;                       ///< sorted by row
   };
   struct Tile {
     std::array<std::unique_ptr<Block>, kNumBlocks> blocks;  ///< x fastest
   };
 
-  // In the header, for the inner loops: position-independent code calls what is not inline.
-  // Sides are powers of two: >> and & round towards minus infinity, as the grid needs.
+  // Defined here so that inner loops inline them. Sides are powers of two: >> and & round towards
+  // minus infinity, as a grid needs.
   static Cell block_of(const Cell& cell) {
     return {cell.x >> kBlockBits, cell.y >> kBlockBits, cell.z >> kBlockBits};
   }
@@ -99,15 +98,15 @@ class GridIndex final : public NeighbourIndex {
   float squared_radius_m2_;
   double cell_m_;
   std::unordered_map<Cell, std::unique_ptr<Tile>, CellHash> tiles_;
-  std::size_t num_entries_ = 0;  ///< there is room for
+  std::size_t num_entries_ = 0;  ///< allocated
   std::size_t num_blocks_ = 0;
 };
 
-/// Finds the neighbours of one point after the other; remembers the tile that the last one lay in.
-/// Valid until the index changes.
+/// Finds the neighbours of one point after the other. It is fast where consecutive points are in
+/// one tile. Valid until the index changes.
 class GridIndex::Cursor {
  public:
-  /// In no index: a place for another one.
+  /// Of no index; to be assigned to.
   Cursor() = default;
   explicit Cursor(const GridIndex& index) : index_(&index) {}
 
@@ -116,7 +115,7 @@ class GridIndex::Cursor {
   void for_each_neighbour(PointIndex point, Fn&& fn) {
     for_each_near(index_->cloud_[point], point, fn);
   }
-  /// The same for any place, but for the point `left_out`.
+  /// The same for any position, except that `left_out` is not reported.
   template <typename Fn>
   void for_each_near(const CloudPoint& p, PointIndex left_out, Fn&& fn) {
     const Cell cell = index_->cell_of(p.x, p.y, p.z);
@@ -141,7 +140,7 @@ class GridIndex::Cursor {
     return tile_ == nullptr ? nullptr : tile_->blocks[place_in_tile(block)].get();
   }
 
-  /// The rows of `block` that touch `cell`: for each z one run of memory, since y is fastest.
+  /// Visits the rows of `block` around `cell`. For each z they are contiguous, since y is fastest.
   template <typename Fn>
   void scan(const Block& block, const Cell& at, const Cell& cell, const CloudPoint& p,
             PointIndex left_out, Fn& fn) const {
@@ -157,7 +156,7 @@ class GridIndex::Cursor {
         const float dx = p.x - e->x;
         const float dy = p.y - e->y;
         const float dz = p.z - e->z;
-        // The order of squared_distance().
+        // The order of operations of squared_distance().
         const bool is_near = (dx * dx + dy * dy) + dz * dz < index_->squared_radius_m2_;
         if (is_near && e->point != left_out) fn(e->point);
       }

@@ -8,10 +8,11 @@
 
 namespace kintsugi::segmenter {
 
-/// Which points belong together: circular doubly linked lists through arrays by point. Joining and
-/// leaving takes no allocation and no search, however large the list.
+/// Lists of points: circular and doubly linked, with the links in arrays by point. Insertion and
+/// removal take constant time and no allocation.
 ///
-/// A list is known by any of its points; each operation returns the one to know it by from now on.
+/// A list is given by any one of its points, the head. Operations return the head to use from then
+/// on.
 class MemberLists {
  public:
   static constexpr PointIndex kEmpty = UINT32_MAX;
@@ -32,7 +33,7 @@ class MemberLists {
     return head;
   }
 
-  /// Takes `point` out of its list, which is that of `head`.
+  /// Removes `point` from the list of `head`.
   PointIndex erase(PointIndex head, PointIndex point) {
     const Link link = links_[point];
     links_[link.previous].next = link.next;

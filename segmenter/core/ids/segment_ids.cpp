@@ -11,7 +11,7 @@
 namespace kintsugi::segmenter {
 namespace {
 
-/// Counts the changed points by component and old id; neighbouring points mostly agree.
+/// Counts the changed points by component and old id. Consecutive points are mostly alike.
 std::vector<Overlap> count_overlaps(std::span<const ComponentId> components,
                                     std::span<const PointIndex> changed,
                                     std::span<const std::uint32_t> ids) {
@@ -57,12 +57,12 @@ IdUpdate SegmentIds::update(const PointCloud& cloud, const CloudChange& change,
                             std::span<const PointIndex> changed) {
   grow(static_cast<PointIndex>(components.size()));
   IdUpdate result;
-  std::vector<std::uint32_t> losers = take_out_removed(change, result.changes);
+  std::vector<std::uint32_t> losers = detach_removed(change, result.changes);
   std::vector<Overlap> overlaps = count_overlaps(components, changed, ids());
   const std::size_t num_gone = result.changes.size();
-  take_out_changed(change, changed, result.changes);
+  detach_changed(change, changed, result.changes);
 
-  // What is left of the old segments that take part counts as well.
+  // The unchanged points of the old segments that take part count as well.
   const std::vector<std::uint32_t> old_ids = touched_by(overlaps, std::move(losers));
   for (const std::uint32_t id : old_ids) {
     const Segment& rest = segments_[id];
@@ -71,9 +71,9 @@ IdUpdate SegmentIds::update(const PointCloud& cloud, const CloudChange& change,
   combine(overlaps);
   std::vector<Succession> successions = prefer(overlaps);
   find_first_points(cloud, components, changed, old_ids, successions);
-  segments_.resize(hand_out(successions, next_id()));
+  segments_.resize(assign_ids(successions, next_id()));
 
-  move_rests(old_ids, components, successions, result.changes);
+  detach_rests(old_ids, components, successions, result.changes);
   for (IdChange& move : std::span(result.changes).subspan(num_gone)) {
     move.new_id = find_succession(successions, components[move.point]).new_id;
     attach(move.point, move.new_id);
@@ -82,7 +82,7 @@ IdUpdate SegmentIds::update(const PointCloud& cloud, const CloudChange& change,
   std::erase_if(result.changes, [](const IdChange& c) { return c.old_id == c.new_id; });
   std::sort(result.changes.begin(), result.changes.end(),
             [](const IdChange& a, const IdChange& b) { return a.point < b.point; });
-  result.events = tell_events(successions, overlaps, old_ids);
+  result.events = events_of(successions, overlaps, old_ids);
   return result;
 }
 
@@ -91,10 +91,10 @@ void SegmentIds::grow(PointIndex num_points) {
   members_.resize(num_points);
 }
 
-/// Hands the ids of moved points to their new places and takes removed points out of their
-/// segments. Returns the ids that lost points, each as often as it did.
-std::vector<std::uint32_t> SegmentIds::take_out_removed(const CloudChange& change,
-                                                        std::vector<IdChange>& changes) {
+/// Gives the ids of moved points to their new indices and detaches removed points. Returns the ids
+/// that lost points, once for each point.
+std::vector<std::uint32_t> SegmentIds::detach_removed(const CloudChange& change,
+                                                      std::vector<IdChange>& changes) {
   std::vector<std::uint32_t> losers;
   for (const PointIndex p : change.removed) changes.push_back({p, ids_[p], kNoSegment});
   for (const MovedPoint& moved : change.moved) {
@@ -110,9 +110,9 @@ std::vector<std::uint32_t> SegmentIds::take_out_removed(const CloudChange& chang
   return losers;
 }
 
-/// `changed` leave their segments, to be attached where they belong now.
-void SegmentIds::take_out_changed(const CloudChange& change, std::span<const PointIndex> changed,
-                                  std::vector<IdChange>& changes) {
+/// Detaches the changed points, which are attached to their new segments later.
+void SegmentIds::detach_changed(const CloudChange& change, std::span<const PointIndex> changed,
+                                std::vector<IdChange>& changes) {
   auto added = change.added.begin();
   for (const PointIndex p : changed) {
     added = std::find_if(added, change.added.end(), [&](PointIndex other) { return other >= p; });
@@ -122,13 +122,13 @@ void SegmentIds::take_out_changed(const CloudChange& change, std::span<const Poi
   }
 }
 
-/// The old segments that lost points or that a changed component builds on, by ascending id.
+/// The old segments that lost points or share points with a changed component, by ascending id.
 std::vector<std::uint32_t> SegmentIds::touched_by(std::span<const Overlap> overlaps,
                                                   std::vector<std::uint32_t> losers) const {
   std::vector<std::uint32_t> ids = std::move(losers);
   for (const Overlap& overlap : overlaps) {
     if (overlap.old_id != kNoSegment) ids.push_back(overlap.old_id);
-    // Points that are not changed are in the component of the name they had.
+    // The unchanged points of the component are in the segment that had its name before.
     const auto same_name = id_of_component_.find(overlap.component);
     if (same_name != id_of_component_.end()) ids.push_back(same_name->second);
   }
@@ -137,15 +137,15 @@ std::vector<std::uint32_t> SegmentIds::touched_by(std::span<const Overlap> overl
   return ids;
 }
 
-/// Where first points decide. A component with a rival, or with a new id, has no more unchanged
-/// points than it or its rival has changed ones: looking at all of them is cheap.
+/// Finds the smallest PointIds where they decide. A component with a rival, or with a new id, has
+/// no more unchanged points than it or its rival has changed ones. So it is cheap to look at all.
 void SegmentIds::find_first_points(const PointCloud& cloud, std::span<const ComponentId> components,
                                    std::span<const PointIndex> changed,
                                    std::span<const std::uint32_t> old_ids,
                                    std::vector<Succession>& successions) const {
   SliceFinder slice_of(cloud);
   auto look_at = [&, last = std::size_t{0}](PointIndex p) mutable {
-    if (successions[last].component != components[p]) {  // neighbouring points mostly agree
+    if (successions[last].component != components[p]) {  // consecutive points are mostly alike
       const Succession& found = find_succession(successions, components[p]);
       last = static_cast<std::size_t>(&found - successions.data());
     }
@@ -161,11 +161,11 @@ void SegmentIds::find_first_points(const PointCloud& cloud, std::span<const Comp
   }
 }
 
-/// Rests that take another id leave before anyone moves in.
-void SegmentIds::move_rests(std::span<const std::uint32_t> old_ids,
-                            std::span<const ComponentId> components,
-                            std::span<const Succession> successions,
-                            std::vector<IdChange>& changes) {
+/// Detaches the unchanged points that get another id, before other points are attached.
+void SegmentIds::detach_rests(std::span<const std::uint32_t> old_ids,
+                              std::span<const ComponentId> components,
+                              std::span<const Succession> successions,
+                              std::vector<IdChange>& changes) {
   for (const std::uint32_t id : old_ids) {
     const Segment& rest = segments_[id];
     if (rest.num_points == 0) continue;
@@ -215,46 +215,6 @@ void SegmentIds::attach(PointIndex point, std::uint32_t segment_id) {
       members_.insert(segment.num_points > 0 ? segment.head : MemberLists::kEmpty, point);
   ++segment.num_points;
   ids_[point] = segment_id;
-}
-
-std::vector<std::uint32_t> slice_labels(const SliceRecord& slice,
-                                        std::span<const std::uint32_t> ids) {
-  std::vector<std::uint32_t> labels(static_cast<std::size_t>(slice.num_points), kNoSegment);
-  auto rejected = slice.rejected.begin();
-  PointIndex point = slice.first;
-  for (std::int32_t index = 0; index < slice.num_points; ++index) {
-    if (rejected != slice.rejected.end() && *rejected == index) {
-      ++rejected;
-    } else {
-      labels[static_cast<std::size_t>(index)] = ids[point++];
-    }
-  }
-  return labels;
-}
-
-std::vector<LabelRun> label_runs(const PointCloud& cloud, std::span<const IdChange> changes) {
-  std::vector<std::pair<PointRank, std::uint32_t>> relabelled;
-  SliceFinder slice_of(cloud);
-  for (const IdChange& change : changes) {
-    if (change.old_id == kNoSegment || change.new_id == kNoSegment) continue;
-    relabelled.emplace_back(PointRank{slice_of(change.point).slice_id, change.point},
-                            change.new_id);
-  }
-  std::sort(relabelled.begin(), relabelled.end());
-
-  std::vector<LabelRun> runs;
-  for (const auto& [place, new_id] : relabelled) {
-    const SliceRecord& slice = slice_of(place.point);
-    const PointId id{slice.slice_id, slice.index_of(place.point - slice.first)};
-    const bool goes_on = !runs.empty() && runs.back().slice_id == id.slice_id &&
-                         runs.back().first + runs.back().count == id.index &&
-                         runs.back().segment_id == new_id;
-    if (!goes_on) {
-      runs.push_back({id.slice_id, id.index, 0, new_id, slice.revision});
-    }
-    ++runs.back().count;
-  }
-  return runs;
 }
 
 }  // namespace kintsugi::segmenter

@@ -19,7 +19,7 @@ void append_births(std::span<const Succession> successions, std::vector<SegmentE
   }
 }
 
-/// Points that a new segment has of an old one.
+/// The number of points that an old segment shares with a new one.
 struct Share {
   std::uint32_t old_id;
   std::int64_t count;
@@ -41,7 +41,8 @@ std::vector<Share> sorted_shares(std::span<const Succession> successions,
   return shares;
 }
 
-/// An old id without an heir went to the component that took most of it, or is gone.
+/// An old id that nobody inherits was merged into the segment that has most of its points, or is
+/// retired if none is left.
 void append_deaths(std::span<const Share> shares, std::span<const std::uint32_t> old_ids,
                    std::vector<SegmentEvent>& events) {
   auto first = shares.begin();
@@ -59,7 +60,7 @@ void append_deaths(std::span<const Share> shares, std::span<const std::uint32_t>
   }
 }
 
-/// The components that prefer an id, by that id, the one that shares most with it first.
+/// The components that prefer an id, by that id; the one that shares most with it first.
 std::vector<Succession*> sorted_claims(std::vector<Succession>& successions) {
   std::vector<Succession*> claims;
   for (Succession& s : successions) {
@@ -120,7 +121,7 @@ std::vector<Succession> prefer(std::span<const Overlap> overlaps) {
   return successions;
 }
 
-std::uint32_t hand_out(std::vector<Succession>& successions, std::uint32_t next_id) {
+std::uint32_t assign_ids(std::vector<Succession>& successions, std::uint32_t next_id) {
   std::uint32_t inherited = kNoSegment;
   for (Succession* claim : sorted_claims(successions)) {
     if (claim->preferred_id == inherited) continue;
@@ -145,9 +146,9 @@ const Succession& find_succession(std::span<const Succession> successions, Compo
   return *found;
 }
 
-std::vector<SegmentEvent> tell_events(std::span<const Succession> successions,
-                                      std::span<const Overlap> overlaps,
-                                      std::span<const std::uint32_t> old_ids) {
+std::vector<SegmentEvent> events_of(std::span<const Succession> successions,
+                                    std::span<const Overlap> overlaps,
+                                    std::span<const std::uint32_t> old_ids) {
   std::vector<SegmentEvent> events;
   append_births(successions, events);
   append_deaths(sorted_shares(successions, overlaps), old_ids, events);

@@ -1,5 +1,5 @@
 #pragma once
-// Who inherits which segment id, and what that means as events.
+// Which component inherits which segment id, and the events that follow from it.
 
 #include <cstdint>
 #include <span>
@@ -15,11 +15,11 @@ namespace kintsugi::segmenter {
 /// Points that a component of the new partition shares with an old segment.
 struct Overlap {
   ComponentId component = 0;
-  std::uint32_t old_id = kNoSegment;  ///< kNoSegment: points that are new
+  std::uint32_t old_id = kNoSegment;  ///< kNoSegment: these points are new
   std::int64_t count = 0;
 };
 
-/// The order of points by their PointId: within a slice it is that of their places in the cloud.
+/// Orders points by their PointId: within a slice it is the order of their PointIndices.
 struct PointRank {
   std::int32_t slice_id = INT32_MAX;
   PointIndex point = UINT32_MAX;
@@ -29,36 +29,36 @@ struct PointRank {
   }
 };
 
-/// A component that changed, with the id it had most of and the id it gets.
+/// A component that changed, with the id that it would inherit and the id that it gets.
 struct Succession {
   ComponentId component = 0;
-  std::uint32_t preferred_id = kNoSegment;
-  std::int64_t shared = 0;  ///< with preferred_id
+  std::uint32_t preferred_id = kNoSegment;  ///< of the old segment that it shares most points with
+  std::int64_t shared = 0;                  ///< with preferred_id
   std::uint32_t new_id = kNoSegment;
-  bool gained = false;         ///< has points that preferred_id had not
-  bool is_unrivalled = false;  ///< shares more with preferred_id than any other that prefers it
-  PointRank first;             ///< its first point; where is_unrivalled nobody asks for it
+  bool gained = false;         ///< has points that the old segment did not have
+  bool is_unrivalled = false;  ///< shares more with it than any other that prefers the same id
+  PointRank first;             ///< its smallest point; not set where is_unrivalled
 };
 
 /// Sorts by (component, old id) and adds up the counts of equal pairs.
 void combine(std::vector<Overlap>& overlaps);
 
-/// For each component in `overlaps` (combined) the id it shares most points with, ties to the
-/// smaller, and whether it has a rival; new_id and first are left open. By ascending component.
+/// For each component in `overlaps`, on which combine() was called: preferred_id, shared, gained
+/// and is_unrivalled. By ascending component.
 std::vector<Succession> prefer(std::span<const Overlap> overlaps);
 
-/// Gives each preferred id to the component that shares most with it, ties to the one that has the
-/// first point; new ids from `next_id` on to the others, by ascending first point. Returns the id
-/// after the last.
-std::uint32_t hand_out(std::vector<Succession>& successions, std::uint32_t next_id);
+/// Sets new_id: each preferred id goes to the component that shares most with it, on a tie to the
+/// one with the smallest point; the others get new ids from `next_id` on, by their smallest points.
+/// Returns the id after the last one.
+std::uint32_t assign_ids(std::vector<Succession>& successions, std::uint32_t next_id);
 
-/// That of `component`, which must be there.
+/// The element for `component`, which must exist.
 const Succession& find_succession(std::span<const Succession> successions, ComponentId component);
 
-/// The events as IdUpdate documents them, by type, then segment_id, then other_id. `old_ids` are
-/// those that take part: all in `overlaps`, and those whose points are all gone.
-std::vector<SegmentEvent> tell_events(std::span<const Succession> successions,
-                                      std::span<const Overlap> overlaps,
-                                      std::span<const std::uint32_t> old_ids);
+/// The events that IdUpdate describes, by type, then segment_id, then other_id. `old_ids` are all
+/// ids in `overlaps` and those that lost all their points.
+std::vector<SegmentEvent> events_of(std::span<const Succession> successions,
+                                    std::span<const Overlap> overlaps,
+                                    std::span<const std::uint32_t> old_ids);
 
 }  // namespace kintsugi::segmenter

@@ -7,7 +7,7 @@
 
 namespace kintsugi::segmenter {
 
-/// A cube of a regular grid over W.
+/// Integer coordinates of a cube in a regular grid over W.
 struct Cell {
   std::int32_t x = 0;
   std::int32_t y = 0;
@@ -26,8 +26,9 @@ struct CellHash {
   }
 };
 
-/// The cell coordinate of `value_m` in a grid of `cell_m`. Coordinates past 2^28 cells share the
-/// last one: it never decreases with `value_m`, so a search by cells stays complete there too.
+/// The cell coordinate of `value_m` in a grid of cells of size `cell_m`. All coordinates beyond
+/// 2^28 cells get the last one. The result never decreases with `value_m`, so that a search by
+/// cells is complete there, too.
 inline std::int32_t cell_coordinate(double value_m, double cell_m) {
   constexpr double kLast = 1 << 28;
   return static_cast<std::int32_t>(std::clamp(std::floor(value_m / cell_m), -kLast, kLast));

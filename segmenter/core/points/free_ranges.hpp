@@ -6,13 +6,14 @@
 
 namespace kintsugi::segmenter {
 
-/// Ranges of indices that may be used again. Neighbouring ranges are one.
+/// Ranges of indices that may be used again. Adjacent ranges are merged.
 class FreeRanges {
  public:
-  /// Makes [first, first + count) free; none of it may be free already.
+  /// Adds [first, first + count), of which nothing may be free already.
   void release(std::uint32_t first, std::uint32_t count);
 
-  /// The beginning of the first free range that holds `count` > 0 indices, which are taken from it.
+  /// Takes `count` > 0 indices from the beginning of the first range that has as many. Returns the
+  /// first of them; nothing when no range is large enough.
   std::optional<std::uint32_t> take(std::uint32_t count);
 
  private:

@@ -12,7 +12,7 @@
 namespace kintsugi::segmenter {
 namespace {
 
-/// The pairs of accepted points with one index in the slice, by ascending index.
+/// Pairs the accepted points that have the same index in the slice, by ascending index.
 void append_moved(const SliceRecord& before, const SliceRecord& after,
                   std::vector<MovedPoint>& moved) {
   PointIndex from = 0;
@@ -76,26 +76,16 @@ const SliceRecord& PointCloud::replace_slice(std::int32_t slice_id,
   return slices_[position];
 }
 
-void PointCloud::remove_slice(std::int32_t slice_id) {
-  const std::uint32_t position = position_of(slice_id);
-  begin_change();
-  retire(position);
-  slices_.erase(slices_.begin() + position);
-  position_.erase(slice_id);
-  for (auto& [id, other] : position_) other -= other > position;
-  for (Range& range : ranges_) range.slice -= range.slice > position;
-}
-
 CloudChange PointCloud::take_change() {
-  begin_change();  // had there been none since the last call
+  begin_change();  // drops the last change, if nothing came after it
   CloudChange change;
-  for (const std::int32_t slice_id : untold_) {
+  for (const std::int32_t slice_id : unreported_) {
     append_indices(*find_slice(slice_id), change.added);
   }
   for (const Retired& retired : retired_) {
     const SliceRecord& before = retired.record;
     free_.release(before.first, before.count);
-    if (!retired.was_told) continue;
+    if (!retired.was_reported) continue;
     append_indices(before, change.removed);
     const SliceRecord* const after = find_slice(before.slice_id);
     if (after != nullptr) append_moved(before, *after, change.moved);
@@ -103,7 +93,7 @@ CloudChange PointCloud::take_change() {
   std::sort(change.added.begin(), change.added.end());
   std::sort(change.moved.begin(), change.moved.end(),
             [](const MovedPoint& a, const MovedPoint& b) { return a.to < b.to; });
-  untold_.clear();
+  unreported_.clear();
   is_taken_ = true;
   return change;
 }
@@ -151,7 +141,7 @@ const SliceRecord* PointCloud::find_live(PointIndex i) const {
   return i - slice.first < slice.count ? &slice : nullptr;
 }
 
-/// From here on points that the change taken last removed need not be readable any more.
+/// Ends the time in which the points removed by the last change stay readable.
 void PointCloud::begin_change() {
   if (!std::exchange(is_taken_, false)) return;
   retired_.clear();
@@ -197,7 +187,7 @@ SliceRecord PointCloud::place(std::int32_t slice_id, std::int32_t revision,
 }
 
 void PointCloud::make_live(std::uint32_t slice, SliceRecord record) {
-  untold_.insert(record.slice_id);
+  unreported_.insert(record.slice_id);
   num_live_ += record.count;
   num_rejected_ += static_cast<std::int64_t>(record.rejected.size());
   if (record.count > 0) {
@@ -211,7 +201,7 @@ void PointCloud::make_live(std::uint32_t slice, SliceRecord record) {
 
 void PointCloud::retire(std::uint32_t slice) {
   SliceRecord& record = slices_[slice];
-  const bool was_told = untold_.erase(record.slice_id) == 0;
+  const bool was_reported = unreported_.erase(record.slice_id) == 0;
   num_live_ -= record.count;
   num_rejected_ -= static_cast<std::int64_t>(record.rejected.size());
   if (record.count == 0) return;
@@ -219,7 +209,7 @@ void PointCloud::retire(std::uint32_t slice) {
   const auto after = std::upper_bound(
       retired_.begin(), retired_.end(), record.first,
       [](PointIndex first, const Retired& retired) { return first < retired.record.first; });
-  retired_.insert(after, {std::move(record), was_told});
+  retired_.insert(after, {std::move(record), was_reported});
 }
 
 }  // namespace kintsugi::segmenter

@@ -14,14 +14,15 @@
 
 namespace kintsugi::segmenter {
 
-/// Where a point stands in the cloud. It names the point only as long as the point does not move:
-/// places of points that are gone are used again.
+/// The position of a point in the cloud's arrays. A point that moves gets another one, and those of
+/// points that are gone are used again.
 using PointIndex = std::uint32_t;
 
-/// The persistent id of a point: it stays when the map is corrected, saved, resumed or replayed.
+/// The persistent id of a point. It stays the same when the map is corrected, saved and resumed, or
+/// built again from a log.
 struct PointId {
   std::int32_t slice_id = 0;
-  std::int32_t index = 0;  ///< in the slice as it was received, rejected points included
+  std::int32_t index = 0;  ///< in the slice as received, counting rejected points
 
   bool operator==(const PointId&) const = default;
   bool operator<(const PointId& other) const {
@@ -29,7 +30,7 @@ struct PointId {
   }
 };
 
-/// A point that was there before and has another place now: its PointId stays.
+/// A point that has another PointIndex than before; its PointId stays the same.
 struct MovedPoint {
   PointIndex from = 0;
   PointIndex to = 0;
@@ -37,22 +38,22 @@ struct MovedPoint {
   bool operator==(const MovedPoint&) const = default;
 };
 
-/// The points that came and went between two updates of an engine. A point that moved is one of
-/// each: its new place has an index of its own.
+/// The points that came and went between two updates of an engine. A point that moved is in both
+/// lists, with its old and its new index.
 struct CloudChange {
   std::vector<PointIndex> added;    ///< ascending
-  std::vector<PointIndex> removed;  ///< ascending; readable until the cloud is changed again
+  std::vector<PointIndex> removed;  ///< ascending; still readable until the cloud changes again
   std::vector<MovedPoint> moved;    ///< removed and added points of one PointId, by ascending `to`
 };
 
-/// What became of one slice: its accepted points are `[first, first + count)` of the cloud.
+/// A slice in the cloud. Its accepted points are `[first, first + count)`.
 struct SliceRecord {
   std::int32_t slice_id = 0;
   std::int32_t revision = 0;
   std::int32_t num_points = 0;         ///< as received
   PointIndex first = 0;                ///< of its accepted points
   PointIndex count = 0;                ///< accepted points
-  std::vector<std::int32_t> rejected;  ///< ascending indices in the slice of those left out
+  std::vector<std::int32_t> rejected;  ///< indices in the slice of rejected points, ascending
 
   /// The index in the slice of its accepted point number `k` < count.
   std::int32_t index_of(PointIndex k) const;
@@ -60,51 +61,50 @@ struct SliceRecord {
 
 /// All points of the map that can be segmented, by slice, frame W.
 ///
-/// A point that reason_to_reject() (admission.hpp) names one for, for instance one that is not
-/// finite, is recorded in its slice and never gets a PointIndex.
+/// A point that reason_to_reject() (admission.hpp) rejects, for instance one that is not finite, is
+/// recorded in its slice and never gets a PointIndex.
 ///
-/// A slice that comes again gets new places. Its old ones stay readable after take_change() until
-/// the cloud is changed again; then slices that come later may use them, so that corrections do not
-/// make the cloud grow for ever.
+/// A slice that is replaced gets new indices. Its old points stay readable after take_change()
+/// until the cloud changes again. Later slices then use their indices, so that corrections do not
+/// make the cloud grow without limit.
 class PointCloud {
  public:
-  /// Adds the points of a slice and returns its record (valid until the next change).
-  /// Throws std::invalid_argument, and changes nothing, when `slice_id` is negative or already
-  /// present; std::length_error when the cloud would outgrow PointIndex.
+  /// Adds the points of a slice and returns its record, which is valid until the next change.
+  /// @throws std::invalid_argument when `slice_id` is negative or already present,
+  ///   std::length_error when the cloud would outgrow PointIndex; then nothing has changed
   const SliceRecord& add_slice(std::int32_t slice_id, std::span<const CloudPoint> points_W,
                                std::int32_t revision = 0);
 
-  /// Takes `points_W` for the points the slice had: point k of them is point k of before, moved.
-  /// `revision` is by default one more than before. Throws as add_slice(); std::invalid_argument
-  /// also when there is no such slice or `revision` is not above the one before.
+  /// Replaces the points of a slice: point k of `points_W` is the old point k, moved. There may be
+  /// fewer points, or none. `revision` is one more than before by default.
+  /// @throws as add_slice(); std::invalid_argument also when there is no such slice or `revision`
+  /// is
+  ///   not above the old one
   const SliceRecord& replace_slice(std::int32_t slice_id, std::span<const CloudPoint> points_W,
                                    std::optional<std::int32_t> revision = std::nullopt);
 
-  /// Takes the slice and its points away. Throws std::invalid_argument when there is no such slice.
-  void remove_slice(std::int32_t slice_id);
-
-  /// What has come and gone since the last call.
+  /// What changed since the last call.
   CloudChange take_change();
 
-  /// All points as if they had just come.
+  /// All points, as if all had just come.
   CloudChange everything() const;
 
-  /// One past the largest index in use so far; not all below it are live.
+  /// One past the largest index used so far. Not all indices below it are live.
   PointIndex size() const { return static_cast<PointIndex>(points_W_.size()); }
   /// Points in the cloud.
   PointIndex num_live() const { return num_live_; }
   bool is_live(PointIndex i) const { return find_live(i) != nullptr; }
   /// A live point, or one removed by the change taken last.
   const CloudPoint& operator[](PointIndex i) const { return points_W_[i]; }
-  /// By index, gone ones among them.
+  /// By index, including points that are gone.
   std::span<const CloudPoint> points_W() const { return points_W_.span(); }
 
   /// In order of arrival of their first revision.
   std::span<const SliceRecord> slices() const { return slices_; }
-  /// The slice called `slice_id`, nullptr when there is none.
+  /// nullptr when there is no such slice.
   const SliceRecord* find_slice(std::int32_t slice_id) const;
-  /// The slice that point `i` came with: a live point, or one removed by the change taken last (or
-  /// to be taken), for which it is the record that the slice had before.
+  /// The slice of point `i`, which is live, or was removed by the change taken last or not yet
+  /// taken. For a removed point this is the record from before.
   const SliceRecord& slice_of(PointIndex i) const;
   PointId id_of(PointIndex i) const;
   std::int64_t num_rejected() const { return num_rejected_; }
@@ -119,7 +119,7 @@ class PointCloud {
   };
   struct Retired {
     SliceRecord record;
-    bool was_told;  ///< by a change taken before
+    bool was_reported;  ///< as added, by a change taken before
   };
 
   std::uint32_t position_of(std::int32_t slice_id) const;
@@ -138,13 +138,13 @@ class PointCloud {
   PointIndex num_live_ = 0;
   std::int64_t num_rejected_ = 0;
 
-  std::set<std::int32_t> untold_;  ///< slices that came since the change was last taken
-  std::vector<Retired> retired_;   ///< what went since then, or by the change taken last; by first
-  bool is_taken_ = false;          ///< the change that retired_ tells of
+  std::set<std::int32_t> unreported_;  ///< slices that came since the last take_change()
+  std::vector<Retired> retired_;       ///< old records of replaced slices, by `first`
+  bool is_taken_ = false;              ///< retired_ has been returned by take_change()
 };
 
-/// slice_of() for many points, quick where neighbours follow one another. Valid while the cloud
-/// does not change.
+/// PointCloud::slice_of() for many points; fast where consecutive points are of one slice. Valid
+/// while the cloud does not change.
 class SliceFinder {
  public:
   explicit SliceFinder(const PointCloud& cloud) : cloud_(cloud) {}

@@ -14,11 +14,11 @@
 namespace kintsugi::segmenter {
 namespace {
 
-// As in the grid: neighbours whose distance was rounded down to r are in adjacent cells, and within
-// reach, nevertheless.
+// As in grid_index.cpp: two neighbours may be a rounding error further apart than r. Cells that are
+// wider by this factor keep them in adjacent cells.
 constexpr double kReachPerRadius = 1.0 + 1e-5;
 
-/// What a point is sorted by, each an unsigned number in the order of what it stands for.
+/// The sort key of a point; unsigned numbers that are ordered as the coordinates they stand for.
 struct Key {
   std::uint32_t x;  ///< coordinate
   std::uint32_t y;  ///< of the row
@@ -39,7 +39,7 @@ std::int32_t from_ordered_bits(std::uint32_t bits) {
   return static_cast<std::int32_t>(bits ^ kSignBit);
 }
 
-/// Stable radix sort by one member; passes over digits that are the same everywhere.
+/// Stable radix sort by one member. Digits that are the same everywhere are skipped.
 void sort_by(std::uint32_t Key::*member, GrowingArray<Key>& keys, GrowingArray<Key>& scratch) {
   constexpr int kDigitBits = 11;
   constexpr std::size_t kNumDigits = std::size_t{1} << kDigitBits;
@@ -110,7 +110,7 @@ std::array<PointRows::Window, 5> PointRows::windows_of(std::size_t row) const {
   return windows;
 }
 
-/// The first row that is not before (z, y).
+/// The first row at or after (z, y).
 std::size_t PointRows::find_row(std::int32_t z, std::int32_t y) const {
   const auto found = std::partition_point(rows_.begin(), rows_.end(), [&](const Row& row) {
     return row.z != z ? row.z < z : row.y < y;

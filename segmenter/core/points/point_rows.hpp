@@ -14,10 +14,10 @@ namespace kintsugi::segmenter {
 
 /// Copies of points sorted into rows, for passes over all pairs of neighbours.
 ///
-/// A row is a beam along x with a section of one cell, a trifle wider than r, in y and z. The
-/// neighbours of a point lie in its own row and in the eight around. Rows are sorted by x, so while
-/// a pass goes along one, the stretch of each other row that is within r in x slides along with it:
-/// no look-ups, and memory is read in order.
+/// A row is a beam along x, one cell wide in y and z; a cell is slightly larger than r. The
+/// neighbours of a point lie in its own row and the eight around it. Points in a row are sorted by
+/// x. So while a pass goes along one row, the part of each other row that is within r in x is a
+/// sliding window: no look-ups, and memory is read in order.
 class PointRows {
  public:
   struct Point {
@@ -26,10 +26,10 @@ class PointRows {
     std::uint8_t red, green, blue;
     PointIndex index;  ///< in points_W
   };
-  /// Position of a point in points().
+  /// Index of a point in points().
   using Slot = std::uint32_t;
 
-  /// `points` are places in `points_W`, each once; `radius_m` > 0.
+  /// `points` are indices into `points_W`, each once; `radius_m` > 0.
   PointRows(std::span<const CloudPoint> points_W, std::span<const PointIndex> points,
             float radius_m);
   PointRows(const PointCloud& cloud, std::span<const PointIndex> points, float radius_m)
@@ -38,8 +38,9 @@ class PointRows {
   std::span<const Point> points() const { return points_.span(); }
   std::size_t num_rows() const { return rows_.size() - 1; }
 
-  /// Calls fn(Slot a, Slot b) for each two neighbours of which the first in the order of rows lies
-  /// in `row` and which keep(a, b): over all rows, each pair once. May be called concurrently.
+  /// Calls fn(Slot a, Slot b) for each pair of neighbours whose first point, in the order of rows,
+  /// lies in `row` and for which keep(a, b) holds. Over all rows, each pair comes once. May be
+  /// called concurrently.
   template <typename Keep, typename Fn>
   void for_each_pair(std::size_t row, const Keep& keep, const Fn& fn) const;
 
@@ -49,14 +50,14 @@ class PointRows {
     std::int32_t y;
     Slot first;
   };
-  /// The part of a row that is within reach in x. Slides along with the point it is asked for.
+  /// The part of a row that is within r in x of the current point.
   struct Window {
     Slot begin = 0;
     Slot end = 0;
     Slot limit = 0;  ///< end of the row
   };
 
-  /// Of the rows that `row` makes pairs with, itself first: all that are not before it.
+  /// The windows of `row` itself, first, and of the four rows after it that are adjacent to it.
   std::array<Window, 5> windows_of(std::size_t row) const;
   bool is_within_reach(float from_x, float to_x) const { return to_x - from_x < reach_m_; }
   void slide(Window& window, float x) const {
@@ -71,7 +72,7 @@ class PointRows {
   float squared_radius_m2_;
   float reach_m_;
   GrowingArray<Point> points_;
-  std::vector<Row> rows_;  ///< by z, then y; one more at the end
+  std::vector<Row> rows_;  ///< by z, then y; a sentinel at the end
 };
 
 template <typename Keep, typename Fn>
@@ -95,7 +96,7 @@ void PointRows::for_each_pair(std::size_t row, const Keep& keep, const Fn& fn) c
         const float dx = p.x - points_[b].x;
         const float dy = p.y - points_[b].y;
         const float dz = p.z - points_[b].z;
-        // The order of squared_distance(). No branch: there would be no guessing it.
+        // The order of operations of squared_distance(). No branch, which could not be predicted.
         near[num_near] = b;
         num_near += static_cast<std::size_t>((dx * dx + dy * dy) + dz * dz < squared_radius_m2_);
       }

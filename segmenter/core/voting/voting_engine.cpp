@@ -6,7 +6,7 @@
 #include <oneapi/tbb/enumerable_thread_specific.h>
 
 #include "segmenter/core/batch/felzenszwalb.hpp"
-#include "segmenter/core/graph/edge_weight.hpp"
+#include "segmenter/core/graph/make_neighbour_index.hpp"
 
 namespace kintsugi::segmenter {
 namespace {
@@ -53,12 +53,12 @@ void VotingEngine::resume(const CloudChange& everything, std::span<const Compone
   commit();
 }
 
-/// Returns what is left of the segments that lost a point.
+/// Returns the remaining points of the segments that lost a point.
 std::vector<PointIndex> VotingEngine::remove_points(std::span<const PointIndex> removed) {
   index_->remove(removed);
   std::vector<PointIndex> left;
   for (const PointIndex i : removed) {
-    // The first of its points to go takes the whole segment apart.
+    // At the first removed point of a segment, the whole segment is collected.
     if (round_added_[i] != round_) {
       const auto first = static_cast<std::ptrdiff_t>(left.size());
       append_segment(components_[i], left);
@@ -89,23 +89,23 @@ void VotingEngine::add_to_D(std::span<const PointIndex> points) {
   for (const PointIndex i : points) round_added_[i] = round_;
 }
 
-/// Algorithm 2 for D and D^B. The edges among points that were in D before stay as they are.
+/// Algorithm 2 for D and its border D^B. Edges between points that were already in D stay.
 void VotingEngine::extend_graph(std::span<const PointIndex> added) {
   struct Found {
     std::vector<Edge> inner;
     std::vector<Edge> border;
   };
   const double max_weight = config_.max_weight();
-  const double color_weight = config_.color_weight;
+  const EdgeWeight weight_of = config_.edge_weight();
   oneapi::tbb::enumerable_thread_specific<Found> found;
   index_->visit_concurrently(added, [&](PointIndex i, std::span<const PointIndex> neighbours) {
     Found& edges = found.local();
     for (const PointIndex j : neighbours) {
       if (!is_in_D(j)) {
-        // Every edge counts in the vote, also one that is too heavy to join anything.
-        edges.border.push_back({directed_edge_weight(cloud_[i], cloud_[j], color_weight), i, j});
+        // In the vote every edge counts, even one that is too heavy to join anything.
+        edges.border.push_back({weight_of.directed(cloud_[i], cloud_[j]), i, j});
       } else if (round_added_[j] < round_ || i < j) {
-        const float weight = edge_weight(cloud_[i], cloud_[j], color_weight);
+        const float weight = weight_of(cloud_[i], cloud_[j]);
         if (weight < max_weight) edges.inner.push_back({weight, std::min(i, j), std::max(i, j)});
       }
     }
@@ -119,9 +119,9 @@ void VotingEngine::extend_graph(std::span<const PointIndex> added) {
 
 /// Algorithm 4: segments D and marks the points D^Delta where the border disagrees.
 ///
-/// The paper tests a border edge when its turn comes. Its segment in D is alive then (weight below
-/// theta) if and only if it is at the end: each later join leaves theta above that join's weight,
-/// and a segment that is frozen joins no more. So the final thetas decide as well.
+/// The paper tests a border edge when its turn in the order of edges comes. Its segment in D is
+/// then alive (weight below theta) if and only if it is so with the final theta: each later join
+/// leaves theta above the weight of that join, and a frozen segment makes no later joins.
 std::int64_t VotingEngine::segment_graph() {
   for (const PointIndex i : D_) forest_.reset(i);
   const std::int64_t num_joins = join_segments(inner_edges_, forest_);
@@ -134,7 +134,7 @@ std::int64_t VotingEngine::segment_graph() {
   return num_joins;
 }
 
-/// Algorithm 5: the points of the segments S^Delta to segment again.
+/// Algorithm 5: the points of the segments S^Delta, which are to be segmented again.
 std::vector<PointIndex> VotingEngine::vote(int c) {
   std::vector<PointIndex> candidates;
   for (const Edge& edge : border_edges_) {

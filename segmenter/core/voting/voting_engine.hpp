@@ -8,6 +8,7 @@
 #include "segmenter/core/batch/segment_forest.hpp"
 #include "segmenter/core/engine/incremental_engine.hpp"
 #include "segmenter/core/graph/edge.hpp"
+#include "segmenter/core/parameters/engine_config.hpp"
 
 namespace kintsugi::segmenter {
 
@@ -15,12 +16,12 @@ namespace kintsugi::segmenter {
 /// segment an old segment again.
 double vote_threshold(double beta, int c);
 
-/// Mode `voting`: the paper's incremental segmentation, Algorithms 2-5. An update segments the new
-/// points; while the result disagrees with old segments at the border, these are voted into the
-/// set D and the set is segmented again.
+/// Mode `voting`: the paper's incremental segmentation, Algorithms 2-5. An update segments the set
+/// D of new points. As long as the result disagrees with old segments at the border of D, the vote
+/// adds such segments to D, and D is segmented again.
 ///
-/// The paper's map only grows. Where points are removed, all that is left of their segments is
-/// segmented again together with the new points, in D from the first round on.
+/// The paper's map only grows. Here points can also be removed: what is left of their segments is
+/// then in D from the first round on.
 class VotingEngine final : public IncrementalEngine {
  public:
   VotingEngine(const PointCloud& cloud, const EngineConfig& config);
@@ -50,21 +51,23 @@ class VotingEngine final : public IncrementalEngine {
   EngineConfig config_;
   std::unique_ptr<NeighbourIndex> index_;
 
-  // The partition S. A segment in D is taken apart in forest_ only.
+  // The partition S. While D is segmented, only forest_ changes.
   SegmentForest forest_;
   std::vector<ComponentId> components_;
-  std::vector<PointIndex> next_;               ///< the next point of the same segment, in a circle
+  std::vector<PointIndex> next_;               ///< the next point of the segment, in a circle
   std::vector<PointIndex> representative_at_;  ///< by root in forest_
   std::vector<PointIndex> changed_;
 
-  // The run: D and its graph. Rounds are numbered over all runs, so nothing needs to be cleared.
+  // The update: D and its graph. Rounds are numbered over all updates, so nothing has to be
+  // cleared.
   std::vector<PointIndex> D_;
   std::vector<Edge> inner_edges_;   ///< both ends in D, undirected, i < j
   std::vector<Edge> border_edges_;  ///< i in D, j in D^B, weight from i to j
-  std::uint32_t first_round_ = 1;   ///< of this run
+  std::uint32_t first_round_ = 1;   ///< of this update
   std::uint32_t round_ = 1;
-  std::vector<std::uint32_t> round_added_;       ///< when a point last was added to D
-  std::vector<std::uint32_t> round_discrepant_;  ///< when a point last was in D^Delta
+  std::vector<std::uint32_t> round_added_;  ///< by point: the round in which it was added to D last
+  std::vector<std::uint32_t>
+      round_discrepant_;  ///< by point: the round in which it was in D^Delta last
 
   struct Ballot {
     std::uint32_t num_edges = 0;             ///< from D to the segment

@@ -6,8 +6,9 @@
 
 #include "lcmtypes/base/argument_check.hpp"
 #include "lcmtypes/base/stopwatch.hpp"
+#include "segmenter/core/make_engine.hpp"
+#include "segmenter/core/parameters/presets.hpp"
 #include "segmenter/core/points/point_cloud.hpp"
-#include "segmenter/core/presets.hpp"
 
 namespace kintsugi::segmenter {
 namespace {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "segmenter/core/engine/engine.hpp"
+#include "segmenter/core/parameters/engine_config.hpp"
 
 namespace kintsugi::segmenter {
 

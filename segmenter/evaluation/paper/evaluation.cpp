@@ -8,6 +8,7 @@
 
 #include "lcmtypes/base/argument_check.hpp"
 #include "lcmtypes/base/process_memory.hpp"
+#include "segmenter/core/make_engine.hpp"
 
 namespace kintsugi::segmenter {
 namespace {

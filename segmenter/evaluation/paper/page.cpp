@@ -75,15 +75,14 @@ std::string list_of_segments(const Evaluation& evaluation) {
 
 std::string parameters(const Evaluation& evaluation, const ReportContext& context) {
   const EngineConfig& engine = evaluation.config.engine;
-  Facts facts{
-      {"T (threshold)", decimal(engine.threshold, 6)},
-      {"k (scale)", decimal(engine.scale, 6)},
-      {"beta (voting)", decimal(engine.beta, 3)},
-      {"r (radius)", decimal(1e3 * engine.radius_m(), 3) + " mm"},
-      {"Neighbour search", engine.neighbour_search == NeighbourSearch::kGrid ? "grid" : "flann"},
-      {"Batch after every", std::to_string(evaluation.batch_every) + " slices"},
-      {"Batch once, final map", decimal(evaluation.batch_final_ms, 1) + " ms"},
-      {"Segments of Fig. 2", list_of_segments(evaluation)}};
+  Facts facts{{"T (threshold)", decimal(engine.threshold, 6)},
+              {"k (scale)", decimal(engine.scale, 6)},
+              {"beta (voting)", decimal(engine.beta, 3)},
+              {"r (radius)", decimal(1e3 * engine.radius_m(), 3) + " mm"},
+              {"Neighbour search", std::string(name_of(engine.neighbour_search))},
+              {"Batch after every", std::to_string(evaluation.batch_every) + " slices"},
+              {"Batch once, final map", decimal(evaluation.batch_final_ms, 1) + " ms"},
+              {"Segments of Fig. 2", list_of_segments(evaluation)}};
   for (auto& fact : facts_of(context)) facts.push_back(std::move(fact));
   facts.emplace_back("Memory at the end", megabytes(evaluation.resident_bytes));
   facts.emplace_back("Memory at most", megabytes(evaluation.peak_resident_bytes));

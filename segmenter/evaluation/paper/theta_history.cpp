@@ -6,8 +6,10 @@
 
 #include "segmenter/core/batch/felzenszwalb.hpp"
 #include "segmenter/core/batch/segment_forest.hpp"
-#include "segmenter/core/graph/graph.hpp"
+#include "segmenter/core/graph/build_graph.hpp"
+#include "segmenter/core/graph/make_neighbour_index.hpp"
 #include "segmenter/core/graph/neighbour_index.hpp"
+#include "segmenter/core/parameters/engine_config.hpp"
 
 namespace kintsugi::segmenter {
 namespace {
@@ -75,7 +77,7 @@ std::vector<ThetaHistory> theta_histories(const PointCloud& cloud,
   part.add_slice(0, points_W);
   const auto index = make_neighbour_index(config.neighbour_search, part, config.radius_m());
   index->insert(part.take_change().added);
-  std::vector<Edge> edges = build_graph(part, *index, config);
+  std::vector<Edge> edges = build_graph(part, *index, config.edge_weight(), config.max_weight());
   std::erase_if(edges, [&](const Edge& edge) { return label_of[edge.i] != label_of[edge.j]; });
 
   SegmentForest forest(config.threshold, config.scale);

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "lcmtypes/base/argument_check.hpp"
+#include "segmenter/core/graph/make_neighbour_index.hpp"
 #include "segmenter/core/graph/neighbour_index.hpp"
 #include "segmenter/core/points/point_cloud.hpp"
 #include "segmenter/evaluation/quality/overlap.hpp"

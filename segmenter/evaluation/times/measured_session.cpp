@@ -8,6 +8,7 @@
 #include "lcmtypes/base/process_memory.hpp"
 #include "lcmtypes/base/stopwatch.hpp"
 #include "segmenter/core/ids/segment_ids.hpp"
+#include "segmenter/core/make_engine.hpp"
 #include "segmenter/core/points/point_cloud.hpp"
 
 namespace kintsugi::segmenter {

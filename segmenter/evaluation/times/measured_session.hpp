@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "segmenter/core/engine/engine.hpp"
+#include "segmenter/core/parameters/engine_config.hpp"
 #include "segmenter/map/slice_sequencer.hpp"
 
 namespace kintsugi::segmenter {

@@ -1,7 +1,7 @@
 #pragma once
-// Algorithms 1-5 of the paper, transcribed line by line over sets and maps: slow, and written apart
-// from the engines so that they can be held against it. Two things that the pseudocode leaves out:
-// a join needs two different segments, and an edge needs two different points.
+// Algorithms 1-5 of the paper, transcribed line by line with sets and maps: slow, and independent
+// of the engines, which are compared with it. Two things that the pseudocode does not say: a join
+// needs two different segments, and an edge needs two different points.
 
 #include <algorithm>
 #include <cmath>
@@ -67,7 +67,7 @@ inline bool literal_neighbours(const CloudPoint& i, const CloudPoint& j, float r
   return dx * dx + dy * dy + dz * dz < r * r;
 }
 
-/// Algorithm 2. Equal weights come in an order drawn from `seed`: it must not matter.
+/// Algorithm 2. Equal weights come in a random order given by `seed`, which must not matter.
 inline std::vector<LiteralEdge> literal_build_graph(std::span<const CloudPoint> points,
                                                     const std::set<int>& border,
                                                     const std::set<int>& D,

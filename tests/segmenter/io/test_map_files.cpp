@@ -8,6 +8,7 @@
 #include "segmenter/io/map_files.hpp"
 #include "segmenter/io/ply/labelled_ply_writer.hpp"
 #include "segmenter/io/ply/ply_reader.hpp"
+#include "tests/segmenter/changed_parameters.hpp"
 #include "tests/segmenter/process/slice_session.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -69,6 +70,33 @@ TEST(MapFiles, PlyHasTheDocumentedProperties) {
                         "property uint segment_id\nproperty int slice_id\nproperty float weight\n"
                         "end_header\n"));
   EXPECT_EQ(text.size(), text.find("end_header\n") + 11 + std::size_t{158} * 39);
+}
+
+TEST(MapFiles, JsonTellsEveryParameterThatDecidesThePartition) {
+  const TemporaryFolder folder;
+  const auto parameters_of = [&](const EngineConfig& engine) {
+    MapSnapshot map;
+    map.state.config.engine = engine;
+    write_segments_json(map, folder / "map.json");
+    return nlohmann::json::parse(contents(folder / "map.json"))["parameters"];
+  };
+  const auto usual = parameters_of({});
+  for (const auto& [parameter, engine] : testing::changed_parameters()) {
+    EXPECT_NE(parameters_of(engine), usual) << parameter.name;
+  }
+}
+
+TEST(MapFiles, JsonHasItsParametersInTheDocumentedOrder) {
+  const TemporaryFolder folder;
+  MapSnapshot map;
+  map.state.config.engine.min_points = 50.0;
+  write_segments_json(map, folder / "map.json");
+  EXPECT_THAT(contents(folder / "map.json"),
+              HasSubstr("\"parameters\": {\n  \"threshold\": 0.001,\n  \"scale\": 0.0005,\n"
+                        "  \"color_weight\": 0.0,\n  \"min_points\": 50.0,\n"
+                        "  \"fragment_limit\": 50,\n  \"beta\": 0.85,\n"
+                        "  \"resolution\": 0.01,\n  \"radius\": 0.02,\n"
+                        "  \"neighbours\": \"grid\"\n }"));
 }
 
 TEST(MapFiles, JsonTellsOfEverySegment) {

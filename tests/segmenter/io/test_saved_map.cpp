@@ -11,7 +11,9 @@
 
 #include <gmock/gmock.h>
 
+#include "segmenter/core/make_engine.hpp"
 #include "segmenter/io/saved_map.hpp"
+#include "tests/segmenter/changed_parameters.hpp"
 #include "tests/segmenter/process/slice_session.hpp"
 #include "tests/support/allocation_limit.hpp"
 #include "tests/support/message_equality.hpp"
@@ -109,9 +111,6 @@ TEST_P(SavedMap, KeepsWhatItIs) {
   slices[2].revision = 8;
   SegmentMapConfig config = config_of(GetParam());
   config.engine.neighbour_search = NeighbourSearch::kFlann;
-  config.engine.beta = 0.5;
-  config.engine.color_weight = 0.003;
-  config.engine.min_points = 7.0;
   SegmentMap map(config, 99, slices[0]);
   map.add(slices);
   write_map_state(map.state(), folder / "map");
@@ -121,15 +120,26 @@ TEST_P(SavedMap, KeepsWhatItIs) {
   EXPECT_EQ(loaded->map_name(), "map");
   EXPECT_EQ(loaded->config().mode, GetParam());
   EXPECT_EQ(loaded->config().engine.threshold, 0.002);
-  EXPECT_EQ(loaded->config().engine.beta, 0.5);
-  EXPECT_EQ(loaded->config().engine.color_weight, 0.003);
-  EXPECT_EQ(loaded->config().engine.min_points, 7.0);
   EXPECT_EQ(loaded->config().engine.resolution_m, static_cast<double>(0.01F));
   EXPECT_EQ(loaded->config().engine.neighbour_search, NeighbourSearch::kFlann);
   EXPECT_TRUE(loaded->has_final_slice());
   ASSERT_EQ(loaded->cloud().slices().size(), 3U);
   EXPECT_EQ(loaded->cloud().slices()[2].revision, 8);
   EXPECT_THROW(loaded->add(slices), std::invalid_argument);  // they are in it
+}
+
+TEST(SavedMapState, KeepsEveryParameterThatDecidesThePartition) {
+  const TemporaryFolder folder;
+  for (const auto& [changed, engine] : testing::changed_parameters()) {
+    SegmentMapState state;
+    state.config.engine = engine;
+    write_map_state(state, folder / "map");
+    const EngineConfig read = read_map_state(folder / "map").config.engine;
+    for (const EngineParameter& parameter : kMapParameters) {
+      EXPECT_EQ(read.*parameter.value, engine.*parameter.value)
+          << parameter.name << " where " << changed.name << " was changed";
+    }
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Modes, SavedMap,

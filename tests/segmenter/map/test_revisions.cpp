@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "segmenter/process/session_map.hpp"
+#include "segmenter/core/make_engine.hpp"
 #include "tests/segmenter/process/room_session.hpp"
 #include "tests/segmenter/process/slice_session.hpp"
 

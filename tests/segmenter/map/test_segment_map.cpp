@@ -8,6 +8,7 @@
 
 #include <gmock/gmock.h>
 
+#include "segmenter/core/make_engine.hpp"
 #include "segmenter/map/segment_map.hpp"
 #include "tests/segmenter/process/slice_session.hpp"
 #include "tests/support/message_equality.hpp"

@@ -102,7 +102,7 @@ TEST(SegmentStatistics, OfLargeSegmentsEqualThoseFromScratchUnderCorrections) {
       if (cloud.find_slice(slice) == nullptr) {
         cloud.add_slice(slice, points);
       } else if (random() % 4 == 0) {
-        cloud.remove_slice(slice);
+        cloud.replace_slice(slice, {});
       } else {
         cloud.replace_slice(slice, points);
       }

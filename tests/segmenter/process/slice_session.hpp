@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "lcmtypes/messages.hpp"
+#include "segmenter/core/ids/slice_labels.hpp"
 #include "segmenter/map/segment_map.hpp"
 #include "tests/segmenter/core/random_clouds.hpp"
 

@@ -7,7 +7,7 @@
 #include <CLI/CLI.hpp>
 #include <gmock/gmock.h>
 
-#include "segmenter/core/presets.hpp"
+#include "segmenter/core/parameters/presets.hpp"
 #include "segmenter/process/options.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -38,11 +38,9 @@ class SegmentationOptions : public ::testing::Test {
 };
 
 void expect_parameters(const EngineConfig& engine, const EngineConfig& expected) {
-  EXPECT_EQ(engine.threshold, expected.threshold);
-  EXPECT_EQ(engine.scale, expected.scale);
-  EXPECT_EQ(engine.color_weight, expected.color_weight);
-  EXPECT_EQ(engine.min_points, expected.min_points);
-  EXPECT_EQ(engine.radius_factor, expected.radius_factor);
+  for (const EngineParameter& parameter : kMapParameters) {
+    EXPECT_EQ(engine.*parameter.value, expected.*parameter.value) << parameter.name;
+  }
 }
 
 TEST_F(SegmentationOptions, AreThoseOfObjectsByDefault) {
@@ -96,6 +94,20 @@ TEST_F(SegmentationOptions, ArePrintedAsTheyAreAndReadBack) {
   app.set_config("--config");
   app.parse("--config " + config_file(printed));
   expect_parameters(config.engine, config_.engine);
+}
+
+TEST(SegmentationParameters, EachHasAnOptionUnlessTheSlicesTellIt) {
+  for (const EngineParameter& parameter : kMapParameters) {
+    CLI::App app;
+    SegmentMapConfig config;
+    add_segmentation_options(app, config);
+    if (parameter.comes_with_slices) {
+      EXPECT_THROW(app.get_option(option_name(parameter)), CLI::OptionNotFound);
+    } else {
+      app.parse(option_name(parameter) + " 0.625");
+      EXPECT_EQ(config.engine.*parameter.value, 0.625) << parameter.name;
+    }
+  }
 }
 
 TEST_F(SegmentationOptions, RefuseAnUnknownPresetAndNameThoseThereAre) {

@@ -7,8 +7,8 @@
 #include <lcm/lcm-cpp.hpp>
 
 #include "lcmtypes/channels.hpp"
-#include "segmenter/core/presets.hpp"
 #include "segmenter/io/ply/ply_reader.hpp"
+#include "segmenter/core/parameters/presets.hpp"
 #include "segmenter/process/process_status.hpp"
 #include "segmenter/process/segmenter_process.hpp"
 #include "tests/segmenter/evaluation/session/log_of_slices.hpp"
@@ -203,7 +203,7 @@ TEST_F(SegmenterProgram, AuditsModeExactAndNoOther) {
   EXPECT_EQ(result.exit_code, 0) << result.output;
   const auto refused = run(log + " --mode voting");
   EXPECT_EQ(refused.exit_code, 1);
-  EXPECT_THAT(refused.output, HasSubstr("audit is on, but mode is 'voting'"));
+  EXPECT_THAT(refused.output, HasSubstr("audit is on, and mode is 'voting'"));
 }
 
 TEST_F(SegmenterProgram, RefusesParametersOutOfRange) {

@@ -79,7 +79,7 @@ TEST_F(QualityProgram, NamesWhatIsWrong) {
   const std::string truth = " --ground-truth " + path("room.ply");
   expect_error(" --presets paper", "--presets requires --ground-truth");
   expect_error(truth, "no line 'comment instance 6 structure|object NAME'");
-  expect_error(truth + " --presets cups", "preset is \"cups\"");
+  expect_error(truth + " --presets cups", "preset is 'cups'");
   expect_error(truth + " --min-instance-points 0", "min_instance_points is 0");
   expect_error(" --ground-truth " + path("absent.ply"), "absent.ply: no such file");
 }

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "segmenter/core/batch/audited_engine.hpp"
+#include "segmenter/core/make_engine.hpp"
 #include "tests/fuzz/faulty_engine.hpp"
 #include "tests/fuzz/run_scenario.hpp"
 #include "tests/segmenter/core/random_clouds.hpp"
@@ -23,7 +24,7 @@ void segment_session(PointCloud& cloud, SegmentationEngine& engine) {
   }
   cloud.replace_slice(1, std::span(points).first(150));
   engine.update(cloud.take_change());
-  cloud.remove_slice(2);
+  cloud.replace_slice(2, {});
   engine.update(cloud.take_change());
 }
 

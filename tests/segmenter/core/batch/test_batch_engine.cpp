@@ -149,14 +149,6 @@ TEST_P(BatchEngineTest, OrderOfPointsDoesNotMatter) {
   }
 }
 
-TEST_P(BatchEngineTest, TellsItsMemory) {
-  PointCloud cloud;
-  cloud.add_slice(0, random_cloud(CloudShape::kWaves, 1000, 5));
-  BatchEngine engine(cloud, {.neighbour_search = GetParam()});
-  engine.update(cloud.take_change());
-  EXPECT_GE(engine.bytes(), 1000 * sizeof(ComponentId));
-}
-
 TEST_P(BatchEngineTest, NumberOfThreadsDoesNotMatter) {
   PointCloud cloud;
   cloud.add_slice(0, random_cloud(CloudShape::kLattice, 20000, 4));

@@ -4,7 +4,9 @@
 #include <oneapi/tbb/global_control.h>
 
 #include "segmenter/core/batch/batch_segmentation.hpp"
-#include "segmenter/core/graph/graph.hpp"
+#include "segmenter/core/graph/build_graph.hpp"
+#include "segmenter/core/graph/make_neighbour_index.hpp"
+#include "segmenter/core/parameters/engine_config.hpp"
 #include "tests/segmenter/core/random_clouds.hpp"
 
 namespace kintsugi::segmenter {
@@ -65,7 +67,8 @@ Outcome in_one_pass(const PointCloud& cloud, const std::vector<PointIndex>& poin
   index->insert(points);
   SegmentForest forest = singletons(cloud.size());
   Recorder recorder;
-  const auto num_joins = join_segments(build_graph(cloud, *index, kConfig), forest, recorder);
+  const auto num_joins = join_segments(
+      build_graph(cloud, *index, kConfig.edge_weight(), kConfig.max_weight()), forest, recorder);
   return outcome_of(std::move(recorder), forest, num_joins);
 }
 

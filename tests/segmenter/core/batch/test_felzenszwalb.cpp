@@ -120,7 +120,7 @@ TEST_P(Felzenszwalb, EdgesThatCanNeverJoinMayBeLeftOut) {
   }
 }
 
-/// Plays Algorithm 1 with what it is told, one edge after the other.
+/// Runs Algorithm 1 on the edges it is called with, one after the other.
 struct Retold {
   explicit Retold(int num_points) : forest(kT, kK) {
     forest.grow(static_cast<PointIndex>(num_points));

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "segmenter/core/engine/engine.hpp"
+#include "segmenter/core/make_engine.hpp"
 #include "tests/segmenter/core/random_clouds.hpp"
 
 namespace kintsugi::segmenter {
@@ -48,11 +49,11 @@ TEST_F(ExactEngineTest, BuildsAnewWhereMuchChanges) {
                      testing::random_cloud(testing::CloudShape::kWaves, kNumPoints, seed));
     EXPECT_EQ(update().is_rebuilt, slice_id < 3);  // 300 are 1/3 of 900
   }
-  cloud_.remove_slice(1);
+  cloud_.replace_slice(1, {});
   EXPECT_FALSE(update().is_rebuilt);  // 1/4 of 1200
-  cloud_.remove_slice(2);
+  cloud_.replace_slice(2, {});
   EXPECT_FALSE(update().is_rebuilt);  // 1/3 of 900
-  cloud_.remove_slice(3);
+  cloud_.replace_slice(3, {});
   const RunStatistics statistics = update();
   EXPECT_TRUE(statistics.is_rebuilt);  // 1/2 of 600
   EXPECT_EQ(statistics.num_points, kNumPoints);
@@ -87,7 +88,7 @@ TEST_F(ExactEngineTest, GivesUpWhereACorrectionReachesFarAndGoesOn) {
   cloud_.add_slice(2, bridge);
   EXPECT_FALSE(update().is_rebuilt);
   ASSERT_EQ(exact_->components().front(), exact_->components()[2 * kSide * kSide - 1]);
-  cloud_.remove_slice(2);
+  cloud_.replace_slice(2, {});
   EXPECT_TRUE(update().is_rebuilt);
   ASSERT_NE(exact_->components().front(), exact_->components()[2 * kSide * kSide - 1]);
   // Nothing of the run that was given up is left.

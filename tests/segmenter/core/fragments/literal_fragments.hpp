@@ -1,6 +1,6 @@
 #pragma once
-// The fragment step, transcribed line by line: slow, and written apart from the engines so that
-// they can be held against it.
+// The fragment step, transcribed line by line: slow, and independent of the engines, which are
+// compared with it.
 
 #include <algorithm>
 #include <map>

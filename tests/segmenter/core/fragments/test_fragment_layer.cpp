@@ -1,4 +1,4 @@
-// The fragment layer, update by update, against the transcription of the fragment step.
+// The fragment layer, compared after each update with the transcription of the fragment step.
 
 #include <cmath>
 #include <string>
@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "segmenter/core/make_engine.hpp"
 #include "tests/fuzz/changing_cloud.hpp"
 #include "tests/fuzz/random.hpp"
 #include "tests/fuzz/random_scenario.hpp"
@@ -18,7 +19,7 @@ namespace {
 struct LayerCase {
   const char* mode;
   NeighbourSearch search;
-  double rebuild_share;  ///< 0: every update makes all clusters anew
+  double rebuild_share;  ///< 0: every update finds all clusters again
 };
 
 class FragmentLayerIn : public ::testing::TestWithParam<LayerCase> {
@@ -58,7 +59,7 @@ class FragmentLayerIn : public ::testing::TestWithParam<LayerCase> {
   EngineConfig config_;
   const PointCloud* cloud_ = nullptr;
   std::unique_ptr<SegmentationEngine> engine_;
-  std::vector<ComponentId> mirror_;  ///< components(), kept by changed() alone
+  std::vector<ComponentId> mirror_;  ///< components(), updated only at the points in changed()
 };
 
 TEST_P(FragmentLayerIn, EqualsTheTranscriptionAfterEachUpdate) {
@@ -78,8 +79,8 @@ TEST_P(FragmentLayerIn, EqualsTheTranscriptionAfterEachUpdate) {
   }
 }
 
-// Slices come in the order of their ids or against it: equal weights are decided by the ids, not by
-// the places that the points have in the cloud.
+// Slices come in the order of their ids or in reverse order: equal weights are ordered by PointIds,
+// not by PointIndices.
 TEST_P(FragmentLayerIn, DecidesEqualWeightsByPointId) {
   // Four segments of two points; a single point in the middle of each two has edges of one weight.
   const std::vector<CloudPoint> points_W =

@@ -1,4 +1,4 @@
-// The fragment step of mode batch against its transcription, and what it means in small cases.
+// The fragment step of mode batch: compared with its transcription, and in small cases.
 
 #include <cmath>
 #include <map>
@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "segmenter/core/batch/batch_engine.hpp"
+#include "segmenter/core/parameters/engine_config.hpp"
 #include "tests/fuzz/changing_cloud.hpp"
 #include "tests/fuzz/partition.hpp"
 #include "tests/fuzz/random.hpp"
@@ -54,7 +55,7 @@ TEST(FragmentStep, IsWhatItsTranscriptionDoes) {
   EXPECT_GT(num_joined, 100);
 }
 
-/// A chain of points; the edges between them weigh as told.
+/// A chain of points whose edges have these weights.
 class FragmentChain : public ::testing::Test {
  protected:
   std::vector<PointIndex> labels(std::initializer_list<double> weights, double min_points) {
@@ -79,7 +80,7 @@ TEST_F(FragmentChain, LeavesLargeSegmentsApart) {
   EXPECT_EQ(labels({1e-6, 1e-6, 5e-3, 1e-6, 1e-6}, 4), (std::vector<PointIndex>(6, 0)));
 }
 
-// Fragments join each other first: then they are large, and stay apart from what is beside them.
+// Fragments that join each other first are large then, and do not join the segments beside them.
 TEST_F(FragmentChain, JoinsFragmentsToEachOther) {
   EXPECT_EQ(labels({1e-6, 5e-3, 3e-3, 5e-3, 1e-6}, 2), (std::vector<PointIndex>{0, 0, 2, 2, 4, 4}));
 }

@@ -14,6 +14,9 @@ namespace {
 
 using testing::make_point;
 
+constexpr EdgeWeight with_lambda(double lambda) { return {.color_weight = lambda}; }
+constexpr EdgeWeight kNormalsOnly = with_lambda(0.0);
+
 // Two faces that meet at the y axis with normals 60 degrees apart: 1 - n_i . n_j = 1/2 up to the
 // rounding of the normals to float32 (2^-24 each) and of the weight.
 constexpr float kRounding = 4e-7F;
@@ -22,16 +25,16 @@ const CloudPoint kLeft = make_point(-0.01, 0, 0, -std::sin(kTilt), 0, std::cos(k
 const CloudPoint kRight = make_point(0.01, 0, 0, std::sin(kTilt), 0, std::cos(kTilt));
 
 TEST(EdgeWeight, ConvexEdgeIsSquared) {
-  EXPECT_NEAR(directed_edge_weight(kLeft, kRight, 0.0), 0.25F, kRounding);
-  EXPECT_NEAR(directed_edge_weight(kRight, kLeft, 0.0), 0.25F, kRounding);
+  EXPECT_NEAR(kNormalsOnly.directed(kLeft, kRight), 0.25F, kRounding);
+  EXPECT_NEAR(kNormalsOnly.directed(kRight, kLeft), 0.25F, kRounding);
 }
 
 TEST(EdgeWeight, ConcaveEdgeIsNot) {
   CloudPoint left = kLeft;
   CloudPoint right = kRight;
   std::swap(left.x, right.x);  // the same normals, leaning towards each other
-  EXPECT_NEAR(directed_edge_weight(left, right, 0.0), 0.5F, kRounding);
-  EXPECT_NEAR(edge_weight(left, right, 0.0), 0.5F, kRounding);
+  EXPECT_NEAR(kNormalsOnly.directed(left, right), 0.5F, kRounding);
+  EXPECT_NEAR(kNormalsOnly(left, right), 0.5F, kRounding);
 }
 
 TEST(EdgeWeight, DirectionDecidesByTheNormalOfTheFarEnd) {
@@ -39,10 +42,10 @@ TEST(EdgeWeight, DirectionDecidesByTheNormalOfTheFarEnd) {
   const CloudPoint i = make_point(0, 0, 0, 1, 0, 0);
   const CloudPoint j = make_point(0, 0, 0.01, 1, 0, 1);
   const float c = static_cast<float>(1.0 - std::sqrt(0.5));
-  EXPECT_NEAR(directed_edge_weight(i, j, 0.0), c * c, kRounding);
-  EXPECT_NEAR(directed_edge_weight(j, i, 0.0), c, kRounding);
-  EXPECT_EQ(edge_weight(i, j, 0.0), directed_edge_weight(i, j, 0.0));
-  EXPECT_EQ(edge_weight(j, i, 0.0), directed_edge_weight(i, j, 0.0));
+  EXPECT_NEAR(kNormalsOnly.directed(i, j), c * c, kRounding);
+  EXPECT_NEAR(kNormalsOnly.directed(j, i), c, kRounding);
+  EXPECT_EQ(kNormalsOnly(i, j), kNormalsOnly.directed(i, j));
+  EXPECT_EQ(kNormalsOnly(j, i), kNormalsOnly.directed(i, j));
 }
 
 TEST(EdgeWeight, LevelIsNotConvex) {
@@ -50,21 +53,21 @@ TEST(EdgeWeight, LevelIsNotConvex) {
   const CloudPoint i = make_point(0, 0, 0, 0, 0, 1);
   CloudPoint j = make_point(0.01, 0, 0, 0, 0, 1);
   j.nz = 0.75F;
-  EXPECT_EQ(directed_edge_weight(i, j, 0.0), 0.25F);
+  EXPECT_EQ(kNormalsOnly.directed(i, j), 0.25F);
 }
 
 TEST(EdgeWeight, NormalsTooLongByARoundingDoNotMakeItNegative) {
   CloudPoint i = make_point(0, 0, 0, 0, 0, 1);
   i.nz = std::nextafter(1.0F, 2.0F);
   const CloudPoint j = i;
-  EXPECT_EQ(directed_edge_weight(i, j, 0.0), 0.0F);
-  EXPECT_FALSE(std::signbit(directed_edge_weight(i, j, 0.0)));
+  EXPECT_EQ(kNormalsOnly.directed(i, j), 0.0F);
+  EXPECT_FALSE(std::signbit(kNormalsOnly.directed(i, j)));
 }
 
 TEST(EdgeWeight, OppositeNormalsWeighTwo) {
   const CloudPoint i = make_point(0, 0, 0, 0, 0, 1);
   const CloudPoint j = make_point(0.01, 0, 0, 0, 0, -1);
-  EXPECT_EQ(edge_weight(i, j, 0.0), 2.0F);
+  EXPECT_EQ(kNormalsOnly(i, j), 2.0F);
 }
 
 CloudPoint painted(CloudPoint p, int red, int green, int blue) {
@@ -78,25 +81,25 @@ TEST(EdgeWeight, ColorAddsLambdaTimesTheSquaredDistanceInTheUnitCube) {
   const CloudPoint i = painted(make_point(0, 0, 0, 0, 0, 1), 200, 100, 50);
   const CloudPoint j = painted(make_point(0.01, 0, 0, 0, 0, 1), 203, 104, 38);
   // 3^2 + 4^2 + 12^2 = 169; the normals agree.
-  EXPECT_EQ(edge_weight(i, j, 0.003), static_cast<float>(0.003 / 65025.0 * 169.0));
-  EXPECT_EQ(edge_weight(j, i, 0.003), edge_weight(i, j, 0.003));
-  EXPECT_EQ(directed_edge_weight(i, j, 0.003), edge_weight(i, j, 0.003));
-  EXPECT_EQ(edge_weight(i, j, 0.0), 0.0F);
+  EXPECT_EQ(with_lambda(0.003)(i, j), static_cast<float>(0.003 / 65025.0 * 169.0));
+  EXPECT_EQ(with_lambda(0.003)(j, i), with_lambda(0.003)(i, j));
+  EXPECT_EQ(with_lambda(0.003).directed(i, j), with_lambda(0.003)(i, j));
+  EXPECT_EQ(kNormalsOnly(i, j), 0.0F);
 }
 
 TEST(EdgeWeight, OppositeCornersOfTheColorCubeAreThreeLambdaApart) {
   const CloudPoint p = make_point(0, 0, 0, 0, 0, 1);
-  EXPECT_EQ(edge_weight(painted(p, 255, 0, 0), painted(p, 0, 255, 255), 0.5), 1.5F);
-  EXPECT_EQ(edge_weight(painted(p, 255, 255, 255), painted(p, 0, 255, 255), 0.5), 0.5F);
+  EXPECT_EQ(with_lambda(0.5)(painted(p, 255, 0, 0), painted(p, 0, 255, 255)), 1.5F);
+  EXPECT_EQ(with_lambda(0.5)(painted(p, 255, 255, 255), painted(p, 0, 255, 255)), 0.5F);
 }
 
 TEST(EdgeWeight, WhereAPointHasNoColorOnlyNormalsCount) {
   const CloudPoint none = painted(kLeft, 0, 0, 0);
   const CloudPoint white = painted(kRight, 255, 255, 255);
-  EXPECT_EQ(edge_weight(none, white, 0.5), edge_weight(none, white, 0.0));
-  EXPECT_EQ(edge_weight(white, none, 0.5), edge_weight(white, none, 0.0));
-  EXPECT_EQ(directed_edge_weight(white, none, 0.5), directed_edge_weight(white, none, 0.0));
-  EXPECT_GT(edge_weight(painted(kLeft, 0, 0, 1), white, 0.5), edge_weight(none, white, 0.5));
+  EXPECT_EQ(with_lambda(0.5)(none, white), kNormalsOnly(none, white));
+  EXPECT_EQ(with_lambda(0.5)(white, none), kNormalsOnly(white, none));
+  EXPECT_EQ(with_lambda(0.5).directed(white, none), kNormalsOnly.directed(white, none));
+  EXPECT_GT(with_lambda(0.5)(painted(kLeft, 0, 0, 1), white), with_lambda(0.5)(none, white));
 }
 
 TEST(EdgeWeight, ColorIsAddedBeforeTheOneRounding) {
@@ -109,9 +112,9 @@ TEST(EdgeWeight, ColorIsAddedBeforeTheOneRounding) {
   j.nx = -0x1.9p-14F;
   j.nz = 0.75F;
   const double color_weight = 65025.0 * 0.2 * kLastPlace;
-  EXPECT_EQ(edge_weight(i, j, 0.0), 0.25F);
-  EXPECT_EQ(edge_weight(i, j, color_weight), std::nextafter(0.25F, 1.0F));
-  EXPECT_EQ(directed_edge_weight(i, j, color_weight), std::nextafter(0.25F, 1.0F));
+  EXPECT_EQ(kNormalsOnly(i, j), 0.25F);
+  EXPECT_EQ(with_lambda(color_weight)(i, j), std::nextafter(0.25F, 1.0F));
+  EXPECT_EQ(with_lambda(color_weight).directed(i, j), std::nextafter(0.25F, 1.0F));
 }
 
 TEST(EdgeWeight, UndirectedIsTheSmallerDirectionToTheBit) {
@@ -131,9 +134,9 @@ TEST(EdgeWeight, UndirectedIsTheSmallerDirectionToTheBit) {
     const CloudPoint b = painted(random_point(), random_color(), random_color(), random_color());
     for (const double lambda : {0.0, 0.003, 1.0}) {
       const float smaller =
-          std::min(directed_edge_weight(a, b, lambda), directed_edge_weight(b, a, lambda));
-      EXPECT_EQ(edge_weight(a, b, lambda), smaller);
-      EXPECT_EQ(edge_weight(b, a, lambda), smaller);
+          std::min(with_lambda(lambda).directed(a, b), with_lambda(lambda).directed(b, a));
+      EXPECT_EQ(with_lambda(lambda)(a, b), smaller);
+      EXPECT_EQ(with_lambda(lambda)(b, a), smaller);
     }
     ++num_steep.at(normal_difference(a, b) > 1.0 ? 1 : 0);
   }
@@ -148,7 +151,7 @@ TEST(EdgeWeight, IsComputedInDoubleAndRoundedOnce) {
   CloudPoint j = make_point(0, 0, -1, 0, 0, 1);
   j.nx = -1e-5F;
   const double nx = 1e-5F;
-  EXPECT_EQ(directed_edge_weight(i, j, 0.0), static_cast<float>(1.0 - (1.0 - nx * nx)));
+  EXPECT_EQ(kNormalsOnly.directed(i, j), static_cast<float>(1.0 - (1.0 - nx * nx)));
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 
 #include <gmock/gmock.h>
 
+#include "segmenter/core/graph/make_neighbour_index.hpp"
 #include "segmenter/core/graph/neighbour_index.hpp"
 
 namespace kintsugi::segmenter {
@@ -27,7 +28,7 @@ CloudPoint at(float x, float y, float z) {
   return p;
 }
 
-/// Written out once more, on its own: the definition, over all pairs.
+/// The definition of neighbours, applied to all pairs.
 Neighbours brute_force(const PointCloud& cloud, float radius_m) {
   Neighbours all(cloud.size());
   const float limit = radius_m * radius_m;
@@ -199,7 +200,7 @@ TEST_P(NeighbourIndexTest, GrowsSliceBySlice) {
   }
 }
 
-/// brute_force() with the points in `gone` away.
+/// brute_force() without the points in `gone`.
 Neighbours brute_force_without(const PointCloud& cloud, const std::set<PointIndex>& gone) {
   Neighbours all = brute_force(cloud, kRadius_m);
   for (PointIndex i = 0; i < cloud.size(); ++i) {

@@ -12,6 +12,8 @@
 
 #include "segmenter/core/engine/engine.hpp"
 #include "segmenter/core/ids/segment_ids.hpp"
+#include "segmenter/core/ids/slice_labels.hpp"
+#include "segmenter/core/make_engine.hpp"
 #include "tests/segmenter/core/random_clouds.hpp"
 
 namespace kintsugi::segmenter {
@@ -145,9 +147,9 @@ TEST_F(SegmentIdsTest, PointsThatMoveTakeTheirIdAlong) {
 
 TEST_F(SegmentIdsTest, SegmentWhoseLastPointGoesIsRetired) {
   update({0, 0, 2});
-  cloud_.remove_slice(0);
+  cloud_.replace_slice(0, {});
   EXPECT_THAT(update({kNoComponent, 1, 2}).events, IsEmpty());
-  cloud_.remove_slice(1);
+  cloud_.replace_slice(1, {});
   const IdUpdate result = update({kNoComponent, kNoComponent, 2});
   EXPECT_THAT(ids_.ids(), ElementsAre(0, 0, 2));
   EXPECT_THAT(result.events, ElementsAre(retired(1)));
@@ -325,7 +327,7 @@ class RandomPartition {
       if (cloud.find_slice(slice) == nullptr) {
         cloud.add_slice(slice, points);
       } else if (below(3) == 0) {
-        cloud.remove_slice(slice);
+        cloud.replace_slice(slice, {});
       } else {
         cloud.replace_slice(slice, points);
       }

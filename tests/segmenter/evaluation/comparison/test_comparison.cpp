@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "segmenter/core/presets.hpp"
+#include "segmenter/core/parameters/presets.hpp"
 #include "segmenter/evaluation/comparison/comparison.hpp"
 #include "segmenter/evaluation/comparison/comparison_plots.hpp"
 #include "segmenter/evaluation/comparison/comparison_tables.hpp"
@@ -122,7 +122,7 @@ TEST(Comparison, NamesWhatIsWrong) {
     return ThrowsMessage<std::invalid_argument>(HasSubstr(what));
   };
   EXPECT_THAT(compare_with({}), fails_with("presets is empty"));
-  EXPECT_THAT(compare_with({"cups"}), fails_with("preset is \"cups\""));
+  EXPECT_THAT(compare_with({"cups"}), fails_with("preset is 'cups'"));
   EXPECT_THAT(compare_with({"paper", "paper"}), fails_with("'paper' twice"));
   EXPECT_THAT(compare_with({"labels"}), fails_with("room.lcm has no segment_id"));
   ComparisonConfig config;

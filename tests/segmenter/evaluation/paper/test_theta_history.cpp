@@ -6,6 +6,7 @@
 
 #include "segmenter/core/graph/edge_weight.hpp"
 #include "segmenter/evaluation/paper/theta_history.hpp"
+#include "segmenter/core/make_engine.hpp"
 #include "tests/segmenter/core/random_clouds.hpp"
 
 namespace kintsugi::segmenter {
@@ -25,8 +26,7 @@ std::vector<CloudPoint> chain(const std::vector<double>& weights) {
 }
 
 double theta(const std::vector<CloudPoint>& points, std::size_t i, int size) {
-  return static_cast<double>(edge_weight(points[i], points[i + 1], 0.0)) +
-         EngineConfig().scale / size;
+  return static_cast<double>(EdgeWeight()(points[i], points[i + 1])) + EngineConfig().scale / size;
 }
 
 ThetaHistory history_of_one_segment(const std::vector<CloudPoint>& points) {

@@ -6,7 +6,7 @@
 
 #include "segmenter/core/exact/join_history.hpp"
 #include "tests/fuzz/random.hpp"
-#include "tests/segmenter/core/exact/exact_history_check.hpp"
+#include "tests/segmenter/core/exact/history_check.hpp"
 
 namespace kintsugi::segmenter::exact {
 namespace {
@@ -37,7 +37,7 @@ class Histories {
   JoinHistory& history() { return history_; }
   bool has_free() const { return !free_.empty(); }
 
-  /// A free child that is told to have joined, but is in no history.
+  /// Sets the absorption of a free child, which is in no history yet.
   Join new_join(PointIndex host, float weight, std::uint32_t size) {
     const PointIndex child = free_.back();
     free_.pop_back();
@@ -79,7 +79,7 @@ class Histories {
     for (std::size_t k = 1; k < out.size(); ++k) set_free(out[k]);
   }
 
-  /// What `from` does after `time` is done by `to`, which did nothing after it, instead.
+  /// Moves the guests of `from` after `time` to `to`, which has none after it.
   void hand_over(PointIndex from, PointIndex to, const EdgeKey& time) {
     split_after(to, time);
     const PointIndex taken = history_.take_after(from, time);
@@ -91,7 +91,7 @@ class Histories {
     joins_[from].erase(first, joins_[from].end());
   }
 
-  /// Replaces all that `host` did.
+  /// Replaces the whole history of `host`.
   void build(PointIndex host, Joins joins) {
     split_after(host, EdgeKey{0, 0, 0});
     std::sort(joins.begin(), joins.end(),
@@ -119,7 +119,7 @@ class Histories {
 
   std::size_t expect_sound(PointIndex host, const Joins& joins) const {
     std::vector<PointIndex> children;
-    history_.for_each_child(host, [&](PointIndex child) { children.push_back(child); });
+    history_.for_each_guest(host, [&](PointIndex child) { children.push_back(child); });
     std::vector<PointIndex> expected;
     std::uint32_t total = 1;
     for (const Join& join : joins) {
@@ -158,7 +158,7 @@ class Histories {
     free_.push_back(child);
   }
 
-  /// Walks the joins with the predicate of Algorithm 1.
+  /// Goes through the joins with the predicate of Algorithm 1.
   PointIndex first_broken(PointIndex host, const Joins& joins) const {
     double theta = kRule.threshold;
     std::uint32_t size = 1;
@@ -222,10 +222,10 @@ TEST(JoinHistory, FirstChildThatIsWantedInOrder) {
   for (const float weight : {0.0003F, 0.0001F, 0.0002F}) histories.insert(0, weight, 1);
   const Joins& joins = histories.joins(0);
   const JoinHistory& history = histories.history();
-  EXPECT_EQ(history.first_child_that(0, [](PointIndex) { return true; }), joins[0].child);
+  EXPECT_EQ(history.first_guest_that(0, [](PointIndex) { return true; }), joins[0].child);
   const auto is_last = [&](PointIndex x) { return x == joins[2].child; };
-  EXPECT_EQ(history.first_child_that(0, is_last), joins[2].child);
-  EXPECT_EQ(history.first_child_that(0, [](PointIndex) { return false; }), kNone);
+  EXPECT_EQ(history.first_guest_that(0, is_last), joins[2].child);
+  EXPECT_EQ(history.first_guest_that(0, [](PointIndex) { return false; }), kNone);
 }
 
 TEST(JoinHistory, EqualWeightsAreInTheOrderOfTheirEdges) {

@@ -8,7 +8,7 @@
 
 #include "segmenter/core/exact/watch_heaps.hpp"
 #include "tests/fuzz/random.hpp"
-#include "tests/segmenter/core/exact/exact_watch_check.hpp"
+#include "tests/segmenter/core/exact/watch_check.hpp"
 
 namespace kintsugi::segmenter::exact {
 namespace {

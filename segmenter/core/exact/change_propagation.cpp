@@ -1,4 +1,4 @@
-#include "segmenter/core/exact/replay.hpp"
+#include "segmenter/core/exact/change_propagation.hpp"
 
 #include <cassert>
 #include <utility>
@@ -6,19 +6,19 @@
 namespace kintsugi::segmenter::exact {
 namespace {
 
-/// Before every edge: two points of one index are no edge.
+/// Earlier than every edge, since no edge has two equal points.
 constexpr EdgeKey kStart{0, 0, 0};
 
 constexpr std::size_t kPrefetchDistance = 8;  // edges
 
 }  // namespace
 
-Replay::Replay(State& state, const EdgeFinder& edges_of)
+ChangePropagation::ChangePropagation(State& state, const EdgeFinder& edges_of)
     : state_(state), edges_of_(edges_of), cut_search_(state.vertices, state.edges, state.forest) {}
 
-bool Replay::run(std::span<const PointIndex> removed, std::vector<EdgeKey> new_edges,
-                 std::int64_t max_explored) {
-  now_ = settled_ = kStart;
+bool ChangePropagation::run(std::span<const PointIndex> removed, std::vector<EdgeKey> new_edges,
+                            std::int64_t max_explored) {
+  now_ = decided_ = kStart;
   num_joins_ = num_events_ = num_explored_ = 0;
   queue_.start(std::move(new_edges));
   for (const PointIndex x : removed) state_.vertices[x].is_gone = 1;
@@ -35,7 +35,7 @@ bool Replay::run(std::span<const PointIndex> removed, std::vector<EdgeKey> new_e
   return true;
 }
 
-void Replay::reset() {
+void ChangePropagation::reset() {
   cut_search_.finish();
   touched_.clear();
   opened_.clear();
@@ -44,9 +44,9 @@ void Replay::reset() {
   blocked_.clear();
 }
 
-/// Its edges will be rejected as their turn comes. It is a host of others no more, so that they
-/// need not fall apart for its sake.
-void Replay::remove(PointIndex x) {
+/// Its edges are rejected when their events come. Before that, another vertex replaces it as a
+/// host, so that its guests stay together where other edges connect them.
+void ChangePropagation::remove(PointIndex x) {
   const PointIndex heir = state_.forest.step_down(x);
   touch(x);
   if (heir != kNone) {
@@ -60,20 +60,20 @@ void Replay::remove(PointIndex x) {
   });
 }
 
-void Replay::handle(const Event& event) {
+void ChangePropagation::handle(const Event& event) {
   ++num_events_;
   now_ = event.key;
-  const bool is_settled = settled_ == now_;
+  const bool is_decided = decided_ == now_;
   switch (event.kind) {
     case EventKind::kTreeEdge:
-      if (!is_settled) {
-        settled_ = now_;
-        settle(event.argument);
+      if (!is_decided) {
+        decided_ = now_;
+        decide_again(event.argument);
       }
       break;
     case EventKind::kPlainEdge:
-      if (!is_settled) {
-        settled_ = now_;
+      if (!is_decided) {
+        decided_ = now_;
         decide(kNone);
       }
       break;
@@ -83,13 +83,13 @@ void Replay::handle(const Event& event) {
   }
 }
 
-/// Decides a tree edge anew, whether it holds a guest still or was given up.
-void Replay::settle(TreeEdgeId edge) {
+/// Decides a tree edge again, whether it still has an owner or its join was taken back.
+void ChangePropagation::decide_again(TreeEdgeId edge) {
   const PointIndex owner = state_.edges.owner(edge);
   const bool is_rejected = is_gone(now_.a) || is_gone(now_.b);
   if (owner != kNone) {
     state_.vertices[owner].is_queued = 0;
-    if (is_rejected || !still_holds(owner)) give_up(owner);
+    if (is_rejected || !still_holds(owner)) take_back(owner);
   }
   if (!is_rejected && state_.edges.owner(edge) == kNone) decide(edge);
   if (!state_.edges.is_linked(edge)) return;
@@ -97,15 +97,15 @@ void Replay::settle(TreeEdgeId edge) {
   for (const PointIndex x : cut_search_.reconcile(now_.a, now_.b, now_)) explore(x);
 }
 
-/// Whether `guest` joins its host as it did, with the points that it has now.
-bool Replay::still_holds(PointIndex guest) {
+/// Whether the join of `guest` with its host still holds, with the present sizes.
+bool ChangePropagation::still_holds(PointIndex guest) {
   const JoinForest& forest = state_.forest;
   const PointIndex host = state_.vertices.host(guest);
   const PointIndex a = forest.representative_before(now_.a, now_);
   const PointIndex b = forest.representative_before(now_.b, now_);
   if (!(a == guest && b == host) && !(a == host && b == guest)) return false;
   if (!forest.is_alive(host, now_)) {
-    give_up_future(host);  // what is frozen now makes none of its later joins
+    take_back_future(host);  // a frozen component makes none of its later joins
     return false;
   }
   if (!forest.is_alive(guest, now_)) return false;
@@ -113,8 +113,8 @@ bool Replay::still_holds(PointIndex guest) {
   return true;
 }
 
-/// Algorithm 1, lines 7-11, for the edge at hand. `edge`: its id where it has one.
-void Replay::decide(TreeEdgeId edge) {
+/// Algorithm 1, lines 7-11, for the edge of the current event. `edge`: its id if it has one.
+void ChangePropagation::decide(TreeEdgeId edge) {
   const JoinForest& forest = state_.forest;
   const PointIndex a = forest.representative_before(now_.a, now_);
   const PointIndex b = forest.representative_before(now_.b, now_);
@@ -130,13 +130,13 @@ void Replay::decide(TreeEdgeId edge) {
   }
 }
 
-void Replay::join(PointIndex host, PointIndex guest, TreeEdgeId edge) {
+void ChangePropagation::join(PointIndex host, PointIndex guest, TreeEdgeId edge) {
   ++num_joins_;
   if (edge == kNone) {
     edge = state_.edges.add(now_);
     new_edges_.push_back(edge);
   }
-  give_up_future(guest);
+  take_back_future(guest);
   open_heap(guest);
   state_.forest.absorb(host, guest, edge);
   touch(guest);
@@ -144,8 +144,8 @@ void Replay::join(PointIndex host, PointIndex guest, TreeEdgeId edge) {
   size_changed(host);
 }
 
-/// Frees a guest; its tree edge is looked at again when its time comes, if it has not come yet.
-void Replay::give_up(PointIndex guest) {
+/// Makes a guest a root again. If its tree edge is still to come, it becomes an event.
+void ChangePropagation::take_back(PointIndex guest) {
   const TreeEdgeId edge = state_.vertices[guest].edge;
   const EdgeKey& key = state_.edges.key(edge);
   if (now_ < key) queue_.push({key, EventKind::kTreeEdge, edge});
@@ -155,9 +155,9 @@ void Replay::give_up(PointIndex guest) {
   size_changed(host);
 }
 
-/// Takes back whatever `x`, a representative now, does later.
-void Replay::give_up_future(PointIndex x) {
-  if (!state_.vertices.is_root(x) && !state_.forest.is_absorbed_up_to(x, now_)) give_up(x);
+/// Takes back the future of `x`, which represents a component now.
+void ChangePropagation::take_back_future(PointIndex x) {
+  if (!state_.vertices.is_root(x) && !state_.forest.is_absorbed_up_to(x, now_)) take_back(x);
   freed_.clear();
   state_.forest.release_after(x, now_, freed_);
   if (freed_.empty()) return;
@@ -169,11 +169,11 @@ void Replay::give_up_future(PointIndex x) {
   size_changed(x);
 }
 
-/// Looks at all later edges of x again.
-void Replay::explore(PointIndex x) {
+/// Makes all later edges of x events.
+void ChangePropagation::explore(PointIndex x) {
   ++num_explored_;
   state_.watches.erase_all_of(x);
-  if (!state_.forest.is_absorbed_up_to(x, now_)) give_up_future(x);
+  if (!state_.forest.is_absorbed_up_to(x, now_)) take_back_future(x);
   state_.edges.for_each_linked(x, [&](TreeEdgeId edge, PointIndex) {
     const EdgeKey& key = state_.edges.key(edge);
     if (now_ < key) queue_.push({key, EventKind::kTreeEdge, edge});
@@ -183,17 +183,18 @@ void Replay::explore(PointIndex x) {
   });
 }
 
-/// The next watched edge of a segment that changed, if its component is alive at it. All points of
-/// the segment that have watches left are in one component: CutSearch's invariant.
-void Replay::offer_watches(PointIndex holder) {
+/// Decides the lightest watched edge of a segment that changed, if its component is alive at it.
+/// All points of the segment that still have watches are in one component, by CutSearch's
+/// invariant.
+void ChangePropagation::offer_watches(PointIndex holder) {
   if (state_.watches.empty(holder)) return;
   const WatchHeaps::Watch& top = state_.watches.top(holder);
   if (top.key() == now_) {
     const PointIndex component = state_.forest.representative_before(top.watcher, now_);
-    if (!state_.forest.is_alive(component, now_)) return;  // so it blocks all the others, too
+    if (!state_.forest.is_alive(component, now_)) return;  // then it blocks all heavier ones, too
     state_.watches.pop(holder);
-    if (!(settled_ == now_)) {
-      settled_ = now_;
+    if (!(decided_ == now_)) {
+      decided_ = now_;
       decide(kNone);
     }
   }
@@ -202,8 +203,9 @@ void Replay::offer_watches(PointIndex holder) {
   }
 }
 
-/// The component of x has more or fewer points, now or at some later time.
-void Replay::size_changed(PointIndex x) {
+/// To be called when the component of x has more or fewer points than before, at any time from now
+/// on.
+void ChangePropagation::size_changed(PointIndex x) {
   if (state_.vertices.is_root(x)) {
     open_heap(x);
   } else {
@@ -213,14 +215,14 @@ void Replay::size_changed(PointIndex x) {
   if (broken != kNone) queue_tree_edge_of(broken);
 }
 
-void Replay::queue_tree_edge_of(PointIndex x) {
+void ChangePropagation::queue_tree_edge_of(PointIndex x) {
   Vertex& v = state_.vertices[x];
   if (state_.vertices.is_root(x) || v.is_queued || !(now_ < state_.edges.key(v.edge))) return;
   v.is_queued = 1;
   queue_.push({state_.edges.key(v.edge), EventKind::kTreeEdge, v.edge});
 }
 
-void Replay::open_heap(PointIndex holder) {
+void ChangePropagation::open_heap(PointIndex holder) {
   Vertex& v = state_.vertices[holder];
   if (v.is_heap_open || state_.watches.empty(holder)) return;
   v.is_heap_open = 1;
@@ -228,15 +230,15 @@ void Replay::open_heap(PointIndex holder) {
   queue_.push({state_.watches.top(holder).key(), EventKind::kHeap, holder});
 }
 
-void Replay::touch(PointIndex x) {
+void ChangePropagation::touch(PointIndex x) {
   Vertex& v = state_.vertices[x];
   if (v.is_touched) return;
   v.is_touched = 1;
   touched_.push_back(x);
 }
 
-/// Brings old tree and heaps up to date for the next run.
-void Replay::finish(std::span<const PointIndex> removed) {
+/// Updates the old tree and the watch heaps for the next run.
+void ChangePropagation::finish(std::span<const PointIndex> removed) {
   for (const PointIndex holder : std::exchange(opened_, {})) {
     state_.vertices[holder].is_heap_open = 0;
     if (state_.watches.empty(holder)) continue;

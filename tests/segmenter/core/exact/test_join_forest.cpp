@@ -7,14 +7,14 @@
 
 #include "segmenter/core/exact/join_forest.hpp"
 #include "tests/fuzz/random.hpp"
-#include "tests/segmenter/core/exact/exact_history_check.hpp"
+#include "tests/segmenter/core/exact/history_check.hpp"
 
 namespace kintsugi::segmenter::exact {
 namespace {
 
 constexpr JoinRule kRule{.threshold = 0.001, .scale = 0.0005};
 
-/// Components as the list of the joins tells: a join is between one point of each side.
+/// Components by the list of joins, each between one point of either side.
 class Components {
  public:
   explicit Components(PointIndex num_points) : labels_(num_points), weights_(num_points, 0.0F) {
@@ -141,7 +141,7 @@ class JoinForestTest : public ::testing::Test {
     }
   }
 
-  /// All points alone and in the cloud, as in the beginning.
+  /// All points are in the cloud, each a component of its own.
   void release_everything() {
     for (PointIndex x = 0; x < kNumPoints; ++x) {
       if (!vertices_.is_root(x)) forest_.release(x);
@@ -150,7 +150,7 @@ class JoinForestTest : public ::testing::Test {
     joins_.clear();
   }
 
-  /// The sizes of all above x follow, as a run would make them.
+  /// Updates the sizes of all hosts above x, as a run does.
   void recount_above(PointIndex x) {
     for (; !vertices_.is_root(x); x = vertices_.host(x)) forest_.recount(x);
   }
@@ -188,7 +188,7 @@ TEST_F(JoinForestTest, AliveIsStrictlyBelowTheta) {
   EXPECT_TRUE(forest_.is_alive(9, EdgeKey::of(0.0009F, 0, 9)));
 }
 
-TEST_F(JoinForestTest, ReplaysAListOfJoins) {
+TEST_F(JoinForestTest, MakesAListOfJoins) {
   for (const std::size_t num_weights : {3, 20, 1'000'000}) {
     join_at_random(4, num_weights);
     expect_all_components();
@@ -222,7 +222,7 @@ TEST_F(JoinForestTest, ReleaseAfterTakesBackTheFuture) {
         *std::next(joins_.begin(), static_cast<std::ptrdiff_t>(random_.below(joins_.size())));
     const auto x = static_cast<PointIndex>(random_.below(kNumPoints));
     std::vector<PointIndex> later;
-    forest_.history().for_each_child(x, [&](PointIndex child) {
+    forest_.history().for_each_guest(x, [&](PointIndex child) {
       if (time < forest_.key(child)) later.push_back(child);
     });
     std::vector<JoinForest::Freed> freed;
@@ -285,7 +285,7 @@ TEST_F(JoinForestTest, StepDownKeepsTheComponentsOfAllTimes) {
     }
     for (const PointIndex x : leaving) {
       forest_.step_down(x);
-      forest_.history().for_each_child(
+      forest_.history().for_each_guest(
           x, [&](PointIndex child) { EXPECT_TRUE(vertices_[child].is_gone) << "of " << x; });
     }
     expect_all_components();

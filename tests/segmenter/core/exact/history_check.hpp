@@ -13,7 +13,7 @@
 
 namespace kintsugi::segmenter::exact::testing {
 
-/// What the vertices keep of the joins of a host, against what it must be by definition.
+/// Compares what the vertices store of the joins of a host with its definition.
 class HistoryCheck {
  public:
   HistoryCheck(const Vertices& vertices, const TreeEdges& edges, const JoinRule& rule)

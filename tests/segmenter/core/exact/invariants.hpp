@@ -6,14 +6,14 @@
 #include <gtest/gtest.h>
 
 #include "segmenter/core/exact/state.hpp"
-#include "tests/segmenter/core/exact/exact_history_check.hpp"
-#include "tests/segmenter/core/exact/exact_slow_segmentation.hpp"
-#include "tests/segmenter/core/exact/exact_watch_check.hpp"
+#include "tests/segmenter/core/exact/history_check.hpp"
+#include "tests/segmenter/core/exact/slow_segmentation.hpp"
+#include "tests/segmenter/core/exact/watch_check.hpp"
 
 namespace kintsugi::segmenter::exact::testing {
 
-/// What holds between two runs, against Algorithm 1 over `edges`: all edges below T + k between
-/// points that are in the cloud.
+/// The invariants between two runs, compared with Algorithm 1 over `edges`: all edges below T + k
+/// between points in the cloud.
 class Invariants {
  public:
   Invariants(const State& state, const JoinRule& rule, const std::set<EdgeKey>& edges)
@@ -31,7 +31,7 @@ class Invariants {
   bool is_gone(PointIndex x) const { return state_.vertices[x].is_gone != 0; }
   PointIndex num_vertices() const { return static_cast<PointIndex>(state_.vertices.size()); }
 
-  /// Sizes, keys along hosts, and that every join can be made.
+  /// Sizes, ascending keys along hosts, and that the rule allows every join.
   void expect_histories() const {
     const JoinForest& forest = state_.forest;
     for (PointIndex x = 0; x < num_vertices(); ++x) {
@@ -47,7 +47,7 @@ class Invariants {
     }
   }
 
-  /// After each join, that it is one here, too; and who is with whom then.
+  /// After each join of Algorithm 1: that the forest has it, and the same components then.
   void expect_components_at_all_times() const {
     SlowSegmentation slow(num_vertices(), rule_);
     expect_components(slow, {0, 0, 0});
@@ -102,7 +102,7 @@ class Invariants {
   }
 
   /// Each edge between two segments is watched, by a side that blocks it, in the heap of its root.
-  /// An edge may still be watched that has come to lie inside a segment: it does no harm.
+  /// An edge inside a segment may still be watched, which has no effect.
   void expect_watches() const {
     SlowSegmentation slow(num_vertices(), rule_);
     slow.take_all(edges_);

@@ -1,20 +1,17 @@
-#include "segmenter/core/graph/graph.hpp"
+#include "segmenter/core/graph/build_graph.hpp"
 
 #include <oneapi/tbb/enumerable_thread_specific.h>
-
-#include "segmenter/core/graph/edge_weight.hpp"
 
 namespace kintsugi::segmenter {
 
 std::vector<Edge> build_graph(const PointCloud& cloud, const NeighbourIndex& index,
-                              const EngineConfig& config) {
-  const double max_weight = config.max_weight();
+                              const EdgeWeight& weight_of, double max_weight) {
   oneapi::tbb::enumerable_thread_specific<std::vector<Edge>> found;
   index.visit_all([&](PointIndex i, std::span<const PointIndex> neighbours) {
     std::vector<Edge>& edges = found.local();
     for (const PointIndex j : neighbours) {
-      if (j < i) continue;  // the other end inserts it
-      const float weight = edge_weight(cloud[i], cloud[j], config.color_weight);
+      if (j < i) continue;  // inserted when the other end is visited
+      const float weight = weight_of(cloud[i], cloud[j]);
       if (weight < max_weight) edges.push_back({weight, i, j});
     }
   });

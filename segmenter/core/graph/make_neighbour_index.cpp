@@ -1,4 +1,4 @@
-#include "segmenter/core/graph/neighbour_index.hpp"
+#include "segmenter/core/graph/make_neighbour_index.hpp"
 
 #include "segmenter/core/graph/flann_index.hpp"
 #include "segmenter/core/graph/grid_index.hpp"

@@ -18,8 +18,8 @@ using ::testing::UnorderedElementsAre;
 using ::testing::UnorderedElementsAreArray;
 using Points = std::vector<PointIndex>;
 
-/// First the edges of the old tree and the joins made now are told, in any order; then reconcile()
-/// comes with each old edge that is asked for.
+/// First the edges of the old tree and the present joins are entered, in any order; then
+/// reconcile() is called for each old edge of interest.
 class CutSearchTest : public ::testing::Test {
  protected:
   explicit CutSearchTest(PointIndex num_points = 3000) {
@@ -27,19 +27,19 @@ class CutSearchTest : public ::testing::Test {
     for (PointIndex x = 0; x < num_points; ++x) vertices_.reset(x);
   }
 
-  /// Points first, first + 1, ... in a row, joined then as now, by edges of one weight.
+  /// Points first, first + 1, ... in a row, joined before and now, by edges of one weight.
   void body(PointIndex first, PointIndex size, float weight) {
     for (PointIndex x = first; x + 1 < first + size; ++x) kept(weight, x, x + 1);
   }
-  /// Joined then, and now.
+  /// Joined before and now.
   void kept(float weight, PointIndex u, PointIndex v) { told_[EdgeKey::of(weight, u, v)] = {1, 1}; }
-  /// Joined then, but not now.
+  /// Joined before, but not now.
   EdgeKey cut(float weight, PointIndex u, PointIndex v) {
     const EdgeKey key = EdgeKey::of(weight, u, v);
     told_[key] = {1, 0};
     return key;
   }
-  /// Joined now, but not then.
+  /// Joined now, but not before.
   void fresh(float weight, PointIndex u, PointIndex v) {
     told_[EdgeKey::of(weight, u, v)] = {0, 1};
   }

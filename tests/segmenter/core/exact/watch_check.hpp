@@ -10,7 +10,7 @@
 
 namespace kintsugi::segmenter::exact::testing {
 
-/// A watch as a heap or a point has it.
+/// A watch, as found in a heap or in the list of a point.
 struct KnownWatch {
   EdgeKey key;
   PointIndex watcher = kNone;
@@ -20,7 +20,7 @@ struct KnownWatch {
   bool operator==(const KnownWatch&) const = default;
 };
 
-/// Follows the links between watches, and expects them to be those of heaps.
+/// Follows the links between watches and checks that they form heaps.
 class WatchCheck {
  public:
   WatchCheck(const Vertices& vertices, const WatchHeaps& watches)

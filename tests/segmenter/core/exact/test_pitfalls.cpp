@@ -10,6 +10,7 @@
 #include <gmock/gmock.h>
 
 #include "segmenter/core/graph/edge_weight.hpp"
+#include "segmenter/core/make_engine.hpp"
 #include "tests/fuzz/changing_cloud.hpp"
 #include "tests/fuzz/engine_check.hpp"
 #include "tests/fuzz/partition.hpp"
@@ -30,10 +31,7 @@ std::vector<double> micro(std::vector<double> weights) {
   return weights;
 }
 
-std::string mode_under_test() {
-  const bool has_exact = std::ranges::find(engine_modes(), "exact") != engine_modes().end();
-  return has_exact ? "exact" : "batch";
-}
+constexpr const char* kModeUnderTest = "exact";
 
 /// [first, last).
 Points range(PoolIndex first, PoolIndex last) {
@@ -47,7 +45,7 @@ Points all_of(const std::vector<CloudPoint>& pool) {
 }
 
 void expect_equals_batch(const Scenario& scenario) {
-  const Outcome outcome = run_scenario(scenario, engine_factory(mode_under_test()));
+  const Outcome outcome = run_scenario(scenario, engine_factory(kModeUnderTest));
   EXPECT_EQ(outcome.failure, std::nullopt) << "after step " << outcome.num_steps;
   EXPECT_EQ(outcome.num_steps, scenario.steps.size());
 }
@@ -85,7 +83,7 @@ TEST(WeightedLattice, HasTheWeightsWantedAndNoOtherEdges) {
       if (!are_neighbours(points[i], points[j], radius_m)) continue;
       ++num_edges;
       const double wanted = j == twig ? 300 * kMicro : row[i];
-      EXPECT_NEAR(edge_weight(points[i], points[j], 0.0), wanted, kRounding);
+      EXPECT_NEAR(EdgeWeight()(points[i], points[j]), wanted, kRounding);
     }
   }
   EXPECT_EQ(num_edges, 5);
@@ -98,7 +96,7 @@ TEST(WeightedLattice, ClosesASquareWithEqualSumsOfOppositeWeights) {
   lattice.add({1, 1}, 1, 400 * kMicro);
   lattice.add({0, 1}, 2, 700 * kMicro);
   // The products of two weights, up to 3e-7, are neglected.
-  EXPECT_NEAR(edge_weight(lattice.points()[0], lattice.points()[3], 0.0), 400 * kMicro, 1e-6);
+  EXPECT_NEAR(EdgeWeight()(lattice.points()[0], lattice.points()[3]), 400 * kMicro, 1e-6);
 }
 
 // The pitfalls.
@@ -346,7 +344,7 @@ TEST(ExactPitfalls, CorrectionsLeaveMemoryFlat) {
   scenario.slice_points = 50;
 
   ChangingCloud map(scenario);
-  const auto engine = make_engine(mode_under_test(), map.cloud(), scenario.config);
+  const auto engine = make_engine(kModeUnderTest, map.cloud(), scenario.config);
   engine->update(map.apply({.add = all, .remove = {}}));
   std::size_t bytes = 0;
   PointIndex num_places = 0;

@@ -1,4 +1,4 @@
-// Looking for the neighbours of the next slice meanwhile changes nothing but time.
+// look_ahead() does not change the result.
 
 #include <algorithm>
 #include <limits>
@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "segmenter/core/engine/engine.hpp"
+#include "segmenter/core/make_engine.hpp"
 #include "tests/segmenter/core/random_clouds.hpp"
 
 namespace kintsugi::segmenter {
@@ -58,7 +59,7 @@ TEST_P(LookAhead, ChangesNothing) {
 }
 
 TEST_P(LookAhead, MayBeWrong) {
-  // The audit throws should an edge be missing, or one be there that is none.
+  // The audit throws if an edge is missing or wrong.
   const auto slices = strips(8, 300);
   PointCloud cloud;
   const auto engine = make_engine("exact", cloud, config());
@@ -83,11 +84,11 @@ TEST_P(LookAhead, IsForgottenWhenPointsLeaveMeanwhile) {
   EXPECT_NO_THROW(engine->update(cloud.take_change()));
 
   engine->look_ahead(slices[2]);
-  cloud.remove_slice(2);
+  cloud.replace_slice(2, {});
   engine->update(cloud.take_change());
-  cloud.remove_slice(1);
+  cloud.replace_slice(1, {});
   engine->update(cloud.take_change());
-  cloud.add_slice(2, slices[2]);
+  cloud.replace_slice(2, slices[2]);
   EXPECT_NO_THROW(engine->update(cloud.take_change()));
 }
 

@@ -2,16 +2,16 @@
 
 #include <vector>
 
-#include "segmenter/core/engine/engine.hpp"
 #include "segmenter/core/graph/edge.hpp"
+#include "segmenter/core/graph/edge_weight.hpp"
 #include "segmenter/core/graph/neighbour_index.hpp"
 
 namespace kintsugi::segmenter {
 
 /// Algorithm 2 for a whole cloud: one undirected edge (i < j) for each two neighbours in `index`
-/// with a weight below config.max_weight(), in no particular order. A threshold theta never exceeds
-/// that, so heavier edges cannot join anything: the partition is that of all edges.
+/// whose weight is below `max_weight`, in no particular order. With EngineConfig::max_weight() the
+/// partition is that of all edges.
 std::vector<Edge> build_graph(const PointCloud& cloud, const NeighbourIndex& index,
-                              const EngineConfig& config);
+                              const EdgeWeight& weight_of, double max_weight);
 
 }  // namespace kintsugi::segmenter

@@ -8,7 +8,7 @@
 
 #include "segmenter/core/exact/component_names.hpp"
 #include "tests/fuzz/random.hpp"
-#include "tests/segmenter/core/exact/exact_names_check.hpp"
+#include "tests/segmenter/core/exact/names_check.hpp"
 
 namespace kintsugi::segmenter::exact {
 namespace {
@@ -55,7 +55,7 @@ class ComponentNamesTest : public ::testing::Test {
     }
     for (const PointIndex x : points) {
       Points guests;
-      forest_.history().for_each_child(x, [&](PointIndex guest) { guests.push_back(guest); });
+      forest_.history().for_each_guest(x, [&](PointIndex guest) { guests.push_back(guest); });
       for (const PointIndex guest : guests) release(guest);
       if (!vertices_.is_root(x)) release(x);
     }

@@ -9,13 +9,13 @@
 #include "tests/fuzz/random.hpp"
 #include "tests/fuzz/random_cloud.hpp"
 #include "tests/fuzz/weighted_lattice.hpp"
-#include "tests/segmenter/core/exact/exact_invariants.hpp"
-#include "tests/segmenter/core/exact/exact_session.hpp"
+#include "tests/segmenter/core/exact/engine_parts.hpp"
+#include "tests/segmenter/core/exact/invariants.hpp"
 
 namespace kintsugi::segmenter::exact {
 namespace {
 
-using testing::Session;
+using testing::EngineParts;
 
 /// A state built from scratch over those points of a pool that are wanted.
 class Built {
@@ -30,7 +30,7 @@ class Built {
       points.push_back(x);
       state_.vertices.reset(x);
     }
-    statistics_ = build_state(cloud_, points, Session::kConfig, state_);
+    statistics_ = build_state(cloud_, points, EngineParts::kConfig, state_);
   }
 
   const State& state() const { return state_; }
@@ -38,7 +38,7 @@ class Built {
 
  private:
   PointCloud cloud_;
-  State state_{Session::kRule};
+  State state_{EngineParts::kRule};
   BatchStatistics statistics_;
 };
 
@@ -49,7 +49,7 @@ Built build_all(const std::vector<CloudPoint>& pool_W) {
 TEST(BulkBuild, OfNothing) {
   const Built built = build_all({});
   EXPECT_EQ(built.statistics().num_joins, 0);
-  testing::expect_invariants(built.state(), Session::kRule, {});
+  testing::expect_invariants(built.state(), EngineParts::kRule, {});
 }
 
 TEST(BulkBuild, JoinsOneEdgeAndWatchesAnother) {
@@ -87,24 +87,24 @@ std::vector<EdgeKey> joins_with(const State& state, PointIndex x) {
   return joins;
 }
 
-TEST(BulkBuild, IsWhatTheReplayOfOneSliceAfterTheOtherGives) {
+TEST(BulkBuild, IsTheStateAfterOneSliceAfterTheOther) {
   fuzz::Random random(1);
   for (int n = 0; n < 60; ++n) {
     const std::vector<CloudPoint> pool_W = fuzz::random_cloud(random, random.between(2, 80), {});
-    Session session(pool_W);
+    EngineParts parts(pool_W);
     std::vector<PointIndex> slice;
     for (PointIndex x = 0; x < pool_W.size(); ++x) {
       if (random.chance(0.9)) slice.push_back(x);  // some never come
       const bool is_last = x + 1 == pool_W.size();
-      if (is_last || random.chance(0.1)) session.update(std::exchange(slice, {}), {});
+      if (is_last || random.chance(0.1)) parts.update(std::exchange(slice, {}), {});
     }
-    const Built built(pool_W, [&](PointIndex x) { return session.is_in(x); });
-    const std::set<EdgeKey> edges = session.edges();
-    testing::expect_invariants(built.state(), Session::kRule, edges);
-    session.expect_invariants();
-    EXPECT_EQ(tree_of(built.state()), tree_of(session.state()));
+    const Built built(pool_W, [&](PointIndex x) { return parts.is_in(x); });
+    const std::set<EdgeKey> edges = parts.edges();
+    testing::expect_invariants(built.state(), EngineParts::kRule, edges);
+    parts.expect_invariants();
+    EXPECT_EQ(tree_of(built.state()), tree_of(parts.state()));
     for (PointIndex x = 0; x < pool_W.size(); ++x) {
-      EXPECT_EQ(joins_with(built.state(), x), joins_with(session.state(), x));
+      EXPECT_EQ(joins_with(built.state(), x), joins_with(parts.state(), x));
     }
     ASSERT_FALSE(HasFailure()) << "cloud " << n;
   }

@@ -57,7 +57,7 @@ TEST_F(TreeEdgesTest, ALinkedEdgeIsFoundAtBothEnds) {
 }
 
 TEST_F(TreeEdgesTest, IsLinkedAlsoAsTheLastOfItsLists) {
-  // The end of a list and "in no list" are two things.
+  // The end of a list differs from "in no list".
   const TreeEdgeId first = edges_.add(EdgeKey::of(0.5F, 0, 1));
   const TreeEdgeId second = edges_.add(EdgeKey::of(0.5F, 1, 2));
   edges_.link(first);

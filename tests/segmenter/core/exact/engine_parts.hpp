@@ -9,22 +9,24 @@
 #include <gtest/gtest.h>
 
 #include "segmenter/core/exact/bulk_build.hpp"
+#include "segmenter/core/exact/change_propagation.hpp"
 #include "segmenter/core/exact/component_names.hpp"
-#include "segmenter/core/exact/replay.hpp"
 #include "segmenter/core/exact/state.hpp"
-#include "tests/segmenter/core/exact/exact_invariants.hpp"
-#include "tests/segmenter/core/exact/exact_names_check.hpp"
+#include "segmenter/core/graph/make_neighbour_index.hpp"
+#include "segmenter/core/parameters/engine_config.hpp"
+#include "tests/segmenter/core/exact/invariants.hpp"
+#include "tests/segmenter/core/exact/names_check.hpp"
 
 namespace kintsugi::segmenter::exact::testing {
 
-/// State, Replay and ComponentNames, driven by hand over a pool of points. Each is in the map or
-/// not; the vertex of a point has its number in the pool.
-class Session {
+/// State, ChangePropagation and ComponentNames over a pool of points, driven by hand. Each is in
+/// the map or not; the vertex of a point has its number in the pool.
+class EngineParts {
  public:
   static constexpr EngineConfig kConfig{.threshold = 0.001, .scale = 0.0005, .color_weight = 0.01};
   static constexpr JoinRule kRule{.threshold = kConfig.threshold, .scale = kConfig.scale};
 
-  explicit Session(const std::vector<CloudPoint>& pool_W)
+  explicit EngineParts(const std::vector<CloudPoint>& pool_W)
       : index_(make_neighbour_index(NeighbourSearch::kGrid, cloud_, kConfig.radius_m())) {
     cloud_.add_slice(0, pool_W);
     EXPECT_EQ(cloud_.num_live(), pool_W.size());
@@ -32,7 +34,7 @@ class Session {
     for (PointIndex a = 0; a < cloud_.size(); ++a) {
       for (PointIndex b = a + 1; b < cloud_.size(); ++b) {
         if (!are_neighbours(cloud_[a], cloud_[b], kConfig.radius_m())) continue;
-        const float weight = edge_weight(cloud_[a], cloud_[b], kConfig.color_weight);
+        const float weight = kConfig.edge_weight()(cloud_[a], cloud_[b]);
         if (weight >= kConfig.max_weight()) continue;
         possible_edges_.insert(EdgeKey::of(weight, a, b));
       }
@@ -40,7 +42,7 @@ class Session {
   }
 
   State& state() { return state_; }
-  const Replay& replay() const { return replay_; }
+  const ChangePropagation& propagation() const { return propagation_; }
   const ComponentNames& names() const { return names_; }
   bool is_in(PointIndex x) const { return state_.vertices[x].is_gone == 0; }
 
@@ -65,18 +67,20 @@ class Session {
     std::set<EdgeKey> new_edges;
     edges_of_.for_each(added,
                        [&](PointIndex, PointIndex, const EdgeKey& key) { new_edges.insert(key); });
-    replay_.touched() = added;
+    propagation_.touched() = added;
     for (const PointIndex x : added) state_.vertices[x].is_touched = 1;
-    if (!replay_.run(removed, {new_edges.begin(), new_edges.end()}, max_explored)) return false;
-    names_.update(replay_.touched(), removed);
+    if (!propagation_.run(removed, {new_edges.begin(), new_edges.end()}, max_explored))
+      return false;
+    names_.update(propagation_.touched(), removed);
     names_check_.expect(added);
     return true;
   }
 
-  /// The state anew, after a run that was given up, or just so. `added` and `removed` as in it.
+  /// Rebuilds the state, after a run that gave up or at any time. `added` and `removed` as in
+  /// update().
   void rebuild(const std::vector<PointIndex>& added = {},
                const std::vector<PointIndex>& removed = {}) {
-    replay_.reset();
+    propagation_.reset();
     state_.clear();
     std::vector<PointIndex> points;
     for (PointIndex x = 0; x < cloud_.size(); ++x) {
@@ -95,7 +99,7 @@ class Session {
   std::set<EdgeKey> possible_edges_;
   State state_{kRule};
   EdgeFinder edges_of_{cloud_, *index_, kConfig};
-  Replay replay_{state_, edges_of_};
+  ChangePropagation propagation_{state_, edges_of_};
   ComponentNames names_{state_.vertices, state_.forest};
   NamesCheck names_check_{state_.vertices, state_.forest, names_};
 };
