@@ -3,6 +3,7 @@
 #include <exception>
 #include <iostream>
 
+#include <CLI/CLI.hpp>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 

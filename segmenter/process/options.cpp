@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include <CLI/CLI.hpp>
+
 #include "segmenter/core/presets.hpp"
 
 namespace kintsugi::segmenter {

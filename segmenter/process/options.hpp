@@ -3,9 +3,11 @@
 
 #include <string_view>
 
-#include <CLI/CLI.hpp>
-
 #include "segmenter/map/segment_map.hpp"
+
+namespace CLI {
+class App;
+}
 
 namespace kintsugi::segmenter {
 

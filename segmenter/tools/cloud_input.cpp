@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <string>
 
+#include <CLI/CLI.hpp>
 #include <spdlog/spdlog.h>
 
 #include "segmenter/preprocess/cloud_preparation.hpp"

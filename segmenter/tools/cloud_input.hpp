@@ -4,10 +4,12 @@
 #include <filesystem>
 #include <vector>
 
-#include <CLI/CLI.hpp>
-
 #include "segmenter/io/ply_reader.hpp"
 #include "segmenter/preprocess/normals.hpp"
+
+namespace CLI {
+class App;
+}
 
 namespace kintsugi::segmenter {
 

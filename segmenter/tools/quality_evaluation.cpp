@@ -1,5 +1,6 @@
 #include "segmenter/tools/quality_evaluation.hpp"
 
+#include <CLI/CLI.hpp>
 #include <spdlog/spdlog.h>
 
 namespace kintsugi::segmenter {

@@ -3,9 +3,11 @@
 
 #include <string>
 
-#include <CLI/CLI.hpp>
-
 #include "segmenter/evaluation/quality/quality_evaluation.hpp"
+
+namespace CLI {
+class App;
+}
 
 namespace kintsugi::segmenter {
 

@@ -3,6 +3,8 @@
 #include <iostream>
 #include <map>
 
+#include <CLI/CLI.hpp>
+
 #include "lcmtypes/trajectory.hpp"
 #include "segmenter/evaluation/report/table.hpp"
 #include "segmenter/evaluation/report/text_file.hpp"

@@ -4,9 +4,11 @@
 #include <filesystem>
 #include <string>
 
-#include <CLI/CLI.hpp>
-
 #include "segmenter/evaluation/trajectory/relative_trajectory_error.hpp"
+
+namespace CLI {
+class App;
+}
 
 namespace kintsugi::segmenter {
 
