@@ -1,28 +1,20 @@
 # Precompiled headers: what most sources include of the standard library, Eigen, OpenCV and
-# GoogleTest is parsed once instead of some five hundred times. They hold no header of our own, so a
-# change of ours never rebuilds them. Every source includes what it uses all the same: it compiles
-# with -DKINTSUGI_PRECOMPILE=OFF too, and scripts/lint reads it that way.
+# GoogleTest is parsed once instead of some five hundred times. Everything compiles without them too.
 option(KINTSUGI_PRECOMPILE "Use precompiled headers" ON)
 
-# ccache, where it is installed, keeps what was compiled across clones. It is told not to look at the
-# dates of headers (a fresh clone has new ones), and that precompiled headers say all that matters.
+# ccache, where it is installed, keeps what was compiled, for other clones too: it is told to ignore
+# the clone's path and the dates of headers, and that it may keep precompiled headers.
 find_program(KINTSUGI_CCACHE ccache)
 if(KINTSUGI_CCACHE AND NOT DEFINED CMAKE_CXX_COMPILER_LAUNCHER)
-  set(CMAKE_CXX_COMPILER_LAUNCHER env
+  set(CMAKE_CXX_COMPILER_LAUNCHER env CCACHE_BASEDIR=${CMAKE_SOURCE_DIR}
       CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime
       ${KINTSUGI_CCACHE})
 endif()
 
-# The headers that a library or a test most often includes.
-set(KINTSUGI_COMMON_HEADERS
-  <algorithm> <array> <atomic> <chrono> <cmath> <condition_variable> <cstdint> <cstring> <deque>
-  <filesystem> <fstream> <functional> <limits> <map> <memory> <mutex> <numeric> <optional> <random>
-  <set> <span> <sstream> <stdexcept> <string> <string_view> <thread> <tuple> <unordered_map>
-  <utility> <variant> <vector> <Eigen/Core> <Eigen/Geometry>)
-
-# kintsugi_add_precompiled(KIND HEADERS header... LIBRARIES library... [OPTIONS option...])
-# defines the precompiled headers KIND. GCC accepts them only in a compilation that has the same
-# options and at least the same definitions, so they get the options of the targets that use them.
+# kintsugi_add_precompiled(KIND LIBRARIES library... [HEADERS header...] [OPTIONS option...])
+# precompiles precompiled.hpp and the headers named, as KIND. GCC accepts the result only in a
+# compilation with the same options and at least the same definitions, so it is compiled with the
+# options of the targets that use it.
 function(kintsugi_add_precompiled kind)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "HEADERS;LIBRARIES;OPTIONS")
   if(NOT KINTSUGI_PRECOMPILE)
@@ -35,7 +27,8 @@ function(kintsugi_add_precompiled kind)
   add_library(${target} OBJECT ${source})
   target_link_libraries(${target} PRIVATE kintsugi_options ${arg_LIBRARIES})
   target_compile_options(${target} PRIVATE ${arg_OPTIONS})
-  target_precompile_headers(${target} PRIVATE ${arg_HEADERS})
+  # <>, so that the file CMake writes names no folder, and ccache knows it again in another clone.
+  target_precompile_headers(${target} PRIVATE <scripts/cmake/precompiled.hpp> ${arg_HEADERS})
 endfunction()
 
 # kintsugi_precompile(KIND target...): these targets use the precompiled headers KIND.
