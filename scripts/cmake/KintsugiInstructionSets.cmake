@@ -13,6 +13,9 @@ function(kintsugi_instruction_set_sources prefix)
     set_source_files_properties(${prefix}_avx2.cpp PROPERTIES COMPILE_OPTIONS "-mavx2")
     set_source_files_properties(${prefix}_avx512.cpp PROPERTIES COMPILE_OPTIONS
                                 "-mavx512f;-mavx512bw;-mavx512dq;-mavx512vl")
+    # Headers precompiled for the build's own instruction set do not fit these.
+    set_source_files_properties(${prefix}_avx2.cpp ${prefix}_avx512.cpp
+                                PROPERTIES SKIP_PRECOMPILE_HEADERS ON)
   else()
     set_source_files_properties(${prefix}_avx2.cpp ${prefix}_avx512.cpp
                                 PROPERTIES HEADER_FILE_ONLY ON)
