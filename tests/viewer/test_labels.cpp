@@ -117,9 +117,9 @@ TEST(Highlight, KeepsColorsAndDimsTheRest) {
   const Furnished room;
   const Renderer renderer(small());
   for (const Coloring coloring : {Coloring::kTrue, Coloring::kSegments}) {
-    const Color usual = renderer.draw_map(room.from_above({}), coloring)(kOnFloor);
-    const Color chosen = renderer.draw_map(room.from_above({kFloor}), coloring)(kOnFloor);
-    const Color dim = renderer.draw_map(room.from_above({kDesk}), coloring)(kOnFloor);
+    const cv::Vec3b usual = renderer.draw_map(room.from_above({}), coloring)(kOnFloor);
+    const cv::Vec3b chosen = renderer.draw_map(room.from_above({kFloor}), coloring)(kOnFloor);
+    const cv::Vec3b dim = renderer.draw_map(room.from_above({kDesk}), coloring)(kOnFloor);
     EXPECT_EQ(usual, chosen);
     for (int i = 0; i < 3; ++i) EXPECT_LT(dim[i], 0.6 * cv::norm(usual, cv::NORM_INF));
   }
@@ -130,7 +130,7 @@ TEST(Highlight, OutlinesWhatStandsOut) {
   const auto white = [&](const Highlight& highlight) {
     cv::Mat mask;
     cv::inRange(Renderer(small()).draw_map(room.from_above(highlight), Coloring::kTrue),
-                Color(250, 250, 250), Color(255, 255, 255), mask);
+                cv::Scalar::all(250), cv::Scalar::all(255), mask);
     return cv::countNonZero(mask);
   };
   EXPECT_EQ(0, white({}));

@@ -6,6 +6,7 @@
 #include "tests/viewer/support/synthetic_room.hpp"
 #include "viewer/core/charts/axes.hpp"
 #include "viewer/core/charts/chart.hpp"
+#include "viewer/core/drawing/palette.hpp"
 #include "viewer/core/rendering/renderer.hpp"
 
 namespace kintsugi::viewer {
@@ -38,7 +39,7 @@ struct Furnished {
   Subject seen(const View& view) const { return {scene, scene.heard_track(), followed, view}; }
 };
 
-double share_of(const cv::Mat3b& image, const Color& color) {
+double share_of(const cv::Mat3b& image, const cv::Vec3b& color) {
   cv::Mat mask;
   cv::inRange(image, color, color, mask);
   return cv::countNonZero(mask) / static_cast<double>(mask.total());
@@ -48,7 +49,7 @@ TEST(Renderer, DrawsAnEmptyScene) {
   const Scene scene(1);
   const cv::Mat3b figure = Renderer(small()).draw_figure({scene, {}, {}, FollowView{}}, "nothing");
   EXPECT_EQ(cv::Size(480, 270), figure.size());
-  EXPECT_GT(share_of(figure, kBackground), 0.8);
+  EXPECT_GT(share_of(figure, palette::kBackground), 0.8);
 }
 
 TEST(Renderer, ShowsTheFloorInItsColorFromAbove) {
@@ -57,7 +58,7 @@ TEST(Renderer, ShowsTheFloorInItsColorFromAbove) {
   const cv::Mat3b map = Renderer(small()).draw_map(room.seen(from_above), Coloring::kTrue);
   // The ceiling faces away and is left out. The floor is (150, 118, 84) give or take 8, seen head
   // on: full brightness but for the darkening at edges. A place with neither desk nor path:
-  const Color& floor = map(135 + 20, 240 + 40);
+  const cv::Vec3b& floor = map(135 + 20, 240 + 40);
   EXPECT_NEAR(84, floor[0], 12);
   EXPECT_NEAR(118, floor[1], 12);
   EXPECT_NEAR(150, floor[2], 12);
@@ -68,13 +69,14 @@ TEST(Renderer, ShowsSegmentsInTheirColorsAndGreyWithoutASegmenter) {
   const auto floor_of = [&](const Furnished& room) {
     return Renderer(small()).draw_map(room.seen(from_above), Coloring::kSegments)(155, 280);
   };
-  const Color expected = segment_color(1);
-  const Color segmented = floor_of(Furnished());
-  const Color grey = floor_of(Furnished(false));
+  const cv::Vec3b expected = segment_color(1);
+  const cv::Vec3b segmented = floor_of(Furnished());
+  const cv::Vec3b grey = floor_of(Furnished(false));
+  const cv::Vec3b unlabelled = palette::kUnlabelledPoint;
   for (int i = 0; i < 3; ++i) {
     // Light takes at most a tenth at this angle, edges nothing on a plane.
     EXPECT_NEAR(expected[i], segmented[i], 0.1 * expected[i] + 2);
-    EXPECT_NEAR(kUnlabelledColor[i], grey[i], 0.1 * kUnlabelledColor[i] + 2);
+    EXPECT_NEAR(unlabelled[i], grey[i], 0.1 * unlabelled[i] + 2);
   }
 }
 

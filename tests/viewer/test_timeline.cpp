@@ -11,7 +11,7 @@
 #include "viewer/core/charts/chip_lane.hpp"
 #include "viewer/core/charts/segment_timeline.hpp"
 #include "viewer/core/charts/timeline_chart.hpp"
-#include "viewer/core/drawing/colors.hpp"
+#include "viewer/core/drawing/palette.hpp"
 
 namespace kintsugi::viewer {
 namespace {
@@ -141,7 +141,7 @@ TEST(Timeline, OfASegmentThatNobodySpokeOfIsEmpty) {
   EXPECT_EQ(cv::Size(640, 480), draw_timeline(timeline, {640, 480}).size());
 }
 
-int count_of(const cv::Mat3b& image, const Color& color) {
+int count_of(const cv::Mat3b& image, const cv::Vec3b& color) {
   cv::Mat mask;
   cv::inRange(image, color, color, mask);
   return cv::countNonZero(mask);
@@ -176,7 +176,7 @@ TEST(ChipLane, CoversNeitherOtherChipsNorTheirLines) {
   std::vector<Chip> chips;
   for (int i = 0; i < 200; ++i) {
     const int x = std::uniform_int_distribution(100, 900)(random);
-    chips.push_back({x, std::to_string(random() % 100'000), Color(0, 0, 0)});
+    chips.push_back({x, std::to_string(random() % 100'000), Rgb{}});
   }
   const ChipLane lane(chips, 100, 900, 5);
   EXPECT_GT(lane.places().size(), 20U);  // some 16 fit into a row
@@ -197,7 +197,7 @@ TEST(ChipLane, CoversNeitherOtherChipsNorTheirLines) {
 }
 
 TEST(ChipLane, PlacesTheFirstChipsWhenThereIsNoRoomForAll) {
-  const std::vector<Chip> chips(9, {500, "12345", Color(0, 0, 0)});
+  const std::vector<Chip> chips(9, {500, "12345", Rgb{}});
   const ChipLane lane(chips, 100, 900, 3);
   ASSERT_EQ(3U, lane.places().size());
   for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(i, lane.places()[i].chip);

@@ -16,14 +16,10 @@ constexpr double kTextScale = 0.45;
 constexpr int kPadding_px = 6;
 constexpr int kGap_px = 4;  ///< between boxes, and between a box and a line
 
-const cv::Scalar kInk(40, 40, 40);
-const cv::Scalar kLightInk(255, 255, 255);
-const cv::Scalar kLine(150, 150, 150);
-
 /// Whichever of dark and light is legible on the colour (brightness as in ITU-R BT.601).
-const cv::Scalar& ink_on(const Color& color) {
-  const double brightness = 0.114 * color[0] + 0.587 * color[1] + 0.299 * color[2];
-  return brightness > 130.0 ? kInk : kLightInk;
+Rgb text_color_on(const Rgb& color) {
+  const double brightness = 0.114 * color.blue + 0.587 * color.green + 0.299 * color.red;
+  return brightness > 130.0 ? palette::kChartText : palette::kChartLightText;
 }
 
 bool is_over(const ChipLane::Place& place, int x_px) {
@@ -83,15 +79,15 @@ void ChipLane::draw(cv::Mat3b& image, Side side, int first_row_px, int chart_px)
   };
   for (const Place& place : places_) {
     const int x_px = chips_[place.chip].x_px;
-    cv::line(image, {x_px, box_of(place).y}, {x_px, chart_px}, kLine);
+    cv::line(image, {x_px, box_of(place).y}, {x_px, chart_px}, palette::kTimelineLeader);
   }
   for (const Place& place : places_) {
     const Chip& chip = chips_[place.chip];
     const cv::Rect box = box_of(place);
     cv::rectangle(image, box, chip.color, cv::FILLED);
-    cv::rectangle(image, box, kInk);
+    cv::rectangle(image, box, palette::kChartText);
     draw_text(image, chip.text, box.tl() + cv::Point(kPadding_px, 13), kTextScale,
-              ink_on(chip.color));
+              text_color_on(chip.color));
   }
 }
 

@@ -7,7 +7,7 @@
 
 #include <opencv2/core.hpp>
 
-#include "viewer/core/drawing/colors.hpp"
+#include "viewer/core/drawing/palette.hpp"
 
 namespace kintsugi::viewer {
 
@@ -15,7 +15,7 @@ namespace kintsugi::viewer {
 struct Chip {
   int x_px = 0;  ///< the moment
   std::string text;
-  Color color;
+  Rgb color;
 };
 
 /// Rows of chips above or below a chart; a line leads from each chip to the chart. Chips of one

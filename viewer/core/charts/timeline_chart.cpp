@@ -11,7 +11,7 @@
 
 #include "viewer/core/charts/axes.hpp"
 #include "viewer/core/charts/chip_lane.hpp"
-#include "viewer/core/drawing/colors.hpp"
+#include "viewer/core/drawing/palette.hpp"
 #include "viewer/core/drawing/text.hpp"
 
 namespace kintsugi::viewer {
@@ -20,10 +20,6 @@ namespace {
 using Event = SegmentTimeline::Event;
 using EventType = SegmentTimeline::EventType;
 
-const cv::Scalar kInk(40, 40, 40);
-const cv::Scalar kFaintInk(120, 120, 120);
-const cv::Scalar kHatching(205, 205, 205);
-const Color kPaper(255, 255, 255);
 constexpr double kSmallText = 0.45;
 
 constexpr int kLeft_px = 130;
@@ -102,18 +98,20 @@ void draw_unheard(cv::Mat3b& image, const Axes& axes, double until) {
   if (part.empty()) return;
   cv::Mat3b unheard = image(part);
   for (int x = -part.height; x < part.width; x += kStep_px) {
-    cv::line(unheard, {x, part.height}, {x + part.height, 0}, kHatching, 1, cv::LINE_AA);
+    cv::line(unheard, {x, part.height}, {x + part.height, 0}, palette::kTimelineHatching, 1,
+             cv::LINE_AA);
   }
   const std::string text = "not heard";
   const cv::Size size = text_size(text, kSmallText);
   if (size.width + 12 > part.width) return;
   draw_text(unheard, text, (cv::Point(part.size()) - cv::Point(size.width, -size.height)) / 2,
-            kSmallText, kInk);
+            kSmallText, palette::kChartText);
 }
 
 void draw_area(cv::Mat3b& image, const Axes& axes, const SegmentTimeline& timeline) {
-  const Color color = segment_color(timeline.segment_id);
-  const auto fill = Color(0.55 * cv::Vec3d(color) + 0.45 * cv::Vec3d(kPaper));
+  const cv::Vec3b color = segment_color(timeline.segment_id);
+  const cv::Vec3b background = palette::kChartBackground;
+  const cv::Vec3b fill = 0.55 * cv::Vec3d(color) + 0.45 * cv::Vec3d(background);
   const cv::Scalar edge(0.6 * cv::Vec3d(color));
   std::vector<cv::Point> outline{axes.at(timeline.sizes.front().num_slices, 0.0)};
   for (std::size_t i = 0; i < timeline.sizes.size(); ++i) {
@@ -136,7 +134,7 @@ void draw_ticks(cv::Mat3b& image, const Axes& axes, const SegmentTimeline& timel
     const std::array<cv::Point, 3> triangle{cv::Point(x - 5, y), {x + 5, y}, {x, y + 7}};
     const std::uint32_t id = event.other_id == kNoSegment ? timeline.segment_id : event.other_id;
     cv::fillConvexPoly(image, triangle, segment_color(id), cv::LINE_AA);
-    cv::polylines(image, triangle, true, kInk, 1, cv::LINE_AA);
+    cv::polylines(image, triangle, true, palette::kChartText, 1, cv::LINE_AA);
   }
 }
 
@@ -148,11 +146,11 @@ void draw_count(cv::Mat3b& image, const Side& side, const std::string& title, cv
       side.lane.places(), is_other,
       [&](const ChipLane::Place& place) -> const Event& { return side.events[place.chip]; });
   const cv::Point next_line(0, kLineOfText_px);
-  draw_text(image, title, at, kSmallText, kInk);
-  draw_text(image, with_thousands(num_others), at + next_line, kSmallText, kInk);
+  draw_text(image, title, at, kSmallText, palette::kChartText);
+  draw_text(image, with_thousands(num_others), at + next_line, kSmallText, palette::kChartText);
   if (num_named < num_others) {
     draw_text(image, fmt::format("largest {}", num_named), at + 2 * next_line, kSmallText,
-              kFaintInk);
+              palette::kChartSecondaryText);
   }
 }
 
@@ -169,15 +167,16 @@ std::string summary_of(const SegmentTimeline& timeline) {
 void draw_heading(cv::Mat3b& image, const SegmentTimeline& timeline) {
   const cv::Rect swatch(12, 12, 30, 30);
   cv::rectangle(image, swatch, segment_color(timeline.segment_id), cv::FILLED);
-  cv::rectangle(image, swatch, kInk);
-  draw_text(image, fmt::format("segment {}", timeline.segment_id), {54, 36}, 0.85, kInk);
-  draw_text(image, summary_of(timeline), {54, 62}, 0.5, kFaintInk);
+  cv::rectangle(image, swatch, palette::kChartText);
+  draw_text(image, fmt::format("segment {}", timeline.segment_id), {54, 36}, 0.85,
+            palette::kChartText);
+  draw_text(image, summary_of(timeline), {54, 62}, 0.5, palette::kChartSecondaryText);
 }
 
 }  // namespace
 
 cv::Mat3b draw_timeline(const SegmentTimeline& timeline, cv::Size size) {
-  cv::Mat3b image(size, kPaper);
+  cv::Mat3b image(size, palette::kChartBackground);
   const int width = std::max(1, size.width - kLeft_px - kRight_px);
   const Axes columns = axes_in(timeline, {kLeft_px, 0, width, 1});
   const Side incoming = side_of(timeline, columns, true);
@@ -195,7 +194,7 @@ cv::Mat3b draw_timeline(const SegmentTimeline& timeline, cv::Size size) {
     draw_area(image, axes, timeline);
   }
   axes.draw_frame(image, "", "slices in the map");
-  draw_text(image, "points", {12, top + 24}, kSmallText, kInk);
+  draw_text(image, "points", {12, top + 24}, kSmallText, palette::kChartText);
   draw_ticks(image, axes, timeline);
   draw_count(image, incoming, "absorbed", {12, kHeading_px + 12});
   draw_count(image, outgoing, "split off", {12, bottom + kAxisText_px + 12});

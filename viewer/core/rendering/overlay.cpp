@@ -5,15 +5,11 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "viewer/core/drawing/palette.hpp"
 #include "viewer/core/drawing/text.hpp"
 
 namespace kintsugi::viewer {
 namespace {
-
-const cv::Scalar kPathColor(40, 190, 255);
-const cv::Scalar kCameraColor(80, 255, 120);
-const cv::Scalar kTextColor(235, 235, 235);
-const cv::Scalar kBarColor(52, 44, 38);
 
 /// Lines grow with the picture, so that they look alike at every size.
 int line_width(const cv::Mat3b& image) { return std::max(1, (image.cols + 320) / 640); }
@@ -23,7 +19,7 @@ cv::Point2d project(const Intrinsics& k, const Eigen::Vector3d& p_V) {
 }
 
 void draw_line(cv::Mat3b& image, const VirtualCamera& camera, Eigen::Vector3d a_V,
-               Eigen::Vector3d b_V, const cv::Scalar& color, int width) {
+               Eigen::Vector3d b_V, const Rgb& color, int width) {
   constexpr double kNear_m = 0.05;
   if (a_V.z() > b_V.z()) std::swap(a_V, b_V);
   if (b_V.z() <= kNear_m) return;
@@ -48,7 +44,7 @@ void draw_path(cv::Mat3b& image, const VirtualCamera& camera,
   const Pose X_VW = camera.X_WV.inverse();
   for (std::size_t i = 1; i < path_W.size(); ++i) {
     draw_line(image, camera, X_VW * path_W[i - 1].cast<double>(), X_VW * path_W[i].cast<double>(),
-              kPathColor, line_width(image));
+              palette::kCameraPath, line_width(image));
   }
 }
 
@@ -65,17 +61,17 @@ void draw_frustum(cv::Mat3b& image, const VirtualCamera& camera, const Pose& X_W
   }
   for (std::size_t i = 0; i < corners_V.size(); ++i) {
     const int width = line_width(image);
-    draw_line(image, camera, X_VC.translation(), corners_V[i], kCameraColor, width);
-    draw_line(image, camera, corners_V[i], corners_V[(i + 1) % 4], kCameraColor, width);
+    draw_line(image, camera, X_VC.translation(), corners_V[i], palette::kCameraFrustum, width);
+    draw_line(image, camera, corners_V[i], corners_V[(i + 1) % 4], palette::kCameraFrustum, width);
   }
 }
 
 void draw_caption(cv::Mat3b& image, const cv::Rect& bar, const std::string& text) {
-  cv::rectangle(image, bar, kBarColor, cv::FILLED);
+  cv::rectangle(image, bar, palette::kCaptionBar, cv::FILLED);
   const cv::Size unit = text_size(text, 1.0);
   const double scale = std::min(0.018 * bar.height, (bar.width - 20.0) / std::max(unit.width, 1));
   const int y = bar.y + (bar.height + static_cast<int>(scale * unit.height)) / 2;
-  draw_text(image, text, {bar.x + 10, y}, scale, kTextColor);
+  draw_text(image, text, {bar.x + 10, y}, scale, palette::kCaptionText);
 }
 
 void draw_title(cv::Mat3b& image, const std::string& text) {

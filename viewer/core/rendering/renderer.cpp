@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <utility>
 #include <vector>
 
 #include "lcmtypes/base/argument_check.hpp"
+#include "lcmtypes/base/text_format.hpp"
+#include "viewer/core/drawing/palette.hpp"
 #include "viewer/core/drawing/text.hpp"
 #include "viewer/core/rendering/overlay.hpp"
 #include "viewer/core/rendering/segment_labels.hpp"
@@ -84,7 +85,7 @@ cv::Mat3b Renderer::draw_figure(const Subject& subject, const std::string& capti
   constexpr std::array kColorings{Coloring::kTrue, Coloring::kSegments};
   constexpr std::array kMapTitles{"map", "segments"};
   const Layout layout = layout_of(config_.width_px, config_.height_px);
-  cv::Mat3b figure(config_.height_px, config_.width_px, cv::Vec3b(90, 80, 72));
+  cv::Mat3b figure(config_.height_px, config_.width_px, palette::kPanelGap);
   const Panel map = panel(subject, subject.scene.chunks(),
                           camera_of(subject, layout.map[0].size(), config_.view));
   const Detail detail =
@@ -126,9 +127,7 @@ cv::Mat3b Renderer::draw_panel(const Panel& panel, Coloring coloring, const std:
 
 std::string caption(const Scene& scene) {
   const double time_s = 1e-6 * static_cast<double>(scene.utime() - scene.first_utime());
-  std::array<char, 32> time{};
-  std::snprintf(time.data(), time.size(), "%.1f s", time_s);
-  return std::string(time.data()) + "   " + final_caption(scene);
+  return format("%.1f s   ", time_s) + final_caption(scene);
 }
 
 std::string final_caption(const Scene& scene) {

@@ -10,6 +10,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "lcmtypes/messages.hpp"
+#include "viewer/core/drawing/palette.hpp"
 #include "viewer/core/drawing/text.hpp"
 
 namespace kintsugi::viewer {
@@ -17,9 +18,6 @@ namespace {
 
 constexpr std::size_t kMaxLabels = 60;
 constexpr int kMargin_px = 3;  ///< around the letters
-
-const cv::Scalar kLeader(235, 235, 235);
-const cv::Scalar kLeaderEdge(20, 16, 14);
 
 /// The part of the picture in which a segment is seen.
 struct SeenSegment {
@@ -185,10 +183,10 @@ void draw_labels(cv::Mat3b& image, std::span<const SegmentLabel> labels) {
   for (const SegmentLabel& label : labels) {
     const auto leader = leader_of(label.anchor, label.box);
     if (!leader) continue;
-    cv::line(image, leader->from, leader->to, kLeaderEdge, 3, cv::LINE_AA);
-    cv::line(image, leader->from, leader->to, kLeader, 1, cv::LINE_AA);
-    cv::circle(image, leader->from, 3, kLeaderEdge, cv::FILLED, cv::LINE_AA);
-    cv::circle(image, leader->from, 2, kLeader, cv::FILLED, cv::LINE_AA);
+    cv::line(image, leader->from, leader->to, palette::kPictureTextEdge, 3, cv::LINE_AA);
+    cv::line(image, leader->from, leader->to, palette::kPictureText, 1, cv::LINE_AA);
+    cv::circle(image, leader->from, 3, palette::kPictureTextEdge, cv::FILLED, cv::LINE_AA);
+    cv::circle(image, leader->from, 2, palette::kPictureText, cv::FILLED, cv::LINE_AA);
   }
   for (const SegmentLabel& label : labels) {
     const cv::Point lower_left(label.box.x, label.box.br().y);

@@ -6,6 +6,8 @@
 
 #include <oneapi/tbb/parallel_for.h>
 
+#include "viewer/core/drawing/palette.hpp"
+
 namespace kintsugi::viewer {
 namespace {
 
@@ -47,7 +49,7 @@ float facing(const CloudPoint& p, const Eigen::Vector3f& eye_W) {
 
 cv::Mat3b shade(const VisibilityImage& visible, std::span<const PointChunk> chunks,
                 const VirtualCamera& camera, Coloring coloring, const Highlight& highlight) {
-  cv::Mat3b image(visible.height(), visible.width(), kBackground);
+  cv::Mat3b image(visible.height(), visible.width(), palette::kBackground);
   const Eigen::Vector3f eye_W = camera.X_WV.translation().cast<float>();
   const Light light = light_of(coloring);
   tbb::parallel_for(0, visible.height(), [&](int v) {
@@ -59,8 +61,9 @@ cv::Mat3b shade(const VisibilityImage& visible, std::span<const PointChunk> chun
       const float brightness = (light.ambient + (1.0F - light.ambient) * facing(point, eye_W)) *
                                std::exp(-light.edge * occlusion(visible, u, v));
       const std::uint32_t id = chunk.labels[index];
-      const Color color = coloring == Coloring::kTrue ? true_color(point) : segment_color(id);
-      const Color lit = cv::Vec3f(color) * brightness;
+      const cv::Vec3b color =
+          coloring == Coloring::kTrue ? Rgb{point.red, point.green, point.blue} : segment_color(id);
+      const cv::Vec3b lit = cv::Vec3f(color) * brightness;
       image(v, u) = highlight.empty() || highlight.contains(id) ? lit : dimmed(lit);
     }
   });

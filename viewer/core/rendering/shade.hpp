@@ -14,12 +14,10 @@ enum class Coloring {
   kSegments,  ///< segment_color() of the label
 };
 
-inline const Color kBackground{34, 28, 24};
-
 /// Colours what splat_points() found, as seen by `camera`; `chunks` are those it was given.
 /// Surfaces get light from the camera's side, and edges in depth are darkened (eye-dome lighting,
 /// Boucheny 2009), so that shape shows within one colour. What is not highlighted
-/// is dimmed, unless nothing is. Pixels with nothing are kBackground.
+/// is dimmed, unless nothing is. Pixels with nothing are palette::kBackground.
 cv::Mat3b shade(const VisibilityImage& visible, std::span<const PointChunk> chunks,
                 const VirtualCamera& camera, Coloring coloring, const Highlight& highlight = {});
 

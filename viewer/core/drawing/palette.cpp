@@ -1,4 +1,4 @@
-#include "viewer/core/drawing/colors.hpp"
+#include "viewer/core/drawing/palette.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -15,8 +15,8 @@ std::uint8_t hsv_channel(double offset, double hue, double saturation, double va
 
 }  // namespace
 
-Color segment_color(std::uint32_t segment_id) {
-  if (segment_id == kNoSegment) return kUnlabelledColor;
+Rgb segment_color(std::uint32_t segment_id) {
+  if (segment_id == kNoSegment) return palette::kUnlabelledPoint;
   // Multiples of the golden ratio modulo 1 keep any run of ids evenly apart on the hue circle; a
   // second irrational step spreads the same hues over light and saturation.
   constexpr double kHueStep = 0.618033988749895;
@@ -25,8 +25,9 @@ Color segment_color(std::uint32_t segment_id) {
   const double tone = std::fmod(segment_id * kToneStep, 1.0);
   const double saturation = 0.45 + 0.45 * tone;
   const double value = 1.0 - 0.3 * std::fmod(2.0 * tone, 1.0);
-  return {hsv_channel(1.0, hue, saturation, value), hsv_channel(3.0, hue, saturation, value),
-          hsv_channel(5.0, hue, saturation, value)};
+  return {.red = hsv_channel(5.0, hue, saturation, value),
+          .green = hsv_channel(3.0, hue, saturation, value),
+          .blue = hsv_channel(1.0, hue, saturation, value)};
 }
 
 }  // namespace kintsugi::viewer
