@@ -10,11 +10,12 @@ namespace kintsugi::viewer {
 
 cv::Vec3b dimmed(const cv::Vec3b& color) {
   constexpr double kBrightness = 0.45;
-  constexpr double kHue = 0.2;  // share of the colour that is left
-  // Lightness as in HSL: by luminance, blue would vanish in the background.
+  constexpr double kChroma = 0.2;  // share that remains
+  // Lightness as in HSL: with luminance, blue would be as dark as the background.
   const auto [darkest, brightest] = std::minmax({color[0], color[1], color[2]});
   const double grey = 0.5 * (darkest + brightest);
-  return cv::Vec3b(kBrightness * (kHue * cv::Vec3d(color) + (1.0 - kHue) * cv::Vec3d::all(grey)));
+  return cv::Vec3b(kBrightness *
+                   (kChroma * cv::Vec3d(color) + (1.0 - kChroma) * cv::Vec3d::all(grey)));
 }
 
 void outline(cv::Mat3b& image, const cv::Mat1b& mask, int width_px) {

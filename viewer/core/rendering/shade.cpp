@@ -16,13 +16,14 @@ struct Light {
   float edge = 0.0F;     ///< strength of the darkening at edges in depth
 };
 
-/// True colour carries the light of the room already.
+/// True colours contain the shading of the room: less is added.
 Light light_of(Coloring coloring) {
   return coloring == Coloring::kTrue ? Light{0.75F, 4.0F} : Light{0.45F, 6.0F};
 }
 
-/// How far the surroundings stand in front of this pixel: mean of max(0, log z - log z') over the
-/// four neighbours two pixels away, limited so that a far background is outlined, not blackened.
+/// How much nearer the neighbourhood is than this pixel: mean of max(0, log2 z - log2 z') over the
+/// four neighbours two pixels away, each limited so that the background of a near object is
+/// outlined and not blackened.
 float occlusion(const VisibilityImage& visible, int u, int v) {
   constexpr float kLimit = 0.1F;
   constexpr std::array<std::array<int, 2>, 4> kNeighbours{{{-2, 0}, {2, 0}, {0, -2}, {0, 2}}};
