@@ -4,7 +4,6 @@
 #include <stdexcept>
 #include <string>
 
-#include <CLI/CLI.hpp>
 #include <spdlog/spdlog.h>
 
 #include "lcmtypes/base/argument_check.hpp"

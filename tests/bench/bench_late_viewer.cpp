@@ -11,8 +11,8 @@
 #include "lcmtypes/stream/stream_publisher.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/viewer/support/synthetic_room.hpp"
-#include "viewer/process/receiver.hpp"
-#include "viewer/process/viewer.hpp"
+#include "viewer/process/viewer_process.hpp"
+#include "viewer/receiving/receiver.hpp"
 
 namespace kintsugi::viewer {
 namespace {
@@ -63,10 +63,10 @@ void join_late(benchmark::State& state) {
   for (auto _ : state) {
     std::ofstream("/proc/self/clear_refs") << 5;  // the peak starts anew
     const double before_mb = status_mb("VmRSS");
-    Viewer::Config config;
+    ViewerProcess::Config config;
     config.folder = folder.path();
-    Viewer viewer(config,
-                  {.on_picture = [](const cv::Mat3b&, const std::string&) {}, .on_forgotten = {}});
+    ViewerProcess viewer(
+        config, {.on_picture = [](const cv::Mat3b&, const std::string&) {}, .on_forgotten = {}});
     Receiver receiver(
         {.map_name = "", .has_room = {}},
         [&](Message message) { viewer.add(std::move(message), 0.0); },

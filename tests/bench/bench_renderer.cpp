@@ -3,41 +3,41 @@
 #include <benchmark/benchmark.h>
 
 #include "tests/viewer/support/synthetic_room.hpp"
-#include "viewer/core/rendering/renderer.hpp"
+#include "viewer/core/figure/map_renderer.hpp"
 
 namespace kintsugi::viewer {
 namespace {
 
-void draw_figure(benchmark::State& state, const View& view) {
+void draw_figure(benchmark::State& state, const Viewpoint& view) {
   constexpr double kResolution_m = 0.0088;
   constexpr double kPointsPerMetre = 18.0 / (kResolution_m * kResolution_m);
   const double length_m = 1e6 * static_cast<double>(state.range(0)) / kPointsPerMetre;
   const SyntheticMap room = make_room(length_m, kResolution_m);
-  Scene scene(room.slices.front().session);
-  FollowedCamera followed;
-  for (const CloudSlice& slice : room.slices) scene.add_slice(slice);
+  ReceivedMap map(room.slices.front().session);
+  SmoothedCamera followed;
+  for (const CloudSlice& slice : room.slices) map.add_slice(slice);
   for (std::size_t i = 0; i < room.updates.size(); ++i) {
-    scene.apply_update(room.updates[i]);
+    map.apply_update(room.updates[i]);
   }
   for (const CameraPose& pose : room.poses) {
-    scene.add_pose(pose);
-    followed.update(pose, scene.up().up_W());
+    map.add_pose(pose);
+    followed.update(pose, map.up().up_W());
   }
 
-  const Renderer renderer{Renderer::Config{}};
+  const MapRenderer renderer{MapRenderer::Config{}};
   for (auto _ : state) {
     benchmark::DoNotOptimize(
-        renderer.draw_figure({scene, scene.heard_track(), followed, view}, caption(scene)));
+        renderer.draw_figure({map, map.received_track(), followed, view}, caption(map)));
   }
-  state.counters["points"] = static_cast<double>(scene.counts().points);
+  state.counters["points"] = static_cast<double>(map.counts().points);
 }
 
-BENCHMARK_CAPTURE(draw_figure, follow, FollowView{})
+BENCHMARK_CAPTURE(draw_figure, follow, FollowViewpoint{})
     ->Arg(1)
     ->Arg(4)
     ->UseRealTime()
     ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(draw_figure, overview, OverviewView{})
+BENCHMARK_CAPTURE(draw_figure, overview, OverviewViewpoint{})
     ->Arg(1)
     ->Arg(4)
     ->UseRealTime()

@@ -7,7 +7,7 @@
 namespace kintsugi::viewer {
 
 void write_png(const std::filesystem::path& path, const cv::Mat3b& image) {
-  // cv::imwrite does not report a full disk: OpenCV encodes, we write.
+  // cv::imwrite does not report a full disk, so OpenCV only encodes.
   std::vector<std::uint8_t> bytes;
   cv::imencode(".png", image, bytes);
   AtomicFile file(path);

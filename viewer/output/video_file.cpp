@@ -3,19 +3,23 @@
 #include <stdexcept>
 #include <string>
 
+#include "lcmtypes/base/argument_check.hpp"
+
 namespace kintsugi::viewer {
 namespace {
 
 const std::filesystem::path& require_mp4(const std::filesystem::path& path) {
-  if (path.extension() != ".mp4") {
-    throw std::invalid_argument("video file is '" + path.string() + "', expected a name in .mp4");
-  }
+  require(path.extension() == ".mp4", "video file", path, "a name that ends in .mp4");
   return path;
 }
 
-/// OpenCV knows no other way to count than the container's index, which is written last. Of an
-/// index that is cut short the count may be there and the places of the frames not: then neither
-/// the first nor the last is found.
+std::string text_of(cv::Size size) {
+  return std::to_string(size.width) + "x" + std::to_string(size.height);
+}
+
+/// The count in the container's index, which is written last; OpenCV knows no other. When the index
+/// is truncated, the count may be there without the positions of the frames: so the first and the
+/// last frame are read, too, and the count is 0 when that fails.
 std::int64_t count_frames(const std::filesystem::path& path) {
   cv::VideoCapture video(path.string(), cv::CAP_FFMPEG);
   if (!video.isOpened() || !video.grab()) return 0;
@@ -37,11 +41,7 @@ VideoFile::VideoFile(const std::filesystem::path& path, cv::Size size, double fr
 }
 
 void VideoFile::add(const cv::Mat3b& image) {
-  if (image.size() != size_) {
-    throw std::invalid_argument("video frame is " + std::to_string(image.cols) + "x" +
-                                std::to_string(image.rows) + ", expected " +
-                                std::to_string(size_.width) + "x" + std::to_string(size_.height));
-  }
+  require(image.size() == size_, "video frame", text_of(image.size()), text_of(size_));
   writer_.write(image);
   ++frames_;
 }
@@ -51,7 +51,7 @@ void VideoFile::finish() {
   if (frames_ == 0) return;
   const std::int64_t found = count_frames(file_.partial_path());
   if (found != frames_) {
-    throw std::runtime_error("video '" + path_.string() + "' holds " + std::to_string(found) +
+    throw std::runtime_error("video '" + path_.string() + "' has " + std::to_string(found) +
                              " of " + std::to_string(frames_) + " frames: is the disk full?");
   }
   file_.commit();

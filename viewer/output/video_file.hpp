@@ -10,19 +10,22 @@
 
 namespace kintsugi::viewer {
 
-/// An MPEG-4 video that is whole under its name, or absent.
+/// An MPEG-4 video file that is complete or absent, also after an error.
 class VideoFile {
  public:
-  /// Opens the partial file. Throws std::invalid_argument when `path` does not end in .mp4, and
-  /// std::runtime_error naming the file when it cannot be written.
+  /// Opens a temporary file beside `path`.
+  /// @throws std::invalid_argument when `path` does not end in .mp4, std::runtime_error naming the
+  ///   file when it cannot be written
   VideoFile(const std::filesystem::path& path, cv::Size size, double frames_per_s);
 
-  /// Appends a picture of the size given before.
+  /// Appends a picture.
+  /// @throws std::invalid_argument when it has another size than the video
   void add(const cv::Mat3b& image);
 
-  /// Closes the file, checks that its index is whole (FFmpeg reports no full disk to
-  /// OpenCV) and gives it its name. Without a frame there is no file. Throws std::runtime_error
-  /// naming the file; nothing remains then. Call once, and add() no more.
+  /// Closes the file, checks that its index is complete (FFmpeg does not report a full disk to
+  /// OpenCV) and renames it to `path`. A video without frames is removed. Call once, after the last
+  /// add().
+  /// @throws std::runtime_error naming the file when it is not complete; it is removed then
   void finish();
 
   std::int64_t frames() const { return frames_; }
@@ -31,7 +34,7 @@ class VideoFile {
  private:
   std::filesystem::path path_;
   cv::Size size_;
-  AtomicFile file_;  // before the writer, which must be closed first
+  AtomicFile file_;  // before the writer, so that it is destroyed after it
   cv::VideoWriter writer_;
   std::int64_t frames_ = 0;
 };

@@ -2,16 +2,119 @@
 
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <iostream>
 #include <numbers>
-#include <stdexcept>
+#include <vector>
 
 #include <CLI/CLI.hpp>
+
+#include "lcmtypes/base/argument_check.hpp"
 
 namespace kintsugi::viewer {
 namespace {
 
 constexpr double kDegreesPerRadian = 180.0 / std::numbers::pi;
+
+/// The options, and the values of flags that are converted after parsing.
+struct Flags {
+  Options options;
+  std::string log;
+  std::string folder = options.process.folder.string();
+  std::string video;
+  std::string viewpoint = "follow";
+  std::string size =
+      std::to_string(renderer().width_px) + "x" + std::to_string(renderer().height_px);
+  std::vector<std::uint32_t> highlight;
+  double overview_yaw_deg = rounded_deg(renderer().viewpoint.overview_yaw_rad);
+  double overview_pitch_deg = rounded_deg(renderer().viewpoint.overview_pitch_rad);
+  bool print_config = false;
+
+  Painter::Config& painter() { return options.process.painter; }
+  MapRenderer::Config& renderer() { return painter().renderer; }
+
+  static double rounded_deg(double angle_rad) { return std::round(angle_rad * kDegreesPerRadian); }
+};
+
+void add_input_flags(CLI::App& app, Flags& flags) {
+  Options& options = flags.options;
+  app.add_option("--lcm-url", options.lcm_url, "LCM URL; empty: LCM's default");
+  app.add_option("--log", flags.log, "Read this LCM log as fast as possible instead of the bus");
+  app.add_option("--map-name", options.map_name,
+                 "Draw the map with this name (default: the first one received)");
+  app.add_option("--max-queue", options.max_queue_mb,
+                 "Memory for messages that wait while a picture is drawn, MB; further ones are "
+                 "refused and requested again")
+      ->check(CLI::Range(1.0, 1e6))
+      ->capture_default_str();
+  app.add_flag("--exit-on-final", options.exit_on_final,
+               "Exit when the final pictures are written");
+}
+
+void add_output_flags(CLI::App& app, Flags& flags) {
+  ViewerProcess::Config& process = flags.options.process;
+  app.add_option("--out", flags.folder, "Folder for the pictures; created if it is missing")
+      ->capture_default_str();
+  app.add_option("--every", process.every_slices, "Number of slices between two snapshots")
+      ->capture_default_str();
+  app.add_option("--size", flags.size, "WIDTHxHEIGHT of the pictures, pixels")
+      ->capture_default_str();
+  app.add_option("--video", flags.video, "Write a video to this .mp4 file");
+  app.add_option("--video-period", process.video_period_s, "Map time between two frames, s")
+      ->capture_default_str();
+  app.add_option("--video-rate", process.video_frames_per_s, "Frames per second of the video")
+      ->capture_default_str();
+  app.add_flag("--plots", flags.painter().plots, "Write plots.png: lag and times over the slices");
+  app.add_option("--drawing-share", flags.painter().max_drawing_share,
+                 "Largest share of the wall time for drawing; with --log it is 1")
+      ->default_val(0.5);
+}
+
+void add_segment_flags(CLI::App& app, Flags& flags) {
+  const auto add_ids = [&](const std::string& name, std::vector<std::uint32_t>& ids,
+                           const std::string& help) {
+    app.add_option(name, ids, help)
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->check(CLI::Range(std::uint32_t{1}, UINT32_MAX));
+  };
+  app.add_flag("--label-ids", flags.renderer().label_ids,
+               "Write the ids of the largest visible segments into the pictures of the segments");
+  add_ids("--highlight", flags.highlight,
+          "Highlight these segments, ID,ID,...: show their ids and a close-up, dim all others");
+  add_ids("--timeline", flags.painter().timelines,
+          "Write timeline_ID.png, the history of segment ID; several: ID,ID,...");
+}
+
+void add_drawing_flags(CLI::App& app, Flags& flags) {
+  MapRenderer::Config& renderer = flags.renderer();
+  app.add_option(
+         "--view", flags.viewpoint,
+         "follow (the camera), overview, or x,y,z,lookx,looky,lookz (eye and target in W, m)")
+      ->capture_default_str();
+  app.add_option("--follow-radius", renderer.viewpoint.follow_radius_m,
+                 "Distance from the camera up to which --view follow shows the map, m")
+      ->capture_default_str();
+  app.add_option("--overview-yaw", flags.overview_yaw_deg,
+                 "Angle of the overview to the left of the first viewing direction, degrees")
+      ->capture_default_str();
+  app.add_option("--overview-pitch", flags.overview_pitch_deg,
+                 "Angle of the overview below the horizon, degrees")
+      ->capture_default_str();
+  app.add_option("--splat-radius", renderer.splat.radius_vox,
+                 "Radius of the disc drawn for a point, voxels")
+      ->capture_default_str();
+  app.add_option("--supersampling", renderer.supersampling,
+                 "Each pixel is the mean of this number squared of samples")
+      ->capture_default_str();
+}
+
+void add_config_flags(CLI::App& app, Flags& flags) {
+  app.set_config("--config", "", "Read options from this file; flags override it");
+  app.add_flag("--print-config", flags.print_config,
+               "Print all options as a file for --config and exit")
+      ->configurable(false);
+}
 
 /// "1280x720".
 void parse_size(const std::string& text, int& width_px, int& height_px) {
@@ -21,111 +124,48 @@ void parse_size(const std::string& text, int& width_px, int& height_px) {
     const auto [rest, height_error] = std::from_chars(x + 1, end, height_px);
     if (height_error == std::errc() && rest == end) return;
   }
-  throw std::invalid_argument("size is \"" + text + "\", expected WIDTHxHEIGHT in pixels");
+  require(false, "--size", '"' + text + '"', "WIDTHxHEIGHT in pixels");
+}
+
+/// The options with the converted values, checked.
+Options options_of(Flags flags) {
+  MapRenderer::Config& renderer = flags.renderer();
+  flags.painter().viewpoint = parse_viewpoint(flags.viewpoint);
+  flags.painter().highlight.insert(flags.highlight.begin(), flags.highlight.end());
+  parse_size(flags.size, renderer.width_px, renderer.height_px);
+  renderer.viewpoint.overview_yaw_rad = flags.overview_yaw_deg / kDegreesPerRadian;
+  renderer.viewpoint.overview_pitch_rad = flags.overview_pitch_deg / kDegreesPerRadian;
+  flags.options.process.folder = flags.folder;
+  if (!flags.video.empty()) flags.options.process.video = flags.video;
+  if (!flags.log.empty()) {
+    require(flags.options.lcm_url.empty(), "--log and --lcm-url are given, must be one of the two");
+    flags.options.log = flags.log;
+    flags.painter().max_drawing_share = 1.0;
+  }
+  flags.options.process.validate();
+  return flags.options;
 }
 
 }  // namespace
 
-std::optional<Options> parse_options(int argc, char** argv, int& exit_code) {
+std::variant<Options, int> parse_options(int argc, const char* const* argv) {
   CLI::App app("Draws the map and its segments off screen, from the bus or from a log.",
                "kintsugi-viewer");
-  Options options;
-  Viewer::Config& viewer = options.viewer;
-  Painter::Config& painter = viewer.painter;
-  Renderer::Config& renderer = painter.renderer;
-  std::string view = "follow";
-  std::string size = std::to_string(renderer.width_px) + "x" + std::to_string(renderer.height_px);
-  std::string folder = viewer.folder.string();
-  std::string log;
-  std::string video;
-  std::vector<std::uint32_t> highlight;
-  double overview_yaw_deg = std::round(renderer.view.overview_yaw_rad * kDegreesPerRadian);
-  double overview_pitch_deg = std::round(renderer.view.overview_pitch_rad * kDegreesPerRadian);
-  bool print_config = false;
-
-  app.set_config("--config", "", "Read options from this file; flags override it");
-  app.add_flag("--print-config", print_config, "Print all options as a file for --config and exit")
-      ->configurable(false);
-  app.add_option("--lcm-url", options.lcm_url, "LCM URL; empty: LCM's default");
-  app.add_option("--log", log, "Read this LCM log as fast as possible instead of the bus");
-  app.add_option("--map-name", options.map_name,
-                 "Draw the map with this name (default: the first that is heard)");
-  app.add_option("--max-queue", options.max_queue_mb,
-                 "Most that is received ahead of drawing, MB; the rest is asked for again later")
-      ->check(CLI::Range(1.0, 1e6))
-      ->capture_default_str();
-  app.add_option("--out", folder, "Folder for the pictures; created where it is missing")
-      ->capture_default_str();
-  app.add_option("--every", viewer.every_slices, "Slices between two snapshots")
-      ->capture_default_str();
-  app.add_option("--view", view, "follow, overview, or x,y,z,lookx,looky,lookz (metres, W)")
-      ->capture_default_str();
-  app.add_option("--size", size, "WIDTHxHEIGHT of the pictures, pixels")->capture_default_str();
-  app.add_option("--video", video, "Write a video to this .mp4 file");
-  app.add_option("--video-period", viewer.video_period_s, "Map time between two frames, s")
-      ->capture_default_str();
-  app.add_option("--video-rate", viewer.video_frames_per_s, "Frames per second of the video")
-      ->capture_default_str();
-  app.add_flag("--plots", painter.plots, "Write plots.png: lag and times over the slices");
-  app.add_flag("--label-ids", renderer.label_ids,
-               "Write the ids of the largest segments into the pictures of the segments");
-  app.add_option("--highlight", highlight,
-                 "Show these segments, ID,ID,...: their ids, and everything else dimmed")
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->check(CLI::Range(std::uint32_t{1}, UINT32_MAX));
-  app.add_option("--timeline", painter.timelines,
-                 "Write timeline_ID.png: what became of segment ID; several: ID,ID,...")
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->check(CLI::Range(std::uint32_t{1}, UINT32_MAX));
-  app.add_flag("--exit-on-final", options.exit_on_final, "Exit when the final map is drawn");
-  app.add_option("--drawing-share", painter.max_drawing_share,
-                 "Most of the wall time that drawing may take, when reading the bus")
-      ->default_val(0.5);
-  app.add_option("--follow-radius", renderer.view.follow_radius_m,
-                 "The follow view shows the map so far from the camera, m")
-      ->capture_default_str();
-  app.add_option("--overview-yaw", overview_yaw_deg,
-                 "The overview looks so far to the left of the first camera's direction, degrees")
-      ->capture_default_str();
-  app.add_option("--overview-pitch", overview_pitch_deg,
-                 "The overview looks so far below the horizon, degrees")
-      ->capture_default_str();
-  app.add_option("--splat-radius", renderer.splat.radius_vox,
-                 "Radius of the disc drawn for a point, voxels")
-      ->capture_default_str();
-  app.add_option("--supersampling", renderer.supersampling,
-                 "Each pixel is the mean of this many squared")
-      ->capture_default_str();
-
+  Flags flags;
+  add_input_flags(app, flags);
+  add_output_flags(app, flags);
+  add_segment_flags(app, flags);
+  add_drawing_flags(app, flags);
+  add_config_flags(app, flags);
   try {
     app.parse(argc, argv);
-    painter.view = parse_view(view);
-    parse_size(size, renderer.width_px, renderer.height_px);
-    viewer.folder = folder;
-    painter.highlight.insert(highlight.begin(), highlight.end());
-    renderer.view.overview_yaw_rad = overview_yaw_deg / kDegreesPerRadian;
-    renderer.view.overview_pitch_rad = overview_pitch_deg / kDegreesPerRadian;
-    if (!log.empty() && !options.lcm_url.empty()) {
-      throw std::invalid_argument("--log and --lcm-url: expected one of the two");
-    }
-    if (!log.empty()) options.log = log;
-    if (!video.empty()) viewer.video = video;
-    if (options.log) painter.max_drawing_share = 1.0;
-    viewer.validate();
   } catch (const CLI::ParseError& error) {
-    exit_code = app.exit(error);
-    return std::nullopt;
-  } catch (const std::invalid_argument& error) {
-    std::cerr << "kintsugi-viewer: " << error.what() << '\n';
-    exit_code = 2;
-    return std::nullopt;
+    return app.exit(error);
   }
-  if (print_config) {
+  Options options = options_of(flags);
+  if (flags.print_config) {
     std::cout << app.config_to_str(true, true);
-    exit_code = 0;
-    return std::nullopt;
+    return 0;
   }
   return options;
 }

@@ -1,28 +1,31 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <variant>
 
-#include "viewer/process/viewer.hpp"
+#include "viewer/process/viewer_process.hpp"
 
 namespace kintsugi::viewer {
 
-/// The command line of kintsugi-viewer.
+/// Everything that the command line of kintsugi-viewer sets.
 struct Options {
-  std::string lcm_url;  ///< empty: LCM's default
-  std::optional<std::filesystem::path> log;
-  std::string map_name;       ///< draw only the map with this name; empty: the first that is heard
-  double max_queue_mb = 256;  ///< received and not yet used
+  std::string lcm_url;                       ///< empty: LCM's default
+  std::optional<std::filesystem::path> log;  ///< read this LCM log instead of the bus
+  std::string map_name;                      ///< of the map to draw; empty: the first one received
+  double max_queue_mb = 256;  ///< memory for messages received and not yet used, 1e6 bytes
   bool exit_on_final = false;
-  Viewer::Config viewer;
+  ViewerProcess::Config process;
 
   std::size_t max_queue_bytes() const { return static_cast<std::size_t>(1e6 * max_queue_mb); }
 };
 
-/// Reads flags and --config FILE. Nothing when there is nothing to run, because help or the
-/// configuration was asked for and printed, or something was wrong: then `exit_code` is not 0 and
-/// standard error says what.
-std::optional<Options> parse_options(int argc, char** argv, int& exit_code);
+/// Reads the command line and the --config file that it names. Returns the options, or the exit
+/// code when there is nothing to run: after --help, --print-config or a flag that cannot be parsed,
+/// which is reported on stderr.
+/// @throws std::invalid_argument for a value that is out of its bounds
+std::variant<Options, int> parse_options(int argc, const char* const* argv);
 
 }  // namespace kintsugi::viewer

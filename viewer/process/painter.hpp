@@ -1,59 +1,60 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <string>
 #include <vector>
 
-#include "viewer/core/rendering/renderer.hpp"
-#include "viewer/process/session_scene.hpp"
+#include "viewer/core/camera/viewpoint.hpp"
+#include "viewer/core/figure/map_renderer.hpp"
+#include "viewer/session/map_session.hpp"
 
 namespace kintsugi::viewer {
 
 struct NamedPicture {
-  std::string name;
+  std::string name;  ///< of the file, without suffix and extension
   cv::Mat3b picture;
 };
 
-/// Draws the pictures of map sessions, and notes the time that takes.
+/// Draws the pictures of map sessions, and limits the share of time that drawing takes.
 class Painter {
  public:
   struct Config {
-    Renderer::Config renderer;
-    View view = FollowView{};
-    Highlight highlight;                   ///< in all pictures
-    bool plots = false;                    ///< draw plots with the final pictures
-    std::vector<std::uint32_t> timelines;  ///< segments of which timelines are drawn with them
-    double max_drawing_share = 1.0;  ///< of the wall time; less leaves the rest to other processes
+    MapRenderer::Config renderer;
+    Viewpoint viewpoint = FollowViewpoint{};  ///< of pictures of the run; final: the overview
+    Highlight highlight;                      ///< in all pictures
+    bool plots = false;                       ///< draw plots.png with the final pictures
+    std::vector<std::uint32_t> timelines;     ///< segments whose timelines are drawn with them
+    double max_drawing_share = 1.0;           ///< of the wall time
 
-    /// Throws std::invalid_argument naming the field, its value and the bound.
+    /// @throws std::invalid_argument naming the field, its value and the bound
     void validate() const;
   };
 
-  /// Throws what Config::validate() throws.
+  /// @throws std::invalid_argument as Config::validate()
   explicit Painter(const Config& config);
 
-  /// What has been drawn has had its share of the time: the next picture is to wait.
-  bool is_resting() const { return Clock::now() < rested_; }
+  /// Drawing has used its share of the time: wait with the next picture.
+  bool is_resting() const { return Clock::now() < rest_end_; }
 
-  /// A picture of the run: with the poses that were heard, in the view that was chosen, and with
+  /// Draws a picture of the run: with the poses received, from the configured viewpoint, and with
   /// the segments of the newest answer highlighted.
-  cv::Mat3b draw_figure(SessionScene& shown);
+  cv::Mat3b draw_figure(MapSession& session);
 
-  /// The figure for a person first, then what is written beside it. The same for everyone who has
-  /// the map: without poses, times and answers, from
-  /// above.
-  std::vector<NamedPicture> draw_finals(SessionScene& shown);
+  /// Draws the final pictures, the figure first. They do not depend on poses, times and answers, so
+  /// that they are the same in every viewer that has the map; plots do.
+  std::vector<NamedPicture> draw_finals(MapSession& session);
 
-  double render_ms() const { return render_ms_; }  ///< of the last figure
+  double render_ms() const { return render_ms_; }  ///< wall time of the last figure
 
  private:
   using Clock = std::chrono::steady_clock;
 
-  void note_time(SessionScene& shown, Clock::time_point start);
+  void note_time(MapSession& session, double render_ms);
 
   Config config_;
-  Renderer renderer_;
-  Clock::time_point rested_ = Clock::now();
+  MapRenderer renderer_;
+  Clock::time_point rest_end_ = Clock::now();
   double render_ms_ = 0.0;
 };
 

@@ -13,110 +13,130 @@
 #include "lcmtypes/bus/bus.hpp"
 #include "lcmtypes/bus/bus_thread.hpp"
 #include "lcmtypes/log/log_reader.hpp"
-#include "viewer/process/announcer.hpp"
-#include "viewer/process/inbox.hpp"
-#include "viewer/process/receiver.hpp"
+#include "viewer/process/viewer_publisher.hpp"
+#include "viewer/receiving/inbox.hpp"
+#include "viewer/receiving/receiver.hpp"
 
 namespace kintsugi::viewer {
 namespace {
 
-/// Bad messages come in floods: the 1st, 2nd, 4th, 8th ... are reported, all are counted.
+/// Logs the 1st, 2nd, 4th, 8th, ... bad message, because there may be very many.
 void report_bad(std::int64_t count, const std::string& reason) {
   if (std::has_single_bit(static_cast<std::uint64_t>(count))) {
     spdlog::warn("dropped bad message {}: {}", count, reason);
   }
 }
 
-/// Uses what has been received, for a moment: drawing has its turn while more comes.
-void use_received(Inbox& inbox, Viewer& viewer, PatientClock& clock) {
-  constexpr double kMoment_s = 0.1;
-  const double start_s = clock.now_s();
-  auto message = inbox.take(std::chrono::milliseconds(50));
-  while (message) {
-    const double now_s = clock.now_s();
-    viewer.add(*std::move(message), now_s);
-    message = now_s - start_s < kMoment_s ? inbox.take(std::chrono::milliseconds(0)) : std::nullopt;
-  }
-}
+/// The viewer on the bus: one thread receives, the caller's thread draws.
+class RunOnBus {
+ public:
+  explicit RunOnBus(const Options& options)
+      : options_(options),
+        bus_(options.lcm_url),
+        publisher_(bus_),
+        inbox_(options.max_queue_bytes()),
+        receiver_(
+            {.map_name = options.map_name,
+             .receiver = publisher_.session(),
+             .max_request_bytes = bus_.max_message_bytes(),
+             .has_room = [this] { return inbox_.has_room(); },
+             .max_pending_bytes = options.max_queue_bytes()},
+            [this](Message message) { inbox_.put(std::move(message)); }, report_bad),
+        process_(options.process,
+                 {.on_picture =
+                      [this](const cv::Mat3b& picture, const std::string& caption) {
+                        publisher_.publish_picture(picture, caption);
+                      },
+                  .on_forgotten = [this](std::int64_t session) { receiver_.forget(session); }}) {}
 
-int run_on_bus(const Options& options) {
-  Bus bus(options.lcm_url);
-  if (const auto advice = receive_buffer_advice()) spdlog::warn("{}", *advice);
-  Announcer announcer(bus);
-  Inbox inbox(options.max_queue_bytes());
-  Receiver receiver(
-      {.map_name = options.map_name,
-       .receiver = announcer.session(),
-       .max_request_bytes = bus.max_message_bytes(),
-       .has_room = [&inbox] { return inbox.has_room(); },
-       .max_pending_bytes = options.max_queue_bytes()},
-      [&](Message message) { inbox.put(std::move(message)); }, report_bad);
-  Viewer viewer(options.viewer,
-                {.on_picture =
-                     [&](const cv::Mat3b& picture, const std::string& caption) {
-                       announcer.publish_picture(picture, caption);
-                     },
-                 .on_forgotten = [&](std::int64_t session) { receiver.forget(session); }});
-  PatientClock clock;
-  receiver.subscribe(bus);
-  BusThread bus_thread(bus, [&] { receiver.ask(bus, clock.now_s()); });
-  spdlog::info("viewing {}, pictures in {}", bus.url(), options.viewer.folder.string());
+  int run() {
+    if (const auto advice = receive_buffer_advice()) spdlog::warn("{}", *advice);
+    receiver_.subscribe(bus_);
+    BusThread bus_thread(bus_, [this] { receiver_.request_missing(bus_, clock_.now_s()); });
+    spdlog::info("viewing {}, pictures in {}", bus_.url(), options_.process.folder.string());
+    while (!stop_requested() && !bus_thread.failed()) {
+      use_messages();
+      write_pictures();
+      if (publisher_.status_is_due()) publish_status();
+      if (options_.exit_on_final && process_.finished()) break;
+    }
+    while (auto message = inbox_.take(std::chrono::milliseconds(0))) {
+      process_.add(*std::move(message), clock_.now_s());
+    }
+    process_.close();
+    publish_status();
+    publisher_.flush();
+    bus_thread.stop();
+    return process_.failures() > 0 ? 1 : 0;
+  }
 
-  const auto publish_status = [&] {
-    ViewerStatus status = viewer.status();
-    receiver.add_to(status);
-    status.queue_bytes += static_cast<std::int64_t>(inbox.bytes());
-    announcer.publish_status(std::move(status));
-  };
-  while (!stop_requested() && !bus_thread.failed()) {
-    use_received(inbox, viewer, clock);
-    viewer.draw_if_due();
-    if (take_write_request()) viewer.draw_snapshot_now();
-    if (inbox.is_empty()) viewer.write_finals(clock.now_s(), receiver.may_still_come());
-    if (announcer.status_due()) publish_status();
-    if (options.exit_on_final && viewer.finished()) break;
+ private:
+  /// Uses messages for at most 0.1 s, so that pictures are drawn even while messages keep arriving.
+  void use_messages() {
+    constexpr double kMaxTime_s = 0.1;
+    const double start_s = clock_.now_s();
+    auto message = inbox_.take(std::chrono::milliseconds(50));
+    while (message) {
+      const double now_s = clock_.now_s();
+      process_.add(*std::move(message), now_s);
+      if (now_s - start_s >= kMaxTime_s) return;
+      message = inbox_.take(std::chrono::milliseconds(0));
+    }
   }
-  while (auto message = inbox.take(std::chrono::milliseconds(0))) {
-    viewer.add(*std::move(message), clock.now_s());
+
+  void write_pictures() {
+    process_.draw_if_due();
+    if (take_write_request()) process_.draw_snapshot_now();
+    if (inbox_.is_empty()) process_.write_finals(clock_.now_s(), receiver_.may_still_come());
   }
-  viewer.close();
-  publish_status();
-  announcer.flush();
-  bus_thread.stop();
-  return viewer.failures() > 0 ? 1 : 0;
-}
+
+  void publish_status() {
+    ViewerStatus status = process_.status();
+    receiver_.add_to(status);
+    status.queue_bytes += static_cast<std::int64_t>(inbox_.bytes());
+    publisher_.publish_status(std::move(status));
+  }
+
+  const Options& options_;
+  Bus bus_;
+  ViewerPublisher publisher_;
+  Inbox inbox_;
+  Receiver receiver_;
+  ViewerProcess process_;
+  PatientClock clock_;
+};
 
 int run_on_log(const Options& options) {
   LogReader log(*options.log);
-  Viewer viewer(options.viewer,
-                {.on_picture = [](const cv::Mat3b&, const std::string&) {}, .on_forgotten = {}});
-  constexpr double kNoTimePasses_s = 0.0;
+  ViewerProcess process(options.process, {});
+  constexpr double kNow_s = 0.0;  // a log is read as fast as possible: no waiting, no retries
   Receiver receiver(
       {.map_name = options.map_name, .has_room = {}},
-      [&](Message message) { viewer.add(std::move(message), kNoTimePasses_s); }, report_bad);
-  spdlog::info("viewing {}, pictures in {}", options.log->string(), options.viewer.folder.string());
+      [&](Message message) { process.add(std::move(message), kNow_s); }, report_bad);
+  spdlog::info("viewing {}, pictures in {}", options.log->string(),
+               options.process.folder.string());
 
   while (const auto event = log.next()) {
     receiver.handle(event->channel, event->data);
-    viewer.draw_if_due();
-    if (take_write_request()) viewer.draw_snapshot_now();
+    process.draw_if_due();
+    if (take_write_request()) process.draw_snapshot_now();
     if (stop_requested()) break;
   }
-  viewer.close();
-  ViewerStatus status = viewer.status();
+  process.close();
+  ViewerStatus status = process.status();
   receiver.add_to(status);
   if (status.messages_bad > 0) spdlog::warn("{} bad messages", status.messages_bad);
   if (status.chunks_missing > 0) spdlog::warn("{} chunks missing", status.chunks_missing);
   if (!status.problem.empty()) spdlog::warn("{}", status.problem);
   if (log.damage()) spdlog::error("{}", *log.damage());
-  return viewer.failures() > 0 || log.damage() ? 1 : 0;
+  return process.failures() > 0 || log.damage() ? 1 : 0;
 }
 
 }  // namespace
 
 int run(const Options& options) {
-  std::filesystem::create_directories(options.viewer.folder);
-  return options.log ? run_on_log(options) : run_on_bus(options);
+  std::filesystem::create_directories(options.process.folder);
+  return options.log ? run_on_log(options) : RunOnBus(options).run();
 }
 
 }  // namespace kintsugi::viewer

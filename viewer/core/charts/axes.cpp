@@ -1,31 +1,28 @@
 #include "viewer/core/charts/axes.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 
 #include <opencv2/imgproc.hpp>
 
+#include "lcmtypes/base/text_format.hpp"
+#include "viewer/core/drawing/palette.hpp"
 #include "viewer/core/drawing/text.hpp"
 
 namespace kintsugi::viewer {
 namespace {
 
-const cv::Scalar kInk(40, 40, 40);
-const cv::Scalar kGrid(225, 225, 225);
 constexpr double kTextScale = 0.45;
 
 std::string number(double value) {
   const std::int64_t whole = std::llround(value);
   if (static_cast<double>(whole) == value) return with_thousands(whole);
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%g", value);
-  return text.data();
+  return format("%g", value);
 }
 
 void write_left_of(cv::Mat3b& image, const std::string& text, cv::Point at) {
-  draw_text(image, text, at - cv::Point(text_size(text, kTextScale).width, 0), kTextScale, kInk);
+  draw_text(image, text, at - cv::Point(text_size(text, kTextScale).width, 0), kTextScale,
+            palette::kChartText);
 }
 
 }  // namespace
@@ -45,20 +42,20 @@ cv::Point Axes::at(double x, double y) const {
 void Axes::draw_grid(cv::Mat3b& image) const {
   for (int i = 0; i * x_step_ <= x_max_; ++i) {
     const double x = i * x_step_;
-    cv::line(image, at(x, 0.0), at(x, y_max_), kGrid);
-    draw_text(image, number(x), at(x, 0.0) + cv::Point(-6, 16), kTextScale, kInk);
+    cv::line(image, at(x, 0.0), at(x, y_max_), palette::kChartGrid);
+    draw_text(image, number(x), at(x, 0.0) + cv::Point(-6, 16), kTextScale, palette::kChartText);
   }
   for (int i = 0; i * y_step_ <= y_max_; ++i) {
     const double y = i * y_step_;
-    cv::line(image, at(0.0, y), at(x_max_, y), kGrid);
+    cv::line(image, at(0.0, y), at(x_max_, y), palette::kChartGrid);
     write_left_of(image, number(y), at(0.0, y) + cv::Point(-6, 5));
   }
 }
 
 void Axes::draw_frame(cv::Mat3b& image, const std::string& title,
                       const std::string& x_title) const {
-  cv::rectangle(image, area_, kInk);
-  draw_text(image, title, area_.tl() + cv::Point(0, -8), kTextScale, kInk);
+  cv::rectangle(image, area_, palette::kChartText);
+  draw_text(image, title, area_.tl() + cv::Point(0, -8), kTextScale, palette::kChartText);
   write_left_of(image, x_title, area_.br() + cv::Point(0, 32));
 }
 

@@ -6,19 +6,18 @@
 
 namespace kintsugi::viewer {
 
-/// Maps the values of a chart to its place in a picture; both axes begin at 0.
+/// Axes of a chart, both from 0: map values to pixels.
 class Axes {
  public:
-  /// The y axis ends at a round number that is at least `y_max`. Both maxima at least 1.
+  /// `area` is in pixels. Maxima below 1 count as 1; the y axis ends at the next round number.
   Axes(const cv::Rect& area, double x_max, double y_max);
 
   cv::Point at(double x, double y) const;
   const cv::Rect& area() const { return area_; }
-  double x_max() const { return x_max_; }
 
-  /// Lines at round numbers, which are written beside them.
+  /// Draws lines at round numbers, with the numbers beside them.
   void draw_grid(cv::Mat3b& image) const;
-  /// The frame, over what was drawn, the title above and what x is below.
+  /// Draws the frame, the title above and the title of the x axis below.
   void draw_frame(cv::Mat3b& image, const std::string& title, const std::string& x_title) const;
 
  private:

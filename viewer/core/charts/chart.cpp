@@ -5,11 +5,10 @@
 #include <opencv2/imgproc.hpp>
 
 #include "viewer/core/charts/axes.hpp"
+#include "viewer/core/drawing/palette.hpp"
 
 namespace kintsugi::viewer {
 namespace {
-
-const cv::Scalar kLine(180, 90, 20);
 
 Axes axes_of(const Chart& chart, const cv::Rect& area) {
   double x_max = 1.0;
@@ -27,7 +26,7 @@ void draw_chart(cv::Mat3b& image, const cv::Rect& area, const Chart& chart,
   axes.draw_grid(image);
   for (std::size_t i = 1; i < chart.points.size(); ++i) {
     cv::line(image, axes.at(chart.points[i - 1].x, chart.points[i - 1].y),
-             axes.at(chart.points[i].x, chart.points[i].y), kLine, 1, cv::LINE_AA);
+             axes.at(chart.points[i].x, chart.points[i].y), palette::kChartCurve, 1, cv::LINE_AA);
   }
   axes.draw_frame(image, chart.title, x_title);
 }
@@ -39,7 +38,7 @@ cv::Mat3b draw_charts(std::span<const Chart> charts, const std::string& x_title,
   constexpr int kRight = 30;
   constexpr int kTop = 30;
   constexpr int kBottom = 45;
-  cv::Mat3b image(size, cv::Vec3b(255, 255, 255));
+  cv::Mat3b image(size, palette::kChartBackground);
   const int height = size.height / std::max(1, static_cast<int>(charts.size()));
   for (std::size_t i = 0; i < charts.size(); ++i) {
     const cv::Rect area(kLeft, static_cast<int>(i) * height + kTop,

@@ -8,13 +8,13 @@
 
 namespace kintsugi::viewer {
 
-/// One quantity over the slices of a run, in order of x.
+/// A curve through points in order of x.
 struct Chart {
-  std::string title;  ///< what y is, with its unit
+  std::string title;  ///< quantity and unit of y
   std::vector<cv::Point2d> points;
 };
 
-/// The charts below each other, each with axes from 0 and round numbers along them.
+/// Draws the charts below each other, with the same title for each x axis; `size` in pixels.
 cv::Mat3b draw_charts(std::span<const Chart> charts, const std::string& x_title, cv::Size size);
 
 }  // namespace kintsugi::viewer

@@ -10,7 +10,7 @@ namespace {
 using EventType = SegmentTimeline::EventType;
 using PointCounts = std::unordered_map<std::uint32_t, std::uint32_t>;  // by segment
 
-/// What an event means for one of the two segments; nothing when it is about others.
+/// What an event means for this segment; nothing when it is about other segments.
 std::optional<EventType> role_of(std::uint32_t segment_id, const SegmentEvent& event) {
   const bool is_subject = event.segment_id == segment_id;
   if (!is_subject && event.other_id != segment_id) return std::nullopt;
@@ -24,7 +24,7 @@ std::optional<EventType> role_of(std::uint32_t segment_id, const SegmentEvent& e
     case SegmentEventType::kRetired:
       return EventType::kRetired;
     case SegmentEventType::kGrown:
-      break;  // its size says so
+      break;  // shown by the sizes
   }
   return std::nullopt;
 }
@@ -33,7 +33,7 @@ bool is_end(EventType type) {
   return type == EventType::kMergedInto || type == EventType::kRetired;
 }
 
-/// Of several sizes after as many slices (corrections add none) the last counts.
+/// Of several sizes at the same number of slices (corrections add none) the last counts.
 void append(std::vector<SegmentTimeline::Size>& sizes, SegmentTimeline::Size size) {
   if (!sizes.empty() && sizes.back().num_slices == size.num_slices) sizes.pop_back();
   if (sizes.empty() || sizes.back().num_points != size.num_points) sizes.push_back(size);

@@ -3,43 +3,43 @@
 #include <cstdint>
 #include <vector>
 
-#include "viewer/core/scene/update_log.hpp"
+#include "viewer/core/map/update_log.hpp"
 
 namespace kintsugi::viewer {
 
-/// What became of one segment while the map grew. Time is the number of slices in the map.
+/// History of one segment: its events and its size. Time is the number of slices in the map.
 struct SegmentTimeline {
   enum class EventType {
     kCreated,
-    kSplitOff,    ///< began as a part of `other_id`
-    kAbsorbed,    ///< took in `other_id`, which is gone
-    kSplit,       ///< `other_id` left it
-    kMergedInto,  ///< ended as a part of `other_id`
+    kSplitOff,    ///< it began as a part of `other_id`
+    kAbsorbed,    ///< `other_id` was merged into it
+    kSplit,       ///< `other_id` was split off from it
+    kMergedInto,  ///< it was merged into `other_id`
     kRetired,     ///< none of its points is left
   };
   struct Event {
     std::int32_t num_slices = 0;
     EventType type = EventType::kCreated;
     std::uint32_t other_id = 0;
-    std::uint32_t other_points = 0;  ///< before it was absorbed, or after it left; 0: not known
+    std::uint32_t other_points = 0;  ///< before the merge or after the split; 0: unknown
 
     bool operator==(const Event&) const = default;
   };
   struct Size {
     std::int32_t num_slices = 0;
-    std::uint32_t num_points = 0;  ///< from then on
+    std::uint32_t num_points = 0;  ///< until the next size
 
     bool operator==(const Size&) const = default;
   };
 
   std::uint32_t segment_id = 0;
-  std::int32_t num_slices = 0;  ///< of the map, as far as the log goes
+  std::int32_t num_slices = 0;  ///< in the map, at the end of the log
   std::vector<Event> events;
-  std::vector<Size> sizes;  ///< each other than the one before
+  std::vector<Size> sizes;  ///< changes only
 
-  /// The segment was there at some time, as far as the log goes.
+  /// The log has a size of the segment.
   bool is_known() const { return !sizes.empty(); }
-  /// How it began was heard; otherwise the log begins when the segment was there.
+  /// The log has the beginning of the segment; otherwise it starts later.
   bool has_beginning() const;
 };
 

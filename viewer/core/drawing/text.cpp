@@ -7,8 +7,6 @@
 namespace kintsugi::viewer {
 namespace {
 
-const cv::Scalar kLight(235, 235, 235);
-const cv::Scalar kEdge(20, 16, 14);
 constexpr int kFont = cv::FONT_HERSHEY_SIMPLEX;
 
 int stroke_width(double scale) { return scale > 0.9 ? 2 : 1; }
@@ -21,13 +19,14 @@ cv::Size text_size(const std::string& text, double scale) {
 }
 
 void draw_text(cv::Mat3b& image, const std::string& text, cv::Point at, double scale,
-               const cv::Scalar& color) {
+               const Rgb& color) {
   cv::putText(image, text, at, kFont, scale, color, stroke_width(scale), cv::LINE_AA);
 }
 
 void draw_outlined_text(cv::Mat3b& image, const std::string& text, cv::Point at, double scale) {
-  cv::putText(image, text, at, kFont, scale, kEdge, stroke_width(scale) + 3, cv::LINE_AA);
-  draw_text(image, text, at, scale, kLight);
+  cv::putText(image, text, at, kFont, scale, palette::kPictureTextEdge, stroke_width(scale) + 3,
+              cv::LINE_AA);
+  draw_text(image, text, at, scale, palette::kPictureText);
 }
 
 std::string with_thousands(std::int64_t number) {

@@ -5,19 +5,22 @@
 
 #include <opencv2/core.hpp>
 
+#include "viewer/core/drawing/palette.hpp"
+
 namespace kintsugi::viewer {
 
-/// Size in pixels of a text of this scale: what draw_text() fills, without what hangs below.
+/// Width and height in pixels of a text, without the parts of letters below the baseline. `scale`
+/// is the factor to the base size of OpenCV's font.
 cv::Size text_size(const std::string& text, double scale);
 
-/// Writes `text` with its lower left corner at `at`.
+/// Writes `text`; its baseline begins at `at`.
 void draw_text(cv::Mat3b& image, const std::string& text, cv::Point at, double scale,
-               const cv::Scalar& color);
+               const Rgb& color);
 
-/// The same with a dark edge around light letters, legible on every ground.
+/// Writes light text with a dark outline, legible on any background.
 void draw_outlined_text(cv::Mat3b& image, const std::string& text, cv::Point at, double scale);
 
-/// "1 234 567".
+/// The number with spaces between groups of three digits: "1 234 567".
 std::string with_thousands(std::int64_t number);
 
 }  // namespace kintsugi::viewer

@@ -5,17 +5,15 @@
 
 #include <opencv2/core.hpp>
 
-#include "viewer/core/drawing/colors.hpp"
-
 namespace kintsugi::viewer {
 
-/// Segments that stand out in a picture; none: all look as ever.
+/// Ids of the segments that stand out in a picture; empty: nothing is dimmed.
 using Highlight = std::set<std::uint32_t>;
 
-/// The colour of what does not stand out: dark and nearly grey.
-Color dimmed(const Color& color);
+/// The pixel of a point that is not highlighted: dark and nearly grey.
+cv::Vec3b dimmed(const cv::Vec3b& color);
 
-/// Draws a bright line around the pixels of `mask`.
+/// Draws a line of this width around the pixels of `mask`.
 void outline(cv::Mat3b& image, const cv::Mat1b& mask, int width_px);
 
 }  // namespace kintsugi::viewer

@@ -6,6 +6,8 @@
 
 #include <oneapi/tbb/parallel_for.h>
 
+#include "viewer/core/drawing/palette.hpp"
+
 namespace kintsugi::viewer {
 namespace {
 
@@ -14,13 +16,14 @@ struct Light {
   float edge = 0.0F;     ///< strength of the darkening at edges in depth
 };
 
-/// True colour carries the light of the room already.
+/// True colours contain the shading of the room: less is added.
 Light light_of(Coloring coloring) {
   return coloring == Coloring::kTrue ? Light{0.75F, 4.0F} : Light{0.45F, 6.0F};
 }
 
-/// How far the surroundings stand in front of this pixel: mean of max(0, log z - log z') over the
-/// four neighbours two pixels away, limited so that a far background is outlined, not blackened.
+/// How much nearer the neighbourhood is than this pixel: mean of max(0, log2 z - log2 z') over the
+/// four neighbours two pixels away, each limited so that the background of a near object is
+/// outlined and not blackened.
 float occlusion(const VisibilityImage& visible, int u, int v) {
   constexpr float kLimit = 0.1F;
   constexpr std::array<std::array<int, 2>, 4> kNeighbours{{{-2, 0}, {2, 0}, {0, -2}, {0, 2}}};
@@ -47,7 +50,7 @@ float facing(const CloudPoint& p, const Eigen::Vector3f& eye_W) {
 
 cv::Mat3b shade(const VisibilityImage& visible, std::span<const PointChunk> chunks,
                 const VirtualCamera& camera, Coloring coloring, const Highlight& highlight) {
-  cv::Mat3b image(visible.height(), visible.width(), kBackground);
+  cv::Mat3b image(visible.height(), visible.width(), palette::kBackground);
   const Eigen::Vector3f eye_W = camera.X_WV.translation().cast<float>();
   const Light light = light_of(coloring);
   tbb::parallel_for(0, visible.height(), [&](int v) {
@@ -59,8 +62,9 @@ cv::Mat3b shade(const VisibilityImage& visible, std::span<const PointChunk> chun
       const float brightness = (light.ambient + (1.0F - light.ambient) * facing(point, eye_W)) *
                                std::exp(-light.edge * occlusion(visible, u, v));
       const std::uint32_t id = chunk.labels[index];
-      const Color color = coloring == Coloring::kTrue ? true_color(point) : segment_color(id);
-      const Color lit = cv::Vec3f(color) * brightness;
+      const cv::Vec3b color =
+          coloring == Coloring::kTrue ? Rgb{point.red, point.green, point.blue} : segment_color(id);
+      const cv::Vec3b lit = cv::Vec3f(color) * brightness;
       image(v, u) = highlight.empty() || highlight.contains(id) ? lit : dimmed(lit);
     }
   });

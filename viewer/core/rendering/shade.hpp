@@ -9,17 +9,16 @@
 
 namespace kintsugi::viewer {
 
+/// What decides the colour of a point.
 enum class Coloring {
-  kTrue,      ///< the colour that the camera saw
-  kSegments,  ///< segment_color() of the label
+  kTrue,      ///< the depth camera's colour image
+  kSegments,  ///< its label: segment_color()
 };
 
-inline const Color kBackground{34, 28, 24};
-
-/// Colours what splat_points() found, as seen by `camera`; `chunks` are those it was given.
-/// Surfaces get light from the camera's side, and edges in depth are darkened (eye-dome lighting,
-/// Boucheny 2009), so that shape shows within one colour. What is not highlighted
-/// is dimmed, unless nothing is. Pixels with nothing are kBackground.
+/// Draws the picture of what splat_points() found for these chunks and this camera. Surfaces are
+/// lit from the camera, and edges in depth are darkened (eye-dome lighting, Boucheny 2009), so that
+/// shape is visible within one colour. Points that are not highlighted are dimmed, unless
+/// `highlight` is empty. Pixels without a point are palette::kBackground.
 cv::Mat3b shade(const VisibilityImage& visible, std::span<const PointChunk> chunks,
                 const VirtualCamera& camera, Coloring coloring, const Highlight& highlight = {});
 

@@ -14,15 +14,15 @@
 namespace kintsugi::viewer {
 namespace {
 
-constexpr int kPointBits = std::countr_zero(Scene::kChunkPoints);
-static_assert(std::has_single_bit(Scene::kChunkPoints));
+constexpr int kPointBits = std::countr_zero(PointChunk::kMaxPoints);
+static_assert(std::has_single_bit(PointChunk::kMaxPoints));
 constexpr std::size_t kMaxChunks = std::size_t{1} << (32 - kPointBits);
 
 /// Discs bulge towards the camera by this part of their radius, so that where two of one surface
 /// overlap a pixel shows the point it is nearer to, not whichever plane happens to be in front.
 constexpr float kBulge = 0.25F;
 
-/// The camera in single precision, as the inner loop uses it.
+/// Projects points; in single precision for speed.
 class Projector {
  public:
   Projector(const VirtualCamera& camera, const SplatConfig& config)
@@ -48,7 +48,7 @@ class Projector {
   SplatConfig config_;
 };
 
-/// False only when all corners lie beyond one and the same side of the picture.
+/// False when all corners are beyond the same side of the picture or nearer than near_m.
 bool Projector::may_see(const Eigen::AlignedBox3f& box_W, float radius_m,
                         const VisibilityImage& image) const {
   if (box_W.isEmpty()) return false;
@@ -126,8 +126,7 @@ void Projector::draw_disc(const Eigen::Vector3f& p_V, const Eigen::Vector3f& n_V
 void SplatConfig::validate() const {
   require(radius_vox > 0.0 && radius_vox <= 10.0, "SplatConfig::radius_vox", radius_vox,
           "in (0, 10]");
-  require(max_radius_px >= 1.0 && max_radius_px <= 1000.0, "SplatConfig::max_radius_px",
-          max_radius_px, "in [1, 1000]");
+  check_range("SplatConfig::max_radius_px", max_radius_px, 1.0, 1000.0);
   require(near_m > 0.0 && near_m <= 10.0, "SplatConfig::near_m", near_m, "in (0, 10]");
 }
 
@@ -145,7 +144,7 @@ std::size_t VisibilityImage::chunk(int u, int v) const {
 }
 
 std::size_t VisibilityImage::point(int u, int v) const {
-  return static_cast<std::uint32_t>(at(u, v)) & (Scene::kChunkPoints - 1);
+  return static_cast<std::uint32_t>(at(u, v)) & (PointChunk::kMaxPoints - 1);
 }
 
 void VisibilityImage::keep_nearest(int u, int v, float depth_m, std::uint32_t point_number) {
@@ -162,8 +161,8 @@ void VisibilityImage::keep_nearest(int u, int v, float depth_m, std::uint32_t po
 VisibilityImage splat_points(std::span<const PointChunk> chunks, const VirtualCamera& camera,
                              const SplatConfig& config) {
   if (chunks.size() > kMaxChunks) {
-    throw std::length_error("a picture of " + std::to_string(chunks.size()) +
-                            " chunks of points, at most " + std::to_string(kMaxChunks));
+    throw std::length_error("the picture has " + std::to_string(chunks.size()) +
+                            " chunks of points, must be at most " + std::to_string(kMaxChunks));
   }
   VisibilityImage image(camera.intrinsics.width, camera.intrinsics.height);
   const Projector projector(camera, config);

@@ -1,0 +1,451 @@
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "viewer/core/map/received_map.hpp"
+
+namespace kintsugi::viewer {
+namespace {
+
+constexpr std::int64_t kMapSession = 10;
+constexpr std::int64_t kSegmenterSession = 20;
+
+CloudSlice slice_of(std::int32_t id, int num_points, std::int32_t revision = 0) {
+  CloudSlice slice;
+  slice.session = kMapSession;
+  slice.id = id;
+  slice.revision = revision;
+  slice.utime = 1'000 + id;
+  slice.resolution_m = 0.01F;
+  for (int i = 0; i < num_points; ++i) {
+    CloudPoint p;
+    p.x = static_cast<float>(id);
+    p.y = static_cast<float>(i);
+    p.ny = -1.0F;
+    slice.points_W.push_back(p);
+  }
+  return slice;
+}
+
+SegmentUpdate update_of(std::int32_t slice_id, std::vector<std::uint32_t> labels,
+                        std::vector<LabelRun> runs = {}) {
+  SegmentUpdate update;
+  update.session = kSegmenterSession;
+  update.map_session = kMapSession;
+  update.slice_id = slice_id;
+  update.num_slices = slice_id + 1;
+  update.num_segments = 5;
+  update.labels = std::move(labels);
+  update.runs = std::move(runs);
+  return update;
+}
+
+void apply(ReceivedMap& map, SegmentUpdate update, std::int64_t sequence) {
+  update.sequence = sequence;
+  map.apply_update(update);
+}
+
+std::vector<std::uint32_t> labels_of(const ReceivedMap& map, std::int32_t id) {
+  return map.slice(id)->labels();
+}
+
+using Labels = std::vector<std::uint32_t>;
+
+TEST(ReceivedMap, IsEmptyAtFirst) {
+  const ReceivedMap map(kMapSession);
+  EXPECT_EQ(nullptr, map.newest_slice());
+  EXPECT_EQ(nullptr, map.slice(0));
+  EXPECT_TRUE(map.chunks().empty());
+  EXPECT_FALSE(map.received_track().X_WC.has_value());
+  EXPECT_EQ(0, map.lag_slices());
+}
+
+TEST(ReceivedMap, LabelsItsPointsFromUpdatesAndRuns) {
+  ReceivedMap map(kMapSession);
+  map.add_slice(slice_of(0, 4));
+  map.add_slice(slice_of(1, 2));
+  EXPECT_EQ(Labels({0, 0, 0, 0}), labels_of(map, 0));
+  EXPECT_EQ(2, map.lag_slices());
+
+  apply(map, update_of(0, {1, 1, 2, 2}), 0);
+  apply(map, update_of(1, {2, 3}, {{0, 1, 2, 3}}), 1);
+  EXPECT_EQ(Labels({1, 3, 3, 2}), labels_of(map, 0));
+  EXPECT_EQ(Labels({2, 3}), labels_of(map, 1));
+  EXPECT_EQ(0, map.lag_slices());
+  EXPECT_EQ(5, map.counts().segments);
+  EXPECT_EQ(6, map.counts().points);
+}
+
+/// A run of a segmenter: slices come, some of them again with a higher revision and another number
+/// of points. Each gets random labels, and random runs of older points change.
+struct RandomRun {
+  std::vector<CloudSlice> slices;
+  std::vector<SegmentUpdate> updates;           ///< one for each of slices
+  std::map<std::int32_t, Labels> truth;         ///< after all updates in their order
+  std::map<std::int32_t, std::int32_t> newest;  ///< revision of each slice
+
+  explicit RandomRun(unsigned seed) : random_(seed) {
+    for (std::int32_t step = 0; step < 60; ++step) {
+      const bool is_correction = !truth.empty() && below(2) == 0;
+      const auto id =
+          static_cast<std::int32_t>(is_correction ? below(std::ssize(truth)) : std::ssize(truth));
+      const std::int32_t revision = is_correction ? newest[id] + 1 + below(2) : 0;
+      slices.push_back(slice_of(id, below(50), revision));
+      newest[id] = revision;
+      truth[id] = Labels(slices.back().points_W.size());
+      for (auto& label : truth[id]) label = random_label();
+      updates.push_back(update_of(id, truth[id], change_older_labels(id)));
+      updates.back().slice_revision = revision;
+      updates.back().num_slices = static_cast<std::int32_t>(std::ssize(truth));
+    }
+  }
+
+ private:
+  std::int32_t below(std::int64_t end) {
+    return std::uniform_int_distribution<std::int32_t>(0,
+                                                       static_cast<std::int32_t>(end - 1))(random_);
+  }
+  std::uint32_t random_label() { return static_cast<std::uint32_t>(1 + below(9)); }
+
+  std::vector<LabelRun> change_older_labels(std::int32_t newest_id) {
+    std::vector<LabelRun> runs;
+    for (int i = 0; i < 20; ++i) {
+      const std::int32_t id = below(std::ssize(truth));
+      Labels& labels = truth[id];
+      if (id == newest_id || labels.empty()) continue;
+      const std::int32_t first = below(std::ssize(labels));
+      const std::int32_t count = 1 + below(std::ssize(labels) - first);
+      const std::uint32_t label = random_label();
+      runs.push_back({id, first, count, label, newest[id]});
+      std::fill_n(labels.begin() + first, count, label);
+    }
+    return runs;
+  }
+
+  std::mt19937 random_;
+};
+
+TEST(ReceivedMap, EndsWithTheSameLabelsInWhateverOrderSlicesRevisionsAndUpdatesArrive) {
+  for (unsigned seed = 0; seed < 40; ++seed) {
+    const RandomRun run(seed);
+    const auto count = static_cast<int>(run.slices.size());
+    std::vector<int> order;  // i: slice i; i + count: update i; each twice
+    for (int round = 0; round < 2; ++round) {
+      const auto old_size = static_cast<std::ptrdiff_t>(order.size());
+      order.resize(order.size() + 2 * run.slices.size());
+      std::iota(order.begin() + old_size, order.end(), 0);
+    }
+    std::mt19937 random(seed + 100);
+    std::ranges::shuffle(order, random);
+
+    ReceivedMap map(kMapSession);
+    for (const int i : order) {
+      if (i < count) {
+        map.add_slice(run.slices[static_cast<std::size_t>(i)]);
+      } else {
+        apply(map, run.updates[static_cast<std::size_t>(i - count)], i - count);
+      }
+    }
+    std::int64_t num_points = 0;
+    for (const auto& [id, labels] : run.truth) {
+      EXPECT_EQ(labels, labels_of(map, id)) << "slice " << id << ", seed " << seed;
+      EXPECT_EQ(run.newest.at(id), map.slice(id)->revision());
+      num_points += std::ssize(labels);
+    }
+    EXPECT_EQ(num_points, map.counts().points);  // of earlier revisions none is left
+    EXPECT_EQ(std::ssize(run.truth), map.counts().labelled_slices);
+    EXPECT_EQ(0, map.lag_slices());
+    const MapCounts& counts = map.counts();
+    EXPECT_EQ(2 * count, counts.updates + counts.repeated_updates + counts.ignored_updates);
+    EXPECT_EQ(0, map.counts().ignored_runs);
+  }
+}
+
+TEST(ReceivedMap, IgnoresAndCountsRunsOutsideTheirSlice) {
+  ReceivedMap map(kMapSession);
+  map.add_slice(slice_of(0, 3));
+  apply(map,
+        update_of(0, {1, 1, 1},
+                  {{0, 2, 2, 7},
+                   {0, -1, 2, 7},
+                   {0, 0, 0, 7},
+                   {0, 0, -5, 7},
+                   {0, 3, 1, 7},
+                   {0, 2147483647, 2147483647, 7}}),
+        0);
+  EXPECT_EQ(Labels({1, 1, 1}), labels_of(map, 0));
+  EXPECT_EQ(6, map.counts().ignored_runs);
+}
+
+TEST(ReceivedMap, SurvivesUpdatesThatNameAbsurdSlices) {
+  constexpr std::int32_t kMax = std::numeric_limits<std::int32_t>::max();
+  constexpr std::int32_t kMin = std::numeric_limits<std::int32_t>::min();
+  ReceivedMap map(kMapSession);
+  map.add_slice(slice_of(0, 3));
+  std::int64_t sequence = 0;
+  for (const std::int32_t id : {kMin, -1, 0, 1, kMax}) {
+    for (const std::int32_t revision : {kMin, -1, 0, 1, kMax}) {
+      SegmentUpdate update = update_of(
+          id, {1, 1, 1},
+          {{id, kMin, kMax, 7, revision}, {id, kMax, kMax, 7, revision}, {id, 1, 1, 7, revision}});
+      update.slice_revision = revision;
+      update.num_slices = id;
+      update.num_segments = std::numeric_limits<std::int64_t>::max();
+      apply(map, update, sequence++);
+    }
+  }
+  EXPECT_EQ(Labels({1, 7, 1}), labels_of(map, 0));
+  for (const std::int32_t id : {kMin, -1, 1, kMax}) map.add_slice(slice_of(id, 1, kMax));
+  EXPECT_EQ(1, map.counts().labelled_slices);  // the labels were three, the points one
+  EXPECT_GE(map.lag_slices(), 4);
+}
+
+TEST(ReceivedMap, KeepsRunsForSlicesThatHaveNotCome) {
+  ReceivedMap map(kMapSession);
+  apply(map, update_of(7, {1}, {{3, 0, 2, 9}, {99, 0, 1, 9}}), 0);
+  EXPECT_EQ(8, map.lag_slices());
+  map.add_slice(slice_of(3, 3));
+  EXPECT_EQ(Labels({9, 9, 0}), labels_of(map, 3));
+}
+
+TEST(ReceivedMap, IgnoresAndCountsUpdatesOfAnotherMapOrOfAnotherLength) {
+  ReceivedMap map(kMapSession);
+  map.add_slice(slice_of(0, 3));
+  SegmentUpdate other = update_of(0, {1, 1, 1});
+  other.map_session = kMapSession + 1;
+  apply(map, other, 0);
+  apply(map, update_of(0, {1, 1}), 0);
+  EXPECT_EQ(Labels({0, 0, 0}), labels_of(map, 0));
+  EXPECT_EQ(2, map.counts().ignored_updates);
+  EXPECT_EQ(0, map.counts().updates);
+}
+
+TEST(ReceivedMap, ReplacesASliceByItsHigherRevision) {
+  ReceivedMap map(kMapSession);
+  map.add_slice(slice_of(0, 3));
+  apply(map, update_of(0, {1, 1, 1}), 0);
+  SegmentUpdate revised = update_of(0, {4, 4});
+  revised.slice_revision = 2;
+  apply(map, revised, 1);  // before its slice
+  EXPECT_EQ(Labels({1, 1, 1}), labels_of(map, 0));
+
+  map.add_slice(slice_of(0, 2, 2));
+  map.add_slice(slice_of(0, 3, 1));  // late
+  EXPECT_EQ(Labels({4, 4}), labels_of(map, 0));
+  EXPECT_EQ(2, map.counts().points);
+  EXPECT_EQ(1, map.counts().slices);
+  EXPECT_EQ(1, map.counts().labelled_slices);
+  EXPECT_EQ(1, map.counts().ignored_slices);
+}
+
+TEST(ReceivedMap, KeepsRunsForARevisionThatUpdatesHaveOvertaken) {
+  ReceivedMap map(kMapSession);
+  map.add_slice(slice_of(0, 3));
+  apply(map, update_of(0, {1, 1, 1}), 0);
+  SegmentUpdate revised = update_of(0, {4, 4, 4});
+  revised.slice_revision = 1;
+  apply(map, revised, 1);
+  apply(map, update_of(1, {}, {{0, 1, 2, 6, 1}, {0, 0, 1, 9, 0}}), 2);
+  EXPECT_EQ(Labels({9, 1, 1}), labels_of(map, 0));  // the points here are still the first ones
+  EXPECT_EQ(2, map.lag_slices());                   // slice 1, and the revision of slice 0
+  map.add_slice(slice_of(0, 3, 1));
+  EXPECT_EQ(Labels({4, 6, 6}), labels_of(map, 0));
+  EXPECT_EQ(1, map.lag_slices());
+  apply(map, update_of(2, {}, {{0, 0, 3, 8, 0}}), 3);  // of the revision that is gone
+  EXPECT_EQ(Labels({4, 6, 6}), labels_of(map, 0));
+}
+
+TEST(ReceivedMap, IgnoresUpdatesOutsideTheNumbersOfAStream) {
+  ReceivedMap map(kMapSession);
+  map.add_slice(slice_of(0, 1));
+  apply(map, update_of(0, {1}), -1);
+  apply(map, update_of(0, {1}), std::int64_t{1} << 40U);
+  EXPECT_EQ(Labels({0}), labels_of(map, 0));
+  EXPECT_EQ(2, map.counts().ignored_updates);
+}
+
+TEST(ReceivedMap, StartsTheLabelsAnewWithANewSegmenter) {
+  ReceivedMap map(kMapSession);
+  map.add_slice(slice_of(0, 2));
+  map.add_slice(slice_of(1, 2));
+  apply(map, update_of(0, {1, 1}), 8);
+  apply(map, update_of(1, {1, 1}), 9);
+  SegmentUpdate restarted = update_of(0, {5, 5});
+  restarted.session = kSegmenterSession + 1;
+  apply(map, restarted, 0);
+  EXPECT_EQ(Labels({5, 5}), labels_of(map, 0));
+  EXPECT_EQ(Labels({1, 1}), labels_of(map, 1));  // to be looked at until the new ones come
+  EXPECT_EQ(1, map.lag_slices());
+  EXPECT_EQ(2, map.counts().labellings);  // nothing was labelled for the first time
+
+  apply(map, update_of(1, {3, 3}), 10);  // late, of the segmenter that is gone
+  EXPECT_EQ(Labels({1, 1}), labels_of(map, 1));
+  EXPECT_EQ(1, map.counts().ignored_updates);
+
+  SegmentUpdate run = update_of(0, {5, 5}, {{1, 0, 1, 6}});
+  run.session = restarted.session;
+  apply(map, run, 1);
+  map.discard_old_labels();
+  EXPECT_EQ(Labels({5, 5}), labels_of(map, 0));
+  EXPECT_EQ(Labels({6, 0}), labels_of(map, 1));
+}
+
+TEST(ReceivedMap, LearnsNothingFromADescriptionOfWhatItShows) {
+  const RandomRun run(3);
+  ReceivedMap map(kMapSession);
+  for (const CloudSlice& slice : run.slices) map.add_slice(slice);
+  std::int64_t sequence = 0;
+  for (const SegmentUpdate& update : run.updates) apply(map, update, sequence++);
+  const MapCounts before = map.counts();
+
+  for (int round = 0; round < 2; ++round) {
+    std::int32_t num_slices = 0;
+    for (const auto& [id, labels] : run.truth) {
+      SegmentUpdate description = update_of(id, labels);
+      description.slice_revision = run.newest.at(id);
+      description.num_slices = ++num_slices;
+      description.sequence = sequence++;
+      EXPECT_FALSE(map.apply_update(description)) << id;
+      EXPECT_EQ(0, map.lag_slices());
+    }
+  }
+  EXPECT_EQ(before.updates, map.counts().updates);
+  EXPECT_EQ(before.labellings, map.counts().labellings);
+  EXPECT_EQ(2 * std::ssize(run.truth), map.counts().repeated_updates);
+}
+
+TEST(ReceivedMap, IsTheSameFromADescriptionAsFromAllThatWentBefore) {
+  const RandomRun run(4);
+  ReceivedMap there(kMapSession);
+  ReceivedMap late(kMapSession);
+  std::int64_t sequence = 0;
+  for (const SegmentUpdate& update : run.updates) apply(there, update, sequence++);
+  std::int32_t num_slices = 0;
+  for (const auto& [id, labels] : run.truth) {
+    SegmentUpdate description = update_of(id, labels);
+    description.slice_revision = run.newest.at(id);
+    description.num_slices = ++num_slices;
+    apply(late, description, sequence);
+    apply(there, description, sequence++);
+  }
+  for (auto slice = run.slices.rbegin(); slice != run.slices.rend(); ++slice) {
+    late.add_slice(*slice);
+    there.add_slice(*slice);
+  }
+  for (const auto& [id, labels] : run.truth) {
+    EXPECT_EQ(labels, labels_of(there, id));
+    EXPECT_EQ(labels, labels_of(late, id));
+  }
+  EXPECT_EQ(0, late.lag_slices());
+  EXPECT_EQ(there.counts().labelled_slices, late.counts().labelled_slices);
+  EXPECT_EQ(there.newest_slice()->id(), late.newest_slice()->id());
+}
+
+TEST(ReceivedMap, ShowsTheSliceSegmentedLastOrWithoutSegmenterTheLast) {
+  ReceivedMap map(kMapSession);
+  map.add_slice(slice_of(0, 2));
+  map.add_slice(slice_of(1, 2));
+  map.add_slice(slice_of(2, 0));
+  EXPECT_EQ(1, map.newest_slice()->id());  // the last that has points
+  apply(map, update_of(0, {1, 1}), 0);
+  EXPECT_EQ(0, map.newest_slice()->id());
+  apply(map, update_of(1, {1, 1}), 1);
+  EXPECT_EQ(1, map.newest_slice()->id());
+}
+
+TEST(ReceivedMap, CutsSlicesIntoChunksThatHoldEveryPointOnceInItsBox) {
+  ReceivedMap map(kMapSession);
+  map.add_slice(slice_of(0, static_cast<int>(2 * PointChunk::kMaxPoints + 1)));
+  map.add_slice(slice_of(5, 3));
+  const std::vector<PointChunk> chunks = map.chunks();
+  ASSERT_EQ(4U, chunks.size());
+  std::size_t total = 0;
+  for (const PointChunk& chunk : chunks) {
+    EXPECT_LE(chunk.points_W.size(), PointChunk::kMaxPoints);
+    EXPECT_EQ(chunk.points_W.size(), chunk.labels.size());
+    total += chunk.points_W.size();
+    for (const CloudPoint& p : chunk.points_W) {
+      EXPECT_TRUE(chunk.box_W.contains(Eigen::Vector3f(p.x, p.y, p.z)));
+    }
+  }
+  EXPECT_EQ(2 * PointChunk::kMaxPoints + 4, total);
+  EXPECT_EQ(5.0F, chunks.back().box_W.max().x());
+}
+
+CameraPose pose_at(std::int64_t utime, double z_m) {
+  CameraPose pose;
+  pose.state = TrackingState::kTracking;
+  pose.utime = utime;
+  pose.X_WC.translation().z() = z_m;
+  return pose;
+}
+
+TEST(ReceivedMap, FollowsTheCameraWhileItIsTracked) {
+  ReceivedMap map(kMapSession);
+  for (int i = 0; i <= 100; ++i) EXPECT_TRUE(map.add_pose(pose_at(1'000 + i, 0.01 * i)));
+  CameraPose lost = pose_at(2'000, 5.0);
+  lost.state = TrackingState::kLost;
+  EXPECT_FALSE(map.add_pose(lost));
+  EXPECT_FALSE(map.add_pose(pose_at(1'050, 5.0)));  // came late
+  const CameraTrack track = map.received_track();
+  EXPECT_DOUBLE_EQ(1.0, track.X_WC->translation().z());
+  EXPECT_EQ(100, map.utime() - map.first_utime());
+  // 1 m in steps of at least 2 cm; rounding may make a step 3 cm.
+  EXPECT_GE(track.path_W.size(), 34U);
+  EXPECT_LE(track.path_W.size(), 51U);
+}
+
+TEST(ReceivedMap, TakesThePosesOfTheSlicesWhereNoneWasHeard) {
+  constexpr std::int64_t kSecond_us = 1'000'000;
+  ReceivedMap map(kMapSession);
+  for (const std::int32_t id : {3, 0, 2, 1}) {  // at 0, 1, 2 and 3 s
+    CloudSlice slice = slice_of(id, 1);
+    slice.utime = id * kSecond_us;
+    slice.X_WC.translation() = Eigen::Vector3d(100.0, 0.0, id);  // off the path that is heard
+    map.add_slice(slice);
+  }
+  for (int i = 8; i <= 22; ++i) {  // heard from 0.8 s to 2.2 s
+    map.add_pose(pose_at(i * kSecond_us / 10, 0.1 * i));
+  }
+  const CameraTrack track = map.received_track();
+  ASSERT_EQ(17U, track.path_W.size());
+  EXPECT_EQ(Eigen::Vector3f(100.0F, 0.0F, 0.0F), track.path_W.front());
+  for (std::size_t i = 1; i + 1 < track.path_W.size(); ++i) EXPECT_EQ(0.0F, track.path_W[i].x());
+  EXPECT_EQ(Eigen::Vector3f(100.0F, 0.0F, 3.0F), track.path_W.back());
+  EXPECT_EQ(3.0, track.X_WC->translation().z());  // newer than what was heard
+  EXPECT_EQ(0, map.first_utime());
+
+  const CameraTrack known = map.slice_track();
+  ASSERT_EQ(4U, known.path_W.size());
+  for (int i = 0; i < 4; ++i) EXPECT_EQ(static_cast<float>(i), known.path_W[i].z());
+}
+
+TEST(PendingUpdates, KeepsNoMoreThanItsBoundWhateverSlicesAreNamed) {
+  constexpr std::size_t kMaxBytes = 10'000;
+  PendingUpdates pending(kMaxBytes);
+  std::mt19937 random(1);
+  std::uniform_int_distribution<std::int32_t> any(0, INT32_MAX);
+  int kept = 0;
+  for (int i = 0; i < 1'000; ++i) kept += pending.add({{any(random), 0, 1, 7, any(random)}, 0});
+  EXPECT_GT(kept, 0);
+  EXPECT_LT(kept, 1'000);
+  EXPECT_LE(pending.bytes(), kMaxBytes);
+  EXPECT_EQ(PendingUpdates::Outcome::kNoRoom, pending.add({1, 0}, {Labels(1'000), 0}));
+  pending.clear();
+  EXPECT_EQ(0U, pending.bytes());
+  EXPECT_EQ(PendingUpdates::Outcome::kNews, pending.add({1, 0}, {Labels(1'000), 5}));
+  EXPECT_EQ(PendingUpdates::Outcome::kKnown, pending.add({1, 0}, {Labels(1'000), 6}));
+  EXPECT_EQ(PendingUpdates::Outcome::kKnown, pending.add({1, 0}, {Labels(1'000, 3), 4}));
+  EXPECT_EQ(PendingUpdates::Outcome::kNews, pending.add({1, 0}, {Labels(2'000, 3), 7}));
+  pending.take_up_to({1, 0}, [](SliceKey, const PendingUpdates::Entry& entry) {
+    EXPECT_EQ(Labels(2'000, 3), entry.labels->labels);
+  });
+  EXPECT_EQ(0U, pending.bytes());
+}
+
+}  // namespace
+}  // namespace kintsugi::viewer

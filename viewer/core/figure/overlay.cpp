@@ -1,0 +1,88 @@
+#include "viewer/core/figure/overlay.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include <opencv2/imgproc.hpp>
+
+#include "viewer/core/drawing/palette.hpp"
+#include "viewer/core/drawing/text.hpp"
+
+namespace kintsugi::viewer {
+namespace {
+
+/// Proportional to the size of the picture.
+int line_width(const cv::Mat3b& image) { return std::max(1, (image.cols + 320) / 640); }
+
+cv::Point2d project(const Intrinsics& k, const Eigen::Vector3d& p_V) {
+  return {k.fx * p_V.x() / p_V.z() + k.cx, k.fy * p_V.y() / p_V.z() + k.cy};
+}
+
+void draw_line(cv::Mat3b& image, const VirtualCamera& camera, Eigen::Vector3d a_V,
+               Eigen::Vector3d b_V, const Rgb& color, int width) {
+  constexpr double kNear_m = 0.05;
+  if (a_V.z() > b_V.z()) std::swap(a_V, b_V);
+  if (b_V.z() <= kNear_m) return;
+  if (a_V.z() < kNear_m) a_V += (b_V - a_V) * (kNear_m - a_V.z()) / (b_V.z() - a_V.z());
+
+  constexpr int kShift = 4;  // OpenCV takes fixed-point coordinates: sixteenths of a pixel
+  const auto fixed = [](const cv::Point2d& p) {
+    // An end far outside the picture would overflow an int.
+    const auto bounded = [](double t) { return std::clamp(t, -1e6, 1e6) * (1 << kShift); };
+    return cv::Point(cv::Point2d(bounded(p.x), bounded(p.y)));
+  };
+  cv::line(image, fixed(project(camera.intrinsics, a_V)), fixed(project(camera.intrinsics, b_V)),
+           color, width, cv::LINE_AA, kShift);
+}
+
+double title_scale(const cv::Mat3b& image) { return std::clamp(image.cols / 1100.0, 0.4, 1.2); }
+
+}  // namespace
+
+void draw_path(cv::Mat3b& image, const VirtualCamera& camera,
+               std::span<const Eigen::Vector3f> path_W) {
+  const Pose X_VW = camera.X_WV.inverse();
+  for (std::size_t i = 1; i < path_W.size(); ++i) {
+    draw_line(image, camera, X_VW * path_W[i - 1].cast<double>(), X_VW * path_W[i].cast<double>(),
+              palette::kCameraPath, line_width(image));
+  }
+}
+
+void draw_frustum(cv::Mat3b& image, const VirtualCamera& camera, const Pose& X_WC, double size_m) {
+  // Half the width and height of the field of view of a Kinect, 57 x 43 degrees, at a distance
+  // of 1.
+  constexpr double kHalfWidth = 0.54;
+  constexpr double kHalfHeight = 0.40;
+  const Pose X_VC = camera.X_WV.inverse() * X_WC;
+  std::array<Eigen::Vector3d, 4> corners_V;
+  constexpr std::array<std::array<int, 2>, 4> kSigns{{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}};
+  for (std::size_t i = 0; i < corners_V.size(); ++i) {
+    const Eigen::Vector3d corner_C(kSigns[i][0] * kHalfWidth, kSigns[i][1] * kHalfHeight, 1.0);
+    corners_V[i] = X_VC * (size_m * corner_C);
+  }
+  for (std::size_t i = 0; i < corners_V.size(); ++i) {
+    const int width = line_width(image);
+    draw_line(image, camera, X_VC.translation(), corners_V[i], palette::kCameraFrustum, width);
+    draw_line(image, camera, corners_V[i], corners_V[(i + 1) % 4], palette::kCameraFrustum, width);
+  }
+}
+
+void draw_caption(cv::Mat3b& image, const cv::Rect& bar, const std::string& text) {
+  cv::rectangle(image, bar, palette::kCaptionBar, cv::FILLED);
+  const cv::Size unit = text_size(text, 1.0);
+  const double scale = std::min(0.018 * bar.height, (bar.width - 20.0) / std::max(unit.width, 1));
+  const int y = bar.y + (bar.height + static_cast<int>(scale * unit.height)) / 2;
+  draw_text(image, text, {bar.x + 10, y}, scale, palette::kCaptionText);
+}
+
+void draw_title(cv::Mat3b& image, const std::string& text) {
+  const cv::Rect box = title_box(image, text);
+  draw_outlined_text(image, text, {box.x, box.br().y}, title_scale(image));
+}
+
+cv::Rect title_box(const cv::Mat3b& image, const std::string& text) {
+  const double scale = title_scale(image);
+  return {10, 10, text_size(text, scale).width, static_cast<int>(22 * scale)};
+}
+
+}  // namespace kintsugi::viewer

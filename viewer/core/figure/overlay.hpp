@@ -1,0 +1,28 @@
+#pragma once
+
+#include <span>
+#include <string>
+
+#include <opencv2/core.hpp>
+
+#include "viewer/core/camera/virtual_camera.hpp"
+
+namespace kintsugi::viewer {
+
+/// Draws the polyline through `path_W`, clipped where it passes behind the virtual camera. The path
+/// is drawn over the map, so that it is visible through walls.
+void draw_path(cv::Mat3b& image, const VirtualCamera& camera,
+               std::span<const Eigen::Vector3f> path_W);
+
+/// Draws the depth camera C as a pyramid `size_m` deep.
+void draw_frustum(cv::Mat3b& image, const VirtualCamera& camera, const Pose& X_WC, double size_m);
+
+/// Fills `bar` and writes the text into it, as large as fits.
+void draw_caption(cv::Mat3b& image, const cv::Rect& bar, const std::string& text);
+
+/// Writes the title of a panel into its top left corner.
+void draw_title(cv::Mat3b& image, const std::string& text);
+/// The pixels that draw_title() covers.
+cv::Rect title_box(const cv::Mat3b& image, const std::string& text);
+
+}  // namespace kintsugi::viewer

@@ -1,0 +1,121 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "lcmtypes/messages.hpp"
+#include "viewer/core/map/camera_track.hpp"
+#include "viewer/core/map/label_update.hpp"
+#include "viewer/core/map/map_slice.hpp"
+#include "viewer/core/map/pending_updates.hpp"
+#include "viewer/core/map/point_chunk.hpp"
+#include "viewer/core/map/up_direction.hpp"
+
+namespace kintsugi::viewer {
+
+/// What a ReceivedMap holds now, and what it has been given since it began.
+struct MapCounts {
+  std::int64_t slices = 0;           ///< held now
+  std::int64_t points = 0;           ///< held now
+  std::int64_t labelled_slices = 0;  ///< held now, with their update applied
+  std::int64_t segments = 0;         ///< in the whole map, according to the newest update
+
+  std::int64_t updates = 0;           ///< applied, or kept until their slice arrives
+  std::int64_t repeated_updates = 0;  ///< said nothing new
+  std::int64_t labellings = 0;        ///< slices that got their first update, each revision counted
+  std::int64_t ignored_slices = 0;    ///< repeated, or of an earlier revision than the one held
+  std::int64_t ignored_updates = 0;   ///< of another map, an earlier segmenter or earlier revision
+  std::int64_t ignored_runs = 0;      ///< outside their slice, or no memory to keep them
+};
+
+/// The slices of one map session, their labels and the camera's path, as far as they have arrived.
+///
+/// Slices and updates may arrive in any order and more than once; the result is the same. A higher
+/// revision of a slice replaces points and labels of the one held. Labels for a revision that has
+/// not arrived are kept until it does; labels for one that has been replaced are ignored. The full
+/// state that a segmenter sends to late joiners changes nothing in a map that is up to date.
+///
+/// A segmenter session with a larger number replaces the one before, after a restart. The old
+/// labels remain visible until the new ones arrive, slice by slice, but slices with old labels
+/// count as unlabelled.
+class ReceivedMap {
+ public:
+  explicit ReceivedMap(std::int64_t map_session) : map_session_(map_session) {}
+
+  /// Adds a slice, or replaces an earlier revision of it, whose labels are dropped. False when the
+  /// revision is not newer than the one held: ignored and counted.
+  bool add_slice(CloudSlice slice);
+
+  /// Applies the labels and runs of an update; false when it changed nothing. Ignored and counted
+  /// are updates of another map session, of an earlier segmenter session than the newest, and with
+  /// a sequence number of 2^32 - 1 or more: no stream is that long.
+  bool apply_update(const SegmentUpdate& update);
+
+  /// Removes the labels of earlier segmenters that the present one has not replaced.
+  void discard_old_labels();
+
+  /// False when the pose is not used: camera lost or starting, or not newer than the last pose.
+  bool add_pose(const CameraPose& pose);
+
+  std::int64_t map_session() const { return map_session_; }
+  const MapCounts& counts() const { return counts_; }
+  /// Slices without their update, plus slices (or newer revisions of them) that updates have named
+  /// but that have not arrived.
+  std::int64_t lag_slices() const;
+  /// Device time of the newest slice or pose, microseconds; 0 when there is none.
+  std::int64_t utime() const { return utime_.value_or(0); }
+  /// Device time of the earliest slice or pose, microseconds; 0 when there is none.
+  std::int64_t first_utime() const { return first_utime_.value_or(0); }
+  /// The segmenter has sent the update that completes its map.
+  bool final_update_seen() const { return final_update_seen_; }
+
+  const MapSlice* slice(std::int32_t id) const;  ///< nullptr: not here
+  /// The labelled slice with the highest id; with no segmenter, the slice with the highest id.
+  /// Slices without points are skipped. nullptr: none.
+  const MapSlice* newest_slice() const;
+
+  std::vector<PointChunk> chunks() const;  ///< of all slices, by slice id
+
+  const UpDirection& up() const { return up_; }
+
+  /// The path through the poses received, and those that came with slices in gaps between them.
+  CameraTrack received_track() const { return poses_.track(slice_poses()); }
+  /// The path through the poses that came with slices: the same in every viewer with all slices.
+  CameraTrack slice_track() const { return track_through(slice_poses()); }
+
+  std::int64_t memory_bytes() const;
+
+ private:
+  static constexpr std::size_t kMaxPendingBytes = std::size_t{1} << 29U;  ///< 130 million labels
+
+  enum class Presence { kHere, kReplaced, kNotYet };
+
+  Presence presence(SliceKey key) const;
+  bool accept_segmenter(std::int64_t session);
+  void await_new_segmenter();
+  bool use_counts(const SegmentUpdate& update, std::uint32_t number);
+  UpdateEffect use_labels(SliceKey key, NumberedLabels labels);
+  bool use_run(const NumberedRun& run);
+  UpdateEffect apply_labels(MapSlice& slice, const NumberedLabels& labels);
+  bool apply_run(MapSlice& slice, const NumberedRun& run);
+  void apply_pending(MapSlice& slice);
+  std::vector<TimedPose> slice_poses() const;
+  void advance_time(std::int64_t utime);
+
+  std::int64_t map_session_;
+  std::int64_t segmenter_session_ = 0;
+  std::map<std::int32_t, MapSlice> slices_;
+  PendingUpdates pending_{kMaxPendingBytes};
+  std::optional<std::uint32_t> newest_update_;
+  std::int64_t announced_slices_ = 0;  ///< slices in the map, according to the segmenter
+  bool final_update_seen_ = false;
+  MapCounts counts_;
+  std::optional<std::int64_t> utime_;
+  std::optional<std::int64_t> first_utime_;
+  UpDirection up_;
+  ReceivedPoses poses_;
+};
+
+}  // namespace kintsugi::viewer

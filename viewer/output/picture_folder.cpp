@@ -1,0 +1,13 @@
+#include "viewer/output/picture_folder.hpp"
+
+#include "viewer/output/picture_file.hpp"
+
+namespace kintsugi::viewer {
+
+bool PictureFolder::save(const std::string& name, const cv::Mat3b& picture) {
+  const bool is_written = attempts_([&] { write_png(folder_ / name, picture); });
+  if (is_written) ++written_;
+  return is_written;
+}
+
+}  // namespace kintsugi::viewer

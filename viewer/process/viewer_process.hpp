@@ -1,0 +1,101 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "viewer/output/picture_folder.hpp"
+#include "viewer/output/video_recorder.hpp"
+#include "viewer/process/painter.hpp"
+#include "viewer/process/retry_clock.hpp"
+#include "viewer/receiving/message.hpp"
+#include "viewer/session/map_sessions.hpp"
+
+namespace kintsugi::viewer {
+
+/// Collects the messages of a map and writes its pictures. Not thread-safe.
+///
+/// The newest map session is drawn from its first slice on. The one before it is kept for messages
+/// that arrive late; its final pictures, with its number in their names, are written when it is
+/// complete or nothing new arrived for 5 s. Older sessions are forgotten.
+///
+/// A file that cannot be written is logged, and the viewer continues; final pictures are retried
+/// until they are written. Times `now_s` are those of a PatientClock.
+class ViewerProcess {
+ public:
+  struct Config {
+    Painter::Config painter;
+    std::filesystem::path folder = ".";          ///< for the pictures; must exist
+    int every_slices = 10;                       ///< slices between two snapshots
+    std::optional<std::filesystem::path> video;  ///< .mp4 file; nothing: no video
+    double video_period_s = 0.1;                 ///< map time between two frames
+    double video_frames_per_s = 20.0;            ///< of playback
+
+    /// @throws std::invalid_argument naming the field, its value and the bound
+    void validate() const;
+  };
+  /// Where results go besides files. Functions may be empty.
+  struct Outputs {
+    std::function<void(const cv::Mat3b& picture, const std::string& caption)> on_picture;
+    /// No more messages of this map session are needed.
+    std::function<void(std::int64_t map_session)> on_forgotten;
+  };
+
+  /// @throws as Config::validate() and VideoFile
+  ViewerProcess(const Config& config, Outputs outputs);
+
+  void add(Message message, double now_s);
+
+  /// Draws what is due, if drawing has not used its share of the time: a snapshot, a frame of the
+  /// video, and highlight.png after an answer of the segmenter.
+  void draw_if_due();
+  void draw_snapshot_now();
+
+  /// Writes the final pictures of each session that has ended. A session has ended when the final
+  /// update and every slice have arrived; or when the final update has arrived or a newer session
+  /// exists, nothing new arrived for 5 s, and nothing is expected. `more_may_come`: messages are
+  /// missing that may still be resent.
+  void write_finals(double now_s, bool more_may_come);
+  /// The newest session has ended, and its final pictures are written or cannot be written.
+  bool finished() const { return finished_; }
+
+  /// Writes all final pictures that are due and closes the video. Call once, at the end.
+  void close();
+
+  /// All fields but those of the receiver.
+  ViewerStatus status() const;
+  /// Number of snapshots, sets of final pictures and videos that could not be written.
+  std::int64_t failures() const { return failures_; }
+
+ private:
+  MapSession* find_or_create_session(std::int64_t session, double now_s);
+  void forget_oldest();
+  void publish(const cv::Mat3b& picture, const std::string& caption) const;
+
+  bool is_current(const MapSession& session) const { return &session == sessions_.current(); }
+  std::string final_suffix(const MapSession& session) const;
+  bool has_ended(const MapSession& session, double now_s, bool more_may_come) const;
+  void note_finals(double now_s, bool all_written, bool has_current_ended);
+  bool write_final(MapSession& session);
+
+  void write_snapshot(MapSession& session, const cv::Mat3b& figure);
+  void write_highlight(MapSession& session, const cv::Mat3b& figure);
+
+  Config config_;
+  Outputs outputs_;
+  Painter painter_;
+  PictureFolder folder_;
+  std::unique_ptr<VideoRecorder> video_;
+
+  std::string map_name_;
+  MapSessions sessions_;
+
+  bool finished_ = false;
+  RetryClock finals_retry_;
+  std::int64_t failures_ = 0;
+};
+
+}  // namespace kintsugi::viewer
