@@ -94,8 +94,8 @@ void StreamSender::compare_with_store() {
   const std::optional<Bytes> stored = store_->find(sequence_);
   if (stored && *stored != encode_next()) {
     throw std::runtime_error(channel_ + ", sequence " + std::to_string(sequence_) +
-                             ": differs from the chunk that was sent before: resume with the same "
-                             "device and options");
+                             ": differs from what was sent before: resume with the same device "
+                             "and options");
   }
   ++counts_.chunks_compared;
   finish_chunk();

@@ -224,7 +224,7 @@ TEST(CodecBounds, ErrorsNameTypeFieldValueAndBound) {
               HasSubstr("event type is 5"));
   EXPECT_THAT(refusal(example_update(1),
                       [&](SegmentUpdate& u) { u.statistics[0].area_m2 = std::nanf(""); }),
-              HasSubstr("area_m2 is nan"));
+              HasSubstr("statistics area is nan"));
   EXPECT_THAT(refusal(example_query(), [](SegmentQuery& q) { q.place = QueryPlace{5}; }),
               HasSubstr("segment_query_t.place is 5, expected 0 .. 4"));
   EXPECT_THAT(refusal(example_query(), [](SegmentQuery& q) { q.client = 0; }),
