@@ -9,6 +9,7 @@
 #include <spdlog/spdlog.h>
 
 #include "lcmtypes/base/argument_check.hpp"
+#include "lcmtypes/base/process_memory.hpp"
 
 namespace kintsugi::viewer {
 
@@ -184,9 +185,7 @@ ViewerStatus ViewerProcess::status() const {
   status.render_ms = painter_.render_ms();
   status.problem = folder_.problem();
   if (status.problem.empty() && video_) status.problem = video_->problem();
-  for (const auto& [number, session] : sessions_.all()) {
-    status.memory_bytes += session.memory_bytes();
-  }
+  status.memory_bytes = process_memory().resident_bytes;
   const MapSession* const session = sessions_.current();
   if (session == nullptr) return status;
   const ReceivedMap& map = session->map();

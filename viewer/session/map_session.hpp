@@ -32,7 +32,6 @@ class MapSession {
   const SmoothedCamera& depth_camera() const { return depth_camera_; }
   RunHistory& history() { return history_; }
   const UpdateLog& updates() const { return updates_; }
-  std::int64_t memory_bytes() const { return map_.memory_bytes() + updates_.memory_bytes(); }
   bool is_empty() const { return map_.counts().slices == 0; }
 
   /// The segmenter has completed its map, and all of it has arrived.

@@ -46,11 +46,6 @@ CameraTrack ReceivedPoses::track(const std::vector<TimedPose>& known) const {
   return track;
 }
 
-std::int64_t ReceivedPoses::memory_bytes() const {
-  return static_cast<std::int64_t>(positions_.capacity() * sizeof(Position) +
-                                   intervals_.capacity() * sizeof(Interval));
-}
-
 CameraTrack track_through(const std::vector<TimedPose>& known) {
   return ReceivedPoses().track(known);
 }

@@ -31,8 +31,6 @@ class ReceivedPoses {
   /// The poses received, with those of `known` (in order of time) that fall into gaps.
   CameraTrack track(const std::vector<TimedPose>& known) const;
 
-  std::int64_t memory_bytes() const;
-
  private:
   static constexpr double kStep_m = 0.02;                   ///< between two points of the path
   static constexpr std::int64_t kMaxInterval_us = 250'000;  ///< between two poses without a gap

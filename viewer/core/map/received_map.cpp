@@ -199,10 +199,4 @@ std::vector<PointChunk> ReceivedMap::chunks() const {
   return chunks;
 }
 
-std::int64_t ReceivedMap::memory_bytes() const {
-  constexpr std::int64_t kBytesPerPoint = sizeof(CloudPoint) + 2 * sizeof(std::uint32_t);
-  return counts_.points * kBytesPerPoint + static_cast<std::int64_t>(pending_.bytes()) +
-         poses_.memory_bytes();
-}
-
 }  // namespace kintsugi::viewer

@@ -85,8 +85,6 @@ class ReceivedMap {
   /// The path through the poses that came with slices: the same in every viewer with all slices.
   CameraTrack slice_track() const { return track_through(slice_poses()); }
 
-  std::int64_t memory_bytes() const;
-
  private:
   static constexpr std::size_t kMaxPendingBytes = std::size_t{1} << 29U;  ///< 130 million labels
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <utility>
 
 namespace kintsugi::viewer {
 
@@ -17,9 +16,6 @@ void UpdateLog::add(const SegmentUpdate& update) {
   for (const SegmentStatistics& segment : update.statistics) {
     entry.sizes.push_back({segment.segment_id, segment.num_points});
   }
-  memory_bytes_ += static_cast<std::int64_t>(sizeof(std::pair<const Key, Entry>) +
-                                             entry.events.size() * sizeof(SegmentEvent) +
-                                             entry.sizes.size() * sizeof(Size));
 }
 
 std::vector<const UpdateLog::Entry*> UpdateLog::entries() const {

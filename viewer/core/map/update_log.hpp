@@ -31,8 +31,6 @@ class UpdateLog {
   /// The entries that have not been superseded, in the order of the updates.
   std::vector<const Entry*> entries() const;
 
-  std::int64_t memory_bytes() const { return memory_bytes_; }
-
  private:
   struct Key {
     std::int64_t session = 0;
@@ -42,7 +40,6 @@ class UpdateLog {
   };
 
   std::map<Key, Entry> entries_;
-  std::int64_t memory_bytes_ = 0;
 };
 
 }  // namespace kintsugi::viewer
