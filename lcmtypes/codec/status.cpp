@@ -15,14 +15,14 @@ namespace codec {
 namespace {
 
 template <class Status>
-consteval std::size_t num_listed() {
+constexpr std::size_t num_listed() {
   std::size_t count = 0;
   Status::visit_fields([&count](const StatusField&) { ++count; });
   return count;
 }
 
 template <class Status>
-consteval int num_strings() {
+int num_strings() {
   int count = 0;
   const Status status;
   Status::visit_fields(
@@ -67,7 +67,7 @@ struct SmallStatus : Copied<Status, Wire> {
                 "visit_fields() does not list every member of the struct");
   static_assert(num_listed<Status>() + 1 == num_members<Wire>(),  // it has a checksum, too
                 "visit_fields() does not list every field of the .lcm file");
-  static constexpr int kNumStrings = num_strings<Status>();
+  inline static const int kNumStrings = num_strings<Status>();
 
   template <class From, class To>
   static void copy(const From& from, To& to) {
