@@ -11,7 +11,7 @@ namespace kintsugi {
 
 using Pose = Eigen::Isometry3d;
 
-/// Pinhole camera with the Brown-Conrady lens model of OpenCV.
+/// A calibrated camera: a pinhole with the Brown-Conrady lens distortion of OpenCV.
 ///
 /// A pixel (u, v) with depth z (metres along C's z) is the point
 ///   p_C = (z (u - cx) / fx, z (v - cy) / fy, z)

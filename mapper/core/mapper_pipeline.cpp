@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "lcmtypes/base/argument_check.hpp"
-#include "mapper/core/tracking/covered_share.hpp"
+#include "mapper/core/frame/covered_share.hpp"
 
 namespace kintsugi::mapper {
 namespace {
@@ -50,7 +50,7 @@ FrameResult MapperPipeline::process(const RgbdFrame& frame) {
     clock.end_of(&StageTimes::shift_ms);
     integrator_.integrate(frame, X_WC_, volume_);
     clock.end_of(&StageTimes::integrate_ms);
-    remember_view(frame, input);
+    update_model(frame, input);
     clock.end_of(&StageTimes::raycast_ms);
   }
   result.times = clock.wall();
@@ -68,7 +68,7 @@ TrackingInput MapperPipeline::prepare(const RgbdFrame& frame) const {
   if (!config_.given_path.empty()) return {frame.utime, {}, frame.color_rgb};
   return {frame.utime,
           pyramid_from_depth(frame.depth_m, frame.intrinsics, halvings(frame.intrinsics),
-                             static_cast<int>(config_.tracker.iterations.size()),
+                             static_cast<int>(config_.tracker.registration.iterations.size()),
                              static_cast<float>(config_.integrator.max_depth_m)),
           frame.color_rgb};
 }
@@ -104,10 +104,10 @@ TrackingResult MapperPipeline::start(const TrackingInput& input) {
 
 std::optional<TrackingResult> MapperPipeline::find_again(const TrackingInput& input) {
   const SurfaceMap& surface_C = input.surface_C.front();
-  const auto map_from_pose = [&](const Pose& X_WV) {
-    return map_from(X_WV, surface_C.intrinsics, surface_C.depth_m);
+  const auto model_from_pose = [&](const Pose& X_WV) {
+    return model_from(X_WV, surface_C.intrinsics, surface_C.depth_m);
   };
-  auto found = relocalizer_.find(input, tracker_, map_from_pose);
+  auto found = relocalizer_.find(input, tracker_, model_from_pose);
   if (found) tracker_.start_at(found->X_WC, input, found->quality.covered_share);
   return found;
 }
@@ -118,16 +118,16 @@ int MapperPipeline::shift(const RgbdFrame& frame, const Pose& X_WC) {
   return static_cast<int>(left.size());
 }
 
-void MapperPipeline::remember_view(const RgbdFrame& frame, const TrackingInput& input) {
-  if (!config_.given_path.empty()) return;  // nothing is registered with it
-  model_ = map_from(X_WC_, input.surface_C.front().intrinsics, frame.depth_m);
+void MapperPipeline::update_model(const RgbdFrame& frame, const TrackingInput& input) {
+  if (!config_.given_path.empty()) return;  // the model is only for tracking
+  model_ = model_from(X_WC_, input.surface_C.front().intrinsics, frame.depth_m);
   relocalizer_.remember(input, *model_);
 }
 
-Model MapperPipeline::map_from(const Pose& X_WV, const Intrinsics& camera,
-                               const cv::Mat_<float>& guide_depth_m) const {
+Model MapperPipeline::model_from(const Pose& X_WV, const Intrinsics& camera,
+                                 const cv::Mat_<float>& guide_depth_m) const {
   return {pyramid_from_surface(raycaster_.raycast(volume_, X_WV, camera, guide_depth_m),
-                               static_cast<int>(config_.tracker.iterations.size())),
+                               static_cast<int>(config_.tracker.registration.iterations.size())),
           X_WV, region_of(volume_)};
 }
 

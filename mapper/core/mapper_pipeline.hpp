@@ -20,28 +20,29 @@
 
 namespace kintsugi::mapper {
 
-/// What became of one frame.
+/// The result of one frame.
 struct FrameResult {
   TrackingResult tracking;
-  std::vector<CloudSlice> slices;  ///< finished since the frame before; of any earlier frame
-  int slices_left = 0;             ///< parts of the volume it has just left behind
-  StageTimes times;                ///< wall
-  StageTimes cpu_times;            ///< of the whole process meanwhile
+  std::vector<CloudSlice>
+      slices;            ///< finished since the frame before; they left at any earlier frame
+  int slices_left = 0;   ///< slices that left the volume at this frame
+  StageTimes times;      ///< wall time
+  StageTimes cpu_times;  ///< CPU time of the whole process during these stages
 };
 
-/// Tracks the camera, fuses what it sees into a volume that moves with it, and hands out what
-/// leaves the volume as slices, numbered from 0 without gaps.
+/// Tracks the camera, fuses each frame into a volume that moves with it, and returns what leaves
+/// the volume as slices, numbered from 0 without gaps.
 ///
 /// The same frames give the same poses and the same slices, bit by bit, whatever the number of
-/// threads; only with which frame a finished slice is handed out depends on timing. `session` and
-/// `map_name` of the slices are left for who publishes them.
+/// threads; only the frame at which a finished slice is returned depends on timing. `session` and
+/// `map_name` of the slices are set by the publisher.
 ///
 ///     Starting --first frame with a surface in the cube--> Tracking
-///     Tracking --the loss rule does not believe a pose--> Lost
+///     Tracking --the loss rule rejects the pose--> Lost
 ///     Lost     --found near the last pose (Tracker), or by a keyframe (Relocalizer)--> Tracking
 ///
-/// Only what is tracked is fused. A frame that is lost changes nothing: map and last pose stay. A
-/// camera found elsewhere takes the cube with it, and what leaves the cube goes out as slices.
+/// Only frames whose pose is known are fused. A lost frame leaves map and last pose unchanged. When
+/// the camera is found elsewhere, the cube moves there, and the blocks that leave it become slices.
 /// With given poses there is no Starting and no Tracking: each frame is Given, or Lost.
 class MapperPipeline {
  public:
@@ -62,12 +63,14 @@ class MapperPipeline {
   /// @throws std::invalid_argument if the configuration is not valid
   explicit MapperPipeline(const Config& config);
 
-  /// Frames come in order of time, with the same intrinsics.
-  /// @throws std::invalid_argument if an image and the intrinsics disagree; nothing changed then
+  /// Frames must be in order of time and have the same intrinsics.
+  /// @throws std::invalid_argument if the sizes of an image and of the intrinsics differ; the map
+  /// and the pose are unchanged then
   FrameResult process(const RgbdFrame& frame);
 
-  /// The end of the run: the slices still being extracted and, last, the final slice with what is
-  /// in the volume. The pipeline takes no more frames.
+  /// Ends the run: waits for the slices that are being extracted and returns them; the last one is
+  /// the final slice, with all that is still in the volume. process() must not be called
+  /// afterwards.
   std::vector<CloudSlice> finish();
 
   std::int64_t num_blocks() const { return static_cast<std::int64_t>(volume_.num_blocks()); }
@@ -82,10 +85,10 @@ class MapperPipeline {
   TrackingResult start(const TrackingInput& input);
   int shift(const RgbdFrame& frame, const Pose& X_WC);
   std::optional<TrackingResult> find_again(const TrackingInput& input);
-  void remember_view(const RgbdFrame& frame, const TrackingInput& input);
+  void update_model(const RgbdFrame& frame, const TrackingInput& input);
   /// The map's surface as seen from a pose; the guide is that of Raycaster::raycast().
-  Model map_from(const Pose& X_WV, const Intrinsics& camera,
-                 const cv::Mat_<float>& guide_depth_m) const;
+  Model model_from(const Pose& X_WV, const Intrinsics& camera,
+                   const cv::Mat_<float>& guide_depth_m) const;
   int halvings(const Intrinsics& intrinsics) const;
 
   Config config_;

@@ -6,19 +6,19 @@
 
 namespace kintsugi::mapper {
 
-/// Time of the stages of one frame, milliseconds; wall or CPU.
+/// Time of the stages of one frame, milliseconds; wall or CPU time.
 struct StageTimes {
-  double prepare_ms = 0.0;    ///< surfaces of the measured depth, at every size
-  double track_ms = 0.0;      ///< registration
-  double shift_ms = 0.0;      ///< the cube moves, what leaves it goes to the slice worker
+  double prepare_ms = 0.0;    ///< surface pyramid of the measured depth
+  double track_ms = 0.0;      ///< registration, and relocalisation after a loss
+  double shift_ms = 0.0;      ///< shift of the cube; queues slices for extraction
   double integrate_ms = 0.0;  ///< allocation and fusion
-  double raycast_ms = 0.0;    ///< the model for the next frame
+  double raycast_ms = 0.0;    ///< raycast of the model for the next frame
 
   StageTimes& operator+=(const StageTimes& other);
   double total_ms() const;
 };
 
-/// A stage, as tables name it.
+/// A stage, and its column name in tables.
 struct Stage {
   const char* name;
   double StageTimes::*ms;
@@ -44,7 +44,7 @@ inline double StageTimes::total_ms() const {
 /// Times the stages of a frame as they end, one after another.
 class StageClock {
  public:
-  /// The stage that began with this clock or with the end of the last stage ends here.
+  /// Ends a stage, which began at the end of the stage before or when this clock was made.
   void end_of(double StageTimes::*stage) {
     wall_.*stage += stopwatch_.lap_ms();
     const double cpu_ms = process_cpu_ms();
@@ -52,7 +52,7 @@ class StageClock {
     cpu_at_lap_ms_ = cpu_ms;
   }
   const StageTimes& wall() const { return wall_; }
-  /// Of all threads of the process, also of those that work on something else meanwhile.
+  /// Of all threads of the process, including those that do other work at the time.
   const StageTimes& cpu() const { return cpu_; }
 
  private:

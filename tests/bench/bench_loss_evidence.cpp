@@ -39,7 +39,7 @@ struct Trial {
 
 constexpr double kRight_m = 0.01;
 
-/// A tracker that believes everything.
+/// A tracker that accepts every registration.
 Tracker::Config credulous() {
   Tracker::Config config;
   config.loss.min_covered_share = 0.0;

@@ -1,4 +1,4 @@
-#include "mapper/core/kernels/pack_avx2.hpp"
+#include "mapper/core/simd/pack_avx2.hpp"
 #include "tests/bench/machine_limits.hpp"
 
 namespace kintsugi::mapper::bench {

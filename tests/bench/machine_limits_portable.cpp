@@ -1,4 +1,4 @@
-#include "mapper/core/kernels/pack_portable.hpp"
+#include "mapper/core/simd/pack_portable.hpp"
 #include "tests/bench/machine_limits.hpp"
 
 namespace kintsugi::mapper::bench {

@@ -8,21 +8,21 @@
 namespace kintsugi::mapper {
 namespace {
 
-constexpr int kRowSide = kBlockSide + 2;  // with a voxel to either side
+constexpr int kRowSide = kBlockSide + 2;  // with one voxel before and one after
 
-/// For each row of voxels, one bit a voxel: bit x + 1 is voxel x.
+/// One row of voxels; bit x + 1 is voxel x.
 struct RowBits {
   unsigned observed = 0;
   unsigned behind = 0;
 
-  /// Voxels between which and their like in the other row is a crossing.
+  /// Voxels with a crossing between them and the voxel at the same place in the other row.
   unsigned crossings_to(const RowBits& other) const {
     return observed & other.observed & (behind ^ other.behind);
   }
   RowBits shifted() const { return {observed >> 1, behind >> 1}; }
 };
 
-/// The rows y, z of -1 .. 8.
+/// The rows of a block and those around it: y and z from -1 to 8.
 class BlockBits {
  public:
   BlockBits(const PaddedBlock& block, int weight_threshold) {
@@ -40,7 +40,7 @@ class BlockBits {
     }
   }
 
-  /// The voxels of a row, bit x is voxel x, that have a crossing to one of their six neighbours.
+  /// Bit x is set where voxel x of a row has a crossing to one of its six neighbours.
   unsigned voxels_with_crossings(int y, int z) const {
     const RowBits& bits = row(y, z);
     const unsigned along_x = bits.crossings_to(bits.shifted());
@@ -56,8 +56,8 @@ class BlockBits {
   std::array<RowBits, std::size_t{kRowSide} * kRowSide> rows_{};
 };
 
-/// The mean of the crossings that lie in an observed voxel, from its centre in voxels; false where
-/// there is none: every one is nearer to its other end.
+/// The mean of the crossings that lie in a voxel, relative to its centre, in voxels. False where
+/// none does: all crossings next to it are nearer to the other voxel's centre.
 bool mean_crossing(const PaddedBlock& block, int index, const CrossingRule& rule,
                    Eigen::Vector3f& offset_vox) {
   const int distance = voxel_distance_raw(block[index]);
@@ -70,7 +70,7 @@ bool mean_crossing(const PaddedBlock& block, int index, const CrossingRule& rule
       const int other_distance = voxel_distance_raw(other);
       if ((distance < 0) == (other_distance < 0)) continue;
       if (voxel_weight(other) <= rule.weight_threshold) continue;
-      // In this voxel where it is nearer to its centre; half way, in the lower of the two.
+      // The crossing lies in the voxel with the nearer centre; half way, in the lower one.
       const int others = std::abs(other_distance);
       if (side > 0 ? own > others : own >= others) continue;
       if (own + others > rule.max_step_raw) continue;
@@ -82,8 +82,8 @@ bool mean_crossing(const PaddedBlock& block, int index, const CrossingRule& rule
   return count > 0;
 }
 
-/// Along one axis at a voxel's centre: central difference, one-sided where a neighbour was never
-/// observed, zero where neither was.
+/// Derivative of the distance along one axis at a voxel's centre: a central difference; one-sided
+/// where a neighbour was never observed, zero where neither was.
 inline float difference_at(const PaddedBlock& block, int index, int stride) {
   const Voxel before = block[index - stride];
   const Voxel after = block[index + stride];
@@ -98,8 +98,8 @@ inline float difference_at(const PaddedBlock& block, int index, int stride) {
                                       : here - voxel_distance_raw(before));
 }
 
-/// Gradient at a point in a voxel, `offset_vox` from its centre: trilinear between the voxels
-/// around it that were observed.
+/// Gradient of the distance at a point in a voxel, `offset_vox` from its centre: trilinear between
+/// the observed voxels around it.
 Eigen::Vector3f gradient_near(const PaddedBlock& block, int index,
                               const Eigen::Vector3f& offset_vox) {
   std::array<std::array<float, 2>, 3> shares{};  // of the nearer and the farther voxel
@@ -146,7 +146,7 @@ BlockPoints::BlockPoints(const PaddedBlock& block, const CrossingRule& rule) {
       Eigen::Vector3f offset_vox;
       if (!mean_crossing(block, index, rule, offset_vox)) continue;
       const Eigen::Vector3f gradient = gradient_near(block, index, offset_vox);
-      if (gradient.isZero(0.0F)) continue;  // the same on all sides: it faces nowhere
+      if (gradient.isZero(0.0F)) continue;  // no direction to face
       points_.push_back({offset_vox, gradient.normalized()});
       row_masks_[row] |= static_cast<std::uint8_t>(1U << x);
     }
@@ -157,7 +157,7 @@ ObservedSides observed_sides(const VoxelBlock& block, int weight_threshold) {
   const Voxel threshold = (static_cast<Voxel>(weight_threshold) << 16U) | 0xFFFFU;
   Voxel any_behind = 0;
   Voxel any_free = 0;
-  for (const Voxel voxel : block.voxels) {  // without branches: the compiler makes vectors of it
+  for (const Voxel voxel : block.voxels) {  // no branches, so that the compiler can vectorise it
     const Voxel observed = voxel > threshold ? ~Voxel{0} : Voxel{0};
     any_behind |= observed & voxel;
     any_free |= observed & ~voxel;

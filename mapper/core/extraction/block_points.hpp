@@ -10,26 +10,25 @@
 
 namespace kintsugi::mapper {
 
-/// Between which neighbouring voxels there is surface.
+/// Between which neighbouring voxels a change of sign is surface.
 ///
-/// Where the camera sees past an object's outline, free space begins beside what is taken to be
-/// behind the outline: a wall that is not there. It shows in the distance, which rises along it
-/// from one voxel to the next by up to the whole truncation band; on a surface it rises by a voxel
-/// over the cosine of the angle at which the surface was seen.
+/// At the outline of an object the voxels behind its surface lie next to free space that the camera
+/// saw past it: the sign changes there, too, although there is no surface. This shows as a jump of
+/// the distance from one voxel to the next, by up to the whole truncation band. Across a surface
+/// the distance changes by one voxel over the cosine of the angle at which the surface was seen.
 struct CrossingRule {
-  int weight_threshold = 0;  ///< both voxels were seen more often than this
-  int max_step_raw = 0;      ///< their distances differ by no more than this
+  int weight_threshold = 0;  ///< both voxels have more observations than this
+  int max_step_raw = 0;      ///< and their distances differ by no more than this
 
-  /// `max_step_vox` is in voxels.
   CrossingRule(int weight_threshold, double max_step_vox, const DetachedBlocks& blocks);
 };
 
-/// The surface points of a block, at most one in a voxel, in the order of voxels.
+/// The surface points of a block, at most one in each voxel, in the order of the voxels.
 class BlockPoints {
  public:
   struct Point {
     Eigen::Vector3f offset_vox;  ///< from the centre of its voxel
-    Eigen::Vector3f normal_W;    ///< unit, from the gradient at the point
+    Eigen::Vector3f normal_W;    ///< unit, the gradient of the distance at the point
   };
 
   BlockPoints() = default;
@@ -38,9 +37,9 @@ class BlockPoints {
   bool empty() const { return points_.empty(); }
   const std::vector<Point>& points() const { return points_; }
 
-  /// Which voxels of a row have a point, lowest bit first; rows are numbered z * 8 + y.
+  /// Bit x is set where voxel x of the row has a point; rows are numbered z * 8 + y.
   unsigned row_mask(int row) const { return row_masks_[row]; }
-  /// The row's first point.
+  /// The first point of a row.
   const Point* row_points(int row) const { return points_.data() + row_starts_[row]; }
 
  private:
@@ -50,7 +49,8 @@ class BlockPoints {
   std::array<std::uint16_t, kNumRows> row_starts_{};
 };
 
-/// Whether a block has voxels seen more often than the threshold on the surface's two sides.
+/// Whether a block has voxels with more observations than the threshold on either side of the
+/// surface.
 struct ObservedSides {
   bool free_space = false;
   bool behind = false;

@@ -49,9 +49,10 @@ bool share_a_face(int edge, int other) {
   return false;
 }
 
-/// For each crossed edge the one that follows on the rim of the surface, free space to the left
-/// seen from outside of the cube; else kNone. Around a face, where one comes from free space to
-/// behind the surface its line starts, and it ends where one next leaves again.
+/// For each edge with a crossing, the edge that follows it on the boundary of the surface in the
+/// cube, with free space to the left seen from outside; else kNone. Going around a face, a line
+/// starts at the edge that goes from free space to behind the surface, and ends at the next edge
+/// that goes back.
 std::array<int, kNumCubeEdges> make_rims(unsigned corners_behind) {
   const auto is_behind = [&](int corner) { return (corners_behind >> corner & 1U) != 0; };
   std::array<int, kNumCubeEdges> next{};
@@ -69,8 +70,9 @@ std::array<int, kNumCubeEdges> make_rims(unsigned corners_behind) {
   return next;
 }
 
-/// A fan over a polygon, from a corner from which no diagonal lies in a face of the cube: in the
-/// same place the neighbour could have one too, and four triangles would meet in it.
+/// Triangulates a polygon as a fan, from a corner with as few diagonals in faces of the cube as
+/// possible: the neighbouring cube could have the same diagonal, and four triangles would share
+/// that edge.
 void append_fan(const std::vector<int>& polygon, CubeTriangles& triangles) {
   const auto size = static_cast<int>(polygon.size());
   const auto at = [&](int i) { return polygon[i % size]; };

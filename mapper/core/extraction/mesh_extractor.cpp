@@ -9,6 +9,7 @@
 
 #include "lcmtypes/base/argument_check.hpp"
 #include "mapper/core/extraction/block_points.hpp"
+#include "mapper/core/extraction/corner_rows.hpp"
 #include "mapper/core/extraction/cube_triangles.hpp"
 #include "mapper/core/extraction/slice_blocks.hpp"
 
@@ -16,69 +17,9 @@ namespace kintsugi::mapper {
 namespace {
 
 constexpr std::uint32_t kNoVertex = ~std::uint32_t{0};
-constexpr int kCornerSide = kBlockSide + 1;
 
-/// The voxels at the corners of the cubes that start in a block, 0 .. 8 along each axis.
-class CornerRows {
- public:
-  /// `octant` are the blocks 0 and 1 further along each axis, x fastest; null: none.
-  CornerRows(const std::array<const VoxelBlock*, 8>& octant, int weight_threshold) {
-    static constexpr VoxelBlock kUnobserved{};
-    const Voxel threshold = (static_cast<Voxel>(weight_threshold) << 16U) | 0xFFFFU;
-    for (int z = 0; z < kCornerSide; ++z) {
-      for (int y = 0; y < kCornerSide; ++y) {
-        Row& row = rows_[z * kCornerSide + y];
-        for (int x = 0; x < kCornerSide; ++x) {
-          const int block = x / kBlockSide + 2 * (y / kBlockSide) + 4 * (z / kBlockSide);
-          const VoxelBlock& voxels = octant[block] == nullptr ? kUnobserved : *octant[block];
-          const Voxel voxel =
-              voxels.voxels[voxel_index(x % kBlockSide, y % kBlockSide, z % kBlockSide)];
-          row.observed |= static_cast<unsigned>(voxel > threshold) << x;
-          row.behind |= (voxel >> 15 & 1U) << x;
-        }
-      }
-    }
-  }
-
-  /// The cubes of a row, bit x is cube x, with all corners observed and not all on one side.
-  unsigned cubes_with_surface(int y, int z) const {
-    unsigned observed = ~0U;
-    unsigned all_behind = ~0U;
-    unsigned any_behind = 0;
-    for (const Row* row : rows_around(y, z)) {
-      observed &= row->observed & row->observed >> 1;
-      all_behind &= row->behind & row->behind >> 1;
-      any_behind |= row->behind | row->behind >> 1;
-    }
-    return observed & any_behind & ~all_behind & 0xFFU;
-  }
-
-  /// The corners of a cube that are behind the surface, as cube_triangles() wants them.
-  unsigned corners_behind(int x, int y, int z) const {
-    unsigned corners = 0;
-    int shift = 0;
-    for (const Row* row : rows_around(y, z)) {
-      corners |= (row->behind >> x & 3U) << shift;
-      shift += 2;
-    }
-    return corners;
-  }
-
- private:
-  struct Row {
-    unsigned observed = 0;
-    unsigned behind = 0;
-  };
-
-  std::array<const Row*, 4> rows_around(int y, int z) const {
-    const Row* first = &rows_[z * kCornerSide + y];
-    return {first, first + 1, first + kCornerSide, first + kCornerSide + 1};
-  }
-
-  std::array<Row, std::size_t{kCornerSide} * kCornerSide> rows_{};
-};
-
-/// The colour at `share` of the way from one voxel to the next; where only one has a colour, that.
+/// The colour at `share` of the way from one voxel to the next; where only one of them has a
+/// colour, that colour.
 std::array<std::uint8_t, 3> blend(VoxelColor from, VoxelColor to, double share) {
   if (from >> 24 == 0) from = to;
   if (to >> 24 == 0) to = from;
@@ -93,7 +34,8 @@ std::array<std::uint8_t, 3> blend(VoxelColor from, VoxelColor to, double share) 
 
 }  // namespace
 
-/// The vertices on the lines that start at a block's voxels: 3 voxel + axis.
+/// The vertices on the lines from a block's voxels to the next voxel along an axis; index
+/// 3 voxel + axis.
 struct MeshExtractor::BlockEdges {
   std::array<std::uint32_t, 3 * std::size_t{kBlockVoxels}> vertices;
 
@@ -113,7 +55,7 @@ class MeshExtractor::Pass {
     for (std::size_t i = 0; i < blocks_.size(); ++i) {
       sides_[i] = observed_sides(*blocks_[i].voxels, rule_.weight_threshold);
       const auto known = mesh.borders_.extract(blocks_[i].coord);
-      // An own block of the same place left again: its vertices are new.
+      // An own block at the same place has left for a second time: its vertices are new.
       if (!known.empty() && !blocks_[i].is_own) edges_[i] = std::move(known.mapped());
     }
   }
@@ -130,7 +72,7 @@ class MeshExtractor::Pass {
   }
 
  private:
-  using Octant = std::array<int, 8>;  ///< the block itself and those further along each axis
+  using Octant = std::array<int, 8>;  ///< as in CornerRows; kNoNeighbor: no block
 
   void mesh_block(const BlockNeighbors& neighbors) {
     Octant octant;
@@ -154,8 +96,8 @@ class MeshExtractor::Pass {
     }
   }
 
-  /// By the sides at which a cube reaches into the next block: whether one of its blocks leaves now
-  /// and none stays.
+  /// Which cubes to mesh in this slice: those with a block that leaves now and none that stays. The
+  /// index has a bit for each axis along which the cube reaches into the next block.
   std::array<bool, 8> due_cubes(const Octant& octant) const {
     std::array<bool, 8> is_due{};
     for (int sides = 0; sides < 8; ++sides) {
@@ -211,7 +153,7 @@ class MeshExtractor::Pass {
     return result;
   }
 
-  /// Whether the distance jumps along one of the cube's edges with a crossing.
+  /// Whether the distance jumps along an edge of the cube that has a crossing.
   bool jumps(const Octant& octant, const std::array<int, 3>& cube, unsigned corners_behind) const {
     std::array<int, 8> distances{};
     for (int corner = 0; corner < 8; ++corner) {
@@ -240,8 +182,8 @@ class MeshExtractor::Pass {
   MeshPiece::Vertex make_vertex(const Corner& from, const Corner& to, int axis) const {
     const SliceBlocks::Block& block = blocks_[from.block];
     const SliceBlocks::Block& next = blocks_[to.block];
-    // Half a step of the distance's 65,535 on, no voxel lies on the surface and no two vertices
-    // coincide.
+    // Half a quantisation step is added so that no voxel lies exactly on the surface and no two
+    // vertices coincide.
     const double here = voxel_distance_raw(block.voxels->voxels[from.voxel]) + 0.5;
     const double there = voxel_distance_raw(next.voxels->voxels[to.voxel]) + 0.5;
     const double share = here / (here - there);
@@ -256,7 +198,7 @@ class MeshExtractor::Pass {
             blend(block.colors->colors[from.voxel], next.colors->colors[to.voxel], share)};
   }
 
-  /// Later slices come back to the vertices of blocks that touch what is left of the volume.
+  /// Keeps the vertices of a block that touches the volume, because later slices share them.
   void keep_border(std::size_t i) {
     const BlockCoord& coord = blocks_[i].coord;
     if (edges_[i] && detached_.remaining.touches(coord)) {

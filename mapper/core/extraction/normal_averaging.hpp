@@ -16,18 +16,18 @@ class PaddedPoints {
  public:
   static constexpr int kReach = 2;  ///< voxels
 
-  /// A point as the sums want it: in four lanes.
+  /// Padded to four floats, so that the compiler can vectorise the sums.
   struct alignas(16) Point {
     std::array<float, 4> position_vox;  ///< from the block's lower corner
     std::array<float, 4> normal_W;
   };
 
-  /// `around` are the points of the block and those around it, null where there are none.
+  /// `around`: the points of the block and of the 26 around it; null where there are none.
   void assign(const std::array<const BlockPoints*, 27>& around);
 
   /// Calls visit(point, x, y, z of its voxel, mean normal) for each point of the block, in the
-  /// order of voxels. The normal is the mean of the unit normals of the surface within
-  /// `radius_vox` (at most kReach), those that face away from the point's own left out; unit.
+  /// order of the voxels. The mean normal is the normalised sum of the unit normals of all points
+  /// within `radius_vox` (at most kReach) that are less than 90 degrees from the point's own.
   template <typename Visit>
   void for_each_in_block(float radius_vox, Visit visit) const {
     for (int z = 0; z < kBlockSide; ++z) {
@@ -43,7 +43,8 @@ class PaddedPoints {
 
  private:
   static constexpr int kSide = kBlockSide + 2 * kReach;
-  /// Of 0 .. 63. Not every processor counts bits in one instruction, and a call costs more.
+  /// Number of set bits of 0 .. 63: faster than std::popcount where the build has no instruction
+  /// for it.
   static constexpr std::array<std::uint8_t, 64> kNumBits = [] {
     std::array<std::uint8_t, 64> counts{};
     for (unsigned i = 0; i < 64; ++i) counts[i] = static_cast<std::uint8_t>(std::popcount(i));
@@ -55,7 +56,7 @@ class PaddedPoints {
   };
 
   const Row& row(int y, int z) const { return rows_[(z + kReach) * kSide + y + kReach]; }
-  /// The row's first point not before voxel x.
+  /// The first point of the row in voxel x or after it.
   const Point* points_of(const Row& row, int x) const {
     const unsigned before = row.mask & ((1U << (x + kReach)) - 1U);
     return points_.data() + row.start + kNumBits[before & 63U] + kNumBits[before >> 6];

@@ -27,20 +27,20 @@ class SliceBlocks {
   std::vector<Block> blocks_;
 };
 
-/// Places of a block and the 26 around it in SliceBlocks, x fastest; kNone where there is none.
-/// The block (dx, dy, dz) away is at neighbor_index(dx, dy, dz).
+/// Indices into SliceBlocks of a block and of the 26 around it; kNoNeighbor where there is none.
+/// The block at offset (dx, dy, dz) is at neighbor_index(dx, dy, dz).
 using BlockNeighbors = std::array<int, 27>;
 inline constexpr int kNoNeighbor = -1;
 inline constexpr int neighbor_index(int dx, int dy, int dz) {
   return (dz + 1) * 9 + (dy + 1) * 3 + dx + 1;
 }
 
-/// Finds the neighbours of one block after the other, in ascending order, without searching.
+/// Finds the neighbours of blocks that are visited in ascending order, in constant time on average.
 class NeighborWalk {
  public:
   explicit NeighborWalk(const SliceBlocks& blocks) : blocks_(blocks) {}
 
-  /// `index` is not below that of the call before.
+  /// `index` must not be smaller than in the call before.
   BlockNeighbors around(std::size_t index);
 
  private:

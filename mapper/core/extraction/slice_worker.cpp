@@ -11,11 +11,11 @@
 namespace kintsugi::mapper {
 namespace {
 
-/// The calling thread's alone. Where it cannot be set, extraction competes with tracking.
+/// Of the calling thread only. A failure is ignored: extraction then competes with tracking.
 void lower_priority_of_thread() {
 #ifdef __linux__
   constexpr int kNice = 10;
-  setpriority(PRIO_PROCESS, 0, kNice);  // on Linux 0 is the thread
+  setpriority(PRIO_PROCESS, 0, kNice);  // on Linux 0 means this thread
 #endif
 }
 
@@ -87,7 +87,7 @@ void SliceWorker::run() {
   while (true) {
     work_.wait(lock, [this] { return stop_ || !queue_.empty(); });
     if (stop_) return;
-    Job& job = queue_.front();  // others only append: the reference stays
+    Job& job = queue_.front();  // stays valid: other threads only append
     lock.unlock();
     const Stopwatch stopwatch;
     std::exception_ptr failure;

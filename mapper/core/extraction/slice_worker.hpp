@@ -17,21 +17,22 @@
 
 namespace kintsugi::mapper {
 
-/// Turns blocks that left the volume into numbered slices, on a thread of its own so that tracking
-/// goes on. One thread and one queue: slices come out in the order in which blocks went in.
+/// Extracts numbered slices from blocks that left the volume, on a thread of its own, so that
+/// tracking does not wait. With one thread and one queue, slices are finished in the order of
+/// submission.
 ///
-/// The thread has a low priority and gets what tracking leaves of the processor; it needs about a
-/// hundredth of it. Only when max_queued_blocks wait does submit() wait for it: nothing of the map
-/// is lost then and memory stays bounded, while a camera's frames are dropped meanwhile.
+/// The thread has a low priority; it needs about a hundredth of a processor. submit() blocks only
+/// while max_queued_blocks are waiting: memory stays bounded and no part of the map is lost, but a
+/// live camera's frames are dropped meanwhile.
 class SliceWorker {
  public:
   struct Config {
     SurfaceExtractor::Config extractor;
-    /// Blocks that may wait or be worked on; a slice larger than this waits for an empty queue.
-    /// 65,536 are 256 MB, some fifty slices of a room.
+    /// Largest number of blocks in the queue; a slice larger than this waits for an empty queue.
+    /// 65,536 blocks are 256 MB, about fifty slices of a room.
     std::size_t max_queued_blocks = 65'536;
-    /// Gets the mesh, piece by piece and in order, on the worker's thread; none is made if empty.
-    /// What it throws comes out as what extraction throws does.
+    /// Called with each piece of the mesh, in order, on the worker's thread; if empty, no mesh is
+    /// made. Exceptions from it are treated like those from extraction.
     std::function<void(const MeshPiece&)> on_mesh;
 
     /// @throws std::invalid_argument naming field, value and bound
@@ -39,20 +40,20 @@ class SliceWorker {
   };
 
   explicit SliceWorker(const Config& config);
-  /// What is still queued is dropped.
+  /// Drops what is still queued.
   ~SliceWorker();
   SliceWorker(const SliceWorker&) = delete;
   SliceWorker& operator=(const SliceWorker&) = delete;
 
   /// Queues blocks that left at `utime` when the camera was at `X_WC`. The slice gets the next id.
-  /// @throws what extraction threw before
+  /// @throws what extraction of an earlier slice threw
   void submit(DetachedBlocks blocks, std::int64_t utime, const Pose& X_WC);
 
   /// Slices finished since the last call, without waiting.
-  /// @throws what extraction threw
+  /// @throws what extraction of a slice threw
   std::vector<CloudSlice> take_finished();
 
-  /// Waits for everything submitted, then as take_finished().
+  /// Waits for all submitted slices, then as take_finished().
   std::vector<CloudSlice> drain();
 
   /// Time spent extracting so far, milliseconds.
@@ -61,7 +62,7 @@ class SliceWorker {
  private:
   struct Job {
     DetachedBlocks blocks;
-    CloudSlice slice;  ///< all but its points
+    CloudSlice slice;  ///< its points are not extracted yet
   };
 
   void run();
@@ -70,12 +71,12 @@ class SliceWorker {
 
   const Config config_;
   const SurfaceExtractor extractor_;
-  MeshExtractor mesh_extractor_;  ///< the thread's own
+  MeshExtractor mesh_extractor_;  ///< used by thread_ only
   std::int32_t next_id_ = 0;
 
   mutable std::mutex mutex_;
-  std::condition_variable work_;  ///< something was queued, or stop
-  std::condition_variable done_;  ///< something was extracted, or extraction failed
+  std::condition_variable work_;  ///< signals that a job was queued, or stop_
+  std::condition_variable done_;  ///< signals that a job ended, or failed
   std::deque<Job> queue_;         ///< the front is being extracted
   std::size_t queued_blocks_ = 0;
   std::vector<CloudSlice> finished_;

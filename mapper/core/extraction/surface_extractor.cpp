@@ -12,8 +12,8 @@
 namespace kintsugi::mapper {
 namespace {
 
-/// The points of each block, before their normals are averaged; only of those near to where the
-/// extraction is, so that a slice of any size takes little memory.
+/// The points of each block before their normals are averaged. Only the blocks near the current
+/// position are kept, so that memory does not grow with the size of the slice.
 class PointsAhead {
  public:
   PointsAhead(const SliceBlocks& blocks, const CrossingRule& rule)
@@ -23,7 +23,8 @@ class PointsAhead {
     }
   }
 
-  /// Makes ready what touches blocks of layer z, and drops what no later layer touches.
+  /// Computes the points of all blocks that touch layer z of blocks, and drops those that no later
+  /// layer touches.
   void advance_to(int z) {
     for (; num_ready_ < blocks_.size() && blocks_[num_ready_].coord.z <= z + 1; ++num_ready_) {
       const BlockNeighbors neighbors = walk_.around(num_ready_);
@@ -38,7 +39,7 @@ class PointsAhead {
   }
 
  private:
-  /// Whether the block or a face of it has both sides of the surface.
+  /// Whether there is surface in the block or between it and a block that shares a face with it.
   bool may_have_points(const BlockNeighbors& neighbors) const {
     const ObservedSides own = sides_[neighbors[neighbor_index(0, 0, 0)]];
     if (own.free_space && own.behind) return true;

@@ -1,14 +1,15 @@
 #include "mapper/core/frame/intensity.hpp"
 
-#include <stdexcept>
 #include <string>
 
 #include <opencv2/imgproc.hpp>
 
+#include "lcmtypes/base/argument_check.hpp"
+
 namespace kintsugi::mapper {
 namespace {
 
-/// Mean of each 2x2, as half_size() of depth: an odd last row or column is left out.
+/// The mean of each 2x2; an odd last row or column is left out, as by half_size() of depth.
 cv::Mat_<float> half_size(const cv::Mat_<float>& image) {
   const cv::Size size(image.cols / 2, image.rows / 2);
   cv::Mat_<float> half;
@@ -43,10 +44,8 @@ IntensityPyramid intensity_pyramid(const cv::Mat_<cv::Vec3b>& color_rgb, cv::Siz
   while (value.cols / 2 >= finest.width && value.rows / 2 >= finest.height) {
     value = half_size(value);
   }
-  if (value.size() != finest) {
-    throw std::invalid_argument("colour image is " + text(color_rgb.size()) + ", expected " +
-                                text(finest) + " times a power of two");
-  }
+  require(value.size() == finest, "colour image is " + text(color_rgb.size()) + ", expected " +
+                                      text(finest) + " times a power of two");
   IntensityPyramid pyramid{with_gradients(value)};
   while (static_cast<int>(pyramid.size()) < levels) {
     value = half_size(value);

@@ -1,5 +1,5 @@
 #pragma once
-// Brightness of colour images, at several levels of detail.
+// The intensity of colour images, at several levels of detail.
 
 #include <vector>
 
@@ -7,7 +7,7 @@
 
 namespace kintsugi::mapper {
 
-/// Brightness and its change by pixel.
+/// Intensity and its image gradient.
 struct IntensityMap {
   cv::Mat_<float> value;       ///< height x width, 0 to 1
   cv::Mat_<float> gradient_u;  ///< per pixel, central differences; zero at the border
@@ -17,7 +17,7 @@ struct IntensityMap {
 /// Finest first; each level has half the width and height of the one before it.
 using IntensityPyramid = std::vector<IntensityMap>;
 
-/// `levels` levels of an image, the first one of `finest`'s size: the image is halved until it is.
+/// Halves the image until it has the size `finest`, which is the first of `levels` levels.
 /// @throws std::invalid_argument if the image is not 1, 2, 4.. times that size
 IntensityPyramid intensity_pyramid(const cv::Mat_<cv::Vec3b>& color_rgb, cv::Size finest,
                                    int levels);

@@ -8,11 +8,10 @@
 
 namespace kintsugi::mapper {
 
-/// One frame as the tracker and the volume want it: undistorted, in metres, colour registered to
-/// depth.
+/// One frame: undistorted, depth in metres, colour registered to depth.
 struct RgbdFrame {
   std::int64_t utime = 0;         ///< device time of the depth image, microseconds
-  std::int64_t frame_index = 0;   ///< as the device counts
+  std::int64_t frame_index = 0;   ///< as counted by the device
   Intrinsics intrinsics;          ///< without distortion
   cv::Mat_<float> depth_m;        ///< height x width, along C's z; invalid is NaN
   cv::Mat_<cv::Vec3b> color_rgb;  ///< height x width, or empty: no colour for this frame

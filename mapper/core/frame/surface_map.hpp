@@ -10,10 +10,10 @@
 namespace kintsugi::mapper {
 
 /// An image of surface points and normals in the frame of its camera, from a depth image or by
-/// raycasting the volume.
+/// raycasting the volume. The point of a pixel is the back-projection of its depth.
 ///
-/// Four planes of the size of `intrinsics`, so that neighbouring pixels fill a vector register. The
-/// point of a pixel is the back-projection of its depth.
+/// Four separate planes of the size of `intrinsics`, so that neighbouring pixels fill a vector
+/// register.
 struct SurfaceMap {
   Intrinsics intrinsics;     ///< without distortion
   cv::Mat_<float> depth_m;   ///< height x width, along the camera's z; invalid is NaN
@@ -23,7 +23,7 @@ struct SurfaceMap {
 
   SurfaceMap() = default;
 
-  /// Planes of the camera's size whose values are not set yet.
+  /// Allocates planes of the camera's size; their values are uninitialised.
   explicit SurfaceMap(const Intrinsics& camera)
       : intrinsics(camera),
         depth_m(camera.height, camera.width),
@@ -31,8 +31,8 @@ struct SurfaceMap {
         normal_y(camera.height, camera.width),
         normal_z(camera.height, camera.width) {}
 
-  /// Point of a pixel, metres; NaN in all three coordinates where its depth is invalid. For tests
-  /// and code that is not in a hurry, like the two below.
+  /// Point of a pixel, metres; NaN in all three coordinates where its depth is invalid. This and
+  /// the two functions below are slow: kernels use planes_of().
   Eigen::Vector3f point(int v, int u) const {
     const float z = depth_m(v, u);
     return {z * static_cast<float>((u - intrinsics.cx) / intrinsics.fx),

@@ -2,20 +2,18 @@
 
 #include <algorithm>
 #include <limits>
-#include <stdexcept>
-#include <string>
 #include <utility>
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
-#include "mapper/core/volume/kernel_arguments.hpp"
+#include "mapper/core/frame/kernel_arguments.hpp"
 
 namespace kintsugi::mapper {
 namespace {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
-constexpr int kMinPixelsPerTask = 16384;  ///< for fewer it is not worth to wake a thread
+constexpr int kMinPixelsPerTask = 16384;  ///< waking a thread for fewer costs more
 
 template <typename Row>
 void for_each_row(cv::Size size, const Row& row) {
@@ -26,15 +24,7 @@ void for_each_row(cv::Size size, const Row& row) {
                     });
 }
 
-void check_size(const cv::Mat_<float>& depth_m, const Intrinsics& intrinsics) {
-  if (depth_m.cols == intrinsics.width && depth_m.rows == intrinsics.height) return;
-  throw std::invalid_argument("depth image is " + std::to_string(depth_m.cols) + "x" +
-                              std::to_string(depth_m.rows) + ", its intrinsics are for " +
-                              std::to_string(intrinsics.width) + "x" +
-                              std::to_string(intrinsics.height));
-}
-
-/// The surface of a depth image, which it keeps.
+/// The result shares the depth image.
 SurfaceMap surface_of(cv::Mat_<float> depth_m, const Intrinsics& intrinsics,
                       const Kernels& kernels) {
   SurfaceMap surface(intrinsics);
@@ -54,17 +44,6 @@ SurfaceMap half_size_surface(const SurfaceMap& fine, const Kernels& kernels) {
 
 }  // namespace
 
-Intrinsics half_size(const Intrinsics& intrinsics) {
-  Intrinsics half = intrinsics;
-  half.fx /= 2.0;
-  half.fy /= 2.0;
-  half.cx = (intrinsics.cx + 0.5) / 2.0 - 0.5;
-  half.cy = (intrinsics.cy + 0.5) / 2.0 - 0.5;
-  half.width /= 2;
-  half.height /= 2;
-  return half;
-}
-
 cv::Mat_<float> half_size(const cv::Mat_<float>& depth_m, float max_depth_m,
                           const Kernels& kernels) {
   cv::Mat_<float> half(depth_m.rows / 2, depth_m.cols / 2);
@@ -76,13 +55,13 @@ cv::Mat_<float> half_size(const cv::Mat_<float>& depth_m, float max_depth_m,
 
 SurfaceMap surface_from_depth(const cv::Mat_<float>& depth_m, const Intrinsics& intrinsics,
                               const Kernels& kernels) {
-  check_size(depth_m, intrinsics);
+  check_image_size("depth_m", depth_m.size(), intrinsics);
   return surface_of(depth_m.clone(), intrinsics, kernels);
 }
 
 SurfacePyramid pyramid_from_depth(const cv::Mat_<float>& depth_m, const Intrinsics& intrinsics,
                                   int skip, int levels, float max_depth_m, const Kernels& kernels) {
-  check_size(depth_m, intrinsics);
+  check_image_size("depth_m", depth_m.size(), intrinsics);
   cv::Mat_<float> depth = depth_m;
   Intrinsics camera = intrinsics;
   if (skip == 0) {

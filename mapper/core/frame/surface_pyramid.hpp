@@ -7,6 +7,7 @@
 #include <opencv2/core.hpp>
 
 #include "lcmtypes/geometry.hpp"
+#include "mapper/core/frame/camera.hpp"
 #include "mapper/core/frame/surface_map.hpp"
 #include "mapper/core/kernels/kernels.hpp"
 
@@ -16,13 +17,9 @@ namespace kintsugi::mapper {
 /// before it.
 using SurfacePyramid = std::vector<SurfaceMap>;
 
-/// The camera of an image half the size (rounded down): one pixel covers 2x2 of the larger image,
-/// so its centre lies between theirs, cx' = (cx + 1/2) / 2 - 1/2.
-Intrinsics half_size(const Intrinsics& intrinsics);
-
-/// Halves a depth image (metres, invalid is NaN): each pixel is the mean of those of its 2x2 that
-/// lie within 5 cm of the nearest, so that no pixel hangs in the air between two surfaces. Depths
-/// beyond `max_depth_m` are invalid.
+/// Halves a depth image (metres, invalid is NaN): each pixel is the mean of those of its 2x2 depths
+/// that lie within 5 cm of the nearest, so that no depth lies between two surfaces. Depths beyond
+/// `max_depth_m` are invalid.
 cv::Mat_<float> half_size(const cv::Mat_<float>& depth_m,
                           float max_depth_m = std::numeric_limits<float>::infinity(),
                           const Kernels& kernels = best_kernels());
@@ -35,15 +32,15 @@ cv::Mat_<float> half_size(const cv::Mat_<float>& depth_m,
 SurfaceMap surface_from_depth(const cv::Mat_<float>& depth_m, const Intrinsics& intrinsics,
                               const Kernels& kernels = best_kernels());
 
-/// The pyramid of a measured depth image: `skip` halvings (1: a 640x480 image starts at 320x240),
-/// then `levels` surfaces. Depths beyond `max_depth_m` are invalid.
+/// The pyramid of a measured depth image, halved `skip` times (1: a 640x480 image starts at
+/// 320x240), with `levels` levels. Depths beyond `max_depth_m` are invalid.
 /// @throws std::invalid_argument if the size of the image is not that of the intrinsics
 SurfacePyramid pyramid_from_depth(const cv::Mat_<float>& depth_m, const Intrinsics& intrinsics,
                                   int skip, int levels, float max_depth_m,
                                   const Kernels& kernels = best_kernels());
 
-/// The pyramid below a raycast surface: depths and normals are averaged over those of 2x2 pixels
-/// that lie within 5 cm in depth of the nearest.
+/// The pyramid of a raycast surface: depths and normals are averaged over those of 2x2 pixels that
+/// lie within 5 cm in depth of the nearest.
 SurfacePyramid pyramid_from_surface(SurfaceMap finest, int levels,
                                     const Kernels& kernels = best_kernels());
 

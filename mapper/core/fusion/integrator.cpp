@@ -1,15 +1,13 @@
 #include "mapper/core/fusion/integrator.hpp"
 
 #include <algorithm>
-#include <stdexcept>
-#include <string>
 
 #include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <opencv2/imgproc.hpp>
 
 #include "lcmtypes/base/argument_check.hpp"
-#include "mapper/core/frame/camera_view.hpp"
+#include "mapper/core/frame/camera.hpp"
 #include "mapper/core/fusion/block_allocation.hpp"
 #include "mapper/core/kernels/kernels.hpp"
 #include "mapper/core/volume/block_visibility.hpp"
@@ -17,31 +15,19 @@
 namespace kintsugi::mapper {
 namespace {
 
-void check_image_size(const char* name, cv::Size actual, const Intrinsics& intrinsics) {
-  if (actual.width == intrinsics.width && actual.height == intrinsics.height) return;
-  throw std::invalid_argument(std::string(name) + " is " + std::to_string(actual.width) + " x " +
-                              std::to_string(actual.height) + ", the intrinsics say " +
-                              std::to_string(intrinsics.width) + " x " +
-                              std::to_string(intrinsics.height));
-}
-
-/// Without padding between rows, as the kernels read them.
+/// The image without padding between rows, as the kernels need it.
 template <typename Image>
 Image continuous(const Image& image) {
   return image.isContinuous() ? image : image.clone();
 }
 
-IntegrationFrame make_integration_frame(const CameraView& view, const TsdfVolume& volume) {
-  IntegrationFrame frame;
-  frame.width = view.width;
-  frame.height = view.height;
-  frame.fx = view.fx;
-  frame.fy = view.fy;
-  frame.cx_plus_half = view.cx + 0.5F;
-  frame.cy_plus_half = view.cy + 0.5F;
+/// All but the images and their range of depths.
+IntegrationFrame make_integration_frame(const PinholeCamera& camera, const Eigen::Matrix3f& R_WC,
+                                        const TsdfVolume& volume) {
+  IntegrationFrame frame{.camera = camera};
   for (int axis_W = 0; axis_W < 3; ++axis_W) {
     for (int axis_C = 0; axis_C < 3; ++axis_C) {
-      frame.step_C[axis_W][axis_C] = view.R_WC(axis_W, axis_C) * volume.resolution_m();
+      frame.step_C[axis_W][axis_C] = R_WC(axis_W, axis_C) * volume.resolution_m();
     }
   }
   const int max_weight = volume.config().max_weight;
@@ -52,12 +38,12 @@ IntegrationFrame make_integration_frame(const CameraView& view, const TsdfVolume
   return frame;
 }
 
-IntegrationBlock make_integration_block(const VisibleBlock& block, const CameraView& view,
+IntegrationBlock make_integration_block(const VisibleBlock& block, const Eigen::Matrix3f& R_WC,
                                         TsdfVolume& volume) {
   constexpr float kHalfBlock_vox = 0.5F * (kBlockSide - 1);
   const Eigen::Vector3f to_center_W =
       Eigen::Vector3f::Constant(kHalfBlock_vox * volume.resolution_m());
-  const Eigen::Vector3f origin_C = block.center_C - view.R_WC.transpose() * to_center_W;
+  const Eigen::Vector3f origin_C = block.center_C - R_WC.transpose() * to_center_W;
   return {.voxels = volume.voxels(block.slot).voxels.data(),
           .colors = volume.colors(block.slot).colors.data(),
           .origin_C = {origin_C.x(), origin_C.y(), origin_C.z()}};
@@ -77,7 +63,7 @@ Integrator::Integrator(const Config& config) : config_(config) {
 }
 
 void Integrator::integrate(const RgbdFrame& frame, const Pose& X_WC, TsdfVolume& volume) const {
-  const CameraView view(frame.intrinsics, X_WC);
+  check_camera(frame.intrinsics, X_WC);
   check_image_size("depth_m", frame.depth_m.size(), frame.intrinsics);
   const bool has_color = !frame.color_rgb.empty();
   if (has_color) check_image_size("color_rgb", frame.color_rgb.size(), frame.intrinsics);
@@ -86,13 +72,15 @@ void Integrator::integrate(const RgbdFrame& frame, const Pose& X_WC, TsdfVolume&
   const auto max_depth_m = static_cast<float>(config_.max_depth_m);
   const Kernels& kernels = kernels_for(instruction_set_);
   const cv::Mat_<float> depth_m = continuous(frame.depth_m);
-  allocate_seen_blocks(depth_m, frame.intrinsics, X_WC, min_depth_m, max_depth_m, kernels, volume);
+  const PinholeCamera camera = pinhole_camera(frame.intrinsics);
+  allocate_seen_blocks(depth_m, camera, X_WC, min_depth_m, max_depth_m, kernels, volume);
+  const Eigen::Matrix3f R_WC = X_WC.linear().cast<float>();
   const std::vector<VisibleBlock> visible =
-      find_visible_blocks(volume, view, max_depth_m + volume.truncation_m());
+      find_visible_blocks(volume, camera, X_WC, max_depth_m + volume.truncation_m());
 
   cv::Mat_<cv::Vec4b> color_rgbx;
   if (has_color) cv::cvtColor(frame.color_rgb, color_rgbx, cv::COLOR_RGB2RGBA);
-  IntegrationFrame integration_frame = make_integration_frame(view, volume);
+  IntegrationFrame integration_frame = make_integration_frame(camera, R_WC, volume);
   integration_frame.min_depth_m = min_depth_m;
   integration_frame.max_depth_m = max_depth_m;
   integration_frame.depth_m = depth_m[0];
@@ -100,7 +88,7 @@ void Integrator::integrate(const RgbdFrame& frame, const Pose& X_WC, TsdfVolume&
 
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, visible.size(), 32), [&](const auto& range) {
     for (std::size_t i = range.begin(); i < range.end(); ++i) {
-      kernels.integrate_block(integration_frame, make_integration_block(visible[i], view, volume));
+      kernels.integrate_block(integration_frame, make_integration_block(visible[i], R_WC, volume));
     }
   });
 }

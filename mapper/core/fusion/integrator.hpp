@@ -10,9 +10,9 @@
 
 namespace kintsugi::mapper {
 
-/// Fuses depth and colour images into the volume: a weighted running mean of the truncated
-/// distance along the camera's z, for each voxel that a frame sees (Curless and Levoy 1996;
-/// Newcombe et al. 2011, equations 6 to 13).
+/// Fuses depth and colour images into the volume: for each voxel in view, a weighted running mean
+/// of the truncated signed distance along the camera's z (Curless and Levoy 1996; Newcombe et al.
+/// 2011, equations 6 to 13).
 class Integrator {
  public:
   struct Config {
@@ -20,19 +20,19 @@ class Integrator {
     double max_depth_m = 5.0;                            ///< farther measurements are ignored
     std::optional<InstructionSet> instruction_set = {};  ///< none: best_instruction_set()
 
-    /// @throws std::invalid_argument naming the field, its value and the bound.
+    /// @throws std::invalid_argument naming field, value and bound
     void validate() const;
   };
 
   explicit Integrator(const Config& config);
 
-  /// Allocates blocks along the rays of valid pixels within the truncation distance of their depth,
-  /// inside the cube, and updates these and every other block in view. Pixels whose depth is NaN,
-  /// infinite or outside [min_depth_m, max_depth_m] change nothing. Colour is fused within the
-  /// truncation distance; a frame without colour leaves colours as they are. The result does not
-  /// depend on the number of threads.
+  /// Allocates the blocks of the cube that rays meet within the truncation distance of their
+  /// measured depth, then updates every block in view. Pixels whose depth is NaN, infinite or
+  /// outside [min_depth_m, max_depth_m] change nothing. Colour is fused within the truncation
+  /// distance; a frame without colour leaves colours as they are. The result does not depend on the
+  /// number of threads.
   /// @throws std::invalid_argument where images and intrinsics disagree in size, the focal length
-  /// is not positive, there is lens distortion or X_WC is not finite; the volume is unchanged then.
+  /// is not positive, there is lens distortion or X_WC is not finite; the volume is unchanged then
   void integrate(const RgbdFrame& frame, const Pose& X_WC, TsdfVolume& volume) const;
 
  private:

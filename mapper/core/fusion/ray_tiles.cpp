@@ -8,14 +8,14 @@
 namespace kintsugi::mapper {
 namespace {
 
-/// Tiles along one axis of the image.
+/// Numbers of tiles along one axis of the image, both included.
 struct Span {
   int first = 0;
   int last = 0;
 };
 
-/// The tiles that a sphere touches along one axis of the image: its centre is at (x, z) metres in
-/// C. A sphere that reaches behind the camera may touch them all.
+/// The tiles that a sphere with its centre at (x, z), metres in C, touches along one axis of the
+/// image. For a sphere that comes close to the camera or reaches behind it: all tiles.
 Span tiles_of(float x, float z, float radius_m, float focal_px, float principal_px, int num_tiles) {
   const float nearest_m = z - radius_m;
   if (nearest_m <= radius_m) return {.first = 0, .last = num_tiles - 1};
@@ -36,10 +36,10 @@ int num_tiles_along(int length_px) {
 
 }  // namespace
 
-std::vector<RaycastTile> find_ray_tiles(const TsdfVolume& volume, const CameraView& view,
-                                        float min_depth_m, float max_depth_m) {
-  const int num_columns = num_tiles_along(view.width);
-  const int num_rows = num_tiles_along(view.height);
+std::vector<RaycastTile> find_ray_tiles(const TsdfVolume& volume, const PinholeCamera& camera,
+                                        const Pose& X_WC, float min_depth_m, float max_depth_m) {
+  const int num_columns = num_tiles_along(camera.width);
+  const int num_rows = num_tiles_along(camera.height);
   std::vector<RaycastTile> tiles;
   tiles.reserve(static_cast<std::size_t>(num_columns) * num_rows);
   for (int row = 0; row < num_rows; ++row) {
@@ -51,10 +51,11 @@ std::vector<RaycastTile> find_ray_tiles(const TsdfVolume& volume, const CameraVi
     }
   }
   const float radius_m = block_radius_m(volume);
-  for (const VisibleBlock& block : find_visible_blocks(volume, view, max_depth_m)) {
+  for (const VisibleBlock& block : find_visible_blocks(volume, camera, X_WC, max_depth_m)) {
     const Eigen::Vector3f& center = block.center_C;
-    const Span columns = tiles_of(center.x(), center.z(), radius_m, view.fx, view.cx, num_columns);
-    const Span rows = tiles_of(center.y(), center.z(), radius_m, view.fy, view.cy, num_rows);
+    const Span columns =
+        tiles_of(center.x(), center.z(), radius_m, camera.fx, camera.cx, num_columns);
+    const Span rows = tiles_of(center.y(), center.z(), radius_m, camera.fy, camera.cy, num_rows);
     const float near_m = std::max(min_depth_m, center.z() - radius_m);
     const float far_m = std::min(max_depth_m, center.z() + radius_m);
     for (int row = rows.first; row <= rows.last; ++row) {

@@ -12,7 +12,7 @@ namespace kintsugi::mapper {
 
 class TsdfVolume;
 
-/// The surface of the volume as a camera would see it.
+/// Renders the surface of the volume as a camera would see it.
 class Raycaster {
  public:
   struct Config {
@@ -20,22 +20,21 @@ class Raycaster {
     double max_depth_m = 6.0;                            ///< and end here
     std::optional<InstructionSet> instruction_set = {};  ///< none: best_instruction_set()
 
-    /// @throws std::invalid_argument naming the field, its value and the bound.
+    /// @throws std::invalid_argument naming field, value and bound
     void validate() const;
   };
 
   explicit Raycaster(const Config& config);
 
-  /// The first crossing from free space into a surface along each pixel's ray, at the resolution of
-  /// `intrinsics` (no distortion), and the normals of these points as surface_from_depth() takes
-  /// them from their neighbours. They are as accurate as the gradient of the distance there and
-  /// cost a tenth of it. A pixel without a crossing is NaN. The same bytes whatever the number of
-  /// threads and the instruction set.
+  /// Finds the first crossing from free space into a surface along each pixel's ray, at the
+  /// resolution of `intrinsics` (no distortion); a pixel without a crossing is NaN. Normals are
+  /// those of surface_from_depth(): as accurate as the gradient of the distance, at a tenth of its
+  /// cost. The result does not depend on the number of threads or on the instruction set.
   ///
-  /// `guide_depth_m`: empty, or a depth image of the same field of view and any size; a ray starts
-  /// two truncation distances before the guide's depth, which is faster and gives the same surface
-  /// where the volume agrees with the guide; where it does not, the whole ray is searched.
-  /// @throws std::invalid_argument where the intrinsics or the pose are unusable.
+  /// `guide_depth_m`: empty, or a depth image of the same field of view and any size. A ray then
+  /// starts two truncation distances before the guide's depth, which is faster; where it finds no
+  /// surface the whole ray is searched.
+  /// @throws std::invalid_argument where the intrinsics or the pose are unusable
   SurfaceMap raycast(const TsdfVolume& volume, const Pose& X_WC, const Intrinsics& intrinsics,
                      const cv::Mat_<float>& guide_depth_m = {}) const;
 

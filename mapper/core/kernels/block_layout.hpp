@@ -1,5 +1,7 @@
 #pragma once
-// tsdf_block.hpp says what these mean; the kernels may not include it.
+// The constants of tsdf_block.hpp that kernels need. They are repeated here because kernels may not
+// use code that other sources compile too (see simd/pack_portable.hpp); tsdf_volume.cpp checks that
+// both agree.
 
 namespace kintsugi::mapper {
 

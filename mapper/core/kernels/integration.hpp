@@ -1,20 +1,17 @@
 #pragma once
-// The innermost loop of fusion: one frame into one block of voxels.
+// Fuses one frame into one block of voxels: the innermost loop of Integrator.
 
 #include <cstdint>
 
+#include "mapper/core/kernels/pinhole_camera.hpp"
+
 namespace kintsugi::mapper {
 
-/// A frame as the kernel wants it; rows without padding.
+/// What is the same for all blocks of a frame. Images have no padding between rows.
 struct IntegrationFrame {
   const float* depth_m = nullptr;             ///< height x width; NaN is invalid
   const std::uint32_t* color_rgbx = nullptr;  ///< red in the lowest byte; null: no colour
-  int width = 0;
-  int height = 0;
-  float fx = 0.0F;
-  float fy = 0.0F;
-  float cx_plus_half = 0.0F;  ///< cx + 1/2: rounding to the nearest pixel becomes truncation
-  float cy_plus_half = 0.0F;
+  PinholeCamera camera;
   float step_C[3][3] = {};  ///< [axis of W]: metres in C from one voxel to the next
   float min_depth_m = 0.0F;
   float max_depth_m = 0.0F;

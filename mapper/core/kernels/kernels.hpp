@@ -1,6 +1,6 @@
 #pragma once
-// The inner loops that run in vector registers, one set of them for each instruction set. All give
-// the same bytes; see pack_portable.hpp for how they are written.
+// The inner loops that run in vector registers, compiled once for each instruction set from the
+// templates in simd/. All sets give the same bytes.
 
 #include "mapper/core/kernels/allocation.hpp"
 #include "mapper/core/kernels/integration.hpp"
@@ -26,10 +26,10 @@ struct Kernels {
 /// @throws std::invalid_argument where is_supported(instruction_set) is false
 const Kernels& kernels_for(InstructionSet instruction_set);
 
-/// Those for best_instruction_set(), which is asked once.
+/// The kernels for best_instruction_set(), which is determined once.
 const Kernels& best_kernels();
 
-// Each in the source compiled for it; those for x86 only where this build has them.
+// Defined in simd/kernels_*.cpp; those for x86 exist only where KINTSUGI_X86_KERNELS is defined.
 extern const Kernels kPortableKernels;
 extern const Kernels kAvx2Kernels;
 extern const Kernels kAvx512Kernels;

@@ -1,5 +1,5 @@
 #pragma once
-// The inner loop of registration: the normal equations of point-to-plane ICP (see icp.hpp).
+// Sums up the normal equations of point-to-plane ICP: the innermost loop of linearize() in icp.hpp.
 
 #include <cstdint>
 
@@ -17,12 +17,13 @@ struct LinearizationInput {
   float sigma_base_m = 0.0F;
   float sigma_growth_per_m = 0.0F;
   float sigma_nearest_m = 0.0F;
-  // Behind and in front of the model: by more than max(sigmas * sigma, distance).
+  // A point is behind or in front of the model's surface when its depth differs by more than
+  // max(agreement_sigmas * sigma, agreement_distance_m).
   float agreement_sigmas = 0.0F;
   float agreement_distance_m = 0.0F;
 };
 
-/// Of a band of rows.
+/// The sums over a band of rows.
 struct LinearizationSums {
   static constexpr int kNumProducts = 28;
   float products[kNumProducts] = {};  ///< upper triangle of [A b; . E], row by row
@@ -33,8 +34,8 @@ struct LinearizationSums {
   std::int32_t in_front = 0;
 };
 
-/// Rows [first_row, last_row) of the frame. Each of 16 lanes is summed in order of the pixels, then
-/// the lanes: a band should be short.
+/// Sums over rows [first_row, last_row) of the frame: first each of 16 lanes in the order of its
+/// pixels, then over the lanes. A band should be short, because the sums are in single precision.
 using LinearizeRows = LinearizationSums (*)(const LinearizationInput& input, int first_row,
                                             int last_row);
 

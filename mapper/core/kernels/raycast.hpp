@@ -1,27 +1,27 @@
 #pragma once
-// Rays through the volume, for one tile of pixels at a time.
+// Casts the rays of one tile of pixels into the volume: the innermost loop of Raycaster.
 
-#include "mapper/core/kernels/surface_planes.hpp"
-#include "mapper/core/kernels/volume_view.hpp"
+#include "mapper/core/kernels/pinhole_camera.hpp"
+#include "mapper/core/kernels/volume_access.hpp"
 
 namespace kintsugi::mapper {
 
-/// Where the rays start, where the surface is expected on them and where their depths go.
-struct RaycastView {
+/// What is the same for all tiles of an image.
+struct RaycastArguments {
   PinholeCamera camera;
-  float origin_vox[3] = {};    ///< of the camera, cube coordinates
+  float origin_vox[3] = {};    ///< the camera's centre in cube coordinates
   float vox_per_m[3][3] = {};  ///< [axis of the cube][axis of C]: R_WC / resolution_m
 
-  const float* guide_m = nullptr;  ///< null, or depths of the same view at any size; NaN: none
+  const float* guide_m = nullptr;  ///< expected depths at any image size, NaN: none; or null
   int guide_columns = 0;
   int guide_rows = 0;
-  float guide_margin_m = 0.0F;  ///< rays start this much before their guide
+  float guide_margin_m = 0.0F;  ///< a ray with a guide starts this far before it
 
-  float* depth_m = nullptr;  ///< height x width, without padding; NaN where there is no surface
+  float* depth_m = nullptr;  ///< output: height x width, without padding; NaN: no surface
 };
 
-/// Pixels [u, u + side) x [v, v + side), as far as they are in the image, and the depths between
-/// which their rays can meet a block: none where near_m > far_m.
+/// Pixels [u, u + side) x [v, v + side), clipped to the image, and the depths between which their
+/// rays can meet a block; near_m > far_m where they meet none.
 struct RaycastTile {
   static constexpr int kSide_px = 8;
   int u = 0;
@@ -31,7 +31,7 @@ struct RaycastTile {
 };
 
 /// Writes the depths of the tile's pixels.
-using RaycastTileFunction = void (*)(const VolumeView& volume, const RaycastView& view,
+using RaycastTileFunction = void (*)(const VolumeAccess& volume, const RaycastArguments& arguments,
                                      const RaycastTile& tile);
 
 }  // namespace kintsugi::mapper

@@ -1,21 +1,11 @@
 #pragma once
-// A SurfaceMap as the kernels want it.
+
+#include "mapper/core/kernels/pinhole_camera.hpp"
 
 namespace kintsugi::mapper {
 
-/// A camera without distortion.
-struct PinholeCamera {
-  int width = 0;
-  int height = 0;
-  float fx = 0.0F;
-  float fy = 0.0F;
-  float cx = 0.0F;
-  float cy = 0.0F;
-  float inverse_fx = 0.0F;
-  float inverse_fy = 0.0F;
-};
-
-/// Four planes of the camera's size, without padding between rows; NaN is invalid.
+/// Pointers to the images of a SurfaceMap (see surface_map.hpp): four planes of the camera's size,
+/// without padding between rows; NaN is invalid.
 template <typename Number>
 struct Planes {
   Number* depth_m = nullptr;
@@ -27,7 +17,7 @@ struct Planes {
 using SurfacePlanes = Planes<const float>;
 using MutableSurfacePlanes = Planes<float>;
 
-/// p_B = R_BA p_A + t_BA; the matrix by rows, metres.
+/// X_BA: p_B = R p_A + t; R by rows, t in metres.
 struct RigidMotion {
   float R[3][3] = {};
   float t[3] = {};

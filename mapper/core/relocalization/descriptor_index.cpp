@@ -21,7 +21,7 @@ DescriptorIndex::DescriptorIndex() {
   for (Table& table : tables_) {
     std::array<int, kDescriptorBits> bits;
     std::iota(bits.begin(), bits.end(), 0);
-    for (int i = 0; i < kKeyBits; ++i) {  // Fisher and Yates; std::shuffle differs by library
+    for (int i = 0; i < kKeyBits; ++i) {  // Fisher-Yates; std::shuffle differs between libraries
       std::swap(bits[i], bits[i + random() % (bits.size() - i)]);
       table.bits[i] = bits[i];
     }
@@ -46,7 +46,7 @@ void DescriptorIndex::add(const cv::Mat_<std::uint8_t>& descriptors) {
 
 std::vector<int> DescriptorIndex::count_matches(const cv::Mat_<std::uint8_t>& descriptors) const {
   std::vector<int> matches(images_.size(), 0);
-  std::vector<int> last_row(images_.size(), -1);  // a descriptor counts once for an image
+  std::vector<int> last_row(images_.size(), -1);  // a descriptor counts once for each image
   for (int row = 0; row < descriptors.rows; ++row) {
     for (const Table& table : tables_) {
       const std::uint32_t key = key_of(table, descriptors[row]);

@@ -1,5 +1,5 @@
 #pragma once
-// Which of many images share features with a new one?
+// Finds the images that share features with a new one.
 
 #include <array>
 #include <cstdint>
@@ -10,19 +10,21 @@
 namespace kintsugi::mapper {
 
 /// Binary descriptors of many images in four hash tables, each keyed by 20 of the 256 bits
-/// (locality sensitive hashing, Indyk and Motwani 1998; one bucket a table is looked into).
+/// (locality-sensitive hashing, Indyk and Motwani 1998; a query looks into one bucket of each
+/// table).
 ///
-/// FLANN has the same, but draws the bits from the system's entropy: two runs over the same frames
-/// would not give the same map.
+/// FLANN has this too, but it draws the bits from the system's entropy, so that two runs over the
+/// same frames would not give the same map.
 class DescriptorIndex {
  public:
   DescriptorIndex();
 
-  /// Adds an image, numbered from 0. Rows of 32 bytes; they are shared, not copied.
+  /// Adds an image; images are numbered from 0. One row of 32 bytes for each descriptor; the rows
+  /// are shared, not copied.
   void add(const cv::Mat_<std::uint8_t>& descriptors);
 
-  /// For each image the number of the given descriptors that have a near one (at most 64 bits
-  /// apart) in a common bucket.
+  /// For each image, how many of the given descriptors have a descriptor of that image within 64
+  /// bits in the same bucket.
   std::vector<int> count_matches(const cv::Mat_<std::uint8_t>& descriptors) const;
 
  private:
@@ -36,7 +38,7 @@ class DescriptorIndex {
   };
   struct Table {
     std::array<int, kKeyBits> bits{};
-    std::vector<Entry> entries;  ///< by key, then in the order of adding
+    std::vector<Entry> entries;  ///< sorted by key, then in the order of adding
   };
 
   static std::uint32_t key_of(const Table& table, const std::uint8_t* descriptor);

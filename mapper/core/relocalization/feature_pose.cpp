@@ -9,11 +9,12 @@
 namespace kintsugi::mapper {
 namespace {
 
-constexpr float kNearestRatio = 0.8F;  ///< of the distances to the nearest and the next descriptor
+constexpr float kNearestRatio =
+    0.8F;  ///< of the distance to the nearest descriptor to that of the second nearest
 constexpr float kNearBits = 64.0F;
-constexpr int kMinAgreeing = 12;
+constexpr int kMinInliers = 12;
 constexpr int kTrials = 200;
-constexpr float kMaxError = 3.0F / 525.0F;  ///< of a ray
+constexpr float kMaxError = 3.0F / 525.0F;  ///< of a projected point, at unit focal length
 constexpr double kConfidence = 0.99;
 
 struct Correspondences {
@@ -52,17 +53,17 @@ Pose to_pose(const cv::Mat& rotation_vector, const cv::Mat& translation) {
 
 std::optional<Pose> pose_from_features(const ImageFeatures& features_K,
                                        const ImageFeatures& features_C) {
-  if (features_K.size() < 2 || features_C.size() < kMinAgreeing) return std::nullopt;
+  if (features_K.size() < 2 || features_C.size() < kMinInliers) return std::nullopt;
   const Correspondences found = match(features_K, features_C);
-  if (static_cast<int>(found.points_K.size()) < kMinAgreeing) return std::nullopt;
+  if (static_cast<int>(found.points_K.size()) < kMinInliers) return std::nullopt;
   cv::Mat rotation;
   cv::Mat translation;
-  std::vector<int> agreeing;
-  // OpenCV seeds this RANSAC with a constant of its own.
+  std::vector<int> inliers;
+  // OpenCV seeds this RANSAC with a constant: the result is reproducible.
   const bool solved = cv::solvePnPRansac(found.points_K, found.rays_C, cv::Mat::eye(3, 3, CV_64F),
                                          cv::noArray(), rotation, translation, false, kTrials,
-                                         kMaxError, kConfidence, agreeing, cv::SOLVEPNP_EPNP);
-  if (!solved || static_cast<int>(agreeing.size()) < kMinAgreeing) return std::nullopt;
+                                         kMaxError, kConfidence, inliers, cv::SOLVEPNP_EPNP);
+  if (!solved || static_cast<int>(inliers.size()) < kMinInliers) return std::nullopt;
   Pose X_KC = to_pose(rotation, translation).inverse();
   if (!X_KC.matrix().allFinite()) return std::nullopt;
   return X_KC;

@@ -1,15 +1,15 @@
 #pragma once
-// The pose between two cameras from features that both see.
+// The relative pose of two cameras from shared features.
 
 #include <optional>
 
-#include "mapper/core/relocalization/place_view.hpp"
+#include "mapper/core/relocalization/keyframe_appearance.hpp"
 
 namespace kintsugi::mapper {
 
-/// Pose of the camera C of `features_C` in that of the keyframe K, whose features have depths:
-/// nearest descriptors, then a pose from points and their images (EPnP) by RANSAC, the same for the
-/// same features. Nothing with fewer than 12 features in agreement (3 pixels of 525 focal length).
+/// X_KC, from the features of a frame C and of a keyframe K, whose features have depths: matches
+/// the nearest descriptors, then solves for the pose (EPnP) in RANSAC, with a fixed seed. Nothing
+/// with fewer than 12 inliers (within 3 pixels at a focal length of 525).
 std::optional<Pose> pose_from_features(const ImageFeatures& features_K,
                                        const ImageFeatures& features_C);
 

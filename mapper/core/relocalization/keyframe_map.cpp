@@ -18,11 +18,11 @@ cv::Mat_<std::uint16_t> raw_from(cv::Mat_<float> depth_m) {
   depth_m = depth_m.clone();
   cv::patchNaNs(depth_m, 0.0);
   cv::Mat_<std::uint16_t> raw;
-  depth_m.convertTo(raw, CV_16U, kRawPerMetre);  // beyond 16.4 m: the largest number
+  depth_m.convertTo(raw, CV_16U, kRawPerMetre);  // saturates at 16.4 m
   return raw;
 }
 
-/// The numbers of the smallest keys, smallest first; of equal ones the lower number.
+/// The numbers with the smallest keys, smallest first; of equal keys the lower number first.
 std::vector<int> smallest(std::vector<std::pair<double, int>> keys, int count) {
   const auto end =
       keys.begin() + std::min<std::ptrdiff_t>(count, static_cast<std::ptrdiff_t>(keys.size()));
@@ -34,7 +34,7 @@ std::vector<int> smallest(std::vector<std::pair<double, int>> keys, int count) {
 
 }  // namespace
 
-SurfaceMap Place::surface() const {
+SurfaceMap Keyframe::surface() const {
   cv::Mat_<float> depth_m;
   depth_raw.convertTo(depth_m, CV_32F, 1.0 / kRawPerMetre);
   depth_m.setTo(std::numeric_limits<float>::quiet_NaN(), depth_raw == 0);
@@ -53,7 +53,7 @@ void KeyframeMap::Config::validate() const {
 KeyframeMap::KeyframeMap(const Config& config) : config_((config.validate(), config)) {}
 
 bool KeyframeMap::is_due(const Pose& X_WC) const {
-  return std::none_of(keyframes_.begin(), keyframes_.end(), [&](const Place& keyframe) {
+  return std::none_of(keyframes_.begin(), keyframes_.end(), [&](const Keyframe& keyframe) {
     const Pose X_KC = keyframe.X_WC.inverse() * X_WC;
     return X_KC.translation().norm() < config_.spacing_m &&
            rotation_angle_rad(X_KC) < config_.spacing_rad;
@@ -63,15 +63,15 @@ bool KeyframeMap::is_due(const Pose& X_WC) const {
 void KeyframeMap::add(const Pose& X_WC, const TrackingInput& frame, const SurfaceMap& surface_C) {
   finish_last();
   keyframes_.push_back({X_WC, {}, surface_C.intrinsics, raw_from(surface_C.depth_m)});
-  view_of_last_ = std::async(std::launch::async, [frame, max_features = config_.max_features] {
-    return view_of(frame, max_features);
-  });
+  appearance_of_last_ = std::async(
+      std::launch::async,
+      [frame, max_features = config_.max_features] { return appearance_of(frame, max_features); });
 }
 
-std::vector<int> KeyframeMap::similar_to(const PlaceView& view) {
+std::vector<int> KeyframeMap::similar_to(const KeyframeAppearance& appearance) {
   finish_last();
-  std::vector<int> numbers = by_features(view);
-  for (const int number : by_depth(view)) {
+  std::vector<int> numbers = by_features(appearance);
+  for (const int number : by_depth(appearance)) {
     if (std::find(numbers.begin(), numbers.end(), number) == numbers.end()) {
       numbers.push_back(number);
     }
@@ -80,13 +80,13 @@ std::vector<int> KeyframeMap::similar_to(const PlaceView& view) {
 }
 
 void KeyframeMap::finish_last() {
-  if (!view_of_last_.valid()) return;
-  keyframes_.back().view = view_of_last_.get();
-  index_.add(keyframes_.back().view.features.descriptors);
+  if (!appearance_of_last_.valid()) return;
+  keyframes_.back().appearance = appearance_of_last_.get();
+  index_.add(keyframes_.back().appearance.features.descriptors);
 }
 
-std::vector<int> KeyframeMap::by_features(const PlaceView& view) const {
-  const std::vector<int> shared = index_.count_matches(view.features.descriptors);
+std::vector<int> KeyframeMap::by_features(const KeyframeAppearance& appearance) const {
+  const std::vector<int> shared = index_.count_matches(appearance.features.descriptors);
   std::vector<std::pair<double, int>> keys;
   for (int i = 0; i < size(); ++i) {
     if (shared[i] >= config_.min_shared_features) keys.emplace_back(-shared[i], i);
@@ -94,11 +94,11 @@ std::vector<int> KeyframeMap::by_features(const PlaceView& view) const {
   return smallest(std::move(keys), config_.max_by_features);
 }
 
-std::vector<int> KeyframeMap::by_depth(const PlaceView& view) const {
+std::vector<int> KeyframeMap::by_depth(const KeyframeAppearance& appearance) const {
   std::vector<std::pair<double, int>> keys;
   for (int i = 0; i < size(); ++i) {
     const double difference =
-        thumbnail_difference(view.thumbnail_m, keyframes_[i].view.thumbnail_m);
+        thumbnail_difference(appearance.thumbnail_m, keyframes_[i].appearance.thumbnail_m);
     if (std::isfinite(difference)) keys.emplace_back(difference, i);
   }
   return smallest(std::move(keys), config_.max_by_depth);

@@ -5,22 +5,22 @@
 #include "lcmtypes/base/argument_check.hpp"
 #include "lcmtypes/trajectory.hpp"
 #include "mapper/core/relocalization/feature_pose.hpp"
-#include "mapper/core/tracking/intensity_agreement.hpp"
+#include "mapper/core/relocalization/intensity_agreement.hpp"
 
 namespace kintsugi::mapper {
 namespace {
 
-/// The level that a PlaceView's intensities belong to.
+/// The level to which KeyframeAppearance::intensity belongs.
 const SurfaceMap& coarse(const SurfacePyramid& pyramid) {
   return pyramid[std::min<std::size_t>(1, pyramid.size() - 1)];
 }
 
-std::optional<double> correlation_between(const Place& keyframe, const SurfaceMap& surface_K,
-                                          const PlaceView& view, const TrackingInput& frame,
-                                          const Pose& X_WC) {
-  if (view.intensity.empty() || keyframe.view.intensity.empty()) return std::nullopt;
-  return intensity_agreement(coarse(frame.surface_C), view.intensity, surface_K,
-                             keyframe.view.intensity, keyframe.X_WC.inverse() * X_WC);
+std::optional<double> correlation_between(const Keyframe& keyframe, const SurfaceMap& surface_K,
+                                          const KeyframeAppearance& appearance,
+                                          const TrackingInput& frame, const Pose& X_WC) {
+  if (appearance.intensity.empty() || keyframe.appearance.intensity.empty()) return std::nullopt;
+  return intensity_agreement(coarse(frame.surface_C), appearance.intensity, surface_K,
+                             keyframe.appearance.intensity, keyframe.X_WC.inverse() * X_WC);
 }
 
 }  // namespace
@@ -29,9 +29,9 @@ void Relocalizer::Config::validate() const {
   keyframes.validate();
   check_range("min_overlap_share", min_overlap_share, 0.0, 1.0);
   check_range("min_correlation", min_correlation, -1.0, 1.0);
-  check_range("witness_distance_m", witness_distance_m, 0.0, 100.0);
-  check_range("witness_angle_rad", witness_angle_rad, 0.0, 3.2);
-  with_witness.validate("with_witness");
+  check_range("feature_distance_m", feature_distance_m, 0.0, 100.0);
+  check_range("feature_angle_rad", feature_angle_rad, 0.0, 3.2);
+  with_features.validate("with_features");
 }
 
 Relocalizer::Relocalizer(const Config& config)
@@ -43,25 +43,25 @@ void Relocalizer::remember(const TrackingInput& frame, const Model& model) {
 }
 
 std::optional<TrackingResult> Relocalizer::find(const TrackingInput& frame, const Tracker& tracker,
-                                                const MapView& map_from) {
-  const PlaceView view = view_of(frame, config_.keyframes.max_features);
-  const std::vector<int> candidates = keyframes_.similar_to(view);
+                                                const ModelFrom& model_from) {
+  const KeyframeAppearance appearance = appearance_of(frame, config_.keyframes.max_features);
+  const std::vector<int> candidates = keyframes_.similar_to(appearance);
   if (candidates.empty()) return std::nullopt;
-  auto found = try_keyframe(keyframes_[candidates.front()], view, frame, tracker, map_from);
+  auto found = try_keyframe(keyframes_[candidates.front()], appearance, frame, tracker, model_from);
   if (!found && candidates.size() > 1) {
     const int other = candidates[1 + turn_++ % (candidates.size() - 1)];
-    found = try_keyframe(keyframes_[other], view, frame, tracker, map_from);
+    found = try_keyframe(keyframes_[other], appearance, frame, tracker, model_from);
   }
   return found;
 }
 
-std::optional<TrackingResult> Relocalizer::try_keyframe(const Place& keyframe,
-                                                        const PlaceView& view,
+std::optional<TrackingResult> Relocalizer::try_keyframe(const Keyframe& keyframe,
+                                                        const KeyframeAppearance& appearance,
                                                         const TrackingInput& frame,
                                                         const Tracker& tracker,
-                                                        const MapView& map_from) const {
+                                                        const ModelFrom& model_from) const {
   std::optional<Pose> X_WC_features;
-  if (const auto X_KC = pose_from_features(keyframe.view.features, view.features)) {
+  if (const auto X_KC = pose_from_features(keyframe.appearance.features, appearance.features)) {
     X_WC_features = keyframe.X_WC * *X_KC;
   }
   const int levels = static_cast<int>(frame.surface_C.size());
@@ -70,14 +70,13 @@ std::optional<TrackingResult> Relocalizer::try_keyframe(const Place& keyframe,
       tracker.register_anew(frame, seen_then, X_WC_features.value_or(keyframe.X_WC));
   if (near.quality.overlap_share < config_.min_overlap_share) return std::nullopt;
 
-  const TrackingResult in_map = tracker.register_anew(frame, map_from(near.X_WC), near.X_WC);
+  const TrackingResult in_map = tracker.register_anew(frame, model_from(near.X_WC), near.X_WC);
   const bool map_reaches = in_map.quality.overlap_share >= config_.min_overlap_share;
   TrackingResult result = map_reaches ? in_map : near;
   const auto correlation =
-      correlation_between(keyframe, seen_then.surface_V.front(), view, frame, result.X_WC);
-  // With the keyframe's own surface the frame must agree; with the map it may be off by the drift.
-  const bool may_disagree = map_reaches && X_WC_features;
-  if (!is_believed(result, may_disagree ? X_WC_features : std::nullopt, correlation)) {
+      correlation_between(keyframe, seen_then.surface_V.front(), appearance, frame, result.X_WC);
+  // The lower requirements are for drift against the map; a keyframe's own surface has none.
+  if (!is_accepted(result, map_reaches ? X_WC_features : std::nullopt, correlation)) {
     return std::nullopt;
   }
   result.state = TrackingState::kTracking;
@@ -85,18 +84,19 @@ std::optional<TrackingResult> Relocalizer::try_keyframe(const Place& keyframe,
   return result;
 }
 
-bool Relocalizer::is_believed(const TrackingResult& result,
+bool Relocalizer::is_accepted(const TrackingResult& result,
                               const std::optional<Pose>& X_WC_features,
                               std::optional<double> correlation) const {
-  // A small piece of a view may fit in many places.
-  if (result.quality.overlap_share < config_.with_witness.min_overlap_share) return false;
+  // A small overlap may fit in many places.
+  if (result.quality.overlap_share < config_.with_features.min_overlap_share) return false;
   if (correlation && *correlation < config_.min_correlation) return false;
   if (result.state == TrackingState::kTracking) return true;
   if (!X_WC_features) return false;
-  const Pose X_FC = X_WC_features->inverse() * result.X_WC;  // F: where the features put the camera
-  return X_FC.translation().norm() < config_.witness_distance_m &&
-         rotation_angle_rad(X_FC) < config_.witness_angle_rad &&
-         !find_fault(result.quality, config_.with_witness);
+  const Pose X_FC =
+      X_WC_features->inverse() * result.X_WC;  // F: the camera according to the features
+  return X_FC.translation().norm() < config_.feature_distance_m &&
+         rotation_angle_rad(X_FC) < config_.feature_angle_rad &&
+         !find_fault(result.quality, config_.with_features);
 }
 
 }  // namespace kintsugi::mapper

@@ -5,6 +5,7 @@
 #include "lcmtypes/base/argument_check.hpp"
 
 namespace kintsugi::mapper {
+
 void Evidence::validate(const std::string& name) const {
   check_range(name + ".min_overlap_share", min_overlap_share, 0.0, 1.0);
   check_range(name + ".min_inlier_share", min_inlier_share, 0.0, 1.0);
@@ -38,25 +39,25 @@ void LossRule::Config::validate() const {
 std::string_view to_string(LossReason reason) {
   switch (reason) {
     case LossReason::kTooFewPixels:
-      return "too few pixels with a depth in the volume";
+      return "too few pixels have a depth inside the volume";
     case LossReason::kViewCutOff:
-      return "most of the view vanished";
+      return "the share of pixels with a valid depth dropped suddenly";
     case LossReason::kNotSolved:
       return "registration has no solution";
     case LossReason::kTooLittleOverlap:
-      return "too little of the view shows the map";
+      return "too small an overlap between the view and the map";
     case LossReason::kTooFewInliers:
-      return "too little of the view fits the map";
+      return "too few inliers between the view and the map";
     case LossReason::kThroughSurface:
-      return "the view looks through surfaces of the map";
+      return "too many measured points are behind surfaces of the map";
     case LossReason::kBeforeSurface:
-      return "too much stands before the map";
+      return "too many measured points are in front of surfaces of the map";
     case LossReason::kLargeResidual:
-      return "residuals too large";
+      return "residuals are too large";
     case LossReason::kUncertain:
-      return "the view does not determine the pose well enough";
+      return "the pose is too uncertain";
     case LossReason::kUndetermined:
-      return "the view does not tell where along it the camera is";
+      return "camera motion along the surface is unobservable";
   }
   return "unknown";
 }
@@ -67,7 +68,7 @@ std::optional<LossReason> LossRule::judge(const RegistrationQuality& quality) co
   if (quality.covered_share < config_.min_covered_share) return LossReason::kTooFewPixels;
   if (is_cut_off(quality)) return LossReason::kViewCutOff;
   Evidence needed = config_.following;
-  if (believed_frames_ < config_.grace_frames) needed.min_inlier_share = 0.0;
+  if (accepted_frames_ < config_.grace_frames) needed.min_inlier_share = 0.0;
   return find_fault(quality, needed);
 }
 
@@ -76,10 +77,10 @@ std::optional<LossReason> LossRule::judge_found_anew(const RegistrationQuality& 
   return find_fault(quality, config_.found_anew);
 }
 
-void LossRule::remember(double covered_share, bool believed) {
+void LossRule::remember(double covered_share, bool accepted) {
   recent_covered_share_ =
       std::max(covered_share, config_.recent_view_decay * recent_covered_share_);
-  if (believed) ++believed_frames_;
+  if (accepted) ++accepted_frames_;
 }
 
 bool LossRule::is_cut_off(const RegistrationQuality& quality) const {

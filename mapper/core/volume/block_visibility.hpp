@@ -3,7 +3,8 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "mapper/core/frame/camera_view.hpp"
+#include "lcmtypes/geometry.hpp"
+#include "mapper/core/kernels/pinhole_camera.hpp"
 #include "mapper/core/volume/tsdf_volume.hpp"
 
 namespace kintsugi::mapper {
@@ -13,12 +14,12 @@ struct VisibleBlock {
   Eigen::Vector3f center_C = Eigen::Vector3f::Zero();  ///< metres
 };
 
-/// Radius of the sphere around a block, metres.
+/// Radius of a block's bounding sphere, metres.
 float block_radius_m(const TsdfVolume& volume);
 
-/// The volume's blocks whose bounding sphere reaches into the view, between depth 0 and
+/// The blocks whose bounding sphere reaches into the camera's view frustum between depth 0 and
 /// `max_depth_m`, in the order of their slots.
-std::vector<VisibleBlock> find_visible_blocks(const TsdfVolume& volume, const CameraView& view,
-                                              float max_depth_m);
+std::vector<VisibleBlock> find_visible_blocks(const TsdfVolume& volume, const PinholeCamera& camera,
+                                              const Pose& X_WC, float max_depth_m);
 
 }  // namespace kintsugi::mapper

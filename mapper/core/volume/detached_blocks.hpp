@@ -19,15 +19,15 @@ struct BlockCube {
            static_cast<unsigned>(coord.y - min.y) < length &&
            static_cast<unsigned>(coord.z - min.z) < length;
   }
-  /// Whether a block is in the cube or has a face, an edge or a corner in common with it.
+  /// Whether a block is in the cube or shares a face, an edge or a corner with it.
   bool touches(const BlockCoord& coord) const {
     return side > 0 &&
            BlockCube{make_block_coord(min.x - 1, min.y - 1, min.z - 1), side + 2}.contains(coord);
   }
 };
 
-/// Blocks that left the volume at one moment, with all that is needed to extract their surface
-/// without the volume: the thread that tracks moves on, another one extracts.
+/// Blocks that left the volume in one shift, with all that is needed to extract their surface
+/// without the volume, so that another thread can do it.
 struct DetachedBlocks {
   SliceKind kind = SliceKind::kFinal;
   float resolution_m = 0.0F;
@@ -38,19 +38,20 @@ struct DetachedBlocks {
   std::vector<const VoxelBlock*> voxels;
   std::vector<const ColorBlock*> colors;
 
-  /// The blocks that touch the above by a face, edge or corner, ascending: those that stay in the
-  /// volume, as they were at that moment, and those that left it before, as they were then.
+  /// The apron: the blocks that share a face, edge or corner with the above, ascending. Those that
+  /// stay in the volume are copied as they are at the shift; those that left before are as they
+  /// were when they left.
   std::vector<BlockCoord> apron_coords;
   std::vector<const VoxelBlock*> apron_voxels;
   std::vector<const ColorBlock*> apron_colors;  ///< null: the block stays in the volume
 
-  /// What the volume covers from then on.
+  /// The cube of the volume after the shift.
   BlockCube remaining;
 
-  /// Keeps what the pointers point to, which nobody changes meanwhile.
+  /// Keeps the pointed-to blocks alive; they do not change.
   std::shared_ptr<const void> storage;
 
-  /// The voxels of a block of either kind, or null where there is none.
+  /// The voxels of a block, own or of the apron; null where there is none.
   const VoxelBlock* find(const BlockCoord& coord) const;
 };
 

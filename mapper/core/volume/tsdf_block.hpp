@@ -1,5 +1,5 @@
 #pragma once
-// A block of 8 x 8 x 8 voxels, the unit in which the volume is allocated, moved and handed out.
+// A block of 8 x 8 x 8 voxels: the unit in which the volume allocates, shifts and hands out.
 //
 // Voxel (i, j, k), any integers, has its centre at ((i, j, k) + 0.5) * resolution_m in W. Block
 // (x, y, z) holds voxels 8 (x, y, z) .. 8 (x, y, z) + 7, x fastest.
@@ -13,7 +13,7 @@ namespace kintsugi::mapper {
 inline constexpr int kBlockSide = 8;  ///< voxels
 inline constexpr int kBlockVoxels = kBlockSide * kBlockSide * kBlockSide;
 
-/// Which block of the map, in whole blocks from W's origin. Ordered by z, then y, then x.
+/// Coordinates of a block, in blocks from W's origin. Ordered by z, then y, then x.
 struct BlockCoord {
   int z = 0;
   int y = 0;

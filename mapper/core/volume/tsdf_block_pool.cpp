@@ -13,7 +13,7 @@ struct TsdfBlockPool::Memory {
   ReservedMemory colors{kMaxBlocks * sizeof(ColorBlock)};
 };
 
-/// Slots that came back and were not collected yet.
+/// Slots whose loan ended; collected when the pool needs a slot.
 struct TsdfBlockPool::Returns {
   std::mutex mutex;
   std::vector<BlockSlot> slots;

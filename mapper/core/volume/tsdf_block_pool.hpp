@@ -9,34 +9,35 @@
 
 namespace kintsugi::mapper {
 
-/// A block's place in the pool; kNoBlock is none.
+/// The number of a block's storage in the pool; kNoBlock: none.
 using BlockSlot = std::int32_t;
 inline constexpr BlockSlot kNoBlock = -1;
 
-/// Storage of blocks that are taken and given back: never moves a block, and recycles freed slots
-/// before it grows. All blocks follow each other in the order of their slots, so that a vector of
-/// 32-bit indices reaches every voxel. It does not shrink: its size is that of the fullest moment.
+/// Storage of blocks, with a reference count for each slot: never moves a block, reuses freed slots
+/// before it grows, and does not shrink. Blocks are contiguous in the order of their slots, so that
+/// 32-bit indices in a vector register reach every voxel.
 ///
-/// A slot is free again when all who hold it have given it back. For one thread, except that what
-/// lend() returns may end on any other.
+/// Not thread-safe, except that the object that lend() returns may be destroyed on any thread.
 class TsdfBlockPool {
  public:
-  /// The voxels of so many blocks have indices of 31 bits; 8 GB of them, and as much of colours.
+  /// With this many blocks the index of a voxel still fits in 31 bits: 8 GB of voxels, 8 GB of
+  /// colours.
   static constexpr std::size_t kMaxBlocks = (std::size_t{1} << 31) / kBlockVoxels;
 
   TsdfBlockPool();
 
-  /// A slot, held once, whose voxels and colours are all zero. Invalidates no reference.
-  /// @throws std::bad_alloc where there is no more memory or kMaxBlocks are held
+  /// A slot with reference count 1 whose voxels and colours are all zero. Invalidates no reference.
+  /// @throws std::bad_alloc if there is no more memory or kMaxBlocks slots are in use
   BlockSlot take(const BlockCoord& coord);
-  /// A slot, held once, with the coordinate and the voxels of another; its colours are not set.
-  /// @throws as take()
+  /// A slot with reference count 1 and the coordinate and voxels of another; its colours are not
+  /// initialised.
+  /// @throws std::bad_alloc as take()
   BlockSlot take_copy_of_voxels(BlockSlot other);
-  void hold(BlockSlot slot);       ///< once more
-  void give_back(BlockSlot slot);  ///< one hold of it
+  void hold(BlockSlot slot);       ///< adds a reference
+  void give_back(BlockSlot slot);  ///< removes a reference; the last one frees the slot
 
-  /// Passes on one hold of each of these slots to what is returned, which keeps their memory too,
-  /// even beyond the pool. They are given back some time after it ended.
+  /// Returns an object that takes over one reference to each of these slots, and keeps the memory
+  /// alive even after the pool is gone. The references are removed some time after its destruction.
   std::shared_ptr<const void> lend(std::vector<BlockSlot> slots) const;
 
   VoxelBlock& voxels(BlockSlot slot) { return voxels_[slot]; }
@@ -45,7 +46,7 @@ class TsdfBlockPool {
   const ColorBlock& colors(BlockSlot slot) const { return colors_[slot]; }
   const BlockCoord& coord(BlockSlot slot) const { return coords_[slot]; }
 
-  /// Every slot that is held is below this.
+  /// All slots in use are below this.
   BlockSlot end() const { return static_cast<BlockSlot>(coords_.size()); }
   std::size_t memory_bytes() const;
 
@@ -59,8 +60,8 @@ class TsdfBlockPool {
   void collect_returns();
 
   std::shared_ptr<Memory> memory_;
-  VoxelBlock* voxels_;  ///< the first, in memory_
-  ColorBlock* colors_;  ///< the first, in memory_
+  VoxelBlock* voxels_;  ///< of slot 0, in memory_
+  ColorBlock* colors_;  ///< of slot 0, in memory_
   std::vector<BlockCoord> coords_;
   std::vector<std::uint8_t> holders_;
   std::vector<BlockSlot> free_;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "mapper/core/kernels/volume_access.hpp"
 #include "mapper/core/volume/detached_blocks.hpp"
 #include "mapper/core/volume/tsdf_block.hpp"
 #include "mapper/core/volume/tsdf_block_pool.hpp"
@@ -14,29 +15,29 @@ namespace kintsugi::mapper {
 /// A cube of truncated signed distances that moves with the camera, in whole blocks.
 ///
 /// Only blocks near a surface exist. They are found through a toroidal table: the cube's block
-/// (x, y, z) is at (x, y, z) modulo the table's side, so that moving the cube moves no block.
+/// (x, y, z) is at (x, y, z) modulo the table's side, so that a shift of the cube moves no block.
 ///
 /// Memory: 4 KB a block; with voxels of 8.8 mm 11.8 MB for a cubic metre of blocks, 1.9 MB for a
-/// square metre of surface in a furnished room. It grows to what the cube held at its fullest,
-/// with the layer that left last and what is being extracted, and stays there on a walk of any
-/// length.
+/// square metre of surface in a furnished room. It grows to the most that was ever needed at once
+/// for the cube, the layer that left last and the slices being extracted, whatever the length of
+/// the camera's path.
 ///
-/// Not safe for concurrent use, except that different blocks may be written at once.
+/// Not thread-safe, except that several threads may write different blocks.
 class TsdfVolume {
  public:
   struct Config {
     double volume_size_m = 4.5;       ///< side of the cube, rounded up to whole blocks
     double resolution_m = 4.5 / 512;  ///< side of a voxel
     double truncation_vox = 4.0;      ///< distances are clamped to this
-    int max_weight = 128;             ///< the running mean forgets older observations beyond this
-    int shift_vox = 14;  ///< the cube moves when the camera is further than this from its centre
+    int max_weight = 128;             ///< beyond this the running mean forgets old observations
+    int shift_vox = 14;  ///< the cube moves when the camera is farther than this from its centre
 
-    /// @throws std::invalid_argument naming the field, its value and the bound.
+    /// @throws std::invalid_argument naming field, value and bound
     void validate() const;
   };
 
-  /// An empty cube, centred at `center_W` (metres) to the nearest block. @throws as validate() and
-  /// shift_to() do.
+  /// An empty cube, centred at `center_W` (metres) to the nearest block.
+  /// @throws std::invalid_argument as validate() and shift_to()
   explicit TsdfVolume(const Config& config,
                       const Eigen::Vector3d& center_W = Eigen::Vector3d::Zero());
 
@@ -64,33 +65,30 @@ class TsdfVolume {
   const ColorBlock& colors(BlockSlot slot) const { return pool_.colors(slot); }
   const BlockCoord& coord(BlockSlot slot) const { return pool_.coord(slot); }
 
-  /// What find() looks into, for vector registers: table_side() cubed slots, kNoBlock where there
-  /// is no block. Block (x, y, z) of the cube is at x + table_side() (y + table_side() z), each
-  /// coordinate modulo table_side(), which is a power of two.
-  const BlockSlot* table() const { return table_.data(); }
-  int table_side() const { return static_cast<int>(table_side_); }
-  /// Voxel i of a slot is 512 slot + i words from here.
-  const Voxel* first_voxel() const { return pool_.voxels(0).voxels.data(); }
+  /// Valid until the volume changes.
+  VolumeAccess kernel_access() const;
 
-  /// The cube's blocks have slots below slots_end(); not all slots below it are the cube's.
+  /// Every block of the cube has a slot below slots_end(), but not every such slot is in the cube:
+  /// see in_use().
   BlockSlot slots_end() const { return static_cast<BlockSlot>(in_use_.size()); }
   bool in_use(BlockSlot slot) const { return in_use_[slot] != 0; }
 
-  /// Moves the cube so that the camera is within half a block of its centre along each axis along
-  /// which it was further than shift_vox, and hands out what fell out: one object for each axis (x,
-  /// y, z in this order) along which something did. Blocks that enter are empty. Nothing that
-  /// leaves is copied: its slots are used again when the object has ended, on whichever thread.
-  /// @throws std::invalid_argument where the position is not finite or further than 100 km away;
-  /// the volume is unchanged then.
+  /// Centres the cube on the camera, to the nearest block, along each axis on which the camera is
+  /// farther than shift_vox from the centre. Returns the blocks that left: one object for each axis
+  /// (in the order x, y, z) along which any did. Space that enters is empty. Blocks that leave are
+  /// not copied; their slots are used again after the returned object has been destroyed, which may
+  /// happen on any thread.
+  /// @throws std::invalid_argument where the position is not finite or farther than 100 km from W's
+  /// origin; the volume is unchanged then
   std::vector<DetachedBlocks> shift_to(const Eigen::Vector3d& camera_W);
 
-  /// A copy of what is in the cube, as a final slice; the volume is unchanged.
+  /// A copy of all blocks of the cube, as a final slice; the volume is unchanged.
   DetachedBlocks snapshot() const;
-  /// What is in the cube, as a final slice; the volume is empty afterwards.
+  /// All blocks of the cube, as a final slice; the volume is empty afterwards.
   DetachedBlocks detach_all();
 
   std::size_t num_blocks() const { return num_blocks_; }  ///< in the cube
-  std::size_t memory_bytes() const;                       ///< with what is handed out
+  std::size_t memory_bytes() const;                       ///< including blocks that are handed out
 
  private:
   std::size_t table_index(const BlockCoord& coord) const {
@@ -101,7 +99,8 @@ class TsdfVolume {
   }
   /// The cube's blocks that are not in `remaining`, ascending.
   std::vector<BlockSlot> slots_outside(const BlockCube& remaining) const;
-  /// The blocks that touch these: of those in `remaining` and those that left before, ascending.
+  /// The blocks that touch those outside `remaining`: blocks in `remaining` and blocks that left
+  /// before; ascending.
   std::vector<BlockSlot> slots_around_outside(const BlockCube& remaining) const;
   template <typename Keep>
   DetachedBlocks describe(const std::vector<BlockSlot>& slots, SliceKind kind,
@@ -110,6 +109,7 @@ class TsdfVolume {
   void remove(const std::vector<BlockSlot>& slots);
   void update_departed(const std::vector<BlockSlot>& leaving, const BlockCube& remaining);
   void sort_by_coord(std::vector<BlockSlot>& slots) const;
+  static void check_position(const Eigen::Vector3d& position_W);
 
   Config config_;
   BlockCube cube_;
@@ -118,8 +118,8 @@ class TsdfVolume {
   TsdfBlockPool pool_;
   std::vector<std::uint8_t> in_use_;  ///< by slot: whether it is a block of the cube
   std::size_t num_blocks_ = 0;
-  /// The blocks just outside the cube that left it, as they were then: the surface between them and
-  /// what stays can only be extracted with both sides at hand.
+  /// Blocks that left and touch the cube, as they were then: extracting the surface between them
+  /// and blocks that leave later needs both.
   std::vector<BlockSlot> departed_;
 };
 

@@ -39,14 +39,15 @@ inline VoxelColor fuse_color(VoxelColor color, std::uint32_t pixel, const Integr
 
 inline void fuse_voxel(const IntegrationFrame& frame, const float point_C[3], Voxel& voxel,
                        VoxelColor& color) {
+  const PinholeCamera& camera = frame.camera;
   const float z = point_C[2];
   if (!(z > 0.0F)) return;
   const float inverse_z = 1.0F / z;
-  const float u = point_C[0] * inverse_z * frame.fx + frame.cx_plus_half;
-  const float v = point_C[1] * inverse_z * frame.fy + frame.cy_plus_half;
-  if (!(u >= 0.0F && u < static_cast<float>(frame.width))) return;
-  if (!(v >= 0.0F && v < static_cast<float>(frame.height))) return;
-  const int pixel = static_cast<int>(v) * frame.width + static_cast<int>(u);
+  const float u = point_C[0] * inverse_z * camera.fx + (camera.cx + 0.5F);
+  const float v = point_C[1] * inverse_z * camera.fy + (camera.cy + 0.5F);
+  if (!(u >= 0.0F && u < static_cast<float>(camera.width))) return;
+  if (!(v >= 0.0F && v < static_cast<float>(camera.height))) return;
+  const int pixel = static_cast<int>(v) * camera.width + static_cast<int>(u);
   const float depth = frame.depth_m[pixel];
   if (!(depth >= frame.min_depth_m && depth <= frame.max_depth_m)) return;
   const float sdf_m = depth - z;
@@ -63,7 +64,7 @@ inline void integrate_slowly(const IntegrationFrame& frame, const IntegrationBlo
     const int z = i / kBlockSide / kBlockSide;
     float point_C[3];
     for (int axis = 0; axis < 3; ++axis) {
-      // Kernels take the rows by twos.
+      // Kernels process two rows at a time.
       const float first =
           block.origin_C[axis] + (static_cast<float>(z) * frame.step_C[2][axis] +
                                   static_cast<float>(y - y % 2) * frame.step_C[1][axis]);

@@ -1,5 +1,5 @@
-// Views that leave directions of motion open: colour decides in these and only there, and without
-// texture the mapper says that it does not know.
+// Views in which depth does not determine all directions of motion: colour determines these and
+// only these, and without texture the frame is lost.
 #include <algorithm>
 #include <string>
 

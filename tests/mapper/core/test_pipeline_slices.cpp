@@ -1,4 +1,4 @@
-// Slices and mesh as a whole run gives them, with the worker's thread.
+// Slices and mesh of a whole run, extracted on the worker's thread.
 
 #include <vector>
 

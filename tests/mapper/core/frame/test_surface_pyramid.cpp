@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include "mapper/core/frame/covered_share.hpp"
 #include "mapper/core/frame/surface_pyramid.hpp"
 #include "mapper/core/kernels/instruction_set.hpp"
-#include "mapper/core/tracking/covered_share.hpp"
 #include "tests/mapper/core/box_room.hpp"
 
 namespace kintsugi::mapper {

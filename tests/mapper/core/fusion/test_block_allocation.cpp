@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "mapper/core/frame/camera.hpp"
 #include "mapper/core/fusion/block_allocation.hpp"
 #include "mapper/core/kernels/instruction_set.hpp"
 #include "tests/mapper/core/scene_fusion.hpp"
@@ -40,8 +41,8 @@ TsdfVolume cube_in(const View& view) {
 
 std::vector<BlockCoord> allocate(const View& view, InstructionSet instruction_set,
                                  TsdfVolume& volume) {
-  allocate_seen_blocks(view.frame.depth_m, view.frame.intrinsics, view.X_WC, kMinDepth_m,
-                       kMaxDepth_m, kernels_for(instruction_set), volume);
+  allocate_seen_blocks(view.frame.depth_m, pinhole_camera(view.frame.intrinsics), view.X_WC,
+                       kMinDepth_m, kMaxDepth_m, kernels_for(instruction_set), volume);
   std::vector<BlockCoord> coords;
   coords.reserve(static_cast<std::size_t>(volume.slots_end()));
   for (BlockSlot slot = 0; slot < volume.slots_end(); ++slot) coords.push_back(volume.coord(slot));

@@ -15,7 +15,7 @@ cv::Mat_<std::uint8_t> random_descriptors(int count, std::uint32_t seed) {
   return descriptors;
 }
 
-/// So many bits of each row turned over.
+/// Flips this many bits of each row.
 cv::Mat_<std::uint8_t> with_noise(const cv::Mat_<std::uint8_t>& descriptors, int bits) {
   std::mt19937 random(99);
   cv::Mat_<std::uint8_t> noisy = descriptors.clone();
@@ -40,7 +40,7 @@ TEST(DescriptorIndex, ForgivesSomeBits) {
   DescriptorIndex index;
   index.add(random_descriptors(400, 1));
   index.add(random_descriptors(400, 2));
-  // With 12 of 256 bits turned over, a key of 20 bits survives with (1 - 12/256)^20 = 0.38, one of
+  // With 12 of 256 bits flipped, a key of 20 bits survives with (1 - 12/256)^20 = 0.38, one of
   // four with 0.85.
   const auto matches = index.count_matches(with_noise(random_descriptors(400, 2), 12));
   EXPECT_EQ(matches[0], 0);

@@ -58,7 +58,7 @@ TEST(KeyframeMap, StaysSmallWhileTheCameraStaysInOnePlace) {
 TEST(KeyframeMap, RanksByDepthAndPrefersTheEarlierOfEquals) {
   KeyframeMap map({});
   for (const float depth_m : {3.0F, 1.0F, 2.0F, 1.0F}) add(map, moved(map.size()), depth_m);
-  EXPECT_THAT(map.similar_to(view_of(flat_frame(1.1F), 0)), ElementsAre(1, 3, 2, 0));
+  EXPECT_THAT(map.similar_to(appearance_of(flat_frame(1.1F), 0)), ElementsAre(1, 3, 2, 0));
 }
 
 TEST(KeyframeMap, KeepsTheSurfaceToAQuarterOfAMillimetre) {
@@ -66,19 +66,19 @@ TEST(KeyframeMap, KeepsTheSurfaceToAQuarterOfAMillimetre) {
   TrackingInput frame = flat_frame(1.2345F);
   frame.surface_C[1].depth_m(0, 0) = std::numeric_limits<float>::quiet_NaN();
   map.add(Pose::Identity(), frame, frame.surface_C[1]);
-  map.similar_to(view_of(frame, 0));
+  map.similar_to(appearance_of(frame, 0));
   const SurfaceMap surface = map[0].surface();
   EXPECT_EQ(surface.intrinsics, frame.surface_C[1].intrinsics);
   EXPECT_NEAR(surface.depth_m(60, 80), 1.2345, 0.000126);
   EXPECT_TRUE(std::isnan(surface.depth_m(0, 0)));
 }
 
-TEST(PlaceView, ComparesThumbnailsByRelativeDepth) {
-  const cv::Mat_<float> one = view_of(flat_frame(1.0F), 0).thumbnail_m;
-  const cv::Mat_<float> further = view_of(flat_frame(1.2F), 0).thumbnail_m;
+TEST(KeyframeAppearance, ComparesThumbnailsByRelativeDepth) {
+  const cv::Mat_<float> one = appearance_of(flat_frame(1.0F), 0).thumbnail_m;
+  const cv::Mat_<float> further = appearance_of(flat_frame(1.2F), 0).thumbnail_m;
   EXPECT_EQ(thumbnail_difference(one, one), 0.0);
   EXPECT_NEAR(thumbnail_difference(one, further), 0.2 / 1.1, 1e-6);
-  const cv::Mat_<float> nothing = view_of(flat_frame(std::nanf("")), 0).thumbnail_m;
+  const cv::Mat_<float> nothing = appearance_of(flat_frame(std::nanf("")), 0).thumbnail_m;
   EXPECT_TRUE(std::isinf(thumbnail_difference(one, nothing)));
 }
 

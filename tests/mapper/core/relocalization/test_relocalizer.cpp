@@ -54,7 +54,7 @@ class OfficeMap {
   std::optional<TrackingResult> find(const TrackingInput& frame) {
     return relocalizer.find(frame, tracker_, [&](const Pose& X_WV) { return seen_from(X_WV); });
   }
-  /// As often as there may be candidates.
+  /// Calls find() as often as there can be candidates.
   std::optional<TrackingResult> find_at_last(const TrackingInput& frame) {
     for (int i = 0; i < 9; ++i) {
       if (auto found = find(frame)) return found;
@@ -139,7 +139,7 @@ TEST(Relocalizer, GivesTheSamePosesForTheSameFrames) {
   for (std::size_t i = 0; i < once.size(); ++i) EXPECT_EQ(once[i].matrix(), again[i].matrix());
 }
 
-/// What is found where the volume holds nothing: against the keyframes' own surfaces.
+/// Registration with the keyframes' own surfaces, because the volume is empty.
 std::optional<TrackingResult> find_without_volume(OfficeMap& map, const RgbdFrame& frame) {
   const Tracker tracker{Tracker::Config{}};
   const Raycaster raycaster{Raycaster::Config{}};
@@ -161,7 +161,7 @@ TEST(Relocalizer, FindsAPlaceThatTheVolumeHasLeft) {
   EXPECT_LT((found->X_WC.translation() - X_WC_true.translation()).norm(), kFound_m);
 }
 
-// Things of one kind look alike wherever they stand: features alone do not make a place.
+// Objects of one kind look alike anywhere: features alone do not identify a place.
 TEST(Relocalizer, RefusesAPlaceThatLooksTheSameAndHasAnotherShape) {
   OfficeMap map(true);
   RgbdFrame frame = OfficeMap::office().frames[9];

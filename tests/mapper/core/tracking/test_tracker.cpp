@@ -129,10 +129,10 @@ TEST(Tracker, DoesNotBelieveAViewOfSomethingElse) {
 
 TEST(TrackerConfig, NamesTheFieldOutOfRange) {
   Tracker::Config config;
-  config.gates.max_distance_m = -1.0;
+  config.registration.gates.max_distance_m = -1.0;
   EXPECT_THROW(Tracker{config}, std::invalid_argument);
   config = {};
-  config.iterations = {};
+  config.registration.iterations = {};
   EXPECT_THROW(Tracker{config}, std::invalid_argument);
 }
 

@@ -1,0 +1,155 @@
+#include "mapper/core/registration/registration.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "lcmtypes/base/argument_check.hpp"
+#include "mapper/core/frame/covered_share.hpp"
+#include "mapper/core/registration/observability.hpp"
+#include "mapper/core/registration/pose_uncertainty.hpp"
+
+namespace kintsugi::mapper {
+namespace {
+
+/// The product of many rotations drifts off SO(3); this projects back to it.
+Pose orthonormal(const Pose& X) {
+  Pose clean = X;
+  clean.linear() = Eigen::Quaterniond(X.linear()).normalized().toRotationMatrix();
+  return clean;
+}
+
+/// The shares and residuals that the normal equations counted.
+RegistrationQuality quality_of(const NormalEquations& equations, std::size_t num_pixels) {
+  RegistrationQuality quality;
+  const auto overlap = static_cast<double>(equations.agreement.overlap);
+  quality.overlap_share = overlap / static_cast<double>(num_pixels);
+  if (overlap > 0.0) {
+    quality.inlier_share = static_cast<double>(equations.inliers) / overlap;
+    quality.behind_share = static_cast<double>(equations.agreement.behind) / overlap;
+    quality.in_front_share = static_cast<double>(equations.agreement.in_front) / overlap;
+  }
+  if (equations.inliers > 0) {
+    quality.rms_m =
+        std::sqrt(equations.squared_residuals_m2 / static_cast<double>(equations.inliers));
+  }
+  return quality;
+}
+
+class CoarseToFine {
+ public:
+  CoarseToFine(const TrackingInput& frame, const Model& model, const PhotometricPair& colors,
+               const Pose& X_WC_start, const RegistrationConfig& config, bool wide)
+      : frame_C_(frame.surface_C),
+        model_(model),
+        config_(config),
+        coarsest_(static_cast<int>(config.iterations.size()) - 1),
+        wide_(wide),
+        solver_(colors, model.X_WV, config.steps),
+        X_VC_(model.X_WV.inverse() * X_WC_start) {}
+
+  Registration run() {
+    level_ = coarsest_;
+    bool solved = register_level();
+    while (solved && level_ > 0) {
+      --level_;
+      solved = register_level();
+    }
+    return result(solved);
+  }
+
+ private:
+  /// False if a step had no solution.
+  bool register_level() {
+    const bool widened = wide_ && level_ == coarsest_;
+    IcpGates gates = config_.gates;
+    if (widened) gates.max_distance_m *= config_.wide_gate_factor;
+    const int steps = config_.iterations[level_] * (widened ? config_.wide_iteration_factor : 1);
+    const double small_enough = config_.early_exit * std::exp2(level_);
+    // First with the rough start pose, then again when the pose is nearly final.
+    if (level_ == coarsest_ || level_ == 0) observe(gates);
+    for (int i = 0; i < steps; ++i) {
+      equations_ = linearize(frame_C_[level_], model_.surface_V[level_], X_VC_, gates);
+      const auto step = solver_.solve(equations_, level_, X_VC_);
+      if (!step) return false;
+      step_ = *step;
+      X_VC_ = se3_retract(step_.xi) * X_VC_;
+      ++iterations_;
+      if (step_.xi.norm() < small_enough) break;
+    }
+    return true;
+  }
+
+  /// Decides which directions depth determines; for the finest level on the second finest images,
+  /// which have a quarter of the pixels.
+  void observe(const IcpGates& gates) {
+    const int level = std::min(std::max(level_, 1), coarsest_);
+    const SurfaceMap& surface_C = frame_C_[level];
+    solver_.observe(
+        independent(geometric_information(surface_C, model_.surface_V[level], X_VC_, gates),
+                    surface_C.depth_m.total()));
+    step_ = Step();
+    step_.undetermined = solver_.open_to_depth();
+  }
+
+  Registration result(bool solved) const {
+    const std::size_t num_pixels = frame_C_[level_].depth_m.total();
+    Registration registration;
+    registration.X_WC = orthonormal(model_.X_WV * X_VC_);
+    registration.iterations = iterations_;
+    RegistrationQuality& quality = registration.quality;
+    quality = quality_of(equations_, num_pixels);
+    quality.solved = solved;
+    quality.covered_share = covered_share(frame_C_.front(), registration.X_WC, model_.region_W);
+    quality.sigma_m = pose_sigma_m(equations_.A + step_.photometric_information, X_VC_,
+                                   static_cast<int>(num_pixels));
+    quality.undetermined = static_cast<int>(step_.undetermined.cols());
+    const Matrix6d to_C = adjoint(X_VC_.inverse());
+    registration.open_to_depth_C = to_C * solver_.open_to_depth();
+    registration.undetermined_C = to_C * step_.undetermined;
+    registration.compared_share = step_.compared_share;
+    registration.photometric_reliability = step_.photometric_reliability;
+    return registration;
+  }
+
+  const SurfacePyramid& frame_C_;
+  const Model& model_;
+  const RegistrationConfig& config_;
+  const int coarsest_;
+  const bool wide_;
+  StepSolver solver_;
+  int level_ = 0;
+  Pose X_VC_;
+  NormalEquations equations_;  ///< before the last step
+  Step step_;                  ///< the last one
+  int iterations_ = 0;
+};
+
+}  // namespace
+
+void RegistrationConfig::validate() const {
+  check_range<std::size_t>("number of ICP levels", iterations.size(), 1, 8);
+  for (const int count : iterations) check_range("ICP iterations", count, 1, 1000);
+  check_range("max_distance_m", gates.max_distance_m, 1e-3, 10.0);
+  check_range("min_normal_cosine", gates.min_normal_cosine, -1.0, 1.0);
+  check_range("early_exit", early_exit, 0.0, 1.0);
+  check_range("wide_gate_factor", wide_gate_factor, 1.0, 100.0);
+  check_range("wide_iteration_factor", wide_iteration_factor, 1, 100);
+  steps.observability.validate();
+  steps.photometric.validate();
+}
+
+Registration register_frame(const TrackingInput& frame, const Model& model,
+                            const PhotometricPair& colors, const Pose& X_WC_start,
+                            const RegistrationConfig& config) {
+  return CoarseToFine(frame, model, colors, X_WC_start, config, false).run();
+}
+
+Registration register_frame_widely(const TrackingInput& frame, const Model& model,
+                                   const PhotometricPair& colors, const Pose& X_WC_start,
+                                   const RegistrationConfig& config) {
+  Registration found = CoarseToFine(frame, model, colors, X_WC_start, config, true).run();
+  if (!found.quality.solved) return found;
+  return register_frame(frame, model, colors, found.X_WC, config);
+}
+
+}  // namespace kintsugi::mapper

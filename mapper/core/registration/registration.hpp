@@ -1,0 +1,53 @@
+#pragma once
+// Registers a frame with a model, coarse to fine.
+//
+// Frames: W map, C camera of the frame, V virtual camera from which the model was raycast.
+
+#include <vector>
+
+#include "lcmtypes/geometry.hpp"
+#include "mapper/core/frame/tracking_input.hpp"
+#include "mapper/core/registration/icp.hpp"
+#include "mapper/core/registration/model.hpp"
+#include "mapper/core/registration/photometric_pyramid.hpp"
+#include "mapper/core/registration/registration_quality.hpp"
+#include "mapper/core/registration/step_solver.hpp"
+
+namespace kintsugi::mapper {
+
+struct RegistrationConfig {
+  std::vector<int> iterations = {5, 5, 4};  ///< at most, per level, finest first
+  IcpGates gates;
+  double early_exit = 3e-5;  ///< norm of the increment (m, rad) at the finest level, x2 a level
+  double wide_gate_factor = 3.0;  ///< on max_distance_m, at the coarsest level of a wide search
+  int wide_iteration_factor = 3;  ///< on the iterations of the coarsest level of a wide search
+  StepSolver::Config steps;
+
+  /// @throws std::invalid_argument naming field, value and bound
+  void validate() const;
+};
+
+/// The result of a registration.
+struct Registration {
+  Pose X_WC = Pose::Identity();
+  RegistrationQuality quality;
+  int iterations = 0;
+  TwistBasis open_to_depth_C = TwistBasis(6, 0);  ///< directions that depth does not determine
+  TwistBasis undetermined_C = TwistBasis(6, 0);   ///< of these, the ones that colour leaves open
+  double compared_share = 1.0;                    ///< see Step, as of the last step
+  double photometric_reliability = 1.0;           ///< see Step, as of the last step
+};
+
+/// Registers from a pose near the camera's. The pyramids of the frame and of the model have as many
+/// levels as the configuration.
+Registration register_frame(const TrackingInput& frame, const Model& model,
+                            const PhotometricPair& colors, const Pose& X_WC_start,
+                            const RegistrationConfig& config);
+
+/// Registers from a pose that may be farther off: with a wider distance gate and more iterations at
+/// the coarsest level, and then once more, as register_frame(), from the pose found.
+Registration register_frame_widely(const TrackingInput& frame, const Model& model,
+                                   const PhotometricPair& colors, const Pose& X_WC_start,
+                                   const RegistrationConfig& config);
+
+}  // namespace kintsugi::mapper
