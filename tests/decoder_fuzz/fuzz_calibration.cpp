@@ -1,4 +1,4 @@
-// A camera.txt: what is read of it is a camera.
+// camera.txt: what is accepted is a valid camera.
 
 #include <cmath>
 #include <stdexcept>

@@ -1,4 +1,4 @@
-// The mapper's own cloud: as a PLY file, and as a log of slices.
+// Clouds that the mapper writes: as a PLY file, and as a log of slices.
 
 #include <stdexcept>
 

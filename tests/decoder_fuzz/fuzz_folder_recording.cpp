@@ -1,5 +1,5 @@
 // The files of a recording in TUM layout. The input is depth.txt, rgb.txt and associations.txt with
-// a zero byte between them; what is empty is not there. The images 0 to 2 are.
+// a zero byte between them; an empty file does not exist. The images 0 to 2 exist.
 
 #include <algorithm>
 #include <array>
@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 using kintsugi::fuzzing::input_folder;
 
-/// What every input finds.
+/// The files that every input uses.
 bool make_folder() {
   fs::create_directories(input_folder() / "depth");
   fs::create_directories(input_folder() / "rgb");

@@ -1,4 +1,4 @@
-// Compressed images of a size that is known before.
+// Compressed images of a known size.
 
 #include <stdexcept>
 

@@ -1,4 +1,4 @@
-// Several chunks: those that decode are put together, whether they fit or not.
+// Several chunks: those that decode are joined, whether they fit together or not.
 
 #include "lcmtypes/codec/codec.hpp"
 #include "tests/decoder_fuzz/log_events.hpp"

@@ -1,4 +1,4 @@
-// A log: what is read of it lies in it.
+// An LCM log: every event that is read lies within the file.
 
 #include <stdexcept>
 

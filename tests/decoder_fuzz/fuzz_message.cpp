@@ -1,4 +1,4 @@
-// Every message of the contract, one at a time: what is accepted can be sent again as it is.
+// Every message of the contract, one at a time: what is accepted can be encoded again.
 
 #include "lcmtypes/codec/codec.hpp"
 #include "tests/decoder_fuzz/require.hpp"

@@ -1,4 +1,4 @@
-// A .oni recording: walked through; a mended copy of a damaged one has the frames it should.
+// A .oni recording: read to its end; a repaired copy of a damaged one has the expected frames.
 
 #include <stdexcept>
 

@@ -1,4 +1,4 @@
-// Clouds of other programs as PLY files.
+// PLY files of other programs.
 
 #include <stdexcept>
 

@@ -1,4 +1,4 @@
-// The address of a device of ours.
+// Addresses of our own devices.
 
 #include <stdexcept>
 

@@ -1,4 +1,4 @@
-// Requests for chunks, whatever they ask for: only what exists is sent again, each once.
+// Arbitrary resend requests: only chunks that exist are sent again, each once.
 
 #include "lcmtypes/codec/codec.hpp"
 #include "lcmtypes/stream/resend_queue.hpp"

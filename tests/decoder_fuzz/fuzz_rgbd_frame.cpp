@@ -13,7 +13,7 @@ namespace {
 
 using namespace kintsugi::mapper;  // NOLINT(google-build-using-namespace)
 
-/// As a source on the bus does it.
+/// As the mapper's source on the bus does.
 void convert(const kintsugi::RgbdFrameMessage& message) {
   const cv::Size size(message.intrinsics.width, message.intrinsics.height);
   try {

@@ -1,4 +1,4 @@
-// A saved segment map: what is read of it is written the same again, and is a map or refused.
+// A saved segment map: what is accepted is a valid map, and is written again with the same bytes.
 
 #include <stdexcept>
 

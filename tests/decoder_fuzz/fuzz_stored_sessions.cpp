@@ -1,4 +1,4 @@
-// A mapper's log that is to be resumed.
+// A mapper's log, read to resume its session.
 
 #include <stdexcept>
 
@@ -18,7 +18,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     }
   } catch (const std::runtime_error&) {
   }
-  fuzzing::require(reader.sessions().size() <= events.size(),
-                   "a session begins with an event");
+  fuzzing::require(reader.sessions().size() <= events.size(), "a session begins with an event");
   return 0;
 }

@@ -1,4 +1,4 @@
-// Chunks and heartbeats in any order, whatever is in them: what a receiver of streams lives with.
+// Chunks and heartbeats with any content in any order, in a receiver of a stream.
 
 #include "lcmtypes/channels.hpp"
 #include "lcmtypes/stream/stream_subscriber.hpp"

@@ -1,4 +1,4 @@
-// A trajectory in the TUM format: what is read of it can be written and read again.
+// A trajectory in the TUM format: what is accepted can be written and read again.
 
 #include <sstream>
 #include <stdexcept>

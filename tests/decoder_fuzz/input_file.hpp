@@ -1,5 +1,5 @@
 #pragma once
-// Bytes as a file, for decoders that read files.
+// Writes the input to a file, for decoders that read files.
 
 #include <cstddef>
 #include <cstdint>
@@ -14,7 +14,7 @@
 
 namespace kintsugi::fuzzing {
 
-/// A folder of this program's own; scripts/fuzz-decoders clears away what a crash leaves of it.
+/// A folder of this process; scripts/fuzz-decoders removes what a crash leaves.
 inline const testing::TemporaryFolder& input_folder() {
   static const testing::TemporaryFolder folder;
   return folder;

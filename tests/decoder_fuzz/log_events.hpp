@@ -1,5 +1,5 @@
 #pragma once
-// Several messages in one input: the events of an LCM log.
+// Several messages in one input, as the events of an LCM log.
 
 #include <string>
 #include <vector>
@@ -13,7 +13,7 @@ struct LoggedMessage {
   Bytes data;
 };
 
-/// The events at the beginning of `log`, up to the first that is not whole.
+/// The events of `log` before the first that is incomplete.
 std::vector<LoggedMessage> read_events(ByteView log);
 
 /// An LCM log of `events`.

@@ -1,6 +1,6 @@
 #pragma once
-// What mutators share. A message, log, map or image with a wrong checksum gets no further than the
-// comparison: so each mutation is followed by the right one.
+// What mutators share. A decoder rejects input with a wrong checksum at once, so each mutation is
+// followed by writing the right checksum.
 
 #include <algorithm>
 #include <cstddef>
@@ -12,7 +12,7 @@ extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, st
 
 namespace kintsugi::fuzzing {
 
-/// `bytes` changed in a way that libFuzzer chooses, at most `max_size` of them.
+/// `bytes` as changed by libFuzzer, at most `max_size` long.
 inline Bytes mutated(Bytes bytes, std::size_t max_size) {
   const std::size_t size = std::min(bytes.size(), max_size);
   bytes.resize(max_size);

@@ -1,12 +1,12 @@
 #pragma once
-// What must hold whatever the bytes are.
+// Conditions that must hold for every input.
 
 #include <cstdio>
 #include <cstdlib>
 
 namespace kintsugi::fuzzing {
 
-/// Ends the program where it does not hold: for libFuzzer that is a finding.
+/// Aborts the program if the condition does not hold, which libFuzzer reports.
 inline void require(bool holds, const char* what) {
   if (holds) return;
   std::fprintf(stderr, "does not hold: %s\n", what);

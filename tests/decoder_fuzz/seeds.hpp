@@ -1,5 +1,5 @@
 #pragma once
-// What the fuzzers begin with: small valid inputs, made by our own writers, so never out of date.
+// The seeds of the fuzzers: small valid inputs, made by our own writers and so always up to date.
 
 #include <filesystem>
 #include <map>
@@ -12,7 +12,7 @@ namespace kintsugi::fuzzing {
 /// Inputs by name.
 using Seeds = std::map<std::string, Bytes>;
 
-/// What several targets read.
+/// Seeds that several targets use.
 Seeds message_seeds();  ///< one LCM message of each type
 Seeds log_seeds();      ///< logs of chunked messages and heartbeats
 Seeds request_seeds();

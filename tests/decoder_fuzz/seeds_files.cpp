@@ -6,8 +6,8 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "mapper/output/map_writers.hpp"
-#include "segmenter/io/ply/labelled_ply_writer.hpp"
 #include "segmenter/core/make_engine.hpp"
+#include "segmenter/io/ply/labelled_ply_writer.hpp"
 #include "segmenter/io/saved_map.hpp"
 #include "tests/decoder_fuzz/input_file.hpp"
 #include "tests/decoder_fuzz/seeds.hpp"

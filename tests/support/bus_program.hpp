@@ -1,5 +1,5 @@
 #pragma once
-// What the programs beside have in common: flags, an end on a stop signal, a report in JSON.
+// What the programs in this folder share: parsing flags, stopping on a signal, a report as JSON.
 
 #include <cstdio>
 #include <exception>
@@ -14,7 +14,7 @@
 
 namespace kintsugi::testing {
 
-/// The main() of a program: reads flags into Options, runs, and says what went wrong.
+/// The main() of a program: parses the flags into Options, calls run() and prints its exception.
 template <class Options>
 int run_bus_program(int argc, char** argv, const std::string& description,
                     void (*add_flags)(CLI::App& app, Options& options),
@@ -33,7 +33,7 @@ int run_bus_program(int argc, char** argv, const std::string& description,
   }
 }
 
-/// Prints a report, and writes it into `file` too unless that is empty.
+/// Prints a report, and writes it to `file` unless that is empty.
 /// @throws std::runtime_error when it cannot be written
 inline void give_report(const nlohmann::json& report, const std::string& file) {
   const std::string text = report.dump(2);

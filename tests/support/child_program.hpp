@@ -1,5 +1,5 @@
 #pragma once
-// A program of this project as a child of a test.
+// Runs a program of this project as a child process of a test.
 
 #include <csignal>
 #include <string>
@@ -13,10 +13,10 @@
 
 namespace kintsugi::testing {
 
-/// Runs from construction on; killed at the end of its life when it has not ended by itself.
+/// The constructor starts the program; the destructor kills it if it still runs.
 class ChildProgram {
  public:
-  /// @param output file for what it prints; empty: the test's own
+  /// @param output file for its output; empty: the output of the test
   /// @param max_file_bytes when > 0, writing more than that into one file fails, as on a full disk
   ChildProgram(std::string path, std::vector<std::string> arguments, const std::string& output = {},
                rlim_t max_file_bytes = 0) {

@@ -1,5 +1,5 @@
-// faulty_link: a bad network between two buses on one host. Each datagram of the one is passed on
-// to the other, or dropped, doubled, delayed, overtaken by later ones.
+// faulty_link: a bad network between two buses on one host. Forwards each datagram from one bus to
+// the other, or drops, duplicates, delays or reorders it.
 
 #include <algorithm>
 #include <array>
@@ -43,7 +43,7 @@ double now_s() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// What comes in at one port and goes out at the other.
+/// Forwards from one port to the other.
 struct Direction {
   MulticastPort& in;
   MulticastPort& out;
@@ -55,7 +55,7 @@ struct Direction {
   }
 };
 
-/// Until a datagram comes, or one under way is due; 0.1 s at most, for a signal to be seen.
+/// Waits until a datagram arrives or a delayed one is due; at most 0.1 s, to notice signals.
 void wait(const std::array<Direction, 2>& directions) {
   double wait_s = 0.1;
   std::array<pollfd, 2> ports{};

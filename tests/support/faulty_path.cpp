@@ -40,7 +40,8 @@ double FaultyPath::delay_s() {
 
 void FaultyPath::put(Bytes datagram, double now_s) {
   std::uniform_real_distribution<double> share(0.0, 1.0);
-  // Every number is drawn for every datagram, so that no fate moves when another share is changed.
+  // All random numbers are drawn for every datagram, so that changing one share does not change
+  // what the others select.
   const bool dropped = share(random_) < config_.drop;
   const bool duplicated = share(random_) < config_.duplicate;
   const double due_s = now_s + delay_s();

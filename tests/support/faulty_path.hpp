@@ -1,5 +1,5 @@
 #pragma once
-// What a bad network does to datagrams, by a seed and without a clock.
+// Simulates a bad network for datagrams; reproducible from a seed, without a clock.
 
 #include <cstdint>
 #include <optional>
@@ -11,17 +11,16 @@
 
 namespace kintsugi::testing {
 
-/// One direction of a bad network: a datagram that goes in comes out not at all, once or twice,
-/// late, or after others that went in later. What becomes of the n-th datagram depends on the seed
-/// and n alone.
+/// One direction of a bad network: it drops, duplicates, delays and reorders datagrams. What
+/// happens to the n-th datagram depends only on the seed and n.
 class FaultyPath {
  public:
   struct Config {
-    double drop = 0.0;       ///< share that never comes out, 0 to 1
-    double duplicate = 0.0;  ///< of the rest, the share that comes out twice, 0 to 1
-    double hold_back = 0.0;  ///< of what comes out, the share that others overtake, 0 to 1
-    double held_s = 0.02;    ///< how much later that comes, at most; >= 0
-    double delay_s = 0.0;    ///< how much later everything comes; >= 0
+    double drop = 0.0;       ///< share that is dropped, 0 to 1
+    double duplicate = 0.0;  ///< of the rest, the share that is duplicated, 0 to 1
+    double hold_back = 0.0;  ///< of what is delivered, the share that is held back, 0 to 1
+    double held_s = 0.02;    ///< most by which that is held back; >= 0
+    double delay_s = 0.0;    ///< delay of every datagram; >= 0
     std::uint64_t seed = 1;
 
     /// Throws std::invalid_argument naming field, value and bound.
@@ -32,7 +31,7 @@ class FaultyPath {
     std::int64_t in = 0;
     std::int64_t dropped = 0;
     std::int64_t duplicated = 0;
-    std::int64_t overtaken = 0;  ///< came out after one that went in later
+    std::int64_t overtaken = 0;  ///< delivered after one that was sent later
     std::int64_t out = 0;
   };
 
@@ -40,9 +39,9 @@ class FaultyPath {
 
   /// Times are seconds of any clock that does not go back.
   void put(Bytes datagram, double now_s);
-  /// The next one that is due.
+  /// The next datagram that is due.
   std::optional<Bytes> take(double now_s);
-  /// When the next one comes out; nothing: none is under way.
+  /// When the next datagram is due; nothing: none is on its way.
   std::optional<double> next_due_s() const;
 
   const Counts& counts() const { return counts_; }
@@ -50,10 +49,10 @@ class FaultyPath {
  private:
   struct UnderWay {
     double due_s = 0.0;
-    std::int64_t number = 0;  // in the order of going in
+    std::int64_t number = 0;  // in the order of sending
     Bytes datagram;
 
-    /// Of those that are due together, the first that went in comes out first.
+    /// Datagrams that are due together are delivered in the order of sending.
     bool operator<(const UnderWay& other) const {
       return due_s != other.due_s ? due_s > other.due_s : number > other.number;
     }

@@ -1,5 +1,5 @@
 #pragma once
-// A disk that is full, without a disk.
+// Simulates a full disk by a limit on the size of files.
 
 #include <csignal>
 
@@ -7,8 +7,8 @@
 
 namespace kintsugi::testing {
 
-/// A bound on the size of files of this process, as a full disk is one: writes beyond it fail, and
-/// the last one before it is short.
+/// Limits the size of the files that this process writes. As on a full disk, the write that reaches
+/// the limit is short, and later ones fail.
 class FileSizeLimit {
  public:
   explicit FileSizeLimit(rlim_t bytes) {

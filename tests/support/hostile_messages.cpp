@@ -78,7 +78,7 @@ std::size_t HostileMessages::below(std::size_t bound) {
   return std::uniform_int_distribution<std::size_t>(0, bound - 1)(random_);
 }
 
-/// Every order of magnitude as often: most messages are small, and a few fill a datagram.
+/// Uniform in the logarithm: most messages are small, and a few fill a datagram.
 std::size_t HostileMessages::random_size() {
   std::uniform_real_distribution<double> logarithm(0.0, std::log(static_cast<double>(max_bytes_)));
   return static_cast<std::size_t>(std::exp(logarithm(random_)));

@@ -1,5 +1,5 @@
 #pragma once
-// Messages that none of our programs would send, by a seed.
+// Invalid messages for robustness tests, reproducible from a seed.
 
 #include <array>
 #include <cstddef>
@@ -14,8 +14,8 @@
 namespace kintsugi::testing {
 
 /// In turn random bytes, random bytes behind the fingerprint of the channel's type, and a valid
-/// message with a few bytes changed, taken out, put in or repeated; on every channel in turn. None
-/// is a valid message as it was, so a receiver has to drop every one.
+/// message with a few bytes changed, removed, inserted or repeated; on every channel in turn. None
+/// is valid, so a receiver has to drop every one.
 class HostileMessages {
  public:
   enum class Kind { kRandom, kRandomBehindFingerprint, kMutated };
@@ -27,11 +27,11 @@ class HostileMessages {
     Bytes data;
   };
 
-  /// Begins with an example of each type of message. Random ones are at most `max_bytes` long.
+  /// Starts with an example of each type of message. Random messages have at most `max_bytes`.
   explicit HostileMessages(std::uint64_t seed, std::size_t max_bytes = 60'000);
 
-  /// One more valid message that mutated ones are made from; the oldest of many is forgotten. On
-  /// another channel than ours it is ignored.
+  /// Adds a valid message to those that are mutated; of many, the oldest is removed. Messages on
+  /// channels other than ours are ignored.
   void learn(const std::string& channel, ByteView data);
 
   Message next();

@@ -1,4 +1,4 @@
-// hostile_publisher: messages that none of our programs would send, on every channel of a bus.
+// hostile_publisher: sends invalid messages on every channel of a bus.
 
 #include <chrono>
 #include <map>

@@ -65,7 +65,7 @@ int listen_to(const sockaddr_in& group) {
   return socket;
 }
 
-/// Connected, so that it has an address and a port of its own to be known by.
+/// Connected, so that it has a source address and port by which it knows its own datagrams.
 int speak_to(const sockaddr_in& group, int ttl) {
   const int socket = new_socket();
   set_option(socket, IPPROTO_IP, IP_MULTICAST_TTL, ttl, "IP_MULTICAST_TTL");
@@ -75,7 +75,7 @@ int speak_to(const sockaddr_in& group, int ttl) {
   return socket;
 }
 
-/// How many datagrams the socket has lost so far, told beside one that came after a loss.
+/// How many datagrams the socket has lost so far; the kernel attaches it to a datagram.
 std::optional<std::uint32_t> losses_told(msghdr& header) {
   for (cmsghdr* part = CMSG_FIRSTHDR(&header); part != nullptr; part = CMSG_NXTHDR(&header, part)) {
     if (part->cmsg_level != SOL_SOCKET || part->cmsg_type != SO_RXQ_OVFL) continue;

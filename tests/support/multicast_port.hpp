@@ -11,8 +11,8 @@
 
 namespace kintsugi::testing {
 
-/// A group and port that others on this host and, with a time to live, on the link listen to.
-/// What it sent itself it does not hear. One thread.
+/// A socket in a multicast group: reaches this host and, with a time to live, the local network.
+/// It does not receive what it sent itself. For use by one thread.
 class MulticastPort {
  public:
   /// `url` as LCM has it, udpm://GROUP:PORT?ttl=N. Throws std::invalid_argument for another,
@@ -25,19 +25,19 @@ class MulticastPort {
   /// For poll(): readable when receive() may give something.
   int descriptor() const { return receiver_; }
 
-  /// The next datagram of another sender; nothing when none waits.
+  /// The next datagram of another sender; nothing when none is waiting.
   std::optional<Bytes> receive();
   /// Throws std::system_error.
   void send(ByteView datagram);
 
-  /// Datagrams that came and found the receive buffer full.
+  /// Datagrams that were lost because the receive buffer was full.
   std::int64_t lost() const { return lost_; }
 
  private:
   Bytes buffer_;  // holds the largest datagram
   int receiver_ = -1;
   int sender_ = -1;
-  sockaddr_in own_{};  // where what it sends comes from
+  sockaddr_in own_{};  // the source address of what it sends
   std::int64_t lost_ = 0;
 };
 

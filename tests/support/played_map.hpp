@@ -1,5 +1,5 @@
 #pragma once
-// A generated map as a mapper would publish it.
+// A generated map, in the slices that a mapper would publish.
 
 #include <cstddef>
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace kintsugi::testing {
 
-/// What a mapper publishes of a walk at the camera's own pace: `kintsugi-mapper --device
+/// Slices and points per second as a mapper publishes them in real time: `kintsugi-mapper --device
 /// synthetic://loop` made 82 slices with 846,082 points in 105 s, and of the first 1,000 frames
 /// (33 s) of a 7-Scenes recording 29 with 241,762.
 inline constexpr double kNormalSlicesPerSecond = 0.8;

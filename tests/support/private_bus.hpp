@@ -19,7 +19,7 @@
 
 namespace kintsugi::testing {
 
-/// What a Bus is opened with inside.
+/// The LCM URL to open a Bus with in this network.
 inline constexpr char kPrivateBusUrl[] = "udpm://239.255.76.67:7667?ttl=0";
 
 inline sockaddr internet_address(const char* text) {
@@ -31,7 +31,7 @@ inline sockaddr internet_address(const char* text) {
   return any;
 }
 
-/// Leaves the network of the machine; without privileges in a user namespace.
+/// Moves the process into a network namespace of its own; without privileges, in a user namespace.
 inline bool leave_network() {
   if (unshare(CLONE_NEWNET) == 0) return true;
   const auto uid = getuid();

@@ -1,6 +1,6 @@
 #pragma once
-// One sender and several receivers of a stream on a network in memory, in a time of its own:
-// minutes of loss, delay, stalls and crashes in milliseconds, the same on every run.
+// One sender and several receivers of a stream on a simulated network with a simulated clock:
+// minutes of loss, delay, stalls and crashes take milliseconds and are the same in every run.
 
 #include <algorithm>
 #include <cstdint>
@@ -21,7 +21,7 @@
 
 namespace kintsugi::testing {
 
-/// What happens to a datagram, each with a probability of its own.
+/// Independent probabilities of what happens to a datagram.
 struct Link {
   double loss = 0.0;
   double duplication = 0.0;
@@ -40,9 +40,9 @@ class SimulatedReceiver {
   Link link;
   std::map<std::int32_t, int> times_received;  // by slice
   std::int64_t datagrams_lost = 0;             // of chunks
-  std::int64_t datagrams_unsocketed = 0;       // of them, because nobody emptied the socket
+  std::int64_t datagrams_unsocketed = 0;       // of them, because the socket buffer was full
   std::int64_t requests = 0;
-  std::int64_t chunks_asked = 0;  // the same one asked twice counts twice
+  std::int64_t chunks_asked = 0;  // a chunk that is requested twice counts twice
   double last_request_s = 0.0;
   std::size_t max_pending_bytes = 0;
   std::function<void(const ResendRequest&)> on_request;
@@ -73,7 +73,7 @@ class SimulatedReceiver {
     }
   }
 
-  /// As SIGSTOP and SIGCONT.
+  /// Like SIGSTOP and SIGCONT.
   void stop() { stopped_ = true; }
   void go_on() {
     stopped_ = false;
@@ -161,7 +161,7 @@ class SimulatedSender {
     wake();
   }
 
-  /// As SIGKILL; and a new process that goes on with the store.
+  /// Like SIGKILL, followed by a new process that resumes from the store.
   void crash() { sender_.reset(); }
   void start() {
     sender_.emplace(
@@ -180,7 +180,7 @@ class SimulatedSender {
   }
 
   void wake() {
-    const std::int64_t wake = ++last_wake_;  // an older one has nothing more to do
+    const std::int64_t wake = ++last_wake_;  // an earlier wake-up then does nothing
     simulation_.after(0.0, [this, wake] { step(wake); });
   }
   void step(std::int64_t wake) {

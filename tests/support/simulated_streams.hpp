@@ -9,10 +9,10 @@
 
 namespace kintsugi::testing {
 
-/// Largest chunks on one host and beyond it, bytes.
+/// Largest chunks on one host and between hosts, bytes.
 inline constexpr std::size_t kDatagram = 60'000;
 inline constexpr std::size_t kFrame = 1'400;
-inline constexpr std::size_t kAll = 1'000'000'000;  // bytes of a store that forgets nothing
+inline constexpr std::size_t kAll = 1'000'000'000;  // size of a store that keeps everything, bytes
 
 inline StreamPublisherConfig chunks_of(std::size_t max_chunk_bytes) {
   StreamPublisherConfig config;
@@ -36,7 +36,7 @@ inline bool has_each_once(const SimulatedReceiver& receiver, int count) {
                      [](const auto& slice) { return slice.second == 1; });
 }
 
-/// Until every receiver has `count` slices and knows that nothing is missing.
+/// Runs until every receiver has `count` slices and knows that none is missing.
 inline bool completes(Simulation& simulation, const SimulatedSender& sender, int count,
                       double limit_s) {
   simulation.run_until(simulation.now_s() + limit_s, [&] {

@@ -1,5 +1,5 @@
 #pragma once
-// A time of its own, in which minutes pass in milliseconds, the same on every run.
+// A simulated clock with scheduled events; minutes take milliseconds, the same in every run.
 
 #include <algorithm>
 #include <cstdint>
@@ -19,7 +19,7 @@ class Simulation {
   }
   void after(double seconds, std::function<void()> what) { at(now_s_ + seconds, std::move(what)); }
 
-  /// Until nothing is left to do before `time_s`, or `done` (may be empty).
+  /// Runs until no event is left before `time_s`, or until `done` returns true (may be empty).
   void run_until(double time_s, const std::function<bool()>& done = {}) {
     while (!events_.empty() && events_.top().time_s <= time_s && !(done && done())) {
       Event event = events_.top();

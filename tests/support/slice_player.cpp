@@ -1,5 +1,5 @@
 // slice_player: stands in for a mapper. Publishes a generated map of any size, as slices of one
-// session, through the mapper's own stream and store, and answers who misses something.
+// session, through the mapper's own stream and store, and answers resend requests.
 
 #include <algorithm>
 #include <chrono>
@@ -23,7 +23,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using Seconds = std::chrono::duration<double>;
 
-constexpr std::size_t kMaxQueuedBytes = 32U << 20U;  // as a mapper has it
+constexpr std::size_t kMaxQueuedBytes = 32U << 20U;  // as in the mapper
 
 struct Options {
   std::string url;
@@ -121,7 +121,7 @@ class SlicePlayer {
     publish(last, 0);
   }
 
-  /// When its time has come. Who is told to stop publishes the rest of the map without one.
+  /// Waits until the slice is due. After a stop signal the rest of the map is published at once.
   void publish(std::int32_t id, std::int32_t revision) {
     if (options_.speed > 0.0) {
       const double due_s = static_cast<double>(slices_) / (options_.speed * kNormalSlicesPerSecond);
@@ -222,6 +222,6 @@ void play(const Options& options) { SlicePlayer(options).run(); }
 int main(int argc, char** argv) {
   using namespace kintsugi::testing;
   return run_bus_program<Options>(
-      argc, argv, "Publishes a generated map as a mapper does, and answers who misses something.",
+      argc, argv, "Publishes a generated map as a mapper does, and answers resend requests.",
       add_flags, play);
 }

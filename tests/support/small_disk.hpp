@@ -1,5 +1,5 @@
 #pragma once
-// A file system that is soon full, for tests of what happens then.
+// A small file system, for tests of a full disk.
 
 #include <cerrno>
 #include <cstring>
@@ -13,7 +13,7 @@
 
 namespace kintsugi::testing {
 
-/// A tmpfs on a folder, in mounts of the test's own: no other process sees it but its children.
+/// A tmpfs on a folder, in a mount namespace of the test: only its children see it.
 class SmallDisk {
  public:
   explicit SmallDisk(std::filesystem::path folder) : folder_(std::move(folder)) {}
@@ -23,7 +23,8 @@ class SmallDisk {
   SmallDisk(const SmallDisk&) = delete;
   SmallDisk& operator=(const SmallDisk&) = delete;
 
-  /// Mounts it on the folder, which is created where it is missing. `size` as tmpfs has it ("64k").
+  /// Mounts it on the folder, which is created if it does not exist. `size` in the format of tmpfs
+  /// ("64k").
   /// Call before the process has a second thread. Returns why it is not permitted here, if so:
   ///   if (const auto why_not = disk.mount("64k")) GTEST_SKIP() << *why_not;
   std::optional<std::string> mount(const std::string& size) {

@@ -1,5 +1,5 @@
 #pragma once
-// What a publisher sends, recorded instead of sent.
+// Records what a publisher would send.
 
 #include <chrono>
 #include <cstddef>
@@ -41,7 +41,7 @@ inline StreamPublisher::Config fast() {
   return config;
 }
 
-/// What is published for the slices.
+/// The message that is published for a slice.
 inline std::vector<Bytes> chunks_of(const std::vector<CloudSlice>& slices) {
   Recording recording;
   StreamPublisher publisher(recording.transmit(), channels::kCloudSlice, 42, fast());

@@ -1,5 +1,5 @@
 #pragma once
-// A folder that goes away with the test.
+// A folder that is removed at the end of the test.
 
 #include <cstdlib>
 #include <filesystem>
