@@ -142,14 +142,21 @@ class Sections(unittest.TestCase):
         results = [{"parameter": "", "object_iou": "0.9", "factor": "1"}] + [
             {"parameter": "scale", "object_iou": iou, "factor": factor}
             for iou, factor in (("0.5", "0.5"), ("0.6", "2"), ("0.4", "4"))]
-        self.assertEqual(segmenting.sweep_cells(results), [["`scale`", "0.400", "x 4", "0.600", "x 2"]])
+        self.assertEqual(segmenting.sweep_cells(results), [["`scale`", "0.400 (4)", "0.600 (2)"]])
 
 
 class Summary(unittest.TestCase):
     def test_takes_main_results_out_of_the_sections(self):
         text = summary.summary({"surface": "| room | median, mm |\n|---|---|\n| office | 0.79 |\n| loop | 4.2 |\n"})
         row, = tables.first_table(text)
-        self.assertEqual((row["unit"], row["result"]), ("mm", "office: 0.79, loop: 4.2"))
+        self.assertEqual(row["result"], "office: 0.79, loop: 4.2")
+
+    def test_of_the_maps_shows_mode_exact_beside_the_paper(self):
+        text = summary.summary({"maps": tables.markdown(
+            ["map", "mode", "average, ms"],
+            [["loop", "exact", 10], ["loop", "batch", 80], ["paper: Loop", "the paper's", 303]])})
+        row, = tables.first_table(text)
+        self.assertEqual(row["result"], "loop: 10, paper: Loop: 303")
 
     def test_leaves_out_what_was_not_measured(self):
         self.assertEqual(tables.first_table(summary.summary({"surface": "(not measured yet)\n"})), [])

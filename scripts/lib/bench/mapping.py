@@ -3,12 +3,11 @@
 import re
 from collections import Counter
 
-from trio.messages import Problem
-
 from .run import room
 from .tables import first_table, fixed, markdown, number, quantile, read_csv
 
 VOXEL_M = 4.5 / 512  # the mapper's default
+FRAMES_A_SECOND = 30
 
 
 def stages(run):
@@ -51,12 +50,12 @@ def volume(run):
 
 
 def trajectory_errors(run, mapped, source):
-    """The columns of kintsugi-evaluate --trajectory, as numbers; {} if too few poses were found for any."""
-    file = run.folder / f"errors_{mapped.path.stem}.csv"
-    try:
-        run.kintsugi("evaluate", "--trajectory", mapped.path, "--truth", run.true_path(source), "--csv", file)
-    except Problem:
+    """The columns of kintsugi-evaluate --trajectory, as numbers; {} if there are too few poses for motions of one
+    second."""
+    if mapped.count("located") <= FRAMES_A_SECOND + 1:
         return {}
+    file = run.folder / f"errors_{mapped.path.stem}.csv"
+    run.kintsugi("evaluate", "--trajectory", mapped.path, "--truth", run.true_path(source), "--csv", file)
     return {name: float(text) for name, text in read_csv(file)[0].items() if re.fullmatch(r"-?[0-9.]+(e-?\d+)?", text)}
 
 

@@ -88,7 +88,7 @@ def quality(run):
     return markdown(["map", "preset", "objects, mean best IoU", "all instances, mean best IoU", "objects found", "ASA",
                      "UE", "boundary recall", "boundary precision", "points in large segments, %", "segments"],
                     scores) + "\n" + markdown(
-        ["map", "parameter", "lowest mean best IoU", "at", "highest mean best IoU", "at "], sweeps)
+        ["map", "parameter", "lowest mean best IoU (factor)", "highest mean best IoU (factor)"], sweeps)
 
 
 def score_cells(row):
@@ -104,9 +104,8 @@ def sweep_cells(results):
     for parameter in dict.fromkeys(row["parameter"] for row in results if row["parameter"]):
         tried = sorted((row for row in results if row["parameter"] == parameter),
                        key=lambda row: float(row["object_iou"]))
-        worst, best = tried[0], tried[-1]
-        rows.append([f"`{parameter}`", fixed(worst["object_iou"], 3), f"x {worst['factor']}",
-                     fixed(best["object_iou"], 3), f"x {best['factor']}"])
+        rows.append([f"`{parameter}`", *(f"{fixed(row['object_iou'], 3)} ({row['factor']})"
+                                         for row in (tried[0], tried[-1]))])
     return rows
 
 
