@@ -47,7 +47,7 @@ EXACT = """
 
 | exact, correction | updates | points each | p50, ms | p90, ms | p99, ms | max, ms | us a point | built anew |
 |---|---|---|---|---|---|---|---|---|
-| one point leaves | 30 | 1 | 0.020 | 0.1 | 0.200 | 0.496 | 20 | 0 |
+| one point is removed | 30 | 1 | 0.020 | 0.1 | 0.200 | 0.496 | 20 | 0 |
 """
 
 
@@ -106,7 +106,7 @@ class Sections(unittest.TestCase):
         self.assertEqual(times[0]["p99, ms"], "23.0")
         self.assertEqual(times[0]["fragments, average, ms"], "1.60")
         self.assertEqual(times[0]["batch over all points, ms"], "1,750")
-        self.assertEqual(corrections, [{"correction of the finished map": "one point leaves", "points each": "1",
+        self.assertEqual(corrections, [{"correction of the finished map": "one point is removed", "points each": "1",
                                         "`paper`: p50, ms": "0.020", "`paper`: max, ms": "0.496",
                                         "`objects`: p50, ms": "0.020", "`objects`: max, ms": "0.496"}])
 
