@@ -1,5 +1,5 @@
-// The engines on a whole map: slice by slice, corrections of the finished map, batch. Prints
-// Markdown tables.
+// Time and memory of the segmentation engines on a whole map: slice by slice, all at once, and
+// under corrections of the finished map. Prints Markdown tables.
 //
 //   bench_exact --modes exact,voting --corrections 1000
 //   bench_exact --map loop.ply --modes exact --csv slices.csv --preset paper
@@ -28,7 +28,7 @@ struct Options {
   MapConfig generated;
   std::string preset{preset_names().front()};
   double resolution_m = EngineConfig{}.resolution_m;
-  EngineConfig engine;  ///< of both
+  EngineConfig engine;  ///< of the preset and the resolution
   std::vector<std::string> modes = {"exact"};
   CorrectionsConfig corrections = {.num_single = 0};
   bool measures_batch = true;
@@ -41,26 +41,30 @@ Options parse_command_line(int argc, char** argv) {
   CLI::App app("Engines on a whole map: time and memory");
   app.add_option("--map", options.map, "PLY with normals and slice_id, or .bin")
       ->check(CLI::ExistingFile);
-  app.add_option("--points", options.generated.num_points, "of the map generated otherwise")
+  app.add_option("--points", options.generated.num_points,
+                 "size of the generated map (without --map)")
       ->capture_default_str();
-  app.add_option("--rooms", options.generated.num_rooms, "of it")->capture_default_str();
-  app.add_option("--noise", options.generated.noise, "of it")->capture_default_str();
-  app.add_option("--map-seed", options.generated.seed, "of it")->capture_default_str();
-  app.add_option("--modes", options.modes, "to take the map slice by slice")
+  app.add_option("--rooms", options.generated.num_rooms, "of the generated map")
+      ->capture_default_str();
+  app.add_option("--noise", options.generated.noise, "of the generated map")->capture_default_str();
+  app.add_option("--map-seed", options.generated.seed, "of the generated map")
+      ->capture_default_str();
+  app.add_option("--modes", options.modes, "engines that get the map slice by slice")
       ->delimiter(',')
       ->capture_default_str();
   app.add_option("--preset", options.preset, "parameters of the engines")->capture_default_str();
   app.add_option("--resolution", options.resolution_m, "voxel size of the map, m")
       ->capture_default_str();
   app.add_option("--corrections", options.corrections.num_single,
-                 "correct the finished map; so many single points")
+                 "corrections of single points of the finished map; 0: none")
       ->capture_default_str();
-  app.add_option("--seed", options.corrections.seed, "of the corrections")->capture_default_str();
+  app.add_option("--seed", options.corrections.seed, "random seed of the corrections")
+      ->capture_default_str();
   app.add_flag("--cpu", options.corrections.measures_cpu,
-               "CPU time of corrections: on a busy machine");
-  app.add_flag("--batch,!--no-batch", options.measures_batch, "the whole map at once, too");
-  app.add_option("--csv", options.csv, "times of each slice (of the mode named last)");
-  app.add_option("--threads", options.threads, "for what uses several; 0: one for each core")
+               "measure corrections by CPU time instead of wall time");
+  app.add_flag("--batch,!--no-batch", options.measures_batch, "also segment the whole map at once");
+  app.add_option("--csv", options.csv, "write the times of each slice (last mode only)");
+  app.add_option("--threads", options.threads, "of parallel stages; 0: one for each core")
       ->capture_default_str();
   try {
     app.parse(argc, argv);

@@ -15,8 +15,8 @@ namespace {
 
 using fuzz::Random;
 
-/// A map whose points come and go one by one. The cloud keeps those that are gone: its slices are
-/// too large to be replaced for one point.
+/// A map whose points are added and removed one by one. The cloud keeps removed points: replacing a
+/// whole slice for each of them would cost more than what is measured.
 class EditableMap {
  public:
   EditableMap(const std::string& mode, const EngineConfig& config, const Slices& slices,
@@ -26,7 +26,7 @@ class EditableMap {
   }
 
   struct Edit {
-    double ms;  ///< of the engine
+    double ms;  ///< time of the engine
     bool is_rebuilt;
     PointIndex first_added;
   };
@@ -85,7 +85,7 @@ CloudPoint with_normal(CloudPoint p, double nx, double ny, double nz) {
   return p;
 }
 
-/// As if another frame had been fused: each component off by 0.002 or not.
+/// The change when another frame is fused: each component changes by 0.002 or not at all.
 CloudPoint with_other_normal(Random& random, const CloudPoint& p) {
   constexpr double kTilt = 0.002;
   const auto jitter = [&] { return kTilt * (static_cast<double>(random.below(3)) - 1.0); };
@@ -94,8 +94,8 @@ CloudPoint with_other_normal(Random& random, const CloudPoint& p) {
   return with_normal(p, nx, ny, p.nz + jitter());
 }
 
-/// As if a pose had been corrected: turned by 4 mrad about the vertical through `centre`, lifted by
-/// 2 mm.
+/// The change when a pose is corrected: a rotation by 4 mrad about the vertical axis through
+/// `centre`, and 2 mm up.
 CloudPoint corrected(const CloudPoint& p, const CloudPoint& centre) {
   constexpr double kYaw = 0.004;
   constexpr float kLift_m = 0.002F;
@@ -131,7 +131,7 @@ struct Row {
 };
 
 double move_points(EditableMap& map, Random& random, std::size_t count) {
-  Row row{.name = "another normal for one point"};
+  Row row{.name = "one point gets another normal"};
   for (std::size_t k = 0; k < count; ++k) {
     const PointIndex i = map.random_point(random);
     row.add(1, map.edit({i}, {with_other_normal(random, map[i])}));
@@ -141,7 +141,7 @@ double move_points(EditableMap& map, Random& random, std::size_t count) {
 }
 
 double remove_points(EditableMap& map, Random& random, std::size_t count) {
-  Row row{.name = "one point leaves"};
+  Row row{.name = "one point is removed"};
   for (std::size_t k = 0; k < count; ++k) row.add(1, map.edit({map.random_point(random)}, {}));
   row.print();
   return row.ms.max();
@@ -150,7 +150,7 @@ double remove_points(EditableMap& map, Random& random, std::size_t count) {
 double move_balls(EditableMap& map, Random& random) {
   double max_ms = 0.0;
   for (const float radius_m : {0.02F, 0.05F, 0.1F, 0.2F, 0.4F, 0.8F, 1.2F}) {
-    Row row{.name = "ball of " + number(100.0 * radius_m) + " cm turns"};
+    Row row{.name = "ball of " + number(100.0 * radius_m) + " cm is rotated"};
     for (int k = radius_m < 0.3F ? 9 : 3; k > 0; --k) {
       const CloudPoint centre = map[map.random_point(random)];
       const auto ball = map.points_where(
@@ -181,7 +181,7 @@ double move_third(EditableMap& map) {
     after_W.push_back(map[i]);
     after_W.back().x += kShift_m;
   }
-  Row row{.name = "a third of the map moves by 2 cm, and back"};
+  Row row{.name = "a third of the map is moved by 2 cm, and back"};
   const auto there = map.edit(points, after_W);
   row.add(points.size(), there);
   for (std::size_t k = 0; k < points.size(); ++k) {
@@ -192,7 +192,7 @@ double move_third(EditableMap& map) {
   return row.ms.max();
 }
 
-/// Prints batch's time; tells whether the engine agrees with it.
+/// Prints the time of batch; returns whether labels and thetas of the engine equal those of batch.
 bool equals_batch(const EditableMap& map, const EngineConfig& config, bool measures_cpu,
                   double max_ms) {
   const auto live = map.all_points();
@@ -206,8 +206,8 @@ bool equals_batch(const EditableMap& map, const EngineConfig& config, bool measu
   const Stopwatch stopwatch;
   batch->update(change);
   const double batch_ms = measures_cpu ? stopwatch.cpu_ms() : stopwatch.wall_ms();
-  print_row({"batch over the points at the end", "1", count(live.size()), number(batch_ms), "", "",
-             "", "", ""});
+  print_row({"batch over the final points", "1", count(live.size()), number(batch_ms), "", "", "",
+             "", ""});
   const auto expected = fuzz::partition_of(*batch, batch->components(), change.added);
   const auto found = fuzz::partition_of(map.engine(), map.engine().components(), live);
   const bool agrees = expected.labels == found.labels && expected.thetas == found.thetas;
@@ -224,8 +224,7 @@ bool bench_corrections(const std::string& mode, const EngineConfig& config, cons
   EditableMap map(mode, config, slices, corrections.measures_cpu);
   Random random(corrections.seed);
   print_head({mode + ", correction" + (corrections.measures_cpu ? " (CPU time)" : ""), "updates",
-              "points each", "p50, ms", "p90, ms", "p99, ms", "max, ms", "us a point",
-              "built anew"});
+              "points each", "p50, ms", "p90, ms", "p99, ms", "max, ms", "us a point", "rebuilt"});
   double max_ms = move_points(map, random, corrections.num_single);
   max_ms = std::max(max_ms, remove_points(map, random, corrections.num_single / 10));
   max_ms = std::max(max_ms, move_balls(map, random));

@@ -10,15 +10,15 @@
 namespace kintsugi::segmenter::bench {
 
 struct CorrectionsConfig {
-  std::size_t num_single = 1000;  ///< updates of one point
+  std::size_t num_single = 1000;  ///< number of corrections of one point
   std::uint64_t seed = 3;
-  bool measures_cpu = false;  ///< CPU time of all threads for wall time: on a busy machine
+  bool measures_cpu = false;  ///< CPU time of all threads instead of wall time
 };
 
-/// Corrects a finished map in many ways, and prints the times of the engine as a Markdown table:
-/// single points get another normal one by one, a tenth as many leave, balls of growing
-/// radius turn and shift, a third of the map moves by 2 cm and back. At the end labels and thetas
-/// must equal batch, whose time for the same points comes with it; returns whether they do.
+/// Corrects a finished map, and prints the times of the engine as a Markdown table: single points
+/// get another normal one by one, a tenth as many are removed, balls of growing radius are rotated
+/// and lifted, a third of the map is moved by 2 cm and back. Then it segments the final points with
+/// batch, and returns whether labels and thetas are the same.
 bool bench_corrections(const std::string& mode, const EngineConfig& config, const Slices& slices,
                        const CorrectionsConfig& corrections);
 

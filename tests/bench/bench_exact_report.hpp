@@ -6,15 +6,15 @@
 
 namespace kintsugi::segmenter::bench {
 
-/// Times of many runs of one thing, ms (or whatever they are).
+/// A sample of a quantity, such as the times of many runs in ms.
 class Sample {
  public:
   void add(double value) { values_.push_back(value); }
   [[nodiscard]] std::size_t size() const { return values_.size(); }
   [[nodiscard]] const std::vector<double>& values() const { return values_; }
-  /// 0 when there are none.
+  /// 0 if the sample is empty.
   [[nodiscard]] double average() const;
-  /// The smallest value that a share `q` of all do not exceed.
+  /// The smallest value that at least a share `q` of the values does not exceed.
   [[nodiscard]] double quantile(double q) const;
   [[nodiscard]] double max() const { return quantile(1.0); }
 
@@ -22,7 +22,7 @@ class Sample {
   std::vector<double> values_;
 };
 
-/// Wall and CPU time (of all threads) since it was made.
+/// Wall time, and CPU time of all threads, since construction.
 class Stopwatch {
  public:
   Stopwatch();
@@ -34,17 +34,17 @@ class Stopwatch {
   double cpu_start_ms_;
 };
 
-/// Memory of this process in use, bytes; 0 where the system does not tell.
+/// Resident memory of this process, bytes; 0 if unknown.
 std::size_t resident_bytes();
 
-/// Three digits or more: "0.050", "12.3", "1,234".
+/// With about three digits: "0.050", "12.3", "1,234".
 std::string number(double value);
-/// All digits: "1,234".
+/// With all digits: "1,234".
 std::string count(std::size_t value);
 
 /// Prints a row of a Markdown table.
 void print_row(const std::vector<std::string>& cells);
-/// Prints its first two rows.
+/// Prints the header of a Markdown table.
 void print_head(const std::vector<std::string>& cells);
 
 }  // namespace kintsugi::segmenter::bench

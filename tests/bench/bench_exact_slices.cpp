@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kMillion = 1e6;
 
-/// Where the time of one slice went, ms.
+/// Times of the stages of one slice, ms.
 struct SliceTimes {
   PointIndex num_points_before = 0;
   std::size_t num_points = 0;
@@ -22,12 +22,12 @@ struct SliceTimes {
   double engine_ms = 0.0;
   double ids_ms = 0.0;
   double statistics_ms = 0.0;
-  double cpu_ms = 0.0;  ///< of it all
+  double cpu_ms = 0.0;  ///< of all stages
 
   [[nodiscard]] double total_ms() const { return engine_ms + ids_ms + statistics_ms; }
 };
 
-/// What a segmenter keeps of a map.
+/// The state that a segmenter keeps of a map.
 struct SegmentedMap {
   SegmentedMap(const std::string& mode, const EngineConfig& config)
       : engine(make_engine(mode, cloud, config)),
@@ -68,7 +68,7 @@ void print_times(const char* name, const Sample& times) {
              number(times.quantile(0.99)), number(times.max())});
 }
 
-/// Average of the slices that came while the map had [first, last) million points.
+/// Average over the slices that were added while the map had [first, last) million points.
 double average_ms(const std::vector<SliceTimes>& slices, double first, double last) {
   Sample part;
   for (const SliceTimes& slice : slices) {

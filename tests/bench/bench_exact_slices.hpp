@@ -9,13 +9,13 @@
 
 namespace kintsugi::segmenter::bench {
 
-/// Takes a map slice by slice through an engine, segment ids and statistics, and prints time and
-/// memory as Markdown tables. With `csv` not empty, each slice is a line of that file.
+/// Segments a map slice by slice with segment ids and statistics, and prints time and memory as
+/// Markdown tables. If `csv` is not empty, writes the times of each slice to this file.
 void bench_slices(const std::string& mode, const EngineConfig& config, const Slices& slices,
                   const std::filesystem::path& csv);
 
-/// Segments the whole map at once, several times, as when a map is resumed, and prints time and
-/// memory.
+/// Segments the whole map at once, as when a map is resumed, and prints the median time of three
+/// runs, and the memory.
 void bench_whole(const std::string& mode, const EngineConfig& config, const Slices& slices);
 
 }  // namespace kintsugi::segmenter::bench

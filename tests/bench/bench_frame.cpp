@@ -1,5 +1,5 @@
-// Where the time of a frame goes: the mapper's pipeline over a recording or a synthetic room, a
-// Markdown table of its stages for each number of threads and each size of voxels.
+// Times of the stages of a frame: runs the mapper's pipeline over a recording or a synthetic room
+// and prints a Markdown table, with a column for each number of threads and each voxel size.
 //
 //   bench_frame --device folder://7scenes_1000
 //   bench_frame --device synthetic://office --threads 2 --resolution 0.01 --frames 100
@@ -32,12 +32,13 @@ Options parse_command_line(int argc, char** argv) {
   CLI::App app("Times of the mapper's stages, frame by frame");
   app.add_option("--device", options.run.device, "folder://PATH, synthetic://NAME, a .oni file")
       ->required();
-  app.add_option("--frames", options.run.frames, "counted")->capture_default_str();
-  app.add_option("--warm-up", options.run.warm_up_frames, "frames before those")
+  app.add_option("--frames", options.run.frames, "number of measured frames")
+      ->capture_default_str();
+  app.add_option("--warm-up", options.run.warm_up_frames, "frames mapped before the measured ones")
       ->capture_default_str();
   app.add_option("--threads", options.threads, "of the parallel stages")->delimiter(',');
   app.add_option("--resolution", options.resolutions_m,
-                 "sides of a voxel, m; the cube has 512 voxels a side")
+                 "voxel sizes, m; the volume has 512 voxels a side")
       ->delimiter(',');
   try {
     app.parse(argc, argv);

@@ -1,6 +1,6 @@
-// A viewer that comes late, in memory: everything the mapper's log and the segmenter's full state
-// hold of a furnished room of so many million points, from encoded chunks to the scene and to the
-// final pictures. No bus and no pacing: what the viewer itself costs.
+// A viewer that is started when the map is complete: from the encoded chunks of all slices and of
+// one full state of the segmenter to the scene and the final pictures. In memory, without a bus and
+// its limited rate: only the cost of the viewer.
 
 #include <fstream>
 #include <string>
@@ -22,7 +22,8 @@ struct Sent {
   Bytes message;
 };
 
-/// Everything as the two streams carry it: the labels before the points, which is the harder order.
+/// All chunks of both streams. Labels come before their points, because then the viewer must keep
+/// them until the points arrive.
 std::vector<Sent> encode_room(std::int64_t million_points) {
   constexpr double kResolution_m = 0.0088;
   constexpr double kPointsPerMetre = 18.0 / (kResolution_m * kResolution_m);
@@ -45,7 +46,7 @@ std::vector<Sent> encode_room(std::int64_t million_points) {
   return sent;
 }
 
-/// A line of /proc/self/status, MB.
+/// A field of /proc/self/status, MB.
 double status_mb(const std::string& name) {
   std::ifstream file("/proc/self/status");
   for (std::string line; std::getline(file, line);) {
@@ -61,7 +62,7 @@ void join_late(benchmark::State& state) {
   const bool with_pictures = state.range(1) == 1;
   const testing::TemporaryFolder folder;
   for (auto _ : state) {
-    std::ofstream("/proc/self/clear_refs") << 5;  // the peak starts anew
+    std::ofstream("/proc/self/clear_refs") << 5;  // resets VmHWM, the peak, to VmRSS
     const double before_mb = status_mb("VmRSS");
     ViewerProcess::Config config;
     config.folder = folder.path();

@@ -1,6 +1,6 @@
-// What a registration reports about itself when it found the right pose and when it did not:
-// quantiles of each quantity that the loss rule judges. Frames of a recording are registered with
-// the map of the frames before them, whole and cut off, from their own pose and from others.
+// Quality measures of registrations that found the right pose and of those that did not: quantiles
+// of each quantity that the loss rule uses. Frames of a recording, whole and cropped, are
+// registered with the map of the frames before them, starting at the true pose and at others.
 //
 //   bench_loss_evidence --device folder://7scenes_1000 --frames 300
 
@@ -29,8 +29,8 @@ struct Options {
 };
 
 struct Trial {
-  bool from_there = false;  ///< the model is seen from where registration starts, not from the
-                            ///< frame before
+  bool from_there = false;  ///< the model is raycast from the start pose, not from the pose of
+                            ///< the previous frame
   Damage damage = Damage::kNone;
   double start_error_m = 0.0;
   double error_m = 0.0;
@@ -93,7 +93,8 @@ class Experiment {
             X_WV};
   }
 
-  /// So far in a random direction, and one radian a metre about a random axis.
+  /// A translation of this length in a random direction, and a rotation of one radian a metre about
+  /// a random axis.
   Pose random_motion(double distance_m) {
     Vector6d xi;
     xi << random_direction() * distance_m, random_direction() * distance_m;
@@ -175,13 +176,13 @@ void write_csv(const std::vector<Trial>& trials, const std::string& file) {
 
 Options parse_command_line(int argc, char** argv) {
   Options options;
-  CLI::App app("What right and wrong registrations report about themselves");
+  CLI::App app("Quality measures of right and wrong registrations");
   app.add_option("--device", options.device, "folder://PATH or synthetic://NAME?...")->required();
-  app.add_option("--frames", options.frames, "the first so many; 0: all");
-  app.add_option("--step", options.step, "every so many frames one is tried")
+  app.add_option("--frames", options.frames, "number of frames to read; 0: all");
+  app.add_option("--step", options.step, "register every Nth frame")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  app.add_option("--csv", options.csv, "one line for each trial");
+  app.add_option("--csv", options.csv, "write a line for each registration");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

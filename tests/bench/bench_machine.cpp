@@ -1,5 +1,5 @@
-// What this machine can do at most, with one thread and two, by processor time: the limits that
-// fusion and raycasting are held against in BENCHMARK.md.
+// Upper limits of this machine, with one and two threads, by CPU time: arithmetic, sequential reads
+// and gathers. Fusion and raycast can be compared with them.
 //
 //   build/release/bench/bench_machine
 
@@ -60,7 +60,7 @@ void read(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(limits.read(numbers.data(), numbers.size()));
   state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(4 * numbers.size()));
 }
-// In the first cache, the second, the third and in memory.
+// Sizes that fit into the first, second and third cache, and one that does not.
 BENCHMARK(read)->Apply([](auto* benchmark) { for_each_path(benchmark, {16, 512, 8192, 262144}); });
 
 void read_scattered(benchmark::State& state) {

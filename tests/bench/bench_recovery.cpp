@@ -1,9 +1,8 @@
-// Loss and recovery: one recording, played as it is and under each disturbance. Prints a Markdown
-// table, and what became of each frame as CSV.
+// Losses and recoveries of the camera: plays a recording unchanged and with each disturbance.
+// Prints a Markdown table; --csv writes the result of each frame.
 //
 //   bench_recovery --device folder://7scenes_1000 --frames 300
-//   bench_recovery --device 'synthetic://office?frames=300' --disturbances jump,covered
-//   --depth-only
+//   bench_recovery --device synthetic://office --disturbances jump,covered --depth-only
 
 #include <exception>
 #include <fstream>
@@ -27,7 +26,7 @@ struct Options {
   std::string device;
   int frames = 0;
   std::vector<std::string> disturbances = disturbance_names();
-  std::string reference;  ///< empty: by the kind of device
+  std::string reference;  ///< empty: chosen by the kind of device
   bool depth_only = false;
   std::uint32_t seed = 1;
   std::size_t threads = 0;
@@ -39,22 +38,23 @@ Options parse_command_line(int argc, char** argv) {
   Options options;
   CLI::App app("Loss and recovery of the mapper under disturbances");
   app.add_option("--device", options.device, "folder://PATH or synthetic://NAME?...")->required();
-  app.add_option("--frames", options.frames, "the first so many; 0: all");
-  app.add_option("--disturbances", options.disturbances, "which, and in which order")
+  app.add_option("--frames", options.frames, "number of frames to read; 0: all");
+  app.add_option("--disturbances", options.disturbances, "disturbances, in this order")
       ->delimiter(',')
       ->check(CLI::IsMember(disturbance_names()));
-  app.add_option("--reference", options.reference,
-                 "poses are wrong that are 3 cm off `truth` (default if it is exact) or off the "
-                 "`undisturbed` run")
+  app.add_option(
+         "--reference", options.reference,
+         "path that poses are compared with: `truth` (default if it is exact) or that of the "
+         "`undisturbed` run")
       ->check(CLI::IsMember({"truth", "undisturbed"}));
   app.add_flag("--depth-only", options.depth_only, "without the colour stream");
-  app.add_option("--seed", options.seed, "of the random disturbances")->capture_default_str();
+  app.add_option("--seed", options.seed, "random seed of the disturbances")->capture_default_str();
   app.add_option("--threads", options.threads, "of the parallel stages; 0: one per core");
-  app.add_option("--resolution", options.pipeline.volume.resolution_m, "side of a voxel, m")
+  app.add_option("--resolution", options.pipeline.volume.resolution_m, "voxel size, m")
       ->capture_default_str();
-  app.add_option("--volume-size", options.pipeline.volume.volume_size_m, "side of the cube, m")
+  app.add_option("--volume-size", options.pipeline.volume.volume_size_m, "side of the volume, m")
       ->capture_default_str();
-  app.add_option("--csv", options.csv, "one line for each frame of each run");
+  app.add_option("--csv", options.csv, "write a line for each frame of each run");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

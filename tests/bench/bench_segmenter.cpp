@@ -1,5 +1,5 @@
-// The engines and their stages on a map of 1 M points, one wavy sheet of 10 m x 10 m that comes in
-// strips; on a generated map of some size (generate_map()); or on one's own (read_map()):
+// The engines and their stages on one of three maps: a wavy sheet of 10 m x 10 m with 1 million
+// points in strips, a generated map (generate_map()), or a file (read_map()):
 //
 //   build/release/bench/bench_segmenter --benchmark_repetitions=5
 //   KINTSUGI_BENCH_POINTS=4000000 build/release/bench/bench_segmenter
@@ -87,7 +87,7 @@ void report_slices(benchmark::State& state, std::vector<double> slice_ms) {
   state.counters["max_ms"] = slice_ms.back();
 }
 
-/// How far the process's memory rises above what it takes at the beginning.
+/// Peak of the resident memory of this process since construction, above its value then.
 class PeakMemory {
  public:
   PeakMemory() {
@@ -129,7 +129,7 @@ BENCHMARK_CAPTURE(neighbours_of_all, flann, NeighbourSearch::kFlann)
     ->MeasureProcessCPUTime()
     ->UseRealTime();
 
-/// A slice's points into the grid and their neighbours out of it, in one thread, as a map grows.
+/// Inserts slice after slice into the grid and finds the neighbours of its points, in one thread.
 void grid_slice_by_slice(benchmark::State& state) {
   std::vector<double> slice_ms;
   for (auto _ : state) {
@@ -173,7 +173,7 @@ void rows(benchmark::State& state) {
 }
 BENCHMARK(rows)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
 
-/// In one thread.
+/// Runs in one thread.
 void pairs_of_rows(benchmark::State& state) {
   const PointRows rows(map_cloud(), map_cloud().everything().added, kConfig.radius_m());
   std::size_t count = 0;
@@ -182,7 +182,7 @@ void pairs_of_rows(benchmark::State& state) {
 }
 BENCHMARK(pairs_of_rows)->Unit(benchmark::kMillisecond);
 
-/// Everything from points to a partition, at once.
+/// The whole map at once, from points to the partition.
 void batch(benchmark::State& state, NeighbourSearch search) {
   using oneapi::tbb::global_control;
   const global_control threads(global_control::max_allowed_parallelism,
@@ -212,7 +212,7 @@ BENCHMARK_CAPTURE(batch, flann, NeighbourSearch::kFlann)
     ->MeasureProcessCPUTime()
     ->UseRealTime();
 
-/// The whole map slice by slice, ids included; times per slice as counters.
+/// The whole map slice by slice, with segment ids; the counters have the times of a slice.
 void slice_by_slice(benchmark::State& state, std::string_view mode) {
   std::vector<double> slice_ms;
   double rounds = 0.0;

@@ -1,5 +1,5 @@
-// What slices cost: the shift on the tracking thread, extraction and mesh on the worker's, memory
-// along the way; and, for a synthetic scene, how far the map is from the true surface.
+// Cost of slices: the shift on the tracking thread, extraction and mesh on the worker thread, and
+// memory during the run; for a synthetic scene also the distance of the map from the true surface.
 //
 //   bench_slices --device folder://7scenes_1000 --frames 300
 //   bench_slices --device 'synthetic://office?frames=300' --true-poses
@@ -49,14 +49,16 @@ Options parse_command_line(int argc, char** argv) {
   Options options;
   CLI::App app("Cost of slices, memory over a run, error of the surface");
   app.add_option("--device", options.device, "folder://PATH or synthetic://NAME?...")->required();
-  app.add_option("--frames", options.frames, "the first so many that are mapped; 0: all");
-  app.add_option("--step", options.step, "map every so manieth frame")->capture_default_str();
-  app.add_flag("--true-poses", options.true_poses, "of a synthetic scene, instead of tracking");
-  app.add_flag("--only-shifts", options.only_shifts, "of a synthetic scene, with true poses");
+  app.add_option("--frames", options.frames, "number of frames to map; 0: all");
+  app.add_option("--step", options.step, "map every Nth frame")->capture_default_str();
+  app.add_flag("--true-poses", options.true_poses,
+               "use the true poses of a synthetic scene instead of tracking");
+  app.add_flag("--only-shifts", options.only_shifts,
+               "only shift the volume, along the true path of a synthetic scene");
   app.add_flag("--forget-points", options.forget_points,
-               "keep no points, so that the memory is the mapper's; no surface error then");
+               "keep no points, so that the memory is that of the mapper; no surface error");
   app.add_option("--threads", options.threads, "of the parallel stages; 0: one per core");
-  app.add_option("--memory-rows", options.memory_rows, "how often to print the memory");
+  app.add_option("--memory-rows", options.memory_rows, "number of times the memory is printed");
   app.add_option("--min-weight", options.pipeline.slices.extractor.weight_threshold)
       ->capture_default_str();
   app.add_option("--max-depth", options.pipeline.integrator.max_depth_m)->capture_default_str();
@@ -155,7 +157,7 @@ class Run {
   }
 
  private:
-  /// Of a scene only the frames that are asked for are rendered; a recording is read through.
+  /// Of a synthetic scene only the mapped frames are rendered; of a recording all frames are read.
   std::optional<RgbdFrame> next_frame(int index) {
     if (!scene_) {
       for (; num_read_ < index; ++num_read_) source_->next();
@@ -194,15 +196,16 @@ class Run {
   }
 
   void print_memory(const MapperPipeline& pipeline) const {
-    std::printf("frame %5zu: %6ld blocks in the cube, volume %7.1f MB, process at most %7.1f MB\n",
-                frame_ms_.size(), static_cast<long>(pipeline.num_blocks()),
-                static_cast<double>(pipeline.volume_bytes()) / (1 << 20), peak_memory_mb());
+    std::printf(
+        "frame %5zu: %6ld blocks in the volume, volume %7.1f MB, process at most %7.1f MB\n",
+        frame_ms_.size(), static_cast<long>(pipeline.num_blocks()),
+        static_cast<double>(pipeline.volume_bytes()) / (1 << 20), peak_memory_mb());
     std::fflush(stdout);
   }
 
   Options options_;
   std::optional<synthetic::Sequence> scene_;
-  std::unique_ptr<FrameSource> source_;  ///< of a recording
+  std::unique_ptr<FrameSource> source_;  ///< empty for a synthetic scene
   int num_read_ = 0;
   std::optional<CloudWriter> cloud_;
   std::optional<MeshWriter> mesh_;
@@ -214,7 +217,7 @@ class Run {
   int num_lost_ = 0;
 };
 
-/// The shifts alone, on the path of a synthetic scene, with everything fused on the way.
+/// Only the shifts of the volume, along the true path of a synthetic scene.
 void measure_shifts(const Options& options) {
   synthetic::Sequence scene = open_scene(options.device).value();
   TsdfVolume volume(options.pipeline.volume, scene.X_WC(0).translation());

@@ -44,13 +44,13 @@ struct Options {
 
 struct Case {
   std::size_t chunk_bytes = 0;
-  double loss = 0.0;  ///< of chunks, dropped by the receiver before it looks at them
+  double loss = 0.0;  ///< share of the chunks that the receiver drops unread
 };
 
-/// What the receiver tells the process that started it, in memory that both see.
+/// Results of the receiver, in memory shared with the process that started it.
 struct Received {
   double bytes_per_s = 0.0;
-  double cpu = 0.0;  ///< of one core
+  double cpu = 0.0;  ///< share of one core
   std::int64_t chunks_lost = 0;
   std::int64_t chunks_duplicate = 0;
   std::int64_t requests = 0;
@@ -77,7 +77,7 @@ CloudSlice slice_of(int id) {
   return slice;
 }
 
-/// Receives until every slice is there.
+/// Receives until every slice is complete.
 void receive(const Options& options, const Case& which, Received& received) {
   Bus bus(options.url());
   PatientClock clock;
@@ -111,7 +111,7 @@ void receive(const Options& options, const Case& which, Received& received) {
   received.requests = stream.counts().requests_sent;
 }
 
-/// Publishes all slices, answers until `receiver` has ended, and tells what it cost.
+/// Publishes all slices, answers requests until `receiver` has ended, and prints a row.
 void publish(const Options& options, const Case& which, pid_t receiver, const Received& received) {
   Bus bus(options.url());
   RecentChunks store(std::size_t{4} << 30U);
@@ -121,7 +121,7 @@ void publish(const Options& options, const Case& which, pid_t receiver, const Re
   StreamPublisher stream(bus, channels::kCloudSlice, kSession, config, &store);
   stream.subscribe(bus);
   BusThread answering(bus);
-  std::this_thread::sleep_for(std::chrono::milliseconds(500));  // for the receiver to start
+  std::this_thread::sleep_for(std::chrono::milliseconds(500));  // until the receiver listens
   const double begin_s = PatientClock::steady_clock_s();
   const double begin_cpu_s = cpu_s();
   for (int id = 0; id < options.num_slices(); ++id) {
@@ -160,16 +160,16 @@ void measure(const Options& options, const Case& which) {
 
 int run(int argc, char** argv) {
   Options options;
-  CLI::App app("What a reliable stream costs: a sender and a receiver on a bus of their own");
-  app.add_option("--rate", options.rate_bytes_per_s, "of the stream, bytes/s")
+  CLI::App app("Cost of a reliable stream: a sender and a receiver on a private bus");
+  app.add_option("--rate", options.rate_bytes_per_s, "rate of the stream, bytes/s")
       ->capture_default_str();
-  app.add_option("--seconds", options.seconds, "of publishing")->capture_default_str();
+  app.add_option("--seconds", options.seconds, "duration of publishing")->capture_default_str();
   app.add_option("--receive-buffer", options.receive_buffer_bytes, "bytes")->capture_default_str();
   CLI11_PARSE(app, argc, argv);
   if (const auto why_not = testing::enter_private_bus()) throw std::runtime_error(*why_not);
   std::printf(
       "| largest chunk, bytes | dropped, %% | MB/s of points | sender, %% of a core | "
-      "receiver, %% | chunks sent | dropped | sent again | came twice | requests |\n"
+      "receiver, %% | chunks sent | dropped | resent | received twice | requests |\n"
       "|---|---|---|---|---|---|---|---|---|---|\n");
   for (const std::size_t chunk_bytes : {kDefaultMaxChunkBytes, kMinMaxChunkBytes}) {
     for (const double loss : {0.0, 0.01, 0.05, 0.1}) measure(options, {chunk_bytes, loss});

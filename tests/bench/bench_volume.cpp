@@ -26,7 +26,7 @@ struct View {
   Pose X_WC;
 };
 
-/// Some frames along the office's path, far enough apart to cover it.
+/// Frames at equal distances in time along the path of the office.
 const std::vector<View>& office_views() {
   static const std::vector<View> views = [] {
     constexpr int kNumViews = 24;
@@ -57,7 +57,7 @@ TsdfVolume office_volume() {
   return volume;
 }
 
-/// The stages in which instruction set and number of threads matter.
+/// Arguments for stages that depend on the instruction set and the number of threads.
 void for_each_path(benchmark::internal::Benchmark* benchmark) {
   benchmark->ArgNames({"instruction_set", "threads"});
   for (const InstructionSet instruction_set : kInstructionSets) {

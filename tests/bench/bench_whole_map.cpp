@@ -1,5 +1,4 @@
-// What it costs to tell, keep, describe, ask and go on with a whole map: a listener that comes
-// late,
+// Cost of publishing, saving, describing, querying and resuming a whole map: a late listener,
 // --save-every, kintsugi-query and --resume. Prints a Markdown table.
 //
 //   bench_whole_map --points 4000000
@@ -38,7 +37,7 @@ double time_ms(const Action& action) {
       .count();
 }
 
-/// The best of five: what the machine does besides is left out.
+/// The shortest of five runs, which other programs disturb least.
 template <class Action>
 double best_ms(const Action& action) {
   double best = time_ms(action);
@@ -65,7 +64,7 @@ double segment(const Slices& slices, std::optional<SegmentMap>& map) {
   return slowest_ms;
 }
 
-/// On a bus where nothing is lost, at the default rate.
+/// Time to send the state at the default rate, without losses.
 double send_ms(const std::vector<SegmentUpdate>& state, std::int64_t& bytes) {
   StreamPublisher publisher(
       [&](const std::string&, ByteView message) {
@@ -78,17 +77,18 @@ double send_ms(const std::vector<SegmentUpdate>& state, std::int64_t& bytes) {
   });
 }
 
-/// What is known about segments, by all cores, the adjacency graph included where it is needed.
+/// Descriptions of segments, on all cores.
 void describe_rows(const MapSnapshot& map) {
   const LabelledCloud cloud = labelled_cloud(map);
   AdjacencyGraph graph;
   const double graph_ms = best_ms([&] { graph = adjacency_graph(cloud); });
-  row(fmt::format("which segments touch: {} pairs", graph.edges.size()), graph_ms,
-      static_cast<double>(graph.edges.size() * sizeof(AdjacencyEdge)));
+  row(fmt::format("adjacency graph of the segments, {} edges (in the background)",
+                  graph.edges.size()),
+      graph_ms, static_cast<double>(graph.edges.size() * sizeof(AdjacencyEdge)));
   std::vector<SegmentDescription> segments;
   const double describe_ms = best_ms(
       [&] { segments = describe_segments(cloud, map.segments, map.state.last_changes, graph); });
-  row("every segment described, when that is known", describe_ms,
+  row("description of every segment, given the graph (in the background)", describe_ms,
       static_cast<double>(segments.size() * sizeof(SegmentDescription)));
   for (const std::uint32_t num_points : {1000U, UINT32_MAX}) {
     const auto nearest = std::min_element(
@@ -98,7 +98,7 @@ void describe_rows(const MapSnapshot& map) {
           };
           return difference(a) < difference(b);
         });
-    row(fmt::format("a segment of {} points described alone", nearest->num_points),
+    row(fmt::format("description of one segment of {} points", nearest->num_points),
         best_ms([&] { describe_segment(map, nearest->segment_id); }), 0.0);
   }
   const kintsugi::testing::TemporaryFolder folder;
@@ -111,16 +111,16 @@ void describe_rows(const MapSnapshot& map) {
                           std::filesystem::file_size(folder / "segments.csv")));
 }
 
-/// Of a copy of the map, as the segmenter answers while slices are added.
+/// Queries on a copy of the map, as the segmenter answers them while slices are added.
 void query_rows(const MapSnapshot& map) {
   SegmentQuery query;
   query.client = 1;
   query.max_segments = 1;
-  row("a query for the largest segment (in the background)", best_ms([&] { answer(map, query); }),
+  row("query for the largest segment (in the background)", best_ms([&] { answer(map, query); }),
       0.0);
   query.only_planar = true;
   query.max_segments = 10;
-  row("a query for the ten largest that are planar (in the background)",
+  row("query for the ten largest planar segments (in the background)",
       best_ms([&] { answer(map, query); }), 0.0);
 }
 
@@ -137,27 +137,28 @@ void run(const MapConfig& config) {
   const double describe_ms = best_ms([&] { state = map->describe(); });
   std::int64_t bytes = 0;
   const double sending_ms = send_ms(state, bytes);
-  row("the full state put together (holds the engine)", describe_ms, static_cast<double>(bytes));
-  row("sent at 10 MB/s", sending_ms, static_cast<double>(bytes));
+  row("full state made (holds the engine)", describe_ms, static_cast<double>(bytes));
+  row("full state sent at 10 MB/s", sending_ms, static_cast<double>(bytes));
 
   std::optional<MapSnapshot> snapshot;
   const double copy_ms = best_ms([&] {
     snapshot.reset();
     snapshot = take_snapshot(*map);
   });
-  row("a copy to be saved, the first (holds the engine)", copy_ms, num_points * 36);
+  row("first copy of the map (holds the engine)", copy_ms, num_points * 36);
   const double again_ms = best_ms([&] { take_snapshot(*map, *snapshot); });
-  row("a copy into the memory of an earlier one", again_ms, num_points * 36);
+  row("copy into the memory of an earlier one (holds the engine)", again_ms, num_points * 36);
   const kintsugi::testing::TemporaryFolder folder;
   const auto file = folder / "map.kseg";
   const double write_ms = time_ms([&] { write_map_state(snapshot->state, file); });
-  row("the copy written (in the background)", write_ms,
+  row("copy written to a file (in the background)", write_ms,
       static_cast<double>(std::filesystem::file_size(file)));
   describe_rows(*snapshot);
   query_rows(*snapshot);
   snapshot.reset();
   map.reset();
-  row("read, and gone on with", time_ms([&] { load_map(file); }), num_points * 36);
+  row("saved map read and engine rebuilt (--resume)", time_ms([&] { load_map(file); }),
+      num_points * 36);
 }
 
 }  // namespace
@@ -166,8 +167,8 @@ void run(const MapConfig& config) {
 int main(int argc, char** argv) {
   using namespace kintsugi::segmenter::bench;
   MapConfig config;
-  CLI::App app("What it costs to tell and to keep a whole map");
-  app.add_option("--points", config.num_points, "of the generated map")->capture_default_str();
+  CLI::App app("Cost of publishing, saving and querying a whole map");
+  app.add_option("--points", config.num_points, "size of the generated map")->capture_default_str();
   CLI11_PARSE(app, argc, argv);
   try {
     run(config);

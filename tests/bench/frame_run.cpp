@@ -15,7 +15,7 @@
 namespace kintsugi::mapper::bench {
 namespace {
 
-/// CPU time of some threads since a moment.
+/// CPU time of a set of threads since construction.
 class CpuOfThreads {
  public:
   explicit CpuOfThreads(Threads threads) : threads_(std::move(threads)), start_ms_(total_ms()) {}
@@ -28,7 +28,7 @@ class CpuOfThreads {
   double start_ms_;
 };
 
-/// Until the threads have done nothing for a while.
+/// Waits until the threads have been idle for a while.
 void wait_for_rest(const CpuOfThreads& threads) {
   constexpr std::chrono::milliseconds kWhile{5};
   constexpr double kNothing_ms = 0.01;

@@ -30,24 +30,24 @@ std::vector<Row> rows() {
   return {
       {"read, decode (wait)", [](const FrameSample& s) { return s.read_ms; }, nullptr},
       {"convert, undistort", [](const FrameSample& s) { return s.convert_ms; }, nullptr},
-      {"both", [](const FrameSample& s) { return s.read_ms + s.convert_ms; },
+      {"read and convert", [](const FrameSample& s) { return s.read_ms + s.convert_ms; },
        [](const FrameSample& s) { return s.read_convert_cpu_ms; }},
-      stage_row("prepare", &StageTimes::prepare_ms),
+      stage_row("surface pyramid", &StageTimes::prepare_ms),
       stage_row("track", &StageTimes::track_ms),
-      stage_row("shift, detach", &StageTimes::shift_ms),
-      stage_row("allocate, integrate", &StageTimes::integrate_ms),
+      stage_row("shift the volume", &StageTimes::shift_ms),
+      stage_row("fuse depth and colour", &StageTimes::integrate_ms),
       stage_row("raycast", &StageTimes::raycast_ms),
-      {"mapping", [](const FrameSample& s) { return s.stages.total_ms(); },
+      {"all of mapping", [](const FrameSample& s) { return s.stages.total_ms(); },
        [](const FrameSample& s) { return s.stages_cpu.total_ms(); }},
       {"**frame**", [](const FrameSample& s) { return s.frame_ms; },
        [](const FrameSample& s) { return s.frame_cpu_ms; }},
-      {"frame at which a slice left",
+      {"frame after which a slice left",
        [](const FrameSample& s) { return s.slice_left ? s.frame_ms : kNone; },
        [](const FrameSample& s) { return s.slice_left ? s.frame_cpu_ms : kNone; }},
   };
 }
 
-/// Those that are numbers.
+/// The values of all samples, without NaN.
 std::vector<double> values_of(const FrameRun& run, const Value& value) {
   std::vector<double> values;
   if (!value) return values;
@@ -114,8 +114,8 @@ void print_stage_table(std::ostream& out, const std::vector<FrameRun>& runs) {
     for (const FrameRun& run : runs) print_cell(out, kNone, kNone, run.*cpu_ms);
     out << '\n';
   };
-  print_threads("in these: the driver's threads", &FrameRun::source_threads_cpu_ms);
-  print_threads("in these: slice worker", &FrameRun::slice_worker_cpu_ms);
+  print_threads("of these, threads of the driver", &FrameRun::source_threads_cpu_ms);
+  print_threads("of these, slice worker", &FrameRun::slice_worker_cpu_ms);
   out << "| frames / lost / slices |";
   for (const FrameRun& run : runs) {
     out << ' ' << run.samples.size() << " / " << run.frames_lost << " / " << run.slices << " |";

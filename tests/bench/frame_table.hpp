@@ -7,7 +7,7 @@
 
 namespace kintsugi::mapper::bench {
 
-/// Smallest value that at least `share` (0 to 1) of the values do not exceed; NaN of none.
+/// Smallest value that at least `share` (0 to 1) of the values does not exceed; NaN without values.
 double percentile(std::vector<double> values, double share);
 
 /// A Markdown table of stages: for each run the wall time's median and 99th percentile and the mean

@@ -15,7 +15,7 @@ double read_ms(clockid_t clock) {
   return 1e3 * static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_nsec);
 }
 
-/// What pthread_getcpuclockid() gives for the thread; Linux numbers CPU clocks like this.
+/// As pthread_getcpuclockid(), but by thread id: the number of a CPU clock on Linux.
 clockid_t cpu_clock_of(pid_t thread) {
   constexpr unsigned kPerThread = 4;
   constexpr unsigned kScheduled = 2;

@@ -1,23 +1,24 @@
 #pragma once
-// What a processor can do at most with a pack: the yardsticks for the kernels.
+// Upper limits of a processor for vectors of an instruction set, for comparison with the kernels.
 
 #include <cstddef>
 #include <cstdint>
 
 namespace kintsugi::mapper::bench {
 
-/// Loops that do one kind of work and nothing else. Each returns something that depends on all of
-/// it, so that none is optimised away.
+/// Loops that do one kind of work only. Each returns a value that depends on all of the work, so
+/// that the compiler cannot remove it.
 struct MachineLimits {
-  static constexpr int kNumChains = 12;  ///< as many as hide the latency of an operation
+  static constexpr int kNumChains = 12;  ///< enough to hide the latency of an operation
 
   /// `count` rounds of kNumChains independent chains of one multiplication and one addition, in 16
   /// lanes.
   float (*calculate)(std::size_t count);
   /// The sum of `count` numbers; a multiple of 64.
   float (*read)(const float* numbers, std::size_t count);
-  /// The sum of `count` gathers of 16 words, from neighbouring addresses (as rays of neighbouring
-  /// pixels read them) that jump about in `size` words; a power of two of at least 1024.
+  /// The sum of `count` gathers of 16 words. The words of a gather are neighbours, as for rays of
+  /// neighbouring pixels; successive gathers are at random places in `size` words (a power of two
+  /// of at least 1024).
   std::int32_t (*read_scattered)(const std::int32_t* words, std::size_t size, std::size_t count);
 };
 
@@ -25,7 +26,7 @@ extern const MachineLimits kPortableLimits;
 extern const MachineLimits kAvx2Limits;
 extern const MachineLimits kAvx512Limits;
 
-/// What the three are instantiated from.
+/// The implementation for one instruction set.
 template <typename Pack>
 struct MachineLoops {
   using Float = typename Pack::Float;

@@ -17,16 +17,17 @@ namespace {
 
 constexpr std::size_t kMaxSlicePoints = 9000;
 
-/// A block that leaves the cube, and how often it did before.
+/// A block that leaves the cube, and how many times it left before.
 struct Leaving {
   Block block;
   int visit;
 };
 
-/// The cube of blocks that is carried along; it keeps its height.
+/// The moving cube of blocks; its height is constant.
 class MovingCube {
  public:
-  /// Moves the cube to the column of blocks (x, y); tells what leaves, in a fixed order.
+  /// Moves the cube to the column of blocks (x, y); returns the blocks that leave, in a fixed
+  /// order.
   std::vector<Leaving> move_to(int x, int y) {
     if (std::pair(x, y) == centre_) return {};
     centre_ = {x, y};
@@ -45,7 +46,7 @@ class MovingCube {
 
  private:
   using Column = std::pair<int, int>;
-  static constexpr int kHalf = 9;  // blocks on either side of the centre
+  static constexpr int kHalf = 9;  // blocks on each side of the centre
   static constexpr int kBottom = -2;
   static constexpr int kTop = 33;
 

@@ -13,12 +13,12 @@ using Eigen::Vector3d;
 using Eigen::Vector3i;
 
 constexpr double kCell_m = 0.5;
-// From the centre of a block to a voxel around it that gradients need, and the noise besides.
+// Largest distance from the centre of a block to a voxel that its gradients need, plus the noise.
 constexpr double kReach_m = 0.12;
-// Grid points do not lie on walls, which stand at round coordinates.
+// Walls are at round coordinates; the offset keeps grid points off them.
 const Vector3d kGridOrigin_W(0.0037, 0.0041, 0.0043);
 
-// What a depth camera leaves in a fused map: standard lengths and amplitudes, metres.
+// Noise that a depth camera leaves in a fused map: correlation lengths and amplitudes, metres.
 constexpr double kFineLength_m = 0.03;
 constexpr double kFineNoise_m = 0.0006;
 constexpr double kCoarseLength_m = 0.12;
@@ -27,9 +27,9 @@ constexpr double kVoxelNoise_m = 0.00012;
 constexpr double kDriftLength_m = 3.0;
 constexpr double kDrift_m = 0.003;
 constexpr double kPatchLength_m = 0.25;
-constexpr double kUnseenAbove = 0.55;  // of noise in [-1, 1]
+constexpr double kUnseenAbove = 0.55;  // threshold for noise in [-1, 1]
 
-/// In [-1, 1), unrelated for any two grid points.
+/// White noise in [-1, 1): independent for any two grid points.
 double noise_at(int x, int y, int z, std::uint32_t seed) {
   using synthetic::hash32;
   const auto mixed =
@@ -38,7 +38,7 @@ double noise_at(int x, int y, int z, std::uint32_t seed) {
   return 2.0 * synthetic::unit_float(mixed) - 1.0;
 }
 
-/// Smooth noise: noise_at() on a grid of `length_m`, interpolated in between.
+/// Smooth noise: noise_at() on a grid of `length_m`, interpolated.
 double smooth_noise(const Vector3d& p_W, double length_m, std::uint32_t seed) {
   const Vector3d scaled = p_W / length_m;
   const Vector3d corner = scaled.array().floor();
@@ -63,7 +63,7 @@ Vector3d grid_point_W(const Vector3i& voxel) {
 
 }  // namespace
 
-/// The field at the voxels of a block, one before and two after it in each direction.
+/// The field at the voxels of a block, and at one voxel before and two after it in each direction.
 class NoisyField::Samples {
  public:
   static constexpr int kSide = kBlockVoxels + 3;
@@ -111,7 +111,7 @@ NoisyField::NoisyField(const synthetic::Scene& scene, double noise, std::uint32_
   }
 }
 
-/// The solids that decide the field around a block; none when no surface is near.
+/// The solids that determine the field around a block; none if no surface is near.
 std::vector<const NoisyField::Solid*> NoisyField::solids_near(const Vector3d& centre_W) const {
   const Vector3i cell = (centre_W / kCell_m).array().floor().cast<int>();
   const auto found = solids_in_cell_.find({cell.x(), cell.y(), cell.z()});

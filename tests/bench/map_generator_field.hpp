@@ -15,26 +15,26 @@ inline constexpr double kVoxel_m = 0.01;
 inline constexpr int kBlockVoxels = 8;
 inline constexpr double kBlock_m = kBlockVoxels * kVoxel_m;
 
-/// A cube of voxels of the grid over W.
+/// A cube of voxels of the grid, frame W.
 struct Block {
   int x = 0;
   int y = 0;
   int z = 0;
 };
 
-/// The signed distance to a scene as a camera would have measured it, and its zero surface.
-/// Every method may be called from several threads.
+/// The signed distance to a scene with the noise of a depth camera, and its zero surface. All
+/// methods are thread-safe.
 class NoisyField {
  public:
   /// `scene` must outlive the field.
   NoisyField(const synthetic::Scene& scene, double noise, std::uint32_t seed);
 
-  /// The surface in a block, seen for the `visit`-th time (from 0): each visit has noise of its
-  /// own, and those after the first a drift. Patches of some 25 cm are not seen at all.
+  /// The surface in a block at the `visit`-th visit (from 0): each visit has its own noise, and
+  /// each after the first a drift. Patches of about 25 cm are missing.
   [[nodiscard]] std::vector<CloudPoint> surface_W(const Block& block, int visit) const;
 
  private:
-  /// A solid with what turns W into its own frame.
+  /// A solid and the transformation from W to its own frame.
   struct Solid {
     synthetic::Shape shape;
     Pose X_OW;
@@ -50,7 +50,7 @@ class NoisyField {
   double noise_;
   std::uint32_t seed_;
   std::vector<Solid> solids_;
-  /// By coarse cell, those whose surface may be in reach of it.
+  /// For each coarse cell, the solids whose surface may be near it.
   std::map<std::array<int, 3>, std::vector<std::uint32_t>> solids_in_cell_;
 };
 

@@ -22,7 +22,7 @@ void add_box(SceneBuilder& builder, double x0, double y0, double z0, double x1, 
                         synthetic::plain(synthetic::rgb(220, 220, 215)));
 }
 
-/// The walls of one room and the room's part of the corridor's, `side` +1 or -1 along y.
+/// The walls of one room and of its part of the corridor; `side` is +1 or -1, along y.
 void add_room_walls(SceneBuilder& builder, double x0, int side) {
   const double x1 = x0 + kRoomWidth_m;
   const double door0 = x0 + 0.5 * (kRoomWidth_m - kDoor_m);

@@ -17,11 +17,11 @@ inline constexpr double kCorridorWidth_m = 2.0;
 inline int rooms_per_side(int num_rooms) { return (num_rooms + 1) / 2; }
 inline double corridor_length_m(int num_rooms) { return kRoomWidth_m * rooms_per_side(num_rooms); }
 
-/// Floor, ceiling, plain walls, and furniture of all kinds.
+/// The scene: floor, ceiling, walls and furniture.
 synthetic::Scene make_building(int num_rooms, std::uint32_t seed);
 
-/// Where the cube is carried: up the corridor, into each room and around in it, and back. Corners
-/// of a closed path, x and y.
+/// The path of the cube: along the corridor, into each room and around in it, and back. Corners of
+/// a closed path, x and y, metres.
 std::vector<std::array<double, 2>> walk_through(int num_rooms);
 
 }  // namespace kintsugi::segmenter::bench

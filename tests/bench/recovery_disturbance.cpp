@@ -10,7 +10,7 @@ namespace kintsugi::mapper::bench {
 namespace {
 
 constexpr std::int64_t kSecond_us = 1'000'000;
-constexpr int kUnspoiltFrames = 10;  ///< at the start: without a map there is nothing to lose
+constexpr int kUnspoiltFrames = 10;  ///< the first frames make the map and are never damaged
 constexpr double kSpoiltShare = 0.2;
 constexpr double kCutOffWidth = 0.75;
 
@@ -38,7 +38,7 @@ class Planner {
   Plan with_random(Damage damage) {
     Plan plan = every(1);
     for (int i = 0; i < num_frames_; ++i) {
-      // Straight from the generator: standard distributions differ between libraries.
+      // Not by a standard distribution, because these differ between libraries.
       const bool spoilt = random_() < kSpoiltShare * static_cast<double>(std::mt19937::max());
       if (spoilt && i >= kUnspoiltFrames) plan[i].damage = damage;
     }
@@ -72,7 +72,7 @@ class Planner {
  private:
   int three_seconds() const { return static_cast<int>(3 * kSecond_us / period_us_); }
 
-  /// One period after the last: twice the camera's speed where every other frame is played.
+  /// One period after the last one: twice the speed of the camera if every other frame is played.
   void append(Plan& plan, int frame, Damage damage) const {
     plan.push_back({frame, plan.empty() ? 0 : plan.back().utime + period_us_, damage});
   }
@@ -132,7 +132,7 @@ RgbdFrame spoil(RgbdFrame frame, const PlannedFrame& planned) {
   const int width = planned.damage == Damage::kWiped
                         ? frame.depth_m.cols
                         : static_cast<int>(kCutOffWidth * frame.depth_m.cols);
-  // The side alternates, so that not always the same part of the view is left.
+  // The side alternates, so that the remaining part of the view does too.
   const int left = planned.frame % 2 == 0 ? 0 : frame.depth_m.cols - width;
   const cv::Rect wiped(left, 0, width, frame.depth_m.rows);
   frame.depth_m = frame.depth_m.clone();

@@ -1,6 +1,5 @@
 #pragma once
-// What may go wrong with a sequence of frames, as a plan of which frames to play and how to spoil
-// them.
+// Disturbances of a recording: which frames to play, when, and how they are damaged.
 
 #include <cstdint>
 #include <string>
@@ -12,13 +11,13 @@ namespace kintsugi::mapper::bench {
 
 enum class Damage {
   kNone,
-  kWiped,   ///< no depth at all, a black picture: a hand on the lens
-  kCutOff,  ///< three quarters of the width wiped, on one side
+  kWiped,   ///< no depth and a black image, as with a hand on the lens
+  kCutOff,  ///< three quarters of the width empty, on one side
 };
 
 struct PlannedFrame {
-  int frame = 0;           ///< of the recording
-  std::int64_t utime = 0;  ///< when it is played: always later than the one before
+  int frame = 0;           ///< index in the recording
+  std::int64_t utime = 0;  ///< time of the frame, later than that of the frame before, us
   Damage damage = Damage::kNone;
   bool operator==(const PlannedFrame&) const = default;
 };
@@ -29,23 +28,23 @@ using Plan = std::vector<PlannedFrame>;
 /// "covered", "covered-back", "jump".
 const std::vector<std::string>& disturbance_names();
 
-/// How a recording of so many frames, `period_us` apart, is played under a disturbance:
-///   none          as it is
+/// Plans how a recording of `num_frames` frames, `period_us` apart, is played with a disturbance:
+///   none          unchanged
 ///   every-N       every Nth frame
-///   gap-Ns        again and again three seconds and then a gap
-///   wiped         a random fifth of the frames wiped (never the first ten)
-///   cut-off       the same frames with three quarters of their width wiped
-///   covered       all wiped for 3 s after two fifths; the recording goes on meanwhile
-///   covered-back  the even frames of the first half, then 3 s of wiped ones, then the odd frames
-///                 from a quarter on: the camera was carried back
-///   jump          the even frames of three quarters, then without any gap in time the odd frames
-///                 from a tenth on: places seen long before, never from these poses exactly
+///   gap-Ns        a gap of N seconds after every three seconds
+///   wiped         a random fifth of the frames is empty (never the first ten)
+///   cut-off       the same frames are empty in three quarters of their width
+///   covered       after two fifths all frames are empty for 3 s, while the recording continues
+///   covered-back  the even frames of the first half, then 3 s of empty frames, then the odd frames
+///                 from a quarter on: the camera was moved back meanwhile
+///   jump          the even frames of the first three quarters, then without a gap in time the odd
+///                 frames from a tenth on: known places, seen from slightly other poses
 /// The same name, number and seed give the same plan.
-/// @throws std::invalid_argument for another name, naming those there are
+/// @throws std::invalid_argument for an unknown name; the message lists the known ones
 Plan plan_disturbance(const std::string& name, int num_frames, std::int64_t period_us,
                       std::uint32_t seed = 1);
 
-/// The frame as it is played.
+/// The frame with its planned time and damage.
 RgbdFrame spoil(RgbdFrame frame, const PlannedFrame& planned);
 
 }  // namespace kintsugi::mapper::bench

@@ -28,14 +28,14 @@ void measure_errors(const std::vector<FrameOutcome>& outcomes,
   }
 }
 
-/// A frame as it was fused, and where it truly belongs.
+/// The pose at which a frame was fused, and its true pose.
 struct Fused {
   Pose X_WC;
   Pose X_WC_true;
 };
 
-/// How far the frame is from where a frame fused rightly at the same place would put it: the least
-/// over all within kSamePlace_m, or from the nearest one.
+/// Error of the frame relative to correctly fused frames of the same place: the smallest over all
+/// within kSamePlace_m, or else that relative to the nearest one.
 double misplacement_m(const Fused& frame, const std::vector<Fused>& right) {
   double least_m = std::numeric_limits<double>::infinity();
   double nearest_m = std::numeric_limits<double>::infinity();
@@ -67,7 +67,7 @@ void measure_misplacement(const std::vector<FrameOutcome>& outcomes,
       if (X_WC)
         error_m = std::min(error_m, misplacement_m({outcome.tracking.X_WC, *X_WC}, right[i]));
     }
-    if (std::isinf(error_m)) continue;  // nothing is known of the frame
+    if (std::isinf(error_m)) continue;  // the true pose of the frame is unknown
     measures.worst_misplacement_m = std::max(measures.worst_misplacement_m, error_m);
     measures.misplaced += error_m > kWrong_m ? 1 : 0;
     for (std::size_t i = 0; error_m <= kWrong_m && i < paths.size(); ++i) {

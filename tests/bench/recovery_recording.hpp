@@ -1,5 +1,5 @@
 #pragma once
-// A recording in memory, so that it can be played many times and in another order.
+// A recording in memory, to be played many times and in any order.
 
 #include <optional>
 #include <string>
@@ -20,13 +20,13 @@ class Recording {
   int num_frames() const { return static_cast<int>(frames_.size()); }
   std::int64_t period_us() const;  ///< between frames, on average
 
-  /// The frame, its time counted from the first frame's.
+  /// The frame; its time is relative to the first frame.
   RgbdFrame frame(int index) const;
 
-  /// Is the true path exact (synthetic), or another system's estimate?
+  /// Whether the true path is exact (synthetic) and not the estimate of another system.
   bool truth_is_exact() const { return truth_is_exact_; }
-  /// True pose of each frame relative to the first frame that has one: what a mapper's X_WC should
-  /// be if that is frame 0; nothing where the recording does not say.
+  /// True pose of each frame relative to the first frame that has one; without drift a mapper that
+  /// starts at that frame estimates these X_WC. Empty for frames without a true pose.
   const std::vector<std::optional<Pose>>& true_path() const { return X_WC_true_; }
 
  private:

@@ -12,7 +12,7 @@ namespace {
 constexpr double kCellSide_m = 0.06;
 constexpr int kPixelStep = 8;
 
-/// Which places have been fused, in cells that forgive a reference a few centimetres off.
+/// The places that were fused, in cells large enough for a reference with errors of centimetres.
 class SeenSpace {
  public:
   void add(const RgbdFrame& frame, const Pose& X_WC) {
@@ -20,7 +20,7 @@ class SeenSpace {
                    [this](const Eigen::Vector3d& p_W) { cells_.insert(cell_of(p_W)); });
   }
 
-  /// Share of the frame's valid pixels that fall into a seen cell.
+  /// Share of the valid pixels of the frame that are in cells seen before.
   double share_known(const RgbdFrame& frame, const Pose& X_WC) const {
     std::int64_t valid = 0;
     std::int64_t known = 0;

@@ -1,5 +1,5 @@
 #pragma once
-// One run of the pipeline over a disturbed recording, and what came of it.
+// One run of the pipeline over a disturbed recording, and its result for each frame.
 
 #include <optional>
 #include <vector>
@@ -14,17 +14,17 @@ struct FrameOutcome {
   PlannedFrame planned;
   TrackingResult tracking;
   bool located = false;
-  double view_known = 0.0;  ///< share of the frame's valid pixels that the map shows already, 0..1
+  double view_known = 0.0;  ///< share of the valid pixels of the frame that were fused before, 0..1
   double frame_ms = 0.0;    ///< wall time of process()
 };
 
-/// Plays the plan. `X_WC_reference`, by frame of the recording, are the poses that a view is
-/// compared with the map at; frames without one count as not known.
+/// Plays the plan. `X_WC_reference`, indexed by frame of the recording, are the poses at which a
+/// view is compared with the map; for frames without one `view_known` is 0.
 std::vector<FrameOutcome> run_plan(const Recording& recording, const Plan& plan, bool with_color,
                                    const MapperPipeline::Config& config,
                                    const std::vector<std::optional<Pose>>& X_WC_reference);
 
-/// Where each frame is located when the recording is played as it is.
+/// The estimated pose of each frame when the recording is played without a disturbance.
 std::vector<std::optional<Pose>> undisturbed_path(const Recording& recording, bool with_color,
                                                   const MapperPipeline::Config& config);
 

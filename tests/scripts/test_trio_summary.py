@@ -18,7 +18,7 @@ class Summary(FolderTest):
         show_summary(self.folder, [self.process("mapper", 17.128, 101), self.process("viewer", 1.2, 126)])
         self.assertIn("  CPU: mapper 17.13 s, viewer 1.20 s\n", self.said)
         self.assertIn("  memory at most: mapper 101 MB, viewer 126 MB\n", self.said)
-        # scripts/lib/faults.sh and scripts/bench
+        # scripts/lib/faults.sh and scripts/lib/bench/mapping.py
         self.assertEqual(re.findall(r"(?m)^ *memory at most:.* viewer ([0-9]+) MB.*", self.said), ["126"])
         self.assertEqual(re.findall(r"(?m)^ *CPU:.* mapper ([0-9.]+) s.*", self.said), ["17.13"])
 

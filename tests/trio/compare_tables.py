@@ -1,5 +1,5 @@
-"""compare_tables.py SEGMENTS.json TABLE.json: the segments that the segmenter wrote and those that
-a client knows are the same, number for number. Exit status 1 and the first difference if not."""
+"""compare_tables.py SEGMENTS.json TABLE.json: compares the segments that the segmenter wrote with the table of a
+client. Exit code 1, and the first difference, if they are not equal."""
 
 import json
 import sys

@@ -1,5 +1,5 @@
-# Sourced by the tests of whole runs. Each works in a folder of its own, on a bus of its own, and ends with 0, with 1
-# and a reason, or with 77 (skipped) where the machine allows no network namespace.
+# Sourced by the tests of whole runs. Each test has its own temporary folder and its own private network. Exit code: 0, 1
+# with a reason, or 77 (skipped) if this machine does not permit network namespaces.
 set -euo pipefail
 
 root="$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)"
@@ -10,7 +10,7 @@ trap 'rm -rf "$work"' EXIT
 cd "$work"
 
 if ! unshare --net true 2>/dev/null && ! unshare --map-root-user --net true 2>/dev/null; then
-  echo "skipped: no network namespaces on this machine"
+  echo "skipped: this machine does not permit network namespaces"
   exit 77
 fi
 
@@ -20,7 +20,7 @@ fail() {
   exit 1
 }
 
-# run_trio ARGS...: scripts/trio, what it said in trio.txt; a failure ends the test.
+# run_trio ARGS...: runs scripts/trio, with its output in trio.txt; the test fails if it fails.
 run_trio() {
   "$root/scripts/trio" "$@" >trio.txt 2>&1 || {
     cat trio.txt
@@ -28,7 +28,7 @@ run_trio() {
   }
 }
 
-# wait_for_file FILE: until it exists and holds something, 30 s at most.
+# wait_for_file FILE: waits until FILE is not empty, at most 30 s.
 wait_for_file() {
   local i
   for ((i = 0; i < 300; i++)); do
@@ -38,19 +38,19 @@ wait_for_file() {
   fail "$1 did not appear"
 }
 
-# A short, coarse run of the synthetic room: some slices leave before the end, and it takes seconds. The session is
-# fixed, for the map names it.
+# A short run of the synthetic office with large voxels: it takes seconds, and some slices leave the volume before the
+# end. The session number is fixed, because it is part of the map.
 small_room=(--private --device 'synthetic://office?frames=120' --resolution 0.02 --volume-size 3.2 --every 2
   --mapper '--session=7')
 
-# vertices FILE.ply: how many its header promises.
+# vertices FILE.ply: the number of vertices in its header.
 vertices() { head -c 2000 "$1" | grep -a -m1 -oP 'element vertex \K\d+'; }
 
 expect_file() { [[ -s "$1" ]] || fail "$1 is missing or empty; there is: $(ls .)"; }
 expect_same() { cmp "$1" "$2" || fail "$1 and $2 differ"; }
 expect_no_partial_files() { compgen -G "$1/*.partial*" && fail "half-written files are left" || true; }
 
-# hold_rows ROW...: rows of scripts/faults, at the size for tests. Skipped where one is not permitted.
+# hold_rows ROW...: runs rows of scripts/faults in their small form. Skipped if this machine does not permit one.
 hold_rows() {
   local code=0
   "$root/scripts/faults" --quick --out "$work/faults" "$@" 2>&1 || code=$?

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# The synthetic loop, a third of its slices moved by a few centimetres in one go, and back: held against batch after
-# each run, to the bit, and at the end the map without the detour. Minutes; ctest -C long -L long runs it.
+# In the synthetic loop a third of the slices is moved by a few centimetres, and back. After each step the segments must
+# be exactly those of batch, and at the end those of the uncorrected map. Takes minutes; run it by ctest -C long -L long.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.sh"
 
-if [[ -n "${KINTSUGI_LOOP_LOG:-}" ]]; then # recorded before, by scripts/trio --device synthetic://loop
+if [[ -n "${KINTSUGI_LOOP_LOG:-}" ]]; then # a run.lcm of scripts/trio --device synthetic://loop
   cp "$KINTSUGI_LOOP_LOG" run.lcm
 else
   run_trio --private --device synthetic://loop --replay --out live

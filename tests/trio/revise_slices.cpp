@@ -1,9 +1,9 @@
 // trio_revise_slices IN.lcm OUT.lcm: rewrites a recorded run as if its mapper had corrected the
 // map.
 //
-// Before the last slice but one, a third of the slices comes again with revision 1, moved by a few
-// centimetres; before the last slice, again with revision 2, at the old places. So the map at the
-// end is the recorded one. What the segmenter and viewer said is left out.
+// Before the last slice but one, a third of the slices is published again as revision 1, moved by a
+// few centimetres; before the last slice, again as revision 2, unmoved. The final map is therefore
+// the recorded one. Messages of the segmenter and the viewer are left out.
 
 #include <cstdint>
 #include <cstdio>
@@ -29,14 +29,14 @@ constexpr std::int64_t kPause_us = 1'500'000;  // longer than a segmenter waits 
 
 struct Event {
   std::int64_t utime = 0;
-  std::string channel;  // of a slice: empty
+  std::string channel;  // empty for a slice
   Bytes data;
   CloudSlice slice;
 };
 
 struct Recording {
   std::vector<Event> events;
-  std::vector<std::size_t> slices;  // where they are in events
+  std::vector<std::size_t> slices;  // indices into events
 };
 
 Recording read(const std::string& path) {
@@ -98,7 +98,7 @@ class Writer {
     }
   }
 
-  /// What follows comes later by as long as the corrections take.
+  /// Later events are delayed by the duration of the corrections.
   void write_corrections(std::span<const Event* const> slices, std::int32_t revision) {
     const std::int64_t begin_us = utime_;
     for (const Event* event : slices) {
@@ -117,7 +117,7 @@ class Writer {
     return config;
   }
 
-  // Heartbeats, which come by the clock on the wall, are left out.
+  // Heartbeats are left out, because they depend on wall time.
   void write_chunk(const std::string& channel, ByteView data) {
     if (channel == channels::kCloudSlice) write(channel, data, utime_ += kChunk_us);
   }

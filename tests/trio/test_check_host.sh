@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# scripts/check_host finds what is wrong with a machine, and the commands that it prints cure it.
+# scripts/check_host finds the faults of a machine, and the commands that it prints correct them.
 source "$(dirname "${BASH_SOURCE[0]}")/../../scripts/lib/two_hosts.sh"
 two_hosts_alone "$@"
 source "$(dirname "${BASH_SOURCE[0]}")/lib.sh"
 two_hosts_begin
 
-# check HOST OPTIONS...: what check_host says there, in said.txt; its exit code in $code.
+# check HOST OPTIONS...: runs check_host on HOST, with its output in said.txt and its exit code in $code.
 check() {
   code=0
   on_host "$1" "$root/scripts/check_host" --out "$work" "${@:2}" >said.txt 2>&1 || code=$?
@@ -16,12 +16,12 @@ expect_unfit() {
   ((code == 1)) || fail "fit, or failed ($code): $(cat said.txt)"
   said "^UNFIT +$1"
 }
-# cure HOST: runs the commands that were printed, there; quietly.
+# cure HOST: runs the printed commands on HOST, without output.
 cure() {
   local command
   while read -r command; do on_host "$1" bash -c "${command/#sudo /}" >cured.txt; done < <(grep -oP '^ {9}\K.*' said.txt)
 }
-# expect_cured HOST OPTIONS...
+# expect_cured HOST OPTIONS...: the printed commands make HOST fit.
 expect_cured() { cure "$1"; check "$@"; expect_fit; }
 several=(desk --several --peer 10.77.0.1)
 
@@ -44,7 +44,7 @@ check desk --several --interface cable
 expect_unfit 'route: multicast goes by lo$'
 expect_cured desk --several --interface cable
 
-# The peer's packets come by the cable, but the way back goes elsewhere.
+# Packets of the peer arrive by the cable, but the route back to it uses another interface.
 on_host desk bash -c 'ip link add other type veth peer name end && ip link set other up && ip link set end up && ip route add 10.77.0.1/32 dev other &&
   echo 1 >/proc/sys/net/ipv4/conf/cable/rp_filter'
 check "${several[@]}"
@@ -74,7 +74,7 @@ check "${several[@]}"
 expect_unfit 'firewall: ip guard in: udp dport .* drop'
 on_host desk nft flush ruleset
 
-# A machine alone, whose loopback is down.
+# A single machine whose loopback interface is down.
 on_host mapper ip link set cable down
 on_host mapper ip link set lo down
 check mapper --alone
@@ -83,4 +83,4 @@ LCM_DEFAULT_URL="" two_hosts_url="" expect_cured mapper --alone
 said 'ok +hearing: this machine hears itself'
 
 check mapper --nonsense
-((code == 2)) || fail "an unknown option is taken"
+((code == 2)) || fail "an unknown option was accepted"

@@ -1,3 +1,3 @@
 #!/usr/bin/env bash
-# Doubled and overtaken datagrams change nothing.
+# Duplicated and reordered datagrams do not change the map.
 exec "$(dirname "${BASH_SOURCE[0]}")/../../scripts/faults" --quick disorder

@@ -1,4 +1,4 @@
 #!/usr/bin/env bash
-# The disk is full to the end: that is said and the exit code tells; with space, --resume has everything after all.
+# The disk is full until the end: it is reported, the exit code is not 0, and with space --resume writes everything.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.sh"
 hold_rows disk-full-end

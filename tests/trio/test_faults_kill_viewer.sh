@@ -1,4 +1,4 @@
 #!/usr/bin/env bash
-# The viewer is killed at random moments and started again: the same map and pictures all the same.
+# The viewer is killed at a random moment and restarted: map and pictures are the same as without.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.sh"
 hold_rows kill-viewer

@@ -1,3 +1,3 @@
 #!/usr/bin/env bash
-# Random and mutated messages on every channel change nothing, are counted, and cost no memory.
+# Random and damaged messages on every channel do not change the map; they are counted and need no memory.
 exec "$(dirname "${BASH_SOURCE[0]}")/../../scripts/faults" --quick hostile

@@ -1,14 +1,14 @@
 #!/usr/bin/env bash
-# Ctrl-C in the middle of a live run: what was mapped until then is published, segmented, drawn and written.
+# Ctrl-C in the middle of a live run: everything mapped so far is published, segmented, drawn and written.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.sh"
 
-# The whole room at the camera's own speed: about 12 s, of which a few are let run.
+# At the rate of the camera the whole room takes about 12 s; the run is interrupted after about 4 s.
 "$root/scripts/trio" --private --device synthetic://office --resolution 0.02 --volume-size 3.2 --out live \
   >trio.txt 2>&1 &
 trio=$!
 wait_for_file live/mapper.log
 sleep 4
-# A background job of a script ignores SIGINT; SIGTERM takes the same way through the script.
+# SIGTERM, because a background job of a script ignores SIGINT; scripts/trio handles both alike.
 kill -TERM "$trio"
 wait "$trio" || {
   cat trio.txt

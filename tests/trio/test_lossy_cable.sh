@@ -1,3 +1,3 @@
 #!/usr/bin/env bash
-# A generated map over a cable between two hosts that loses frames: nothing is fragmented, nothing is missing.
+# A generated map between two hosts whose cable loses frames: no datagram is fragmented, and the map is complete.
 exec "$(dirname "${BASH_SOURCE[0]}")/../../scripts/faults" --quick veth-5

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# What a person is told when something is wrong: the reason, the place, and an exit code that is not 0.
+# Error messages name the reason and the place, and the exit code is not 0.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.sh"
 
-# expect_error PATTERN COMMAND...: fails, and says something that matches.
+# expect_error PATTERN COMMAND...: COMMAND fails with a message that matches PATTERN.
 expect_error() {
   local pattern="$1" said
   shift

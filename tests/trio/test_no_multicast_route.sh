@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# On a machine without a multicast route the cure is named, and the run falls back to a network of its own.
+# On a machine without a multicast route, the command that adds one is printed, and the run uses a private network.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.sh"
 
 cat >no_route.sh <<'SH'

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# kintsugi-query asks a live segmenter, while it maps and after; the saved map gives the same answers; and silence is told.
+# kintsugi-query asks a live segmenter during and after mapping; the saved map gives the same answers; and a missing
+# segmenter is reported.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.sh"
 if [[ -z "${KINTSUGI_PRIVATE_BUS:-}" ]]; then
   KINTSUGI_PRIVATE_BUS=1 "$root/scripts/private_bus" "$root/tests/trio/test_query.sh" && exit
@@ -24,7 +25,7 @@ grep -q 'no map is kept yet' empty.txt || fail "it does not say that there is no
   --session=7 --linger=5 --output-trajectory=trajectory.txt >mapper.log 2>&1 &
 mapper=$!
 
-# While slices come: what the camera sees, from its pose on the bus, once some of it is in the map.
+# During mapping: the segment at a pixel of the current view, as soon as some of the view is in the map.
 seen=0
 while kill -0 "$mapper" 2>/dev/null; do
   if query --pixel 320 240 --radius 0.1 --timeout 3 --json >pixel.json 2>pixel.txt &&
@@ -37,7 +38,7 @@ done
 wait "$mapper" || fail "$(cat mapper.log)"
 wait_for_file live/segments.json
 
-# What was in the middle of the view after a second is in the map.
+# At the end, the middle of the view after one second is in the map.
 pose="$(sed -n 30p trajectory.txt | cut -d ' ' -f 2-8)"
 
 answers() {

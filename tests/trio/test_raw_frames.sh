@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# A log of raw frames, played by lcm-logplayer into a mapper that reads the bus, gives the same frames again. Raw frames
-# are not sent again when they are lost: few may be, and none is another.
+# A log with raw frames, played by lcm-logplayer into a mapper that reads the bus, gives the same frames. Lost raw frames
+# are not sent again, so a few may be missing.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.sh"
 
 run_trio "${small_room[@]}" --replay --publish-frames --out first
@@ -20,6 +20,6 @@ SH
 }
 expect_file second.txt
 (($(grep -vc '^#' second.txt) >= 115)) || fail "too few frames were tracked: $(cat second.log)"
-# One pose for each frame, at the device's own times.
+# One pose for each frame, with the time stamps of the device.
 others="$(comm -13 <(grep -v '^#' first/trajectory.txt | cut -d' ' -f1) <(grep -v '^#' second.txt | cut -d' ' -f1))"
 [[ -z "$others" ]] || fail "the mapper on the bus saw other frames: $others $(cat second.log)"

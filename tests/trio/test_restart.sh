@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# A viewer that is killed is started again and the run goes on to its end; the segment map is not touched by it.
+# A killed viewer is restarted, the run ends normally, and the segment map is the same as without.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.sh"
 
 run_trio "${small_room[@]}" --replay --out quiet

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Everything, or only the script, is killed in the middle of a run; scripts/trio --resume continues it, and ends with the
-# map of a run that was never interrupted.
+# All processes, or only scripts/trio, are killed in the middle of a run: scripts/trio --resume continues it, and the map
+# is that of an uninterrupted run.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.sh"
 
 run_trio "${small_room[@]}" --replay --no-log --out quiet
@@ -9,7 +9,7 @@ run_trio "${small_room[@]}" --replay --no-log --out quiet
 trio=$!
 wait_for_file run/mapper.lcm
 sleep 1
-kill -STOP "$trio" # it shall start nothing again
+kill -STOP "$trio" # so that it restarts nothing
 kill -KILL "$(<run/mapper.pid)" "$(<run/segmenter.pid)" "$(<run/viewer.pid)"
 kill -KILL "$trio"
 { wait "$trio"; } 2>/dev/null && fail "the script was not killed"
@@ -20,7 +20,7 @@ kill -KILL "$trio"
 }
 for file in segments.ply map_final.png segments_final.png trajectory.txt; do expect_same "quiet/$file" "run/$file"; done
 
-# Only the script is killed: its processes end too, and the mapper's session is not over.
+# Only scripts/trio is killed: its processes end too, and the session of the mapper counts as interrupted.
 "$root/scripts/trio" "${small_room[@]}" --replay --no-log --out orphaned >trio.txt 2>&1 &
 trio=$!
 for file in mapper.pid mapper.lcm; do wait_for_file "orphaned/$file"; done
@@ -35,12 +35,12 @@ done
 }
 for file in segments.ply map_final.png segments_final.png trajectory.txt; do expect_same "quiet/$file" "orphaned/$file"; done
 
-# What the mapper keeps is a log like another.
+# The log of the mapper can be replayed like any other.
 "$root/scripts/replay" run/mapper.lcm --private --speed 4 --out replay >replay.txt 2>&1 || {
   cat replay.txt
   fail "the mapper's log is not replayed"
 }
 expect_same quiet/segments.ply replay/segments.ply
 
-"$root/scripts/trio" --resume --out nothing >resumed.txt 2>&1 && fail "a run that was not there was gone on with"
+"$root/scripts/trio" --resume --out nothing >resumed.txt 2>&1 && fail "a run that does not exist was resumed"
 grep -q 'no run to go on with' resumed.txt || fail "the reason is not given: $(cat resumed.txt)"

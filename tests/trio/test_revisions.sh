@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# A third of a recorded run's slices comes again, moved, and once more at the old places: over a real bus the segmenter
-# and the viewer follow, and end with the map, and the picture of it, that they had without the detour.
+# A third of the slices of a recorded run is corrected, and corrected back: over a real bus the segmenter and the viewer
+# end with the map and the picture of the uncorrected run.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.sh"
 
 run_trio "${small_room[@]}" --replay --out live

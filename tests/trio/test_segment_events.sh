@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Clients that follow segments through time, over corrections too, know at the end what the segmenter knows: live, late
-# and from a log, in C++ and in Python; and say so when a log lacks something.
+# Clients that follow the segments, also through corrections, end with the same table as the segmenter: started early,
+# started late and from a log, in C++ and in Python. They report an incomplete log.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.sh"
 if [[ -z "${KINTSUGI_PRIVATE_BUS:-}" ]]; then
   KINTSUGI_PRIVATE_BUS=1 "$root/scripts/private_bus" "$root/tests/trio/test_segment_events.sh" && exit
@@ -11,14 +11,14 @@ events="$KINTSUGI_BIN/kintsugi-segment-events"
 python_events=("$root/scripts/segment_events.py")
 has_python_bus=0
 python3 -c 'import lcm' 2>/dev/null && has_python_bus=1
-((has_python_bus)) || echo "Python over the bus: not tested, there is no module lcm here"
+((has_python_bus)) || echo "the Python client on the bus is not tested, because the module lcm is not installed"
 
 expect_table() {
   python3 "$root/tests/trio/compare_tables.py" "$1" "$2" >&2 || fail "$2 differs from $1"
 }
 
-# follow NAME COMMAND...: a client on the bus until the map is complete, what it says in NAME.txt and NAME.json. It
-# listens when this returns.
+# follow NAME COMMAND...: starts a client that runs until the map is complete, with its output in NAME.txt and NAME.json,
+# and waits until it listens.
 declare -A follower=()
 follow() {
   local name="$1"
@@ -27,7 +27,7 @@ follow() {
   follower[$name]=$!
   wait_for_file "$name.err"
 }
-# expect_followed SEGMENTS.json: all that follow have ended, with this table.
+# expect_followed SEGMENTS.json: waits for all clients; each has this table.
 expect_followed() {
   local name
   for name in "${!follower[@]}"; do
@@ -37,8 +37,8 @@ expect_followed() {
   follower=()
 }
 
-# Live: one from the start, one that begins when there is a map already. When all slices but the last are there they
-# come again, corrected. With the paper's parameters hundreds of segments appear, merge and split.
+# Live: clients from the start, and one that starts when part of the map exists. After all slices but the last, all are
+# corrected. With the parameters of the paper, hundreds of segments appear, merge and split.
 follow early "$events"
 ((has_python_bus)) && follow early_python "${python_events[@]}"
 lcm-logger -q -a run.lcm >logger.log 2>&1 &
@@ -57,7 +57,7 @@ kill -INT "$logger"
 wait "$logger" || fail "$(cat logger.log)"
 expect_followed live/segments.json
 
-# From the log: the two programs say the same, letter by letter.
+# From the log: both clients print the same text.
 from_log() {
   "$events" --log "$1" --grown --json cpp.json >cpp.txt 2>cpp.err
   cpp_code=$?
@@ -76,7 +76,7 @@ for what in 'revision [1-9]' 'created: ' 'merged into' 'split off'; do
   grep -q "$what" cpp.txt || fail "nobody was told '$what': $(grep slice cpp.txt)"
 done
 
-# A segmenter that is started again gives the full state, in which no births and deaths are told.
+# A restarted segmenter sends the full state, in which no segments appear or vanish.
 follow after "$events"
 ((has_python_bus)) && follow after_python "${python_events[@]}"
 "$KINTSUGI_BIN/kintsugi-segmenter" --preset paper --log run.lcm --lcm-url "$LCM_DEFAULT_URL" --out resumed \
@@ -84,7 +84,7 @@ follow after "$events"
 expect_followed live/segments.json
 grep -q 'all listed' after.txt || fail "no full state was heard: $(cat after.txt)"
 
-# A log that is cut off, and one with a byte that has changed, are read as far as they go, and that is said.
+# A truncated log, and one with a changed byte, are read as far as possible, and the damage is reported.
 expect_lacking() {
   from_log "$1" || true
   ((cpp_code == 1 && python_code == 1)) || fail "$1: exit status $cpp_code and $python_code"
@@ -101,7 +101,7 @@ import re
 data = bytearray(open("run.lcm", "rb").read())
 updates = [m.end() for m in re.finditer(rb"(?s)\0\0\0\x0e....SEGMENT_UPDATE", data)]  # length of the channel, of the data
 number = lambda update: data[update + 20:update + 36]  # session and sequence
-newest = bytes(max(number(update) for update in updates))  # no later one makes up for it
+newest = bytes(max(number(update) for update in updates))  # no later update replaces it
 for update in updates:
     if number(update) == newest:  # it may have been sent more than once
         data[update + 200] ^= 1

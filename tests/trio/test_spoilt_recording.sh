@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# A recording with a spoilt image in its middle: what came before is mapped and written, the file is named, and the
-# exit code says that it was not all.
+# A recording with a damaged image in its middle: everything before it is mapped and written, the file is named, and the
+# exit code is not 0.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.sh"
 
 "$KINTSUGI_BIN/kintsugi-render-scene" 'synthetic://office?frames=40' --out recording >render.txt 2>&1 || {

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# The mapper on one host, segmenter and viewer on another, by a cable that loses 5 % of the frames: the map and the
-# pictures are those of one host, and no datagram is larger than a frame.
+# The mapper on one host, segmenter and viewer on another, and a cable that loses 5 % of the frames: map and pictures are
+# the same as on one host, and no datagram is fragmented.
 source "$(dirname "${BASH_SOURCE[0]}")/../../scripts/lib/two_hosts.sh"
 two_hosts_alone "$@"
 source "$(dirname "${BASH_SOURCE[0]}")/lib.sh"

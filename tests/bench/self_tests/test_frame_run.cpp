@@ -41,7 +41,7 @@ TEST(StageTable, HasAMedianA99thPercentileAndAMeanForEachRun) {
   print_stage_table(out, {run, run});
   EXPECT_THAT(out.str(), HasSubstr("| 8.8 mm, 1 thread | 8.8 mm, 1 thread |\n|---|---|---|\n"));
   EXPECT_THAT(out.str(), HasSubstr("| track | 2.00 / 6.00 / 6.00 | 2.00 / 6.00 / 6.00 |\n"));
-  EXPECT_THAT(out.str(), HasSubstr("| frame at which a slice left | 20.0 / 20.0 / 0.00 |"));
+  EXPECT_THAT(out.str(), HasSubstr("| frame after which a slice left | 20.0 / 20.0 / 0.00 |"));
   EXPECT_THAT(out.str(), HasSubstr("slice worker | - / - / 0.25 |"));
 }
 

@@ -1,0 +1,11 @@
+"""The measurements behind scripts/bench and BENCHMARK.md. Python's standard library only.
+
+    commands      the command line, and the order of the sections
+    document      replaces what is between the markers of a section in BENCHMARK.md
+    tables        Markdown tables, CSV files, the output of Google Benchmark
+    run           runs the programs over an input, in the folder of the measurement
+    mapping       sections about the mapper
+    segmenting    sections about the segmenter
+    others        sections about the viewer, the bus, the machine and the source code
+    summary       the main results, out of the tables of the sections
+"""

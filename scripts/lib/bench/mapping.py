@@ -1,0 +1,165 @@
+"""Sections about the mapper."""
+
+import re
+from collections import Counter
+
+from .run import room
+from .tables import first_table, fixed, markdown, number, quantile, read_csv
+
+VOXEL_M = 4.5 / 512  # the mapper's default
+FRAMES_A_SECOND = 30
+
+
+def stages(run):
+    text = ""
+    for source in run.inputs("office"):
+        output = run.bench("bench_frame", "--device", source.device, "--threads", "1,2", "--resolution", VOXEL_M,
+                           *run.limited("--frames"))
+        text += f"`{source.name}`, ms:\n\n{stage_table(first_table(output))}\n"
+    return text
+
+
+# Of a recording, reading and converting count as part of the frame; a synthetic room is rendered before.
+OMITTED_STAGES = ("read, decode (wait)", "convert, undistort", "frames / lost / slices")
+
+
+def stage_table(rows):
+    """Single values instead of `wall median / wall p99 / CPU mean`."""
+    name, *runs = rows[0]
+    header = ["stage"] + [f"{re.sub('.* mm, ', '', each)}: {value}" for each in runs
+                          for value in ("wall median", "wall p99", "CPU mean")]
+    kept = [row for row in rows if row[name] not in OMITTED_STAGES and "threads" not in row[name]
+            and "worker" not in row[name]]
+    return markdown(header, [[row[name], *(value for each in runs for value in row[each].split(" / "))]
+                             for row in kept])
+
+
+def volume(run):
+    measured = run.google_benchmark("bench_volume")
+    titles = {"raycast/guided": "raycast, started at the measured depth", "raycast/unguided": "raycast, without it",
+              "integrate": "allocate and fuse, with colour"}
+    kernels = [m for m in measured if m.name in titles]
+    sets = list(dict.fromkeys(m.label for m in kernels))
+    wall_ms = {(m.name, m.arguments["threads"], m.label): number(m.wall_ms) for m in kernels}
+    rows = [[titles[name], threads, *(wall_ms[name, threads, each] for each in sets)]
+            for name, threads in dict.fromkeys((m.name, m.arguments["threads"]) for m in kernels)]
+    others = [[{"extract": "extract the surface", "snapshot": "copy the volume"}.get(m.name, m.name),
+               number(m.wall_ms), number(m.cpu_ms)] for m in measured if m.name not in titles]
+    return (markdown(["stage", "threads", *(f"{each}, ms" for each in sets)], rows) + "\n" +
+            markdown(["stage, all threads", "wall, ms", "CPU, ms"], others))
+
+
+def trajectory_errors(run, mapped, source):
+    """The columns of kintsugi-evaluate --trajectory, as numbers; {} if there are too few poses for motions of one
+    second."""
+    if mapped.count("located") <= FRAMES_A_SECOND + 1:
+        return {}
+    file = run.folder / f"errors_{mapped.path.stem}.csv"
+    run.kintsugi("evaluate", "--trajectory", mapped.path, "--truth", run.true_path(source), "--csv", file)
+    return {name: float(text) for name, text in read_csv(file)[0].items() if re.fullmatch(r"-?[0-9.]+(e-?\d+)?", text)}
+
+
+def error(errors, name, scale=1.0):
+    return fixed(scale * errors[name], 2) if name in errors else "-"
+
+
+def paths(run):
+    header = ["input", "frames", "located", "wall p50, ms", "wall p99, ms", "CPU a frame, ms", "ATE rmse, mm",
+              "ATE median, mm", "ATE max, mm", "RPE over 1 s rmse, mm", "RPE over 1 s rmse, deg", "path, m", "drift, %",
+              "RPE over 1 m rmse, mm"]
+    rows = []
+    for source in run.inputs("office", "loop", "two-floors"):
+        mapped = run.map_tracked(source)
+        frame_ms = [float(row["frame_ms"]) for row in read_csv(mapped.timings)]
+        errors = trajectory_errors(run, mapped, source)
+        rows.append([source.name, mapped.count("frames in"), mapped.count("located"), fixed(quantile(frame_ms, 0.5), 1),
+                     fixed(quantile(frame_ms, 0.99), 1), fixed(mapped.cpu_ms, 1),
+                     *(error(errors, f"ate_m_{each}", 1e3) for each in ("rmse", "median", "max")),
+                     error(errors, "rpe_m_rmse", 1e3), error(errors, "rpe_deg_rmse"), error(errors, "path_length_m"),
+                     error(errors, "drift_percent"), error(errors, "rpe_per_metre_m_rmse", 1e3)])
+    return markdown(header, rows)
+
+
+def memory(run):
+    rows = read_csv(run.map_tracked(room("two-floors")).timings)
+    step = max(len(rows) // 6, 1)
+    shown = [i for i in range(len(rows)) if i % step == step - 1 or i == 0]
+    return markdown(["frames mapped", "memory of the mapper, MB"],
+                    [[f"{i + 1:,}", fixed(rows[i]["memory_mb"], 0)] for i in shown])
+
+
+def bare(run):
+    rows = []
+    for name in ("wall", "floor", "corridor", "wall-visit"):
+        for source in (room(name), room(f"{name}-plain")):
+            mapped = run.map_alone(f"bare_{source.name}", source)
+            reasons = Counter(row["reason"] for row in read_csv(mapped.timings) if row["reason"])
+            rows.append([source.name, mapped.count("frames in"), mapped.count("located"),
+                         error(trajectory_errors(run, mapped, source), "ate_m_rmse", 1e3),
+                         reasons.most_common(1)[0][0] if reasons else ""])
+    return markdown(["scene", "frames", "located", "ATE rmse, mm", "most frequent reason of a loss"], rows)
+
+
+def recovery(run):
+    columns = {}
+    for source in run.inputs("office"):
+        columns[source.name] = run.bench("bench_recovery", "--device", source.device, *run.limited("--frames"))
+    for source in run.recordings[:1]:
+        columns[f"{source.name}, 300 frames, depth alone"] = run.bench(
+            "bench_recovery", "--device", source.device, "--frames", run.frames or 300, "--depth-only")
+    return recovery_table({name: first_table(output) for name, output in columns.items()})
+
+
+def recovery_table(tables):
+    """The disturbances as rows, and three columns for each of the tables that bench_recovery printed."""
+    header = ["disturbance"] + [f"{name}: {value}" for name in tables
+                                for value in ("located", "wrong (worst, mm)", "refused")]
+    rows = [[name] for name in (row["disturbance"] for row in next(iter(tables.values())))]
+    for table in tables.values():
+        for row, cells in zip(rows, table, strict=True):
+            row += [f"{cells['located']} of {cells['frames']}", f"{cells['fused wrongly']} ({cells['worst, mm']})",
+                    cells["refused"].split(" ")[0]]
+    return markdown(header, rows)
+
+
+def surface(run):
+    rows = []
+    for source in (room("office"), room("loop")):
+        cloud = run.folder / f"{source.name}.ply"
+        run.map_alone(f"surface_{source.name}", source, "--cloud", cloud)
+        words = run.kintsugi("evaluate-surface", cloud, source.device).split()
+        value = dict(zip(words[::2], words[1::2], strict=True))
+        rows.append([source.name, fixed(value["points"], 0), fixed(value["per_m2"], 0),
+                     *(fixed(1e3 * float(value[f"{each}_m"]), 2) for each in ("median", "p95", "p99", "max")),
+                     *(fixed(value[f"normal_{each}_deg"], 1) for each in ("median", "p95"))])
+    return markdown(["room", "points", "points a m2", "median, mm", "p95, mm", "p99, mm", "max, mm",
+                     "normal, median, deg", "normal, p95, deg"], rows)
+
+
+def live(run):
+    rows = []
+    for source in run.recordings:
+        name = f"live_{source.name}"
+        printed = run.trio(name, source, "--no-log")
+        log = (run.folder / name / "mapper.log").read_text()
+        frames, dropped = (int(re.findall(rf"(\d+) {what}", log)[-1]) for what in ("frames in", "dropped"))
+        cpu = re.findall(r"(?m)^ *CPU: .*", printed)[-1]
+        cpu_ms = [1e3 * float(re.search(rf"{process} ([0-9.]+) s", cpu)[1]) / frames
+                  for process in ("mapper", "segmenter", "viewer")]
+        rows.append([source.name, frames, dropped, *(fixed(each, 1) for each in [*cpu_ms, sum(cpu_ms)])])
+    return markdown(["recording", "frames", "dropped", "mapper, CPU-ms a frame", "segmenter, CPU-ms a frame",
+                     "viewer, CPU-ms a frame", "all three, CPU-ms a frame"], rows)
+
+
+def pictures(run):
+    """The paths of pictures of each fused map from two sides."""
+    lines = []
+    for source in run.inputs("office"):
+        name = f"picture_{source.name}"
+        run.trio(name, source, "--replay")
+        for yaw, pitch in ((30, 40), (-30, 65)):
+            out = run.folder / name / f"from_{yaw}"
+            run.kintsugi("viewer", "--log", run.folder / name / "run.lcm", "--out", out, "--size", "1600x1200",
+                         "--every", 1000000, f"--overview-yaw={yaw}", f"--overview-pitch={pitch}")
+            lines.append(f"{out / 'map_final.png'}\n")
+    return "".join(lines)

@@ -1,0 +1,124 @@
+"""Runs the programs over an input, in the folder of the measurement."""
+
+import os
+import re
+import shlex
+import subprocess
+from dataclasses import dataclass
+from pathlib import Path
+
+from trio.messages import Problem
+from trio.programs import ROOT, program
+
+from .tables import parse_google_benchmark
+
+SCRIPTS = os.path.join(ROOT, "scripts")
+BENCH_PROGRAMS = os.path.join(ROOT, "build", "release", "bench")
+
+
+@dataclass(frozen=True)
+class Input:
+    """A recording (a folder in TUM layout with groundtruth.txt) or a synthetic room."""
+
+    name: str
+    folder: str = ""
+
+    @property
+    def device(self):
+        return f"folder://{self.folder}" if self.folder else f"synthetic://{self.name}"
+
+
+def room(name):
+    return Input(name)
+
+
+def recording(folder):
+    folder = os.path.realpath(folder)
+    if not os.access(os.path.join(folder, "groundtruth.txt"), os.R_OK):
+        raise Problem(f"{folder} is no recording: there is no groundtruth.txt in it", exit_code=2)
+    return Input(os.path.basename(folder), folder)
+
+
+@dataclass(frozen=True)
+class MapperRun:
+    """What the mapper left: its log, the camera's path (TUM format), and a CSV line for each frame."""
+
+    log: str
+    path: Path
+    timings: Path
+
+    def count(self, what):
+        """The number before `what` in the last line that counts frames: frames, located, dropped."""
+        line = re.findall(r"\d+ frames in .*", self.log)[-1]
+        return int(re.search(rf"(\d+) {what}", line)[1])
+
+    @property
+    def cpu_ms(self):
+        return float(re.findall(r"([0-9.]+) ms of CPU", self.log)[-1])
+
+
+class Run:
+    def __init__(self, folder, recordings=(), frames=None):
+        self.folder = Path(folder)
+        self.recordings = list(recordings)
+        self.frames = frames  # only the first so many of each input; None: all
+        self.tracked = {}
+
+    def inputs(self, *rooms):
+        return [*self.recordings, *map(room, rooms)]
+
+    def execute(self, command, *, name=None, environment=None, may_fail=False):
+        """What the command prints on standard output; that and its messages are kept in NAME.log. A command that
+        fails is a Problem, which shows the end of them."""
+        command = [str(word) for word in command]
+        log = self.folder / f"{name or os.path.basename(command[0])}.log"
+        result = subprocess.run(command, cwd=self.folder, capture_output=True, text=True, stdin=subprocess.DEVNULL,
+                                env={**os.environ, **(environment or {})}, check=False)
+        log.write_text(result.stdout + result.stderr)
+        if result.returncode and not may_fail:
+            end = "\n".join((result.stdout + result.stderr).splitlines()[-5:])
+            raise Problem(f"exit code {result.returncode} of {shlex.join(command)}\n{end}")
+        return result.stdout
+
+    def kintsugi(self, name, *arguments):
+        return self.execute([program(name), *arguments])
+
+    def bench(self, name, *arguments, environment=None):
+        return self.execute([os.path.join(BENCH_PROGRAMS, name), *arguments], environment=environment)
+
+    def google_benchmark(self, name, *arguments, environment=None):
+        return parse_google_benchmark(
+            self.bench(name, "--benchmark_repetitions=3", "--benchmark_report_aggregates_only",
+                       "--benchmark_format=json", *arguments, environment=environment))
+
+    def limited(self, flag):
+        return [flag, str(self.frames)] if self.frames else []
+
+    def map_alone(self, name, source, *flags):
+        """Only the mapper, over every frame."""
+        path, timings = self.folder / f"{name}.txt", self.folder / f"{name}.csv"
+        self.execute([f"{SCRIPTS}/private_bus", program("mapper"), "--device", source.device, "--replay",
+                      "--output-trajectory", path, "--timings", timings, *self.limited("--max-frames"), *flags],
+                     name=name)
+        return MapperRun((self.folder / f"{name}.log").read_text(), path, timings)
+
+    def map_tracked(self, source):
+        """As map_alone(), without flags; only once for each input."""
+        if source not in self.tracked:
+            self.tracked[source] = self.map_alone(f"tracked_{source.name}", source)
+        return self.tracked[source]
+
+    def true_path(self, source):
+        """The file with the camera's true path; that of a synthetic room is written first."""
+        if source.folder:
+            return Path(source.folder, "groundtruth.txt")
+        truth = self.folder / f"truth_{source.name}"
+        if not (truth / "groundtruth.txt").exists():
+            self.execute([f"{SCRIPTS}/private_bus", program("mapper"), "--device", source.device, "--replay",
+                          "--max-frames", "1", "--ground-truth", truth])
+        return truth / "groundtruth.txt"
+
+    def trio(self, name, source, *options):
+        """scripts/trio in the folder NAME; returns what it prints."""
+        return self.execute([f"{SCRIPTS}/trio", "--private", "--device", source.device, "--out", name,
+                             *self.limited("--max-frames"), *options], name=f"{name}_messages")
