@@ -8,26 +8,26 @@
 namespace kintsugi::viewer {
 namespace {
 
-void draw_figure(benchmark::State& state, const Viewpoint& view) {
+void draw_figure(benchmark::State& state, const Viewpoint& viewpoint) {
   constexpr double kResolution_m = 0.0088;
   constexpr double kPointsPerMetre = 18.0 / (kResolution_m * kResolution_m);
   const double length_m = 1e6 * static_cast<double>(state.range(0)) / kPointsPerMetre;
   const SyntheticMap room = make_room(length_m, kResolution_m);
   ReceivedMap map(room.slices.front().session);
-  SmoothedCamera followed;
+  SmoothedCamera depth_camera;
   for (const CloudSlice& slice : room.slices) map.add_slice(slice);
   for (std::size_t i = 0; i < room.updates.size(); ++i) {
     map.apply_update(room.updates[i]);
   }
   for (const CameraPose& pose : room.poses) {
     map.add_pose(pose);
-    followed.update(pose, map.up().up_W());
+    depth_camera.update(pose, map.up().up_W());
   }
 
   const MapRenderer renderer{MapRenderer::Config{}};
   for (auto _ : state) {
     benchmark::DoNotOptimize(
-        renderer.draw_figure({map, map.received_track(), followed, view}, caption(map)));
+        renderer.draw_figure({map, map.received_track(), depth_camera, viewpoint}, caption(map)));
   }
   state.counters["points"] = static_cast<double>(map.counts().points);
 }

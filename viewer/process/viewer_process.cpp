@@ -56,7 +56,7 @@ void ViewerProcess::add(Message message, double now_s) {
 /// nullptr when the session is too old to be drawn.
 MapSession* ViewerProcess::find_or_create_session(std::int64_t session, double now_s) {
   MapSession* const found = sessions_.find_or_create(session, now_s);
-  if (found == nullptr && outputs_.on_forgotten) outputs_.on_forgotten(session);
+  if (found == nullptr) outputs_.on_forgotten(session);
   if (sessions_.has_too_many()) forget_oldest();
   return found;
 }
@@ -64,12 +64,8 @@ MapSession* ViewerProcess::find_or_create_session(std::int64_t session, double n
 void ViewerProcess::forget_oldest() {
   auto& [number, session] = *sessions_.all().begin();
   if (!write_final(session)) ++failures_;
-  if (outputs_.on_forgotten) outputs_.on_forgotten(number);
+  outputs_.on_forgotten(number);
   sessions_.forget_oldest();
-}
-
-void ViewerProcess::publish(const cv::Mat3b& picture, const std::string& caption) const {
-  if (outputs_.on_picture) outputs_.on_picture(picture, caption);
 }
 
 void ViewerProcess::draw_if_due() {
@@ -99,14 +95,14 @@ void ViewerProcess::write_snapshot(MapSession& session, const cv::Mat3b& figure)
   const std::string text = caption(session.map());
   const std::int32_t slice_id = session.map().newest_slice()->id();
   if (!folder_.save(fmt::format("snapshot_{:06}.png", slice_id), figure)) ++failures_;
-  publish(figure, text);
+  outputs_.on_picture(figure, text);
   session.note_snapshot();
   spdlog::info("{}; drawn in {:.0f} ms", text, painter_.render_ms());
 }
 
 void ViewerProcess::write_highlight(MapSession& session, const cv::Mat3b& figure) {
   if (!folder_.save("highlight.png", figure)) ++failures_;
-  publish(figure, caption(session.map()));
+  outputs_.on_picture(figure, caption(session.map()));
   session.note_answer();
   spdlog::info("{} segments of an answer in highlight.png", session.answered().size());
 }
@@ -153,7 +149,7 @@ bool ViewerProcess::write_final(MapSession& session) {
   const ReceivedMap& map = session.map();
   const std::string text = final_caption(map);
   const std::vector<NamedPicture> pictures = painter_.draw_finals(session);
-  if (!finals_retry_.is_failing()) publish(pictures.front().picture, text);
+  if (!finals_retry_.is_failing()) outputs_.on_picture(pictures.front().picture, text);
   bool is_written = true;
   for (const auto& [name, picture] : pictures) {
     is_written &= folder_.save(name + suffix + ".png", picture);

@@ -37,11 +37,12 @@ class ViewerProcess {
     /// @throws std::invalid_argument naming the field, its value and the bound
     void validate() const;
   };
-  /// Where results go besides files. Functions may be empty.
+  /// Called besides writing files; not empty.
   struct Outputs {
-    std::function<void(const cv::Mat3b& picture, const std::string& caption)> on_picture;
+    std::function<void(const cv::Mat3b& picture, const std::string& caption)> on_picture =
+        [](const cv::Mat3b&, const std::string&) {};
     /// No more messages of this map session are needed.
-    std::function<void(std::int64_t map_session)> on_forgotten;
+    std::function<void(std::int64_t map_session)> on_forgotten = [](std::int64_t) {};
   };
 
   /// @throws as Config::validate() and VideoFile
@@ -73,7 +74,6 @@ class ViewerProcess {
  private:
   MapSession* find_or_create_session(std::int64_t session, double now_s);
   void forget_oldest();
-  void publish(const cv::Mat3b& picture, const std::string& caption) const;
 
   bool is_current(const MapSession& session) const { return &session == sessions_.current(); }
   std::string final_suffix(const MapSession& session) const;

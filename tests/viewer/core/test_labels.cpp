@@ -1,4 +1,4 @@
-// Ids on segments, and segments that stand out.
+// Labels with segment ids, and highlighted segments.
 
 #include <set>
 
@@ -55,7 +55,7 @@ TEST(SegmentLabels, StandOnTheSegmentWhenItsCentroidIsNot) {
 TEST(SegmentLabels, StandBesideWhatTheyWouldHide) {
   IdImage ids = nothing();
   add(ids, {600, 300, 12, 9}, 123);
-  EXPECT_TRUE(place_labels(ids, {}, {}).empty());  // next to nothing is seen of it
+  EXPECT_TRUE(place_labels(ids, {}, {}).empty());  // too few pixels for a label
   const auto labels = place_labels(ids, {123}, {});
   ASSERT_EQ(1U, labels.size());
   EXPECT_EQ(0, cv::countNonZero(ids(labels[0].box)));
@@ -64,7 +64,7 @@ TEST(SegmentLabels, StandBesideWhatTheyWouldHide) {
 TEST(SegmentLabels, CoverNeitherEachOtherNorWhatIsReserved) {
   IdImage ids = nothing();
   std::int32_t id = 1'000;
-  for (int v = 0; v < kSize.height; v += 24) {  // more of them than there is room
+  for (int v = 0; v < kSize.height; v += 24) {  // more segments than there is room for
     for (int u = 0; u + 24 <= kSize.width; u += 24) add(ids, cv::Rect(u, v, 24, 24), id++);
   }
   const std::array reserved{cv::Rect(0, 0, 400, 300)};
@@ -90,7 +90,7 @@ TEST(SegmentLabels, AreThoseOfTheLargestSegmentsFirst) {
 
 struct Furnished {
   ReceivedMap map{1'000};
-  SmoothedCamera followed;
+  SmoothedCamera depth_camera;
 
   Furnished() {
     const SyntheticMap room = make_room(4.0, 0.04);
@@ -98,7 +98,7 @@ struct Furnished {
     for (const SegmentUpdate& update : room.updates) map.apply_update(update);
   }
   Subject from_above(const Highlight& highlight) const {
-    return {map, {}, followed, FixedViewpoint{{0.0, -8.0, 2.0}, {0.0, 0.0, 2.001}}, highlight};
+    return {map, {}, depth_camera, FixedViewpoint{{0.0, -8.0, 2.0}, {0.0, 0.0, 2.001}}, highlight};
   }
 };
 

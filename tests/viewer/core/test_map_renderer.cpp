@@ -19,10 +19,10 @@ MapRenderer::Config small() {
   return config;
 }
 
-/// A furnished room with its segments, and what the camera follows.
+/// A furnished room with its segments, and the smoothed camera.
 struct Furnished {
   ReceivedMap map{1'000};
-  SmoothedCamera followed;
+  SmoothedCamera depth_camera;
 
   explicit Furnished(bool segmented = true) {
     const SyntheticMap room = make_room(4.0, 0.04);
@@ -32,11 +32,13 @@ struct Furnished {
     }
     for (const CameraPose& pose : room.poses) {
       map.add_pose(pose);
-      followed.update(pose, map.up().up_W());
+      depth_camera.update(pose, map.up().up_W());
     }
   }
 
-  Subject seen(const Viewpoint& view) const { return {map, map.received_track(), followed, view}; }
+  Subject seen(const Viewpoint& viewpoint) const {
+    return {map, map.received_track(), depth_camera, viewpoint};
+  }
 };
 
 double share_of(const cv::Mat3b& image, const cv::Vec3b& color) {
@@ -57,8 +59,8 @@ TEST(MapRenderer, ShowsTheFloorInItsColorFromAbove) {
   const Furnished room;
   const Viewpoint from_above = FixedViewpoint{{0.0, -8.0, 2.0}, {0.0, 0.0, 2.001}};
   const cv::Mat3b map = MapRenderer(small()).draw_map(room.seen(from_above), Coloring::kTrue);
-  // The ceiling faces away and is left out. The floor is (150, 118, 84) give or take 8, seen head
-  // on: full brightness but for the darkening at edges. A place with neither desk nor path:
+  // The ceiling faces away and is not drawn. The floor is (150, 118, 84), plus or minus 8, seen at
+  // a right angle: full brightness, apart from edges. A pixel with neither desk nor path:
   const cv::Vec3b& floor = map(135 + 20, 240 + 40);
   EXPECT_NEAR(84, floor[0], 12);
   EXPECT_NEAR(118, floor[1], 12);
@@ -75,7 +77,7 @@ TEST(MapRenderer, ShowsSegmentsInTheirColorsAndGreyWithoutASegmenter) {
   const cv::Vec3b grey = floor_of(Furnished(false));
   const cv::Vec3b unlabelled = palette::kUnlabelledPoint;
   for (int i = 0; i < 3; ++i) {
-    // Light takes at most a tenth at this angle, edges nothing on a plane.
+    // At this angle shading darkens by at most a tenth; a plane has no edges.
     EXPECT_NEAR(expected[i], segmented[i], 0.1 * expected[i] + 2);
     EXPECT_NEAR(unlabelled[i], grey[i], 0.1 * unlabelled[i] + 2);
   }
@@ -139,8 +141,8 @@ TEST(MapRenderer, RefusesAConfigurationOutOfItsBounds) {
            [](MapRenderer::Config& c) { c.supersampling = 0; },
            [](MapRenderer::Config& c) { c.frustum_m = -1.0; },
            [](MapRenderer::Config& c) { c.splat.radius_vox = -1.0; },
-           [](MapRenderer::Config& c) { c.view.field_of_view_rad = 4.0; },
-           [](MapRenderer::Config& c) { c.view.follow_radius_m = NAN; }}) {
+           [](MapRenderer::Config& c) { c.viewpoint.field_of_view_rad = 4.0; },
+           [](MapRenderer::Config& c) { c.viewpoint.follow_radius_m = NAN; }}) {
     MapRenderer::Config config = small();
     spoil(config);
     EXPECT_THROW(MapRenderer{config}, std::invalid_argument);

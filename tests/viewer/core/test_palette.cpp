@@ -24,7 +24,7 @@ TEST(Rgb, BecomesAPixelOfOpenCVInBlueGreenRed) {
 }
 
 TEST(SegmentColor, IsTheSameForTheSameIdInEveryRun) {
-  // Recorded values: a change of the colours is a change that people see.
+  // Recorded values: a change of the colours would change every picture.
   EXPECT_EQ(palette::kUnlabelledPoint, segment_color(kNoSegment));
   EXPECT_EQ((Rgb{45, 95, 216}), segment_color(1));
   EXPECT_EQ((Rgb{228, 110, 107}), segment_color(123'456));

@@ -80,8 +80,8 @@ TEST(ReceivedMap, LabelsItsPointsFromUpdatesAndRuns) {
   EXPECT_EQ(6, map.counts().points);
 }
 
-/// A run of a segmenter: slices come, some of them again with a higher revision and another number
-/// of points. Each gets random labels, and random runs of older points change.
+/// A run of a segmenter: slices arrive, some of them again with a higher revision and another
+/// number of points. Each gets random labels, and random runs of older points change their labels.
 struct RandomRun {
   std::vector<CloudSlice> slices;
   std::vector<SegmentUpdate> updates;           ///< one for each of slices
@@ -156,7 +156,7 @@ TEST(ReceivedMap, EndsWithTheSameLabelsInWhateverOrderSlicesRevisionsAndUpdatesA
       EXPECT_EQ(run.newest.at(id), map.slice(id)->revision());
       num_points += std::ssize(labels);
     }
-    EXPECT_EQ(num_points, map.counts().points);  // of earlier revisions none is left
+    EXPECT_EQ(num_points, map.counts().points);  // none of earlier revisions
     EXPECT_EQ(std::ssize(run.truth), map.counts().labelled_slices);
     EXPECT_EQ(0, map.lag_slices());
     const MapCounts& counts = map.counts();
@@ -200,7 +200,7 @@ TEST(ReceivedMap, SurvivesUpdatesThatNameAbsurdSlices) {
   }
   EXPECT_EQ(Labels({1, 7, 1}), labels_of(map, 0));
   for (const std::int32_t id : {kMin, -1, 1, kMax}) map.add_slice(slice_of(id, 1, kMax));
-  EXPECT_EQ(1, map.counts().labelled_slices);  // the labels were three, the points one
+  EXPECT_EQ(1, map.counts().labelled_slices);  // the others: three labels for one point
   EXPECT_GE(map.lag_slices(), 4);
 }
 
@@ -250,12 +250,12 @@ TEST(ReceivedMap, KeepsRunsForARevisionThatUpdatesHaveOvertaken) {
   revised.slice_revision = 1;
   apply(map, revised, 1);
   apply(map, update_of(1, {}, {{0, 1, 2, 6, 1}, {0, 0, 1, 9, 0}}), 2);
-  EXPECT_EQ(Labels({9, 1, 1}), labels_of(map, 0));  // the points here are still the first ones
+  EXPECT_EQ(Labels({9, 1, 1}), labels_of(map, 0));  // still those of the first revision
   EXPECT_EQ(2, map.lag_slices());                   // slice 1, and the revision of slice 0
   map.add_slice(slice_of(0, 3, 1));
   EXPECT_EQ(Labels({4, 6, 6}), labels_of(map, 0));
   EXPECT_EQ(1, map.lag_slices());
-  apply(map, update_of(2, {}, {{0, 0, 3, 8, 0}}), 3);  // of the revision that is gone
+  apply(map, update_of(2, {}, {{0, 0, 3, 8, 0}}), 3);  // of the replaced revision
   EXPECT_EQ(Labels({4, 6, 6}), labels_of(map, 0));
 }
 
@@ -278,11 +278,11 @@ TEST(ReceivedMap, StartsTheLabelsAnewWithANewSegmenter) {
   restarted.session = kSegmenterSession + 1;
   apply(map, restarted, 0);
   EXPECT_EQ(Labels({5, 5}), labels_of(map, 0));
-  EXPECT_EQ(Labels({1, 1}), labels_of(map, 1));  // to be looked at until the new ones come
+  EXPECT_EQ(Labels({1, 1}), labels_of(map, 1));  // visible until the new labels arrive
   EXPECT_EQ(1, map.lag_slices());
   EXPECT_EQ(2, map.counts().labellings);  // nothing was labelled for the first time
 
-  apply(map, update_of(1, {3, 3}), 10);  // late, of the segmenter that is gone
+  apply(map, update_of(1, {3, 3}), 10);  // late, from the replaced segmenter
   EXPECT_EQ(Labels({1, 1}), labels_of(map, 1));
   EXPECT_EQ(1, map.counts().ignored_updates);
 
@@ -390,7 +390,7 @@ TEST(ReceivedMap, FollowsTheCameraWhileItIsTracked) {
   CameraPose lost = pose_at(2'000, 5.0);
   lost.state = TrackingState::kLost;
   EXPECT_FALSE(map.add_pose(lost));
-  EXPECT_FALSE(map.add_pose(pose_at(1'050, 5.0)));  // came late
+  EXPECT_FALSE(map.add_pose(pose_at(1'050, 5.0)));  // late
   const CameraTrack track = map.received_track();
   EXPECT_DOUBLE_EQ(1.0, track.X_WC->translation().z());
   EXPECT_EQ(100, map.utime() - map.first_utime());
@@ -405,10 +405,10 @@ TEST(ReceivedMap, TakesThePosesOfTheSlicesWhereNoneWasHeard) {
   for (const std::int32_t id : {3, 0, 2, 1}) {  // at 0, 1, 2 and 3 s
     CloudSlice slice = slice_of(id, 1);
     slice.utime = id * kSecond_us;
-    slice.X_WC.translation() = Eigen::Vector3d(100.0, 0.0, id);  // off the path that is heard
+    slice.X_WC.translation() = Eigen::Vector3d(100.0, 0.0, id);  // apart from the received path
     map.add_slice(slice);
   }
-  for (int i = 8; i <= 22; ++i) {  // heard from 0.8 s to 2.2 s
+  for (int i = 8; i <= 22; ++i) {  // received from 0.8 s to 2.2 s
     map.add_pose(pose_at(i * kSecond_us / 10, 0.1 * i));
   }
   const CameraTrack track = map.received_track();
@@ -416,7 +416,7 @@ TEST(ReceivedMap, TakesThePosesOfTheSlicesWhereNoneWasHeard) {
   EXPECT_EQ(Eigen::Vector3f(100.0F, 0.0F, 0.0F), track.path_W.front());
   for (std::size_t i = 1; i + 1 < track.path_W.size(); ++i) EXPECT_EQ(0.0F, track.path_W[i].x());
   EXPECT_EQ(Eigen::Vector3f(100.0F, 0.0F, 3.0F), track.path_W.back());
-  EXPECT_EQ(3.0, track.X_WC->translation().z());  // newer than what was heard
+  EXPECT_EQ(3.0, track.X_WC->translation().z());  // newer than the received poses
   EXPECT_EQ(0, map.first_utime());
 
   const CameraTrack known = map.slice_track();
@@ -434,13 +434,13 @@ TEST(PendingUpdates, KeepsNoMoreThanItsBoundWhateverSlicesAreNamed) {
   EXPECT_GT(kept, 0);
   EXPECT_LT(kept, 1'000);
   EXPECT_LE(pending.bytes(), kMaxBytes);
-  EXPECT_EQ(PendingUpdates::Outcome::kNoRoom, pending.add({1, 0}, {Labels(1'000), 0}));
+  EXPECT_EQ(UpdateEffect::kNotUsable, pending.add({1, 0}, {Labels(1'000), 0}));
   pending.clear();
   EXPECT_EQ(0U, pending.bytes());
-  EXPECT_EQ(PendingUpdates::Outcome::kNews, pending.add({1, 0}, {Labels(1'000), 5}));
-  EXPECT_EQ(PendingUpdates::Outcome::kKnown, pending.add({1, 0}, {Labels(1'000), 6}));
-  EXPECT_EQ(PendingUpdates::Outcome::kKnown, pending.add({1, 0}, {Labels(1'000, 3), 4}));
-  EXPECT_EQ(PendingUpdates::Outcome::kNews, pending.add({1, 0}, {Labels(2'000, 3), 7}));
+  EXPECT_EQ(UpdateEffect::kChanged, pending.add({1, 0}, {Labels(1'000), 5}));
+  EXPECT_EQ(UpdateEffect::kNothingNew, pending.add({1, 0}, {Labels(1'000), 6}));
+  EXPECT_EQ(UpdateEffect::kNothingNew, pending.add({1, 0}, {Labels(1'000, 3), 4}));
+  EXPECT_EQ(UpdateEffect::kChanged, pending.add({1, 0}, {Labels(2'000, 3), 7}));
   pending.take_up_to({1, 0}, [](SliceKey, const PendingUpdates::Entry& entry) {
     EXPECT_EQ(Labels(2'000, 3), entry.labels->labels);
   });

@@ -6,6 +6,7 @@
 #include <oneapi/tbb/global_control.h>
 
 #include "tests/viewer/support/synthetic_room.hpp"
+#include "viewer/core/map/received_map.hpp"
 #include "viewer/core/rendering/splat.hpp"
 
 namespace kintsugi::viewer {

@@ -1,4 +1,4 @@
-// The life of one segment: from updates in any order to a picture.
+// The history of one segment: from updates in any order to a picture.
 
 #include <algorithm>
 #include <random>

@@ -141,7 +141,7 @@ TEST(CameraAround, PassesOverPointsThatAreNotFinite) {
   }
 }
 
-TEST(ParseView, ReadsEachKindAndRefusesTheRest) {
+TEST(ParseViewpoint, ReadsEachKindAndRefusesTheRest) {
   EXPECT_TRUE(std::holds_alternative<FollowViewpoint>(parse_viewpoint("follow")));
   EXPECT_TRUE(std::holds_alternative<OverviewViewpoint>(parse_viewpoint("overview")));
   const auto fixed = std::get<FixedViewpoint>(parse_viewpoint("1,-2.5,3,0,0,1e1"));
@@ -155,42 +155,42 @@ TEST(ParseView, ReadsEachKindAndRefusesTheRest) {
 
 TEST(SmoothedCamera, GlidesTowardsThePoseAndKeepsItsHeadingLevel) {
   const Eigen::Vector3d up_W = -Eigen::Vector3d::UnitY();
-  SmoothedCamera followed;
-  EXPECT_FALSE(followed.has_pose());
+  SmoothedCamera depth_camera;
+  EXPECT_FALSE(depth_camera.has_pose());
   CameraPose pose;
   pose.state = TrackingState::kTracking;
   pose.utime = 1'000'000;
   pose.X_WC.linear() =
       Eigen::AngleAxisd(-0.5, Eigen::Vector3d::UnitX()).toRotationMatrix();  // looks down
-  followed.update(pose, up_W);
-  EXPECT_TRUE(followed.has_pose());
-  EXPECT_TRUE(followed.heading_W().isApprox(Eigen::Vector3d::UnitZ(), kRounding));
+  depth_camera.update(pose, up_W);
+  EXPECT_TRUE(depth_camera.has_pose());
+  EXPECT_TRUE(depth_camera.heading_W().isApprox(Eigen::Vector3d::UnitZ(), kRounding));
 
   // The pose jumps by a metre: after one time constant of 1 s, 1 - 1/e of the way is gone.
   pose.X_WC.translation().x() = 1.0;
   pose.utime += 1'000'000;
-  followed.update(pose, up_W);
-  EXPECT_NEAR(1.0 - std::exp(-1.0), followed.position_W().x(), kRounding);
+  depth_camera.update(pose, up_W);
+  EXPECT_NEAR(1.0 - std::exp(-1.0), depth_camera.position_W().x(), kRounding);
 
   pose.state = TrackingState::kLost;
   pose.utime += 1'000'000;
-  followed.update(pose, up_W);
-  EXPECT_NEAR(1.0 - std::exp(-1.0), followed.position_W().x(), kRounding);
+  depth_camera.update(pose, up_W);
+  EXPECT_NEAR(1.0 - std::exp(-1.0), depth_camera.position_W().x(), kRounding);
 }
 
 TEST(FollowViewpoint, SeesTheCameraAndTheMapAboutItFromBehindAndAbove) {
   const SyntheticMap room = make_room(12.0, 0.05);
   ReceivedMap map(room.slices.front().session);
   for (const CloudSlice& slice : room.slices) map.add_slice(slice);
-  SmoothedCamera followed;
+  SmoothedCamera depth_camera;
   const CameraPose& pose = room.poses[room.poses.size() / 2];
-  followed.update(pose, map.up().up_W());
+  depth_camera.update(pose, map.up().up_W());
 
   const ViewpointConfig config;
-  const VirtualCamera camera = camera_at(FollowViewpoint{}, map, followed, 640, 480, config);
+  const VirtualCamera camera = camera_at(FollowViewpoint{}, map, depth_camera, 640, 480, config);
   const Eigen::Vector3d forward_W = camera.X_WV.linear().col(2);
   const Eigen::Vector3d from_camera_W = camera.X_WV.translation() - pose.X_WC.translation();
-  EXPECT_LT(from_camera_W.dot(followed.heading_W()), 0.0);
+  EXPECT_LT(from_camera_W.dot(depth_camera.heading_W()), 0.0);
   EXPECT_LT(from_camera_W.y(), 0.0);  // y is down
 
   const auto is_seen = [&](const Eigen::Vector3d& p_W) {

@@ -77,7 +77,7 @@ TEST_F(DiskFull, KeepsTheViewerFromNothingButItsFilesAndGetsThemWhenThereIsRoom)
 
   fill_disk();
   room.publish(5);
-  // The video, that may be drawn before the snapshot, has another problem.
+  // Not the problem of the video, which may be reported before.
   ASSERT_TRUE(wait_until([&] { return status_->problem.find("No space left") != npos; }, &room))
       << status_->problem;
   EXPECT_EQ(10, status_->updates_applied);
@@ -123,7 +123,7 @@ TEST_F(DiskFull, LeavesFramesOutOfAVideoThatPlaysBack) {
   empty_disk();
   for (int i = 0; i < kFrames; ++i) video.add(noise);
   EXPECT_EQ("", video.problem());
-  fill_disk(400'000);  // FFmpeg holds 256 kB back, and the index is small
+  fill_disk(400'000);  // room for FFmpeg's buffer of 256 kB and the index
   EXPECT_TRUE(video.finish());
 
   cv::VideoCapture played((folder_ / "a.mp4").string());
@@ -134,10 +134,10 @@ TEST_F(DiskFull, LeavesFramesOutOfAVideoThatPlaysBack) {
 
 TEST_F(DiskFull, SaysThatAVideoIsLostAndLeavesNothing) {
   auto video = std::make_unique<VideoRecorder>(folder_ / "a.mp4", cv::Size(320, 240), 10.0);
-  cv::Mat3b noise(240, 320);  // compressed still larger than the page that the file has already
+  cv::Mat3b noise(240, 320);  // larger than a page even when compressed
   cv::randu(noise, 0, 256);
   video->add(noise);
-  fill_disk();  // what FFmpeg holds back cannot be written any more
+  fill_disk();  // FFmpeg's buffer cannot be written
   EXPECT_FALSE(video->finish());
   EXPECT_NE(npos, video->problem().find("is the disk full?")) << video->problem();
   EXPECT_FALSE(fs::exists(folder_ / "a.mp4"));

@@ -1,4 +1,4 @@
-// kintsugi-viewer as a program: logs in, pictures out.
+// kintsugi-viewer as a program: draws pictures from a log.
 
 #include <algorithm>
 #include <filesystem>

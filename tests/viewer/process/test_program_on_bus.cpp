@@ -34,7 +34,7 @@ using testing::TemporaryFolder;
 constexpr double kLength_m = 5.0;  // 20 slices
 constexpr double kResolution_m = 0.05;
 
-/// What the viewer says on a private bus while a room is published to it.
+/// Receives the status and the pictures of viewers on a private bus.
 class ViewerOnBus : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -54,7 +54,7 @@ class ViewerOnBus : public ::testing::Test {
     return more;
   }
 
-  /// Another viewer, that has been heard.
+  /// Starts another viewer and waits for its first status.
   std::unique_ptr<Program> start(const std::string& out, RoomOnBus* room = nullptr) {
     const std::size_t others = viewers_.size();
     auto program = std::make_unique<Program>(arguments({"--exit-on-final"}, out));
@@ -62,7 +62,7 @@ class ViewerOnBus : public ::testing::Test {
     return program;
   }
 
-  /// Handles the bus until `done`, or for much longer than that takes; true when done.
+  /// Handles the bus until `done` or a generous timeout; true when done.
   template <class Condition>
   bool wait_until(Condition&& done, RoomOnBus* room = nullptr) {
     const auto deadline = std::chrono::steady_clock::now() + std::chrono::minutes(2);
@@ -75,8 +75,8 @@ class ViewerOnBus : public ::testing::Test {
 
   const TemporaryFolder folder_;
   std::unique_ptr<Bus> bus_;
-  std::optional<ViewerStatus> status_;  // of whichever viewer spoke last
-  std::set<std::int64_t> viewers_;      // that have been heard
+  std::optional<ViewerStatus> status_;  // the newest one, of any viewer
+  std::set<std::int64_t> viewers_;      // sessions of the viewers whose status was received
   std::vector<Snapshot> pictures_;
   StreamSubscriber<Snapshot> snapshots_{
       channels::kSnapshot, [this](Snapshot snapshot) { pictures_.push_back(std::move(snapshot)); }};
@@ -191,7 +191,7 @@ TEST_F(ViewerOnBus, RefusesWhatComesWhileItDrawsAndAsksForItLater) {
   ASSERT_TRUE(wait_until([&] { return first_picture.is_being_written(); }, &trio));
 
   trio.publish(19);
-  // The viewer says what it cannot read as it comes: by then it has had what came before.
+  // The viewer logs bad messages when they arrive: then it has received all messages before them.
   const Bytes nonsense(100, 0xff);
   ASSERT_TRUE(wait_until(
       [&] {

@@ -52,7 +52,7 @@ class ViewerTest : public ::testing::Test {
   }
 
   static constexpr double kNow_s = 100.0;
-  static constexpr double kLater_s = kNow_s + 6.0;  // longer than the viewer's patience
+  static constexpr double kLater_s = kNow_s + 6.0;  // longer than the silence that ends a session
 
   const TemporaryFolder folder_;
   ViewerProcess::Config config_;
@@ -74,7 +74,7 @@ TEST_F(ViewerTest, WritesNothingWithoutAMap) {
 
 TEST_F(ViewerTest, WaitsForTheSegmentsOfTheSlicesItShows) {
   ViewerProcess viewer = make_viewer();
-  viewer.add(room_.updates[0], kNow_s);  // there is a segmenter: slices count with their segments
+  viewer.add(room_.updates[0], kNow_s);  // there is a segmenter: slices count when labelled
   for (const CloudSlice& slice : room_.slices) viewer.add(slice, kNow_s);
   viewer.draw_if_due();
   EXPECT_FALSE(exists("snapshot_000000.png"));
@@ -92,7 +92,7 @@ TEST_F(ViewerTest, DrawsOneSnapshotOfAMapThatWasThereBefore) {
   for (const SegmentUpdate& update : room_.updates) viewer.add(update, kNow_s);
   viewer.draw_if_due();  // again, with its segments
   EXPECT_EQ(2U, captions_.size());
-  for (SegmentUpdate update : room_.updates) {  // described for someone else who came late
+  for (SegmentUpdate update : room_.updates) {  // the full state, for a late joiner
     update.sequence += 100;
     update.num_segments = room_.updates.back().num_segments;
     viewer.add(update, kNow_s);
@@ -120,7 +120,7 @@ TEST_F(ViewerTest, DrawsTheSameFinalPicturesFromWhateverCameInWhateverOrder) {
   for (int trial = 0; trial < 5; ++trial) {
     for (const std::string& name : names) fs::remove(folder_ / name);
     std::vector<Message> messages(room_.slices.begin(), room_.slices.end());
-    for (SegmentUpdate update : room_.updates) {  // described
+    for (SegmentUpdate update : room_.updates) {  // of the full state
       update.sequence += 50;
       update.utime = 0;
       update.num_segments = room_.updates.back().num_segments;
@@ -188,7 +188,7 @@ TEST_F(ViewerTest, HighlightsTheSegmentsOfTheNewestAnswer) {
   EXPECT_EQ(4U, (std::set{of_floor, of_ceiling, of_both, of_none}.size()));
   EXPECT_FALSE(of_floor.empty());
 
-  EXPECT_EQ("", picture_after(answer_of(session, 35, {1})));  // overtaken
+  EXPECT_EQ("", picture_after(answer_of(session, 35, {1})));  // older than the newest answer
   EXPECT_EQ("", picture_after(answer_of(session + 1, 50, {1})));
   SegmentAnswer none = answer_of(session, 50, {});
   none.problem = "the map is not here";
@@ -269,7 +269,7 @@ TEST_F(ViewerTest, WaitsForWhatMayStillBeResentAndGoesOnWithoutTheRest) {
   EXPECT_FALSE(viewer.finished());
   viewer.write_finals(kLater_s, false);
   EXPECT_TRUE(viewer.finished());
-  viewer.add(room_.slices[3], kLater_s);  // it came after all
+  viewer.add(room_.slices[3], kLater_s);  // late
   viewer.write_finals(kLater_s, false);
   EXPECT_TRUE(viewer.finished());
   EXPECT_EQ(6, viewer.status().snapshots_written);

@@ -18,7 +18,7 @@ StreamPublisher::Config unpaced() {
   return config;
 }
 
-/// Sends each pose, then what the mapper and the segmenter said at its time.
+/// Sends each pose, then the messages of mapper and segmenter at its time.
 template <class SendPose>
 void play(const SyntheticMap& map, const Recorded& recorded, StreamPublisher& slices,
           StreamPublisher& updates, SendPose&& send_pose) {
@@ -84,9 +84,10 @@ RoomOnBus::RoomOnBus(Bus& bus, const SyntheticMap& map)
 }
 
 void RoomOnBus::begin_segmenter(std::int64_t session) {
-  constexpr std::size_t kHardlyAnything = 1;  // so that who comes late needs the full state
+  constexpr std::size_t kStoreBytes =
+      1;  // too few to resend updates: late joiners need the full state
   updates_.reset();
-  sent_updates_ = std::make_unique<RecentChunks>(kHardlyAnything);
+  sent_updates_ = std::make_unique<RecentChunks>(kStoreBytes);
   segmenter_session_ = session;
   StreamPublisher::Config config;
   config.on_state_wanted = [this] { is_state_wanted_ = true; };

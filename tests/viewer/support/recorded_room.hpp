@@ -1,5 +1,5 @@
 #pragma once
-// A synthetic map as the processes would have put it on the bus.
+// A synthetic map as messages on the bus or in a log.
 
 #include <atomic>
 #include <cstdint>
@@ -20,25 +20,26 @@ struct Recorded {
 };
 
 /// Writes the messages of `map` in the order of their device time to an LCM log, as lcm-logger
-/// would have; `append` goes on where the log ends. Throws std::runtime_error.
+/// would have; `append` goes on where the log ends.
+/// @throws std::runtime_error
 void write_log(const std::filesystem::path& path, const SyntheticMap& map,
                const Recorded& recorded = {}, bool append = false);
 
-/// A mapper and a segmenter on a bus, with streams that answer who missed something. While
-/// bus.handle() runs and serve() is called now and then, that is.
+/// A mapper and a segmenter on a bus that resend lost messages on request, while bus.handle() runs
+/// and serve() is called repeatedly.
 class RoomOnBus {
  public:
-  /// `map` must outlive this, and this the last bus.handle().
+  /// `map` must outlive this object, and this object the last bus.handle().
   RoomOnBus(Bus& bus, const SyntheticMap& map);
 
-  /// The next `count` slices, each with the poses before it and its update. Updates give the first
-  /// half of the slice before another label too.
+  /// Publishes the next `count` slices, each with the poses before it and its update. An update
+  /// also changes the labels of the first half of the slice before.
   void publish(std::size_t count);
 
-  /// Another segmenter goes on with what this one knows, and says so from its first message on.
+  /// Starts a new segmenter session, which continues with the present labels.
   void restart_segmenter();
 
-  /// Describes the whole map to who has asked for it.
+  /// Sends the full state if it was requested.
   void serve();
 
   std::int64_t states_sent() const { return states_sent_; }
@@ -61,7 +62,7 @@ class RoomOnBus {
   std::unique_ptr<StreamPublisher> updates_;
 };
 
-/// Publishes the whole map so, paced, for those who were there from the start.
+/// Publishes the whole map at once, for processes that were there from the start.
 void publish(Bus& bus, const SyntheticMap& map);
 
 }  // namespace kintsugi::viewer

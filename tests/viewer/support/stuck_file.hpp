@@ -10,8 +10,8 @@
 
 namespace kintsugi::viewer {
 
-/// A file on a disk that takes a page and then no more, until it is told to go on: who writes more
-/// than that waits, however fast or loaded the machine is. It is a pipe.
+/// A file that blocks its writer after one page until go_on() is called, however fast or loaded the
+/// machine is. It is a named pipe.
 class StuckFile {
  public:
   explicit StuckFile(const std::filesystem::path& path) {
@@ -25,16 +25,16 @@ class StuckFile {
   StuckFile(const StuckFile&) = delete;
   StuckFile& operator=(const StuckFile&) = delete;
 
-  /// Somebody has begun to write.
+  /// A writer has written something.
   bool is_being_written() const {
     pollfd state{pipe_, POLLIN, 0};
     return poll(&state, 1, 0) == 1 && (state.revents & POLLIN) != 0;
   }
 
-  /// Takes everything, until the writer closes the file. True when it was more than a page: then
-  /// the writer has waited for this call.
+  /// Reads until the writer closes the file. True when there was more than a page: then the writer
+  /// was blocked until this call.
   bool go_on() const {
-    fcntl(pipe_, F_SETFL, 0);  // reading waits
+    fcntl(pipe_, F_SETFL, 0);  // blocking reads
     std::array<char, kPage> page{};
     ssize_t total = 0;
     for (ssize_t bytes = 1; bytes > 0; total += bytes) bytes = read(pipe_, page.data(), kPage);

@@ -88,28 +88,18 @@ bool ReceivedMap::use_counts(const SegmentUpdate& update, std::uint32_t number) 
 }
 
 UpdateEffect ReceivedMap::use_labels(SliceKey key, NumberedLabels labels) {
-  switch (presence(key)) {
-    case Presence::kHere:
-      return apply_labels(slices_.at(key.id), labels);
-    case Presence::kReplaced:
-      return UpdateEffect::kNotUsable;
-    case Presence::kNotYet:
-      break;
-  }
-  return pending_.add(key, std::move(labels));
+  const Presence slice = presence(key);
+  if (slice == Presence::kNotYet) return pending_.add(key, std::move(labels));
+  if (slice == Presence::kReplaced) return UpdateEffect::kNotUsable;
+  return apply_labels(slices_.at(key.id), labels);
 }
 
-/// True when it changed something.
+/// True when it changed something, or will when its slice arrives.
 bool ReceivedMap::use_run(const NumberedRun& run) {
   const SliceKey key{run.run.slice_id, run.run.slice_revision};
-  switch (presence(key)) {
-    case Presence::kHere:
-      return apply_run(slices_.at(key.id), run);
-    case Presence::kReplaced:
-      return false;
-    case Presence::kNotYet:
-      break;
-  }
+  const Presence slice = presence(key);
+  if (slice == Presence::kHere) return apply_run(slices_.at(key.id), run);
+  if (slice == Presence::kReplaced) return false;
   const bool is_kept = pending_.add(run);
   if (!is_kept) ++counts_.ignored_runs;
   return is_kept;
