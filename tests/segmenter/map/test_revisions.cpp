@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "segmenter/process/session_map.hpp"
+#include "segmenter/session/session_map.hpp"
 #include "tests/segmenter/process/room_session.hpp"
 #include "tests/segmenter/process/slice_session.hpp"
 

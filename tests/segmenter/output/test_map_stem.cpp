@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "segmenter/process/map_stem.hpp"
+#include "segmenter/output/map_stem.hpp"
 
 namespace kintsugi::segmenter {
 namespace {
