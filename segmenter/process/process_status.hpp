@@ -5,8 +5,8 @@
 
 #include "lcmtypes/messages.hpp"
 #include "lcmtypes/stream/stream_subscriber.hpp"
-#include "segmenter/process/session_maps.hpp"
 #include "segmenter/process/update_publisher.hpp"
+#include "segmenter/session/session_maps.hpp"
 
 namespace kintsugi::segmenter {
 

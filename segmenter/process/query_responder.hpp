@@ -14,7 +14,7 @@
 #include "lcmtypes/bus/bus.hpp"
 #include "lcmtypes/stream/stream_publisher.hpp"
 #include "segmenter/map/map_snapshot.hpp"
-#include "segmenter/process/session_maps.hpp"
+#include "segmenter/session/session_maps.hpp"
 
 namespace kintsugi::segmenter {
 

@@ -6,7 +6,7 @@
 
 #include "lcmtypes/base/argument_check.hpp"
 #include "lcmtypes/base/stop_signal.hpp"
-#include "segmenter/process/map_stem.hpp"
+#include "segmenter/output/map_stem.hpp"
 #include "segmenter/process/resumed_map.hpp"
 
 namespace kintsugi::segmenter {

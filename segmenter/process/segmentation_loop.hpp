@@ -11,12 +11,12 @@
 #include <vector>
 
 #include "lcmtypes/base/patient_clock.hpp"
-#include "segmenter/process/map_writer.hpp"
+#include "segmenter/output/map_writer.hpp"
 #include "segmenter/process/query_responder.hpp"
-#include "segmenter/process/session_maps.hpp"
 #include "segmenter/process/slice_queue.hpp"
 #include "segmenter/process/slice_receiver.hpp"
 #include "segmenter/process/update_publisher.hpp"
+#include "segmenter/session/session_maps.hpp"
 
 namespace kintsugi::segmenter {
 

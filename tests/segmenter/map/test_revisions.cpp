@@ -6,8 +6,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "segmenter/process/session_map.hpp"
 #include "segmenter/core/make_engine.hpp"
+#include "segmenter/session/session_map.hpp"
 #include "tests/segmenter/process/room_session.hpp"
 #include "tests/segmenter/process/slice_session.hpp"
 

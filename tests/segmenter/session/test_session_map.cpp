@@ -8,7 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "segmenter/process/session_map.hpp"
+#include "segmenter/session/session_map.hpp"
 #include "tests/segmenter/process/slice_session.hpp"
 
 namespace kintsugi::segmenter {

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "segmenter/io/saved_map.hpp"
-#include "segmenter/process/map_writer.hpp"
+#include "segmenter/output/map_writer.hpp"
 #include "tests/segmenter/process/slice_session.hpp"
 #include "tests/support/temporary_folder.hpp"
 

@@ -1,4 +1,4 @@
-#include "segmenter/process/session_map.hpp"
+#include "segmenter/session/session_map.hpp"
 
 #include <algorithm>
 #include <utility>

@@ -1,4 +1,4 @@
-#include "segmenter/process/map_writer.hpp"
+#include "segmenter/output/map_writer.hpp"
 
 #include <bit>
 #include <exception>

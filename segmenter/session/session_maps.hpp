@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "segmenter/process/session_map.hpp"
+#include "segmenter/session/session_map.hpp"
 
 namespace kintsugi::segmenter {
 

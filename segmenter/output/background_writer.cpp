@@ -1,4 +1,4 @@
-#include "segmenter/process/background_writer.hpp"
+#include "segmenter/output/background_writer.hpp"
 
 #include <algorithm>
 #include <utility>

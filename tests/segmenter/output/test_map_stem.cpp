@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "segmenter/process/map_stem.hpp"
+#include "segmenter/output/map_stem.hpp"
 
 namespace kintsugi::segmenter {
 namespace {
@@ -20,8 +20,9 @@ TEST(MapStem, IsAFileNameInItsFolderWhateverTheNameIs) {
 }
 
 TEST(MapStem, KeepsLongNamesApart) {
-  const std::string a = map_stem(std::string(1000, 'x') + "a", "map");
-  const std::string b = map_stem(std::string(1000, 'x') + "b", "map");
+  const std::string same(1000, 'x');
+  const std::string a = map_stem(same + "a", "map");
+  const std::string b = map_stem(same + "b", "map");
   EXPECT_NE(a, b);
   EXPECT_LT(a.size(), 150U);
 }

@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "segmenter/map/map_snapshot.hpp"
-#include "segmenter/process/background_writer.hpp"
+#include "segmenter/output/background_writer.hpp"
 
 namespace kintsugi::segmenter {
 

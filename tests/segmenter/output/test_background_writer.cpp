@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include "segmenter/process/background_writer.hpp"
-#include "segmenter/process/session_map.hpp"
+#include "segmenter/output/background_writer.hpp"
+#include "segmenter/session/session_map.hpp"
 #include "tests/segmenter/process/slice_session.hpp"
 
 namespace kintsugi::segmenter {

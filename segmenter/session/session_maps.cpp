@@ -1,4 +1,4 @@
-#include "segmenter/process/session_maps.hpp"
+#include "segmenter/session/session_maps.hpp"
 
 #include <algorithm>
 #include <bit>

@@ -1,4 +1,4 @@
-#include "segmenter/process/map_stem.hpp"
+#include "segmenter/output/map_stem.hpp"
 
 #include <fmt/format.h>
 #include <zlib.h>
