@@ -1,11 +1,11 @@
 #include "mapper/evaluation/instance_labels.hpp"
 
 #include <cmath>
-#include <stdexcept>
 #include <string>
 
 #include <oneapi/tbb/parallel_for.h>
 
+#include "lcmtypes/base/argument_check.hpp"
 #include "lcmtypes/base/ply_writer.hpp"
 #include "mapper/synthetic/scene/scene.hpp"
 
@@ -27,10 +27,8 @@ std::vector<std::string> instance_comments(const synthetic::Scene& scene) {
 std::vector<std::uint32_t> nearest_instances(const std::vector<CloudPoint>& points_W,
                                              const synthetic::Scene& scene, const Pose& X_SW,
                                              double max_distance_m) {
-  if (!(max_distance_m > 0.0)) {
-    throw std::invalid_argument("nearest_instances: max_distance_m is " +
-                                std::to_string(max_distance_m) + ", expected more than 0");
-  }
+  require(max_distance_m > 0.0, "nearest_instances: max_distance_m", max_distance_m,
+          "greater than 0");
   std::vector<std::uint32_t> labels(points_W.size());
   tbb::parallel_for(std::size_t{0}, points_W.size(), [&](std::size_t i) {
     const CloudPoint& p = points_W[i];
@@ -44,11 +42,8 @@ std::vector<std::uint32_t> nearest_instances(const std::vector<CloudPoint>& poin
 void write_instance_cloud(const std::filesystem::path& path,
                           const std::vector<CloudPoint>& points_W,
                           const std::vector<std::uint32_t>& labels, const synthetic::Scene& scene) {
-  if (labels.size() != points_W.size()) {
-    throw std::invalid_argument("write_instance_cloud: " + std::to_string(labels.size()) +
-                                " labels, expected one for each of " +
-                                std::to_string(points_W.size()) + " points");
-  }
+  require(labels.size() == points_W.size(), "write_instance_cloud: number of labels", labels.size(),
+          "the number of points, " + std::to_string(points_W.size()));
   PlyWriter file(
       path,
       {{"vertex", {"float x", "float y", "float z", "uint instance_id"}, std::ssize(points_W)}},

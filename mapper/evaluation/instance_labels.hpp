@@ -1,5 +1,5 @@
 #pragma once
-// The true segmentation of a map: whose surface of the synthetic scene each of its points is on.
+// The true segmentation of a map: the instance of the synthetic scene to which each point belongs.
 
 #include <cstdint>
 #include <filesystem>
@@ -14,9 +14,10 @@ class Scene;
 
 namespace kintsugi::mapper {
 
-/// Of each point, in their order, the id of the instance whose surface is nearest (see
-/// Scene::nearest_surface()), or 0 where that is farther than `max_distance_m`: a point that the
-/// mapper made up. `X_SW` is the pose of the map's frame in the scene's, as in surface_error().
+/// For each point, in order, the id of the instance with the nearest surface (see
+/// Scene::nearest_surface()), or 0 if that is farther than `max_distance_m`, which means that the
+/// point is an artefact. `X_SW` is the pose of the map frame in the scene frame, as in
+/// surface_error().
 /// @throws std::invalid_argument unless max_distance_m is positive
 std::vector<std::uint32_t> nearest_instances(const std::vector<CloudPoint>& points_W,
                                              const synthetic::Scene& scene, const Pose& X_SW,
@@ -26,7 +27,7 @@ std::vector<std::uint32_t> nearest_instances(const std::vector<CloudPoint>& poin
 /// `uint instance_id`; its header has a line `comment instance ID structure|object NAME` for each
 /// instance of the scene.
 /// @throws std::invalid_argument unless there are as many labels as points; std::system_error
-/// naming the file
+///   naming the file
 void write_instance_cloud(const std::filesystem::path& path,
                           const std::vector<CloudPoint>& points_W,
                           const std::vector<std::uint32_t>& labels, const synthetic::Scene& scene);

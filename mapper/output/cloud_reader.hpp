@@ -7,8 +7,8 @@
 
 namespace kintsugi::mapper {
 
-/// The points of a map: of a PLY file that CloudWriter wrote, or of the slices in an LCM log (the
-/// highest revision of each, of the session seen last).
+/// Reads the points of a map from a PLY file of CloudWriter, or from the slices in an LCM log (of
+/// the last session, the highest revision of each slice).
 /// @throws std::runtime_error naming the file and what is wrong with it
 std::vector<CloudPoint> read_cloud(const std::filesystem::path& path);
 

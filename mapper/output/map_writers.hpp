@@ -1,5 +1,5 @@
 #pragma once
-// The map of a run as files: the points that were published, and the mesh.
+// Writes the map of a run: the published points, and the mesh.
 
 #include <cstdint>
 #include <filesystem>
@@ -11,8 +11,8 @@
 
 namespace kintsugi::mapper {
 
-/// The points of a run's slices: x y z nx ny nz (metres, W), red green blue, weight. 31 bytes a
-/// point on disk, none in memory. Errors are those of PlyWriter.
+/// Writes the points of slices: x y z nx ny nz (metres, W), red green blue, weight. 31 bytes per
+/// point on disk, none in memory. Throws like PlyWriter.
 class CloudWriter {
  public:
   explicit CloudWriter(const std::filesystem::path& path);
@@ -25,9 +25,9 @@ class CloudWriter {
   PlyWriter file_;
 };
 
-/// The mesh of a run: vertices x y z (metres, W), red green blue; triangles counter-clockwise seen
-/// from free space. 15 bytes a vertex and 13 a triangle on disk (about 21 a triangle over all),
-/// none in memory. Errors are those of PlyWriter.
+/// Writes a mesh: vertices x y z (metres, W), red green blue; triangles counter-clockwise seen from
+/// free space. 15 bytes per vertex and 13 per triangle on disk (in total about 21 per triangle),
+/// none in memory. Throws like PlyWriter.
 class MeshWriter {
  public:
   explicit MeshWriter(const std::filesystem::path& path);

@@ -1,5 +1,5 @@
 #pragma once
-// How a frame went, in words: for logs, tables and status.
+// The tracking result of a frame as text, for logs, tables and status.
 
 #include <string_view>
 
@@ -7,7 +7,7 @@
 
 namespace kintsugi::mapper {
 
-/// Why a lost frame was not believed; empty for any other.
+/// Why tracking was lost at this frame; empty for other frames.
 std::string_view reason_text(const TrackingResult& tracking);
 
 }  // namespace kintsugi::mapper

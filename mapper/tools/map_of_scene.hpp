@@ -1,5 +1,5 @@
 #pragma once
-// What the tools have in common that compare a map with the synthetic scene it is of.
+// Shared by the tools that compare a map with the synthetic scene that was mapped.
 
 #include <string>
 #include <vector>
@@ -17,23 +17,24 @@ namespace kintsugi::mapper {
 struct MapOfSceneOptions {
   std::string cloud;            ///< PLY file of kintsugi-mapper --cloud, or an LCM log
   std::string scene;            ///< the device that was mapped
-  bool in_scene_frame = false;  ///< poses were given
+  bool in_scene_frame = false;  ///< the map frame is the scene frame, because true poses were given
 };
 
-// Each adds one to the command line.
+// Each adds one option to the command line.
 void add_cloud(CLI::App& app, MapOfSceneOptions& options);
 void add_scene(CLI::App& app, MapOfSceneOptions& options);
 void add_scene_frame(CLI::App& app, MapOfSceneOptions& options);
 
-/// A map and the truth about it.
+/// A map and the scene that was mapped.
 struct MapOfScene {
   std::vector<CloudPoint> points_W;
   synthetic::Scene scene;
-  Pose X_SW = Pose::Identity();  ///< of the map's frame in the scene's
+  Pose X_SW = Pose::Identity();  ///< of the map frame in the scene frame
 };
 
-/// @throws std::invalid_argument for what is no synthetic scene, std::runtime_error naming the
-/// file of the cloud and what is wrong with it
+/// @throws std::invalid_argument when the scene is not synthetic, std::runtime_error naming the
+/// file
+///   of the cloud and what is wrong with it
 MapOfScene read_map_of_scene(const MapOfSceneOptions& options);
 
 }  // namespace kintsugi::mapper

@@ -9,13 +9,14 @@
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "lcmtypes/base/argument_check.hpp"
+
 namespace kintsugi::mapper {
 namespace {
 
 void require_positive(const char* name, double value) {
-  if (std::isfinite(value) && value > 0.0) return;
-  throw std::invalid_argument("Intrinsics." + std::string(name) + " is " + std::to_string(value) +
-                              ", expected a finite number greater than 0");
+  require(std::isfinite(value) && value > 0.0, std::string("Intrinsics.") + name, value,
+          "a finite number greater than 0");
 }
 
 }  // namespace

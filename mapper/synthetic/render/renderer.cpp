@@ -180,7 +180,7 @@ class TileRenderer {
   RenderedFrame& frame_;
 };
 
-void check(const Intrinsics& camera) {
+void check_intrinsics(const Intrinsics& camera) {
   const bool has_lens = camera.distortion != std::array<double, 5>{};
   if (camera.width <= 0 || camera.height <= 0 || !(camera.fx > 0) || !(camera.fy > 0) || has_lens) {
     throw std::invalid_argument(
@@ -204,7 +204,7 @@ Intrinsics default_intrinsics() {
 }
 
 RenderedFrame render(const Scene& scene, const Intrinsics& intrinsics, const Pose& X_WC) {
-  check(intrinsics);
+  check_intrinsics(intrinsics);
   const cv::Size size(intrinsics.width, intrinsics.height);
   RenderedFrame frame{X_WC,
                       intrinsics,

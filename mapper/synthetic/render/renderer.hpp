@@ -1,5 +1,5 @@
 #pragma once
-// Pictures of a scene: true depth, colour, normal and instance of every pixel.
+// Renders a scene: true depth, colour, normal and instance of every pixel.
 
 #include <cstdint>
 
@@ -13,8 +13,8 @@ namespace kintsugi::synthetic {
 /// VGA at the nominal focal length of the Kinect and the Xtion: 640 x 480, f = 525, no distortion.
 Intrinsics default_intrinsics();
 
-/// Every image is height x width; where a pixel's ray meets nothing: NaN, a pale sky, zero,
-/// kNoInstance.
+/// Images of height x width. A pixel whose ray meets no surface has depth NaN, the colour of a pale
+/// sky, normal zero and kNoInstance.
 struct RenderedFrame {
   Pose X_WC = Pose::Identity();
   Intrinsics intrinsics;
@@ -25,8 +25,10 @@ struct RenderedFrame {
 };
 
 /// Intersects the ray of every pixel with the scene, exactly up to single precision (tests: 20 um
-/// at 5 m). The result does not depend on the number of threads. Throws std::invalid_argument if
-/// the intrinsics have a lens distortion, a size or focal length that is not positive.
+/// at 5 m). The result does not depend on the number of threads.
+/// @throws std::invalid_argument if the intrinsics have a lens distortion, or a size or focal
+/// length
+///   that is not positive
 RenderedFrame render(const Scene& scene, const Intrinsics& intrinsics, const Pose& X_WC);
 
 }  // namespace kintsugi::synthetic

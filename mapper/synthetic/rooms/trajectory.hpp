@@ -9,35 +9,36 @@
 
 namespace kintsugi::synthetic {
 
-/// The pose of a camera at position_W that looks at target_W with the image's up towards W's z.
-/// Throws std::invalid_argument if the two coincide or the view is vertical.
+/// The pose X_WC of a camera at position_W that looks at target_W, with the top of the image
+/// towards z of W.
+/// @throws std::invalid_argument if the two coincide or the viewing direction is vertical
 Pose look_at(const Eigen::Vector3d& position_W, const Eigen::Vector3d& target_W);
 
 struct Waypoint {
   Eigen::Vector3d position_W;  ///< metres
-  Eigen::Vector3d target_W;    ///< metres; what the camera looks at here
+  Eigen::Vector3d target_W;    ///< metres; the point that the camera looks at
 };
 
 /// Time of frame i at 30 Hz, microseconds, rounded to the nearest.
 std::int64_t frame_utime(std::int64_t frame_index);
 
-/// Position and target go through the waypoints on cubic splines. The path is walked at a speed
-/// that slows down where the view turns, scaled so that it takes `duration_s`; then the shake of a
-/// hand is added: a band-limited (0.3 to 2.5 Hz) sum of sines on position and orientation.
+/// Position and target follow cubic splines through the waypoints. The camera moves more slowly
+/// where it turns, and in total for `duration_s`. The shake of the hand is a band-limited (0.3
+/// to 2.5 Hz) sum of sines that is added to position and orientation.
 class Trajectory {
  public:
   struct Config {
     double duration_s = 10.0;              ///< > 0
-    double turn_m_per_rad = 0.35;          ///< a turn takes as long as this length, >= 0
+    double turn_m_per_rad = 0.35;          ///< a turn takes as long as moving this far, >= 0
     double shake_position_m = 0.002;       ///< amplitude of each of the sines, >= 0
     double shake_orientation_rad = 0.003;  ///< amplitude of each of the sines, >= 0
-    std::uint32_t seed = 1;                ///< of the shake
+    std::uint32_t seed = 1;                ///< for the shake
 
-    /// Throws std::invalid_argument naming field, value and bound.
+    /// @throws std::invalid_argument naming field, value and bound
     void validate() const;
   };
 
-  /// Throws std::invalid_argument with fewer than two waypoints, or a view that look_at() refuses.
+  /// @throws std::invalid_argument with fewer than two waypoints, or when look_at() throws
   Trajectory(const std::vector<Waypoint>& waypoints, const Config& config);
 
   /// Pose of the camera C in the scene's frame W; t_s is clamped to [0, duration_s].
@@ -46,7 +47,7 @@ class Trajectory {
   double duration_s() const { return config_.duration_s; }
   /// Of the path without the shake, metres.
   double length_m() const { return length_m_; }
-  /// Frames at 30 Hz, of which the first is at time 0 and the last not after the end.
+  /// Number of frames at 30 Hz; the first is at time 0, the last not after the end.
   int num_frames() const;
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-// A path told as places and headings.
+// A camera path given by places and headings.
 
 #include <Eigen/Core>
 #include <vector>
@@ -13,10 +13,10 @@ namespace kintsugi::synthetic {
 /// between, so that the splines of Trajectory stay near the straight line.
 class Walk {
  public:
-  /// floor_W: on the floor below the camera.
+  /// @param floor_W point on the floor below the camera
   Walk(const Eigen::Vector3d& floor_W, double heading_deg, double pitch_deg = kPitch_deg);
 
-  /// Turns the shorter way.
+  /// Moves to another place; turns by the smaller of the two angles.
   Walk& to(const Eigen::Vector3d& floor_W, double heading_deg, double pitch_deg = kPitch_deg);
 
   const std::vector<Waypoint>& waypoints() const { return waypoints_; }

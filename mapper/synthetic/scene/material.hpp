@@ -1,5 +1,5 @@
 #pragma once
-// What a surface looks like: a procedural texture and a static light.
+// Appearance of surfaces: procedural textures and static lights.
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -12,7 +12,7 @@ using Color = Eigen::Vector3f;  ///< red, green, blue in [0, 1]
 
 enum class Texture : std::uint8_t {
   kPlain,
-  kPlaster,  ///< faint mottling, so that no wall is without texture
+  kPlaster,  ///< faint mottling, so that walls have texture
   kWood,     ///< grain along the longer side
   kCarpet,   ///< fine speckle
   kBrick,    ///< courses of bricks, mortar in the second colour
@@ -36,7 +36,7 @@ struct Material {
 Color albedo(const Material& material, const BasicShape<float>& shape, const Eigen::Vector3f& p_O,
              const Eigen::Vector3f& normal_O);
 
-/// Share of the albedo that is seen under the fixed lights: ambient and two directions, Lambert.
+/// Factor of the albedo under the fixed lights: ambient and two directions, Lambertian reflection.
 float irradiance(const Eigen::Vector3f& normal_W);
 
 }  // namespace kintsugi::synthetic

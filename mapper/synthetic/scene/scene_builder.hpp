@@ -1,5 +1,5 @@
 #pragma once
-// Scenes are put together from objects, objects from solids.
+// Builds scenes from objects, and objects from solids.
 
 #include <string>
 #include <vector>
@@ -11,7 +11,7 @@ namespace kintsugi::synthetic {
 /// Translation, then rotation about z.
 Pose at(double x, double y, double z, double yaw_rad = 0.0);
 
-/// Rotations that lay a solid's axis (z) along x or y.
+/// Rotations that turn the axis (z) of a solid to x or y.
 Pose axis_along_x();
 Pose axis_along_y();
 
@@ -22,16 +22,16 @@ Material textured(Texture texture, const Color& color, const Color& second_color
 
 class SceneBuilder {
  public:
-  /// Starts an object whose own frame is G: the solids added next belong to it.
+  /// Begins an object with its own frame G; the solids added next belong to it.
   void begin_object(const std::string& name, const Pose& X_WG);
 
-  /// The same for a part of the building.
+  /// Likewise for a part of the building.
   void begin_structure(const std::string& name, const Pose& X_WG);
 
-  /// Adds a solid to the object begun last; its name, shape and colour are those of its first.
+  /// Adds a solid to the object begun last. Shape and colour of the object are those of its first.
   void add(const Shape& shape, const Pose& X_GO, const Material& material);
 
-  /// Both in one, for an object or a part of the building that is a single solid.
+  /// Adds an object, or a part of the building, that is a single solid.
   void add_object(const std::string& name, const Pose& X_WG, const Shape& shape,
                   const Material& material);
   void add_structure(const std::string& name, const Pose& X_WG, const Shape& shape,

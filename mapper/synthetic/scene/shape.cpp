@@ -2,23 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 #include <string>
+
+#include "lcmtypes/base/argument_check.hpp"
 
 namespace kintsugi::synthetic {
 
 namespace {
 
-void require(bool condition, const char* shape, const char* what, double value) {
-  if (!condition) {
-    throw std::invalid_argument(std::string(shape) + ": " + what + ", not " +
-                                std::to_string(value));
-  }
-}
-
 void require_length(const char* shape, const char* name, double value) {
-  require(std::isfinite(value) && value > 0.0, shape,
-          (std::string(name) + " must be finite and positive").c_str(), value);
+  require(std::isfinite(value) && value > 0.0, std::string(shape) + ": " + name, value,
+          "finite and positive");
 }
 
 /// Distance in the plane to a box around the origin.
@@ -79,8 +73,8 @@ Shape box(double size_x, double size_y, double size_z) {
 Shape rounded_box(double size_x, double size_y, double size_z, double rounding) {
   Shape shape = box(size_x, size_y, size_z);
   require_length("rounded box", "rounding", rounding);
-  require(rounding <= shape.half_extents.minCoeff(), "rounded box",
-          "rounding must be at most half the smallest size", rounding);
+  require(rounding <= shape.half_extents.minCoeff(), "rounded box: rounding", rounding,
+          "at most half the smallest size");
   shape.kind = ShapeKind::kRoundedBox;
   shape.radius = rounding;
   return shape;
@@ -94,15 +88,15 @@ Shape sphere(double radius) {
 Shape cylinder(double radius, double height, double bore_radius) {
   require_length("cylinder", "radius", radius);
   require_length("cylinder", "height", height);
-  require(bore_radius >= 0.0 && bore_radius < radius, "cylinder",
-          "bore radius must be in [0, radius)", bore_radius);
+  require(bore_radius >= 0.0 && bore_radius < radius, "cylinder: bore radius", bore_radius,
+          "in [0, radius)");
   return {ShapeKind::kCylinder, {radius, radius, 0.5 * height}, radius, bore_radius};
 }
 
 Shape cone(double bottom_radius, double top_radius, double height) {
   require_length("cone", "height", height);
-  require(bottom_radius >= 0.0, "cone", "bottom radius must not be negative", bottom_radius);
-  require(top_radius >= 0.0, "cone", "top radius must not be negative", top_radius);
+  require(bottom_radius >= 0.0, "cone: bottom radius", bottom_radius, "at least 0");
+  require(top_radius >= 0.0, "cone: top radius", top_radius, "at least 0");
   const double radius = std::max(bottom_radius, top_radius);
   require_length("cone", "larger radius", radius);
   return {ShapeKind::kCone, {radius, radius, 0.5 * height}, bottom_radius, top_radius};
@@ -110,15 +104,15 @@ Shape cone(double bottom_radius, double top_radius, double height) {
 
 Shape capsule(double radius, double height) {
   require_length("capsule", "radius", radius);
-  require(std::isfinite(height) && height >= 2.0 * radius, "capsule",
-          "height must be at least twice the radius", height);
+  require(std::isfinite(height) && height >= 2.0 * radius, "capsule: height", height,
+          "at least twice the radius");
   return {ShapeKind::kCapsule, {radius, radius, 0.5 * height}, radius, 0.0};
 }
 
 Shape torus(double ring_radius, double tube_radius) {
   require_length("torus", "ring radius", ring_radius);
   require_length("torus", "tube radius", tube_radius);
-  require(tube_radius < ring_radius, "torus", "tube radius must be below the ring's", tube_radius);
+  require(tube_radius < ring_radius, "torus: tube radius", tube_radius, "below the ring radius");
   const double outer = ring_radius + tube_radius;
   return {ShapeKind::kTorus, {outer, outer, tube_radius}, ring_radius, tube_radius};
 }

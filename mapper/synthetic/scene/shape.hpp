@@ -38,28 +38,29 @@ struct BasicShape {
 };
 using Shape = BasicShape<double>;
 
-// Lengths in metres. Each throws std::invalid_argument for a length that is not finite, not
-// positive (radii said to be optional: negative) or too large for the solid.
+// Lengths in metres.
+// @throws std::invalid_argument for a length that is not finite, not positive (bore radius and the
+//   radii of a cone: negative), or too large for the solid
 Shape box(double size_x, double size_y, double size_z);
 Shape rounded_box(double size_x, double size_y, double size_z, double rounding);
 Shape sphere(double radius);
 Shape cylinder(double radius, double height, double bore_radius = 0.0);
 Shape cone(double bottom_radius, double top_radius, double height);
-Shape capsule(double radius, double height);  ///< height over all, at least 2 radius
+Shape capsule(double radius, double height);  ///< total height, at least 2 * radius
 Shape torus(double ring_radius, double tube_radius);
 
 /// Euclidean distance from p_O to the surface, metres: positive outside, negative inside, exact.
 double signed_distance(const Shape& shape, const Eigen::Vector3d& p_O);
 
-/// Unit outward normal at the surface point nearest to p_O, which is taken to be on or near the
-/// surface. On an edge it is that of one of the faces.
+/// Unit outward normal at the surface point nearest to p_O, which must be on or near the surface.
+/// On an edge it is the normal of one of the faces.
 template <typename Real>
 Eigen::Matrix<Real, 3, 1> outward_normal(const BasicShape<Real>& shape,
                                          const Eigen::Matrix<Real, 3, 1>& p_O);
 
 /// The smallest t >= 0 at which origin_O + t direction_O enters the solid from outside, or
-/// infinity. The direction need not be a unit vector, and not be zero. A solid that contains the
-/// origin is not seen.
+/// infinity. The direction must not be zero and need not be a unit vector. A solid that contains
+/// the origin is not hit.
 template <typename Real>
 Real intersect(const BasicShape<Real>& shape, const Eigen::Matrix<Real, 3, 1>& origin_O,
                const Eigen::Matrix<Real, 3, 1>& direction_O);

@@ -168,7 +168,7 @@ TEST(SessionStore, RefusesWhatItCannotContinueAndLeavesItAsItIs) {
     other.append(1, "EXAMPLE", foreign);
   }
   const Bytes other = contents(path);
-  EXPECT_THAT(error_of(config_for(path, true)), HasSubstr("no log that a mapper made"));
+  EXPECT_THAT(error_of(config_for(path, true)), HasSubstr("a mapper did not make it"));
   EXPECT_EQ(contents(path), other);
 }
 
