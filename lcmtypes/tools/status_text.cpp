@@ -46,9 +46,13 @@ std::string text_of(const MapperStatus& status) {
         "/%lld (%.0f %%)", static_cast<long long>(status.frames_total),
         100.0 * static_cast<double>(status.frames_read) / static_cast<double>(status.frames_total));
   }
-  text += status.finished
-              ? std::string(" mapped")
-              : " " + state_text(status.state) + format(" %.1f Hz", status.frame_rate_hz);
+  if (status.finished) {
+    text += " mapped";
+  } else {
+    text += ' ';
+    text += state_text(status.state);
+    text += format(" %.1f Hz", status.frame_rate_hz);
+  }
   if (!status.finished && !status.loss_reason.empty()) text += " (" + status.loss_reason + ")";
   text += some(status.frames_lost, "lost") + some(status.frames_dropped, "dropped") + " | " +
           count(status.slices_published) + " slices " + count(status.points_published) + " points";
