@@ -111,7 +111,10 @@ def recovery(run):
 
 
 def recovery_table(tables):
-    """The disturbances as rows, and three columns for each of the tables that bench_recovery printed."""
+    """From the tables that bench_recovery printed for each input: the sums over all disturbances, and below, the
+    disturbances as rows with three columns for each input."""
+    sums = markdown(["input", "frames", "located", "wrong", "worst, mm", "refused"],
+                    [[name, *disturbed_sums(table)] for name, table in tables.items()])
     header = ["disturbance"] + [f"{name}: {value}" for name in tables
                                 for value in ("located", "wrong (worst, mm)", "refused")]
     rows = [[name] for name in (row["disturbance"] for row in next(iter(tables.values())))]
@@ -119,7 +122,17 @@ def recovery_table(tables):
         for row, cells in zip(rows, table, strict=True):
             row += [f"{cells['located']} of {cells['frames']}", f"{cells['fused wrongly']} ({cells['worst, mm']})",
                     cells["refused"].split(" ")[0]]
-    return markdown(header, rows)
+    return sums + "\n" + markdown(header, rows)
+
+
+def disturbed_sums(table):
+    disturbed = [row for row in table if row["disturbance"] != "none"]
+
+    def total(name):
+        return fixed(sum(int(row[name].split(" ")[0]) for row in disturbed), 0)
+
+    worst_mm = max(float(row["worst, mm"]) for row in disturbed)
+    return [total("frames"), total("located"), total("fused wrongly"), fixed(worst_mm, 1), total("refused")]
 
 
 def surface(run):

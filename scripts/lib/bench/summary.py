@@ -23,6 +23,8 @@ RESULTS = (
            "{wall p50, ms} ({CPU a frame, ms})"),
     Result("Error of the camera's path: ATE rmse, mm", "paths", 0, "{input}", "{ATE rmse, mm}"),
     Result("Drift at the end of the path, % of its length", "paths", 0, "{input}", "{drift, %}"),
+    Result("Frames fused wrongly, and refused, under all disturbances", "recovery", 0, "{input}",
+           "{wrong} and {refused} of {frames}"),
     Result("Distance of the map's points from the true surface: median, mm", "surface", 0, "{room}", "{median, mm}"),
     Result("Segmenting a slice, mode `exact`: average, ms", "maps", 0, "{map}", "{average, ms}",
            ("mode", "exact", "the paper's")),
@@ -37,7 +39,7 @@ RESULTS = (
 
 
 def summary(texts):
-    """From what the sections printed, by name; results whose section has no table are left out."""
+    """From what the sections printed, by name; results of sections without a table are left out."""
     rows = []
     for result in RESULTS:
         tables = parse_tables(texts.get(result.section, ""))
@@ -47,4 +49,4 @@ def summary(texts):
                  if not result.only or row[result.only[0]] in result.only[1:]]
         cells = ", ".join(f"{result.row.format_map(row)}: {result.value.format_map(row)}" for row in shown)
         rows.append([result.what, cells, f"[{result.section}](#{result.section})"])
-    return markdown(["what", "result", "section"], rows)
+    return markdown(["what", "result", "section"], rows) if rows else "(not measured yet)\n"
