@@ -6,6 +6,7 @@
 #include <tbb/global_control.h>
 
 #include "mapper/core/kernels/instruction_set.hpp"
+#include "mapper/core/registration/depth_noise.hpp"
 #include "mapper/core/registration/icp.hpp"
 #include "tests/mapper/core/box_room.hpp"
 

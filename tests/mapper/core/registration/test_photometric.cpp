@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "mapper/core/frame/surface_pyramid.hpp"
+#include "mapper/core/registration/observability.hpp"
 #include "mapper/core/registration/photometric.hpp"
 #include "tests/mapper/core/box_room.hpp"
 
