@@ -32,7 +32,9 @@ class ResumedMap : public ::testing::Test {
 
 TEST_F(ResumedMap, HasTheParametersItWasSavedWith) {
   for (const auto& [parameter, engine] : testing::changed_parameters()) {
-    const auto resume = [&, &engine = engine] { resume_map(file_, {.engine = engine}, 2); };
+    SegmentMapConfig config;
+    config.engine = engine;
+    const auto resume = [&] { resume_map(file_, config, 2); };
     if (parameter.comes_with_slices) {
       EXPECT_NO_THROW(resume()) << parameter.name;
     } else {
@@ -43,7 +45,9 @@ TEST_F(ResumedMap, HasTheParametersItWasSavedWith) {
 }
 
 TEST_F(ResumedMap, HasTheModeItWasSavedWith) {
-  EXPECT_THAT([&] { resume_map(file_, {.mode = "batch"}, 2); },
+  SegmentMapConfig config;
+  config.mode = "batch";
+  EXPECT_THAT([&] { resume_map(file_, config, 2); },
               ThrowsMessage<std::runtime_error>(HasSubstr("was saved with --mode exact")));
 }
 
