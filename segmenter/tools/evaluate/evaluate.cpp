@@ -25,7 +25,7 @@
 namespace kintsugi::segmenter {
 namespace {
 
-struct Options {
+struct EvaluateOptions {
   std::filesystem::path input;
   std::filesystem::path folder;
   CloudInputConfig cloud;
@@ -36,7 +36,7 @@ struct Options {
 };
 
 /// The input is a map or a camera path, but not both.
-void require_task(const Options& options) {
+void require_task(const EvaluateOptions& options) {
   const bool has_path = !options.trajectory.estimate_file.empty();
   if (has_path && !options.input.empty()) throw CLI::ExcludesError("--trajectory", "IN");
   if (has_path) return;
@@ -44,7 +44,7 @@ void require_task(const Options& options) {
   if (options.folder.empty()) throw CLI::RequiredError("--out");
 }
 
-void add_options(CLI::App& app, Options& options) {
+void add_options(CLI::App& app, EvaluateOptions& options) {
   EvaluationConfig& evaluation = options.evaluation;
   app.add_option(
       "IN", options.input,
@@ -82,7 +82,7 @@ void make_folder(const std::filesystem::path& folder) {
   AtomicFile(folder / "index.html").stream();  // throws where nothing can be written
 }
 
-RecordedSession read(const Options& options) {
+RecordedSession read(const EvaluateOptions& options) {
   RecordedSession session = options.input.extension() == ".ply"
                                 ? read_session_cloud(options.input, options.cloud)
                                 : read_session_log(options.input);
@@ -93,7 +93,7 @@ RecordedSession read(const Options& options) {
 }
 
 /// Writes the report of the map; returns the exit status.
-int evaluate_map(Options options, const std::string& command_line) {
+int evaluate_map(EvaluateOptions options, const std::string& command_line) {
   options.evaluation.engine = options.quality.comparison.engine = options.map.engine;
   options.evaluation.validate();
   options.quality.comparison.validate();
@@ -125,7 +125,7 @@ int main(int argc, char** argv) {
         "Segments a recorded map slice by slice and writes the paper's tables and figures; or, "
         "with --ground-truth, scores its segments; or, with --trajectory, computes the errors of a "
         "camera path."};
-    Options options;
+    EvaluateOptions options;
     add_options(app, options);
     CLI11_PARSE(app, argc, argv);
     if (!options.trajectory.estimate_file.empty()) {

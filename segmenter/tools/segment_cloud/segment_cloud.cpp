@@ -22,7 +22,7 @@
 namespace kintsugi::segmenter {
 namespace {
 
-struct Options {
+struct SegmentCloudOptions {
   std::filesystem::path input;
   std::filesystem::path output;
   std::filesystem::path json;
@@ -30,7 +30,7 @@ struct Options {
   SegmentMapConfig map;
 };
 
-void add_options(CLI::App& app, Options& options) {
+void add_options(CLI::App& app, SegmentCloudOptions& options) {
   app.add_option("IN", options.input,
                  "a PLY file: x y z, and optionally nx ny nz, red green blue, slice_id")
       ->required();
@@ -40,7 +40,7 @@ void add_options(CLI::App& app, Options& options) {
   add_segmentation_options(app, options.map);
 }
 
-void validate(const Options& options) {
+void validate(const SegmentCloudOptions& options) {
   options.input_config.validate();
   options.map.validate();
   for (const auto& path : {options.output, options.json}) {
@@ -80,7 +80,7 @@ std::unique_ptr<SegmentMap> segment_slices(const CloudSlices& slices,
 }
 
 void write_labelled_cloud(const SegmentMap& map, const CloudSlices& slices, const PlyCloud& cloud,
-                          const Options& options) {
+                          const SegmentCloudOptions& options) {
   const auto labels = labels_in_input_order(map, slices);
   LabelledPlyWriter writer(options.output, static_cast<std::int64_t>(cloud.points_W.size()),
                            {"segmented by kintsugi-segment-cloud, mode " + options.map.mode,
@@ -94,7 +94,7 @@ void write_labelled_cloud(const SegmentMap& map, const CloudSlices& slices, cons
   }
 }
 
-void run(const Options& options) {
+void run(const SegmentCloudOptions& options) {
   const auto [cloud, resolution_m] = read_cloud(options.input, options.input_config);
   const CloudSlices slices =
       cut_into_slices(cloud, resolution_m, options.input.filename().string());
@@ -115,7 +115,7 @@ int main(int argc, char** argv) {
     spdlog::set_default_logger(spdlog::stderr_color_mt("kintsugi-segment-cloud"));
     spdlog::set_pattern("%^%l%$: %v");
     CLI::App app{"Segments a point cloud from a PLY file (Felzenszwalb and Huttenlocher; Finman)."};
-    Options options;
+    SegmentCloudOptions options;
     add_options(app, options);
     CLI11_PARSE(app, argc, argv);
     validate(options);
