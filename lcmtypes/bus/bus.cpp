@@ -89,7 +89,7 @@ std::int64_t new_session() { return wall_clock_us(); }
 std::string default_bus_url() {
   const char* url = std::getenv("LCM_DEFAULT_URL");
   if (url != nullptr && *url != '\0') return url;
-  return std::string("udpm://") + kGroup + ":7667?ttl=0";
+  return std::string("udpm://").append(kGroup).append(":7667?ttl=0");
 }
 
 std::optional<std::string> receive_buffer_advice() {

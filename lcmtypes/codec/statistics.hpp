@@ -10,7 +10,7 @@ namespace kintsugi::codec {
 
 inline void check_statistic(const Check& check, const StatisticsField& field, float value) {
   if (std::isfinite(value)) return;
-  check.fail((std::string("statistics ") + field.name).c_str(), value, "a finite number");
+  check.fail(std::string("statistics ").append(field.name).c_str(), value, "a finite number");
 }
 inline void check_statistic(const Check& check, const StatisticsField& field,
                             const float (&values)[3]) {
@@ -18,7 +18,7 @@ inline void check_statistic(const Check& check, const StatisticsField& field,
 }
 inline void check_statistic(const Check& check, const StatisticsField& field, std::int32_t value) {
   if (value >= 0) return;
-  check.fail((std::string("statistics ") + field.name).c_str(), value, ">= 0");
+  check.fail(std::string("statistics ").append(field.name).c_str(), value, ">= 0");
 }
 // Every unsigned value is valid.
 inline void check_statistic(const Check&, const StatisticsField&, std::uint32_t) {}
