@@ -58,10 +58,6 @@ class SeenSpace {
   std::unordered_set<std::int64_t> cells_;
 };
 
-bool is_located(TrackingState state) {
-  return state == TrackingState::kTracking || state == TrackingState::kGiven;
-}
-
 }  // namespace
 
 std::vector<FrameOutcome> run_plan(const Recording& recording, const Plan& plan, bool with_color,
