@@ -12,6 +12,7 @@
 
 #include <CLI/CLI.hpp>
 #include <spdlog/fmt/fmt.h>
+
 #include "segmenter/core/parameters/presets.hpp"
 
 namespace kintsugi::segmenter {

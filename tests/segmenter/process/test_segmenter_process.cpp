@@ -7,8 +7,8 @@
 #include <lcm/lcm-cpp.hpp>
 
 #include "lcmtypes/channels.hpp"
-#include "segmenter/io/ply/ply_reader.hpp"
 #include "segmenter/core/parameters/presets.hpp"
+#include "segmenter/io/ply/ply_reader.hpp"
 #include "segmenter/process/process_status.hpp"
 #include "segmenter/process/segmenter_process.hpp"
 #include "tests/segmenter/evaluation/session/log_of_slices.hpp"

@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "segmenter/core/graph/edge_weight.hpp"
-#include "segmenter/evaluation/paper/theta_history.hpp"
 #include "segmenter/core/make_engine.hpp"
+#include "segmenter/evaluation/paper/theta_history.hpp"
 #include "tests/segmenter/core/random_clouds.hpp"
 
 namespace kintsugi::segmenter {
