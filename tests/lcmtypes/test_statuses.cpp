@@ -17,8 +17,8 @@ namespace {
 
 /// The names of the fields behind the checksum, in the order of the .lcm file.
 std::vector<std::string> fields_of_lcm_file(const std::string& process) {
-  const auto root = std::filesystem::path(__FILE__).parent_path().parent_path().parent_path();
-  std::ifstream file(root / "lcmtypes" / ("kintsugi_" + process + "_status_t.lcm"));
+  const std::filesystem::path folder(KINTSUGI_LCM_FILES);
+  std::ifstream file(folder / ("kintsugi_" + process + "_status_t.lcm"));
   const std::regex field("^  [a-z0-9_]+ ([a-z0-9_]+);.*");
   std::vector<std::string> names;
   std::smatch match;
