@@ -251,7 +251,8 @@ TEST_F(SavedMapFile, IsRefusedWhenItIsNoStateOfAMap) {
   expect_refused([](auto& s) { s.slices[0].rejected[0] = -1; }, "slice 0 has 5 points");
   expect_refused([](auto& s) { s.slices[0].num_points = 7; }, "");
   expect_refused([](auto& s) { s.slices[0].num_points = -7; }, "of -7 points");
-  expect_refused([](auto& s) { s.points_W[2].y = NAN; }, "slice 0 has a point that may not");
+  expect_refused([](auto& s) { s.points_W[2].y = NAN; },
+                 "slice 0 has an accepted point that is inadmissible");
   expect_refused([](auto& s) { s.final_slice_id = 4; }, "the final slice 4");
   expect_refused([](auto& s) { s.last_changes.pop_back(); }, "last changes");
   expect_refused([](auto& s) { s.last_changes[0].slice_id = 2; }, "changed with slice 2");

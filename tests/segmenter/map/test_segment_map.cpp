@@ -111,8 +111,8 @@ TEST_P(SegmentMapTest, RefusesWhatIsNotNewer) {
   slices[0].revision = 3;
   SegmentMap map = make_map(GetParam(), slices[0]);
   map.add({slices.data(), 1});
-  EXPECT_THAT([&] { map.add(slices); },
-              ThrowsMessage<std::invalid_argument>(HasSubstr("slice 0 of revision 3 is in the")));
+  EXPECT_THAT([&] { map.add(slices); }, ThrowsMessage<std::invalid_argument>(
+                                            HasSubstr("slice 0 of revision 3 is already in the")));
   slices[0].revision = 2;
   EXPECT_THAT([&] { map.add(slices); }, ThrowsMessage<std::invalid_argument>(HasSubstr("3")));
   EXPECT_EQ(map.cloud().slices().size(), 1U);

@@ -213,9 +213,9 @@ TEST(Integrator, RefusesAFrameThatDoesNotFitAndLeavesTheVolume) {
     };
   };
   EXPECT_THAT(refusal([](View& v) { v.frame.depth_m = v.frame.depth_m.rowRange(0, 200).clone(); }),
-              ThrowsMessage<std::invalid_argument>(HasSubstr("depth_m is 320 x 200")));
+              ThrowsMessage<std::invalid_argument>(HasSubstr("depth_m is 320x200")));
   EXPECT_THAT(refusal([](View& v) { v.frame.color_rgb = cv::Mat_<cv::Vec3b>(10, 20); }),
-              ThrowsMessage<std::invalid_argument>(HasSubstr("color_rgb is 20 x 10")));
+              ThrowsMessage<std::invalid_argument>(HasSubstr("color_rgb is 20x10")));
   EXPECT_THAT(refusal([](View& v) { v.frame.intrinsics.fx = 0.0; }),
               ThrowsMessage<std::invalid_argument>(HasSubstr("fx")));
   EXPECT_THAT(refusal([](View& v) { v.frame.intrinsics.distortion[4] = 0.1; }),
