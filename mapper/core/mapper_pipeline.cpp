@@ -1,5 +1,8 @@
 #include "mapper/core/mapper_pipeline.hpp"
 
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
 #include <iterator>
 #include <utility>
 
@@ -14,6 +17,10 @@ Eigen::AlignedBox3d region_of(const TsdfVolume& volume) {
   const Eigen::Vector3d reach = Eigen::Vector3d::Constant(half_side_m);
   return {volume.center_W() - reach, volume.center_W() + reach};
 }
+
+/// The surface of the model deviates from the true one by about this even if depth is exact: it is
+/// interpolated between voxels.
+constexpr double kModelNoise_vox = 0.125;
 
 }  // namespace
 
@@ -33,6 +40,7 @@ MapperPipeline::MapperPipeline(const Config& config)
       integrator_(config.integrator),
       raycaster_(config.raycaster),
       tracker_(config.tracker),
+      noise_(std::getenv("NOISE0") ? DepthNoise{atof(std::getenv("NOISE0")),atof(std::getenv("NOISE1")),atof(std::getenv("NOISE2"))} : config.noise, kModelNoise_vox * config.volume.resolution_m),
       relocalizer_(config.relocalizer),
       slice_worker_(config.slices) {}
 
@@ -44,6 +52,9 @@ FrameResult MapperPipeline::process(const RgbdFrame& frame) {
   clock.end_of(&StageTimes::prepare_ms);
   result.tracking = locate(input);
   clock.end_of(&StageTimes::track_ms);
+  if (result.tracking.state == TrackingState::kLost && tracker_.is_coasting(frame.utime)) {
+    model_ = model_from(tracker_.predict(frame.utime), input.surface_C.front().intrinsics, {});
+  }
   if (is_located(result.tracking.state)) {
     X_WC_ = result.tracking.X_WC;
     result.slices_left = shift(frame, X_WC_);
@@ -69,7 +80,7 @@ TrackingInput MapperPipeline::prepare(const RgbdFrame& frame) const {
   return {frame.utime,
           pyramid_from_depth(frame.depth_m, frame.intrinsics, halvings(frame.intrinsics),
                              static_cast<int>(config_.tracker.registration.iterations.size()),
-                             static_cast<float>(config_.integrator.max_depth_m)),
+                             static_cast<float>(config_.integrator.max_depth_m), noise_.noise()),
           frame.color_rgb};
 }
 
@@ -79,6 +90,8 @@ TrackingResult MapperPipeline::locate(const TrackingInput& input) {
   TrackingResult result = tracker_.track(input, *model_);
   if (result.state == TrackingState::kLost) {
     if (const auto found = find_again(input)) result = *found;
+  } else {
+    learn_noise(input, result.X_WC);
   }
   return result;
 }
@@ -100,6 +113,13 @@ TrackingResult MapperPipeline::start(const TrackingInput& input) {
     result.state = TrackingState::kTracking;
   }
   return result;
+}
+
+void MapperPipeline::learn_noise(const TrackingInput& input, const Pose& X_WC) {
+  if (!config_.learn_noise) return;
+  const std::size_t level = std::min<std::size_t>(1, input.surface_C.size() - 1);
+  noise_.add(input.surface_C[level], model_->surface_V[level], model_->X_WV.inverse() * X_WC);
+  if (std::getenv("DBG")) std::fprintf(stderr, "NOISE %lld %.5f %.5f %.5f\n", (long long)input.utime, noise_.noise().base_m, noise_.noise().share, noise_.noise().growth_per_m);
 }
 
 std::optional<TrackingResult> MapperPipeline::find_again(const TrackingInput& input) {
@@ -128,7 +148,7 @@ Model MapperPipeline::model_from(const Pose& X_WV, const Intrinsics& camera,
                                  const cv::Mat_<float>& guide_depth_m) const {
   return {pyramid_from_surface(raycaster_.raycast(volume_, X_WV, camera, guide_depth_m),
                                static_cast<int>(config_.tracker.registration.iterations.size())),
-          X_WV, region_of(volume_)};
+          X_WV, config_.volume.resolution_m, region_of(volume_)};
 }
 
 int MapperPipeline::halvings(const Intrinsics& intrinsics) const {

@@ -15,6 +15,7 @@
 #include "mapper/core/fusion/raycaster.hpp"
 #include "mapper/core/relocalization/relocalizer.hpp"
 #include "mapper/core/stage_times.hpp"
+#include "mapper/core/tracking/noise_estimator.hpp"
 #include "mapper/core/tracking/tracker.hpp"
 #include "mapper/core/volume/tsdf_volume.hpp"
 
@@ -53,6 +54,8 @@ class MapperPipeline {
     Tracker::Config tracker;
     Relocalizer::Config relocalizer;
     SliceWorker::Config slices;
+    DepthNoise noise;         ///< of the camera's depth
+    bool learn_noise = true;  ///< `noise` is only where the estimate starts
     int finest_tracking_width_px = 320;  ///< images are halved while at least this remains
     Trajectory given_path;  ///< if not empty, replaces tracking; a frame without a pose is lost
 
@@ -76,6 +79,7 @@ class MapperPipeline {
   std::int64_t num_blocks() const { return static_cast<std::int64_t>(volume_.num_blocks()); }
   int num_keyframes() const { return relocalizer_.num_keyframes(); }
   std::int64_t volume_bytes() const { return static_cast<std::int64_t>(volume_.memory_bytes()); }
+  const DepthNoise& noise() const { return noise_.noise(); }
   double extraction_ms() const { return slice_worker_.busy_ms(); }
 
  private:
@@ -83,6 +87,7 @@ class MapperPipeline {
   TrackingResult locate(const TrackingInput& input);
   TrackingResult locate_on_given_path(std::int64_t utime) const;
   TrackingResult start(const TrackingInput& input);
+  void learn_noise(const TrackingInput& input, const Pose& X_WC);
   int shift(const RgbdFrame& frame, const Pose& X_WC);
   std::optional<TrackingResult> find_again(const TrackingInput& input);
   void update_model(const RgbdFrame& frame, const TrackingInput& input);
@@ -96,6 +101,7 @@ class MapperPipeline {
   Integrator integrator_;
   Raycaster raycaster_;
   Tracker tracker_;
+  NoiseEstimator noise_;
   Relocalizer relocalizer_;
   SliceWorker slice_worker_;
   std::optional<Model> model_;    ///< none before the first fused frame

@@ -1,5 +1,6 @@
 #include "mapper/core/frame/kernel_arguments.hpp"
 
+#include <algorithm>
 #include <cassert>
 
 #include "mapper/core/frame/camera.hpp"
@@ -31,6 +32,18 @@ RigidMotion rigid_motion(const Pose& X_BA) {
     motion.t[i] = static_cast<float>(X_BA.translation()(i));
   }
   return motion;
+}
+
+DepthVariance depth_variance(const DepthNoise& noise) {
+  return {{static_cast<float>(noise.base_m * noise.base_m),
+           static_cast<float>(noise.share * noise.share),
+           static_cast<float>(noise.growth_per_m * noise.growth_per_m)}};
+}
+
+DepthTolerance depth_tolerance(const DepthNoise& noise, const Intrinsics& intrinsics) {
+  const double focal_length_px = std::min(intrinsics.fx, intrinsics.fy);
+  return {.variance = depth_variance(noise),
+          .slope = DepthTolerance::kSlope / static_cast<float>(focal_length_px)};
 }
 
 }  // namespace kintsugi::mapper

@@ -6,6 +6,7 @@
 #include <opencv2/core.hpp>
 
 #include "lcmtypes/geometry.hpp"
+#include "mapper/core/frame/depth_noise.hpp"
 
 namespace kintsugi::mapper {
 
@@ -16,6 +17,7 @@ namespace kintsugi::mapper {
 /// register.
 struct SurfaceMap {
   Intrinsics intrinsics;     ///< without distortion
+  DepthNoise noise;          ///< of measured depths; a raycast surface does not use it
   cv::Mat_<float> depth_m;   ///< height x width, along the camera's z; invalid is NaN
   cv::Mat_<float> normal_x;  ///< unit normal towards the camera; invalid is NaN in all three
   cv::Mat_<float> normal_y;

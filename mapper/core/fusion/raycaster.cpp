@@ -71,7 +71,7 @@ SurfaceMap Raycaster::raycast(const TsdfVolume& volume, const Pose& X_WC,
       kernels.raycast_tile(access, arguments, tiles[i]);
     }
   });
-  return surface_from_depth(depth_m, intrinsics, kernels);
+  return surface_from_depth(depth_m, intrinsics, {}, kernels);
 }
 
 }  // namespace kintsugi::mapper

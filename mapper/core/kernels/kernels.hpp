@@ -16,6 +16,7 @@ struct Kernels {
   FindMissingBlocks find_missing_blocks = nullptr;
   IntegrateBlock integrate_block = nullptr;
   LinearizeRows linearize_rows = nullptr;
+  SmoothDepthRow smooth_depth_row = nullptr;
   HalveDepthRow halve_depth_row = nullptr;
   NormalsRow normals_row = nullptr;
   HalveSurfaceRow halve_surface_row = nullptr;

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "mapper/core/kernels/depth_variance.hpp"
 #include "mapper/core/kernels/surface_planes.hpp"
 
 namespace kintsugi::mapper {
@@ -11,12 +12,11 @@ struct LinearizationInput {
   SurfacePlanes frame_C;
   SurfacePlanes model_V;
   RigidMotion X_VC;
+  // The two points of a pair are at most sqrt(max_squared_distance_m2 + (max_distance_sigmas sigma)^2) apart.
   float max_squared_distance_m2 = 0.0F;
+  float max_distance_sigmas = 0.0F;
   float min_normal_cosine = 0.0F;
-  // Standard deviation of a depth z: base + growth (z - nearest)^2, metres.
-  float sigma_base_m = 0.0F;
-  float sigma_growth_per_m = 0.0F;
-  float sigma_nearest_m = 0.0F;
+  DepthVariance variance;  ///< of the frame's depths
   // A point is behind or in front of the model's surface when its depth differs by more than
   // max(agreement_sigmas * sigma, agreement_distance_m).
   float agreement_sigmas = 0.0F;

@@ -7,7 +7,6 @@
 #include <tbb/parallel_for.h>
 
 #include "mapper/core/frame/kernel_arguments.hpp"
-#include "mapper/core/registration/depth_noise.hpp"
 
 namespace kintsugi::mapper {
 namespace {
@@ -22,10 +21,9 @@ LinearizationInput make_input(const SurfaceMap& frame_C, const SurfaceMap& model
   input.model_V = planes_of(model_V);
   input.X_VC = rigid_motion(X_VC);
   input.max_squared_distance_m2 = static_cast<float>(gates.max_distance_m * gates.max_distance_m);
+  input.max_distance_sigmas = static_cast<float>(gates.max_distance_sigmas);
   input.min_normal_cosine = static_cast<float>(gates.min_normal_cosine);
-  input.sigma_base_m = static_cast<float>(kDepthSigmaBase_m);
-  input.sigma_growth_per_m = static_cast<float>(kDepthSigmaGrowth_per_m);
-  input.sigma_nearest_m = static_cast<float>(kDepthSigmaNearest_m);
+  input.variance = depth_variance(frame_C.noise);
   input.agreement_sigmas = static_cast<float>(SurfaceAgreement::kSigmas);
   input.agreement_distance_m = static_cast<float>(SurfaceAgreement::kDistance_m);
   return input;

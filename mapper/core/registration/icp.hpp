@@ -14,7 +14,10 @@ namespace kintsugi::mapper {
 
 /// Which pairs of a frame point and a model point are inliers.
 struct IcpGates {
-  double max_distance_m = 0.1;     ///< between the two points
+  /// The two points are at most sqrt(max_distance_m^2 + (max_distance_sigmas sigma(z))^2) apart:
+  /// by the motion that the prediction missed, and by the noise.
+  double max_distance_m = 0.1;
+  double max_distance_sigmas = 3.0;
   double min_normal_cosine = 0.8;  ///< between the two normals
 };
 
@@ -25,7 +28,7 @@ struct SurfaceAgreement {
   std::int64_t behind = 0;    ///< of these: farther than the model's surface
   std::int64_t in_front = 0;  ///< of these: nearer than the model's surface
 
-  /// Farther or nearer by more than kSigmas times depth_sigma_m() and more than kDistance_m.
+  /// Farther or nearer by more than kSigmas times sigma(z) and more than kDistance_m.
   static constexpr double kSigmas = 3.0;
   static constexpr double kDistance_m = 0.02;
 };

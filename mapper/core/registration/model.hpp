@@ -13,6 +13,7 @@ namespace kintsugi::mapper {
 struct Model {
   SurfacePyramid surface_V;
   Pose X_WV = Pose::Identity();
+  double voxel_m = 0.0087890625;  ///< side of the map's voxels
   /// Where the map can have surface, metres: frame points outside count neither for nor against a
   /// pose.
   Eigen::AlignedBox3d region_W{Eigen::Vector3d::Constant(-std::numeric_limits<double>::infinity()),

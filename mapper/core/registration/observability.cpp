@@ -1,15 +1,17 @@
 #include "mapper/core/registration/observability.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/QR>
 #include <cmath>
 
 #include "lcmtypes/base/argument_check.hpp"
 #include "mapper/core/frame/camera.hpp"
-#include "mapper/core/registration/depth_noise.hpp"
 #include "mapper/core/registration/pose_uncertainty.hpp"
 
 namespace kintsugi::mapper {
 namespace {
+
+constexpr double kNoPrior = 1e6;  ///< metres or radians: nothing is known beforehand
 
 /// Pairs each pixel of a frame with the model pixel onto which it projects.
 class NormalPairs {
@@ -22,6 +24,8 @@ class NormalPairs {
         R_VC_(X_VC.linear().cast<float>()),
         p_VC_(X_VC.translation().cast<float>()),
         max_squared_distance_(static_cast<float>(gates.max_distance_m * gates.max_distance_m)),
+        squared_sigmas_(
+            static_cast<float>(gates.max_distance_sigmas * gates.max_distance_sigmas)),
         min_cosine_(static_cast<float>(gates.min_normal_cosine)) {}
 
   InformationSum sum_rows(int first, int last) const {
@@ -45,11 +49,12 @@ class NormalPairs {
     const int row = static_cast<int>(y);
     const Eigen::Vector3f model_normal = model_.normal(row, col);
     const Eigen::Vector3f frame_normal = R_VC_ * frame_.normal(v, u);
-    if (!((model_.point(row, col) - p).squaredNorm() < max_squared_distance_)) return;
+    const auto variance_m2 = static_cast<float>(frame_.noise.variance_m2(frame_.depth_m(v, u)));
+    const float max_squared = max_squared_distance_ + squared_sigmas_ * variance_m2;
+    if (!((model_.point(row, col) - p).squaredNorm() < max_squared)) return;
     if (!(frame_normal.dot(model_normal) > min_cosine_)) return;
-    const auto sigma_m = static_cast<float>(depth_sigma_m(frame_.depth_m(v, u)));
     sum.add(increment_row(model_normal, p), increment_row(frame_normal, p),
-            1.0F / (sigma_m * sigma_m));
+            1.0F / variance_m2);
   }
 
   const SurfaceMap& frame_;
@@ -58,6 +63,7 @@ class NormalPairs {
   Eigen::Matrix3f R_VC_;
   Eigen::Vector3f p_VC_;
   float max_squared_distance_;
+  float squared_sigmas_;
   float min_cosine_;
 };
 
@@ -67,6 +73,8 @@ void ObservabilityConfig::validate() const {
   check_range("min_reliability", min_reliability, 1e-3, 1.0);
   check_range("prior_m", prior_m, 1e-6, 1e3);
   check_range("prior_rad", prior_rad, 1e-6, 1e3);
+  check_range("max_weak_priors", max_weak_priors, 1e-3, 1e3);
+  check_range("min_purity", min_purity, 1e-3, 1.0);
 }
 
 Information independent(const Information& information, std::size_t num_pixels) {
@@ -93,6 +101,28 @@ ObservableSplit split_observable(const Information& information, const TwistBasi
   split.least_reliability = reliability(0);
   if (num_open < space.cols()) split.least_determined = reliability(num_open);
   return split;
+}
+
+PureInformation pure_information(const Information& information, const TwistBasis& space,
+                                 const ObservabilityConfig& config) {
+  PureInformation pure;
+  if (space.cols() == 0) return pure;
+  ObservabilityConfig no_prior = config;
+  no_prior.prior_m = no_prior.prior_rad = kNoPrior;
+  no_prior.min_reliability = config.min_purity;
+  const ObservableSplit split = split_observable(information, space, no_prior);
+  if (split.determined.cols() == 0) return pure;
+  // The columns of B are scaled to B' A B = 1, and B' C B is diagonal.
+  TwistBasis B(6, space.cols());
+  B << split.determined, split.open;
+  Eigen::VectorXd share = Eigen::VectorXd::Zero(B.cols());
+  for (Eigen::Index i = 0; i < split.determined.cols(); ++i) {
+    share(i) = std::min(1.0, B.col(i).dot(information.C * B.col(i)));
+  }
+  const Eigen::MatrixXd inverse = B.completeOrthogonalDecomposition().pseudoInverse();
+  pure.information = inverse.transpose() * share.asDiagonal() * inverse;
+  pure.weighting = B * share.cwiseSqrt().asDiagonal() * inverse;
+  return pure;
 }
 
 Information geometric_information(const SurfaceMap& frame_C, const SurfaceMap& model_V,

@@ -36,6 +36,12 @@ struct ObservabilityConfig {
   double min_reliability = 0.125;
   double prior_m = 0.003;    ///< standard deviation of the predicted position,
   double prior_rad = 0.003;  ///< and of the predicted orientation
+  /// Directions that are measured less certainly than predicted count as determined all the same if
+  /// their deviation is at most this, in units of the prior's: enough for the map.
+  double max_weak_priors = 7.0;
+  /// Least share of depth's information on a direction, not determined by depth alone, that is no
+  /// noise of the normals. The noise of an image scatters rho by far less.
+  double min_purity = 0.2;
 
   /// @throws std::invalid_argument naming field, value and bound
   void validate() const;
@@ -48,6 +54,17 @@ Information independent(const Information& information, std::size_t num_pixels);
 /// Splits the span of `space` (its columns): `determined` has the eigenvectors with rho at least
 /// min_reliability, `open` the others; each scaled to xi' (A + P) xi = 1.
 ObservableSplit split_observable(const Information& information, const TwistBasis& space,
+                                 const ObservabilityConfig& config);
+
+/// What depth knows of the directions in a space although it does not determine them.
+struct PureInformation {
+  Matrix6d information = Matrix6d::Zero();  ///< without the part that is noise of the normals
+  /// Square root of the share of the information that is no noise: W' A W is that part of A.
+  Matrix6d weighting = Matrix6d::Zero();
+};
+
+/// Directions of which less than min_purity is no noise are left out altogether.
+PureInformation pure_information(const Information& information, const TwistBasis& space,
                                  const ObservabilityConfig& config);
 
 /// The information of point-to-plane pairs, as linearize() forms them, on the left increment of

@@ -5,7 +5,6 @@
 
 #include "lcmtypes/base/argument_check.hpp"
 #include "mapper/core/frame/camera.hpp"
-#include "mapper/core/registration/depth_noise.hpp"
 
 namespace kintsugi::mapper {
 namespace {
@@ -88,7 +87,7 @@ class PixelPairs {
     const float seen_m =
         depth_m(static_cast<int>(std::lround(y)), static_cast<int>(std::lround(x)));
     const double allowed_m =
-        std::max(config_.min_depth_step_m, config_.depth_sigmas * depth_sigma_m(point_K.z()));
+        std::max(config_.min_depth_step_m, config_.depth_sigmas * frame_.surface.noise.sigma_m(point_K.z()));
     if (!(std::abs(seen_m - point_K.z()) < allowed_m)) return std::nullopt;  // false for a NaN
     return Eigen::Vector2f(x, y);
   }

@@ -47,7 +47,7 @@ struct PhotometricConfig {
   double sigma = 0.015;         ///< standard deviation of a residual; intensities are 0 to 1
   double huber_sigmas = 1.345;  ///< larger residuals are weighted down
   /// A point is hidden in the reference where it differs from the depth there by more than
-  /// max(depth_sigmas * depth_sigma_m(), min_depth_step_m).
+  /// max(depth_sigmas * sigma(z), min_depth_step_m).
   double depth_sigmas = 3.0;
   double min_depth_step_m = 0.02;
 

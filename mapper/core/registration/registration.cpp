@@ -29,8 +29,9 @@ RegistrationQuality quality_of(const NormalEquations& equations, std::size_t num
     quality.in_front_share = static_cast<double>(equations.agreement.in_front) / overlap;
   }
   if (equations.inliers > 0) {
-    quality.rms_m =
-        std::sqrt(equations.squared_residuals_m2 / static_cast<double>(equations.inliers));
+    const auto inliers = static_cast<double>(equations.inliers);
+    quality.rms_m = std::sqrt(equations.squared_residuals_m2 / inliers);
+    quality.rms_sigmas = std::sqrt(equations.weighted_squares / inliers);
   }
   return quality;
 }
@@ -44,7 +45,7 @@ class CoarseToFine {
         config_(config),
         coarsest_(static_cast<int>(config.iterations.size()) - 1),
         wide_(wide),
-        solver_(colors, model.X_WV, config.steps),
+        solver_(frame.surface_C, model, colors, config.steps),
         X_VC_(model.X_WV.inverse() * X_WC_start) {}
 
   Registration run() {
@@ -99,8 +100,9 @@ class CoarseToFine {
     RegistrationQuality& quality = registration.quality;
     quality = quality_of(equations_, num_pixels);
     quality.solved = solved;
+    quality.voxel_m = model_.voxel_m;
     quality.covered_share = covered_share(frame_C_.front(), registration.X_WC, model_.region_W);
-    quality.sigma_m = pose_sigma_m(equations_.A + step_.photometric_information, X_VC_,
+    quality.sigma_m = pose_sigma_m(equations_.A + step_.further_information, X_VC_,
                                    static_cast<int>(num_pixels));
     quality.undetermined = static_cast<int>(step_.undetermined.cols());
     const Matrix6d to_C = adjoint(X_VC_.inverse());
@@ -135,6 +137,7 @@ void RegistrationConfig::validate() const {
   check_range("wide_gate_factor", wide_gate_factor, 1.0, 100.0);
   check_range("wide_iteration_factor", wide_iteration_factor, 1, 100);
   steps.observability.validate();
+  steps.edges.validate();
   steps.photometric.validate();
 }
 

@@ -14,7 +14,9 @@ struct RegistrationQuality {
                                 ///< cannot see through a surface, so many mean a wrong pose
   double in_front_share = 0.0;  ///< points clearly in front of it / overlap; may be a new object
   double rms_m = 0.0;           ///< of the point-to-plane residuals of the inliers
+  double rms_sigmas = 0.0;      ///< the same, each in units of the noise of its depth
   double sigma_m = 0.0;         ///< uncertainty of the pose, see pose_sigma_m()
+  double voxel_m = 0.0;         ///< side of the model's voxels
   bool solved = false;          ///< the normal equations had a solution at every step
   int undetermined = 0;         ///< directions of motion that neither depth nor colour determines
 };

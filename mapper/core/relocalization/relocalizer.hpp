@@ -38,8 +38,9 @@ class Relocalizer {
                            .min_inlier_share = 0.4,
                            .max_behind_share = 0.16,
                            .max_in_front_share = 0.2,
-                           .max_rms_m = 0.014,
-                           .max_sigma_m = 0.01};
+                           .max_rms_vox = 1.6,
+                           .max_rms_sigmas = 2.2,
+                           .max_sigma_vox = 1.15};
 
     /// @throws std::invalid_argument naming field, value and bound
     void validate() const;

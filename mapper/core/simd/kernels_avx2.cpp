@@ -14,6 +14,7 @@ const Kernels kAvx2Kernels = {
     .find_missing_blocks = find_missing_blocks<Avx2Pack>,
     .integrate_block = integrate_block<Avx2Pack>,
     .linearize_rows = linearize_rows<Avx2Pack>,
+    .smooth_depth_row = SurfaceRows<Avx2Pack>::smooth_depth,
     .halve_depth_row = SurfaceRows<Avx2Pack>::halve_depth,
     .normals_row = SurfaceRows<Avx2Pack>::normals,
     .halve_surface_row = SurfaceRows<Avx2Pack>::halve_surface,

@@ -14,6 +14,7 @@ const Kernels kAvx512Kernels = {
     .find_missing_blocks = find_missing_blocks<Avx512Pack>,
     .integrate_block = integrate_block<Avx512Pack>,
     .linearize_rows = linearize_rows<Avx512Pack>,
+    .smooth_depth_row = SurfaceRows<Avx512Pack>::smooth_depth,
     .halve_depth_row = SurfaceRows<Avx512Pack>::halve_depth,
     .normals_row = SurfaceRows<Avx512Pack>::normals,
     .halve_surface_row = SurfaceRows<Avx512Pack>::halve_surface,

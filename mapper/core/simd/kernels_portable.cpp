@@ -14,6 +14,7 @@ const Kernels kPortableKernels = {
     .find_missing_blocks = find_missing_blocks<PortablePack>,
     .integrate_block = integrate_block<PortablePack>,
     .linearize_rows = linearize_rows<PortablePack>,
+    .smooth_depth_row = SurfaceRows<PortablePack>::smooth_depth,
     .halve_depth_row = SurfaceRows<PortablePack>::halve_depth,
     .normals_row = SurfaceRows<PortablePack>::normals,
     .halve_surface_row = SurfaceRows<PortablePack>::halve_surface,

@@ -2,6 +2,7 @@
 // LinearizeRows over any pack: sixteen pixels of the frame at a time.
 
 #include "mapper/core/kernels/linearization.hpp"
+#include "mapper/core/simd/depth_sigma.hpp"
 
 namespace kintsugi::mapper {
 
@@ -67,14 +68,14 @@ class RowLinearization {
 
     const Association model = associate(point, is_measured);
     if (none(model.exists)) return;
-    const Float from_nearest = depth - Float(in_.sigma_nearest_m);
-    const Float sigma =
-        Float(in_.sigma_base_m) + Float(in_.sigma_growth_per_m) * (from_nearest * from_nearest);
+    const Float sigma = depth_sigma_m(in_.variance, depth);
     compare_depths(point.z, model, sigma);
 
     const Vector offset = {model.point.x - point.x, model.point.y - point.y,
                            model.point.z - point.z};
-    const Mask is_near = model.exists & (dot(offset, offset) < Float(in_.max_squared_distance_m2));
+    const Float noise = Float(in_.max_distance_sigmas) * sigma;
+    const Mask is_near =
+        model.exists & (dot(offset, offset) < Float(in_.max_squared_distance_m2) + noise * noise);
     if (none(is_near)) return;
     const Vector frame_normal = rotated({Float::load(frame.normal_x + pixel, count),
                                          Float::load(frame.normal_y + pixel, count),

@@ -2,14 +2,39 @@
 // The kernels of surface.hpp over any pack: sixteen pixels at a time.
 
 #include "mapper/core/kernels/surface.hpp"
+#include "mapper/core/simd/depth_sigma.hpp"
 
 namespace kintsugi::mapper {
 
 template <typename Pack>
 class SurfaceRows {
  public:
-  static void halve_depth(const float* upper_m, const float* lower_m, float max_depth_m, int width,
-                          float* half_m) {
+  static void smooth_depth(const float* padded_m, int width, int v,
+                           const DepthTolerance& tolerance, float* smooth_m) {
+    constexpr int kReach = kSmoothingReach_px;
+    const int pitch = width + 2 * kReach;
+    const float* upper_left = padded_m + v * pitch;
+    for (int u = 0; u < width; u += Pack::kNumLanes) {
+      const int count = lanes_until(width - u);
+      const Float here = Float::load(upper_left + kReach * pitch + kReach + u, count);
+      const Float largest_step = same_surface_m(tolerance, here, kReach);
+      Float sum(0.0F);
+      Float number(0.0F);
+      for (int dv = 0; dv <= 2 * kReach; ++dv) {
+        for (int du = 0; du <= 2 * kReach; ++du) {
+          const Float depth = Float::load(upper_left + dv * pitch + du + u, count);
+          const Mask is_same = abs(depth - here) < largest_step;
+          sum = sum + select(is_same, depth, Float(0.0F));
+          number = number + select(is_same, Float(1.0F), Float(0.0F));
+        }
+      }
+      select(number > Float(0.0F), sum / number, Float(kNaN))
+          .store(smooth_m + u, Mask::first(count));
+    }
+  }
+
+  static void halve_depth(const float* upper_m, const float* lower_m, float max_depth_m,
+                          const DepthTolerance& tolerance, int width, float* half_m) {
     for (int u = 0; u < width; u += Pack::kNumLanes) {
       const int count = lanes_until(width - u);
       const int first = 2 * u;
@@ -17,24 +42,26 @@ class SurfaceRows {
       for (Float& z : depth.of) {
         z = select((z > Float(0.0F)) & (z <= Float(max_depth_m)), z, Float(kInfinity));
       }
-      const Nearest nearest(depth);
+      const Nearest nearest(depth, tolerance);
       nearest.mean(depth).store(half_m + u, Mask::first(count));
     }
   }
 
-  static void normals(const MutableSurfacePlanes& surface, int v) {
+  static void normals(const float* depth_m, const DepthTolerance& tolerance, int v,
+                      const MutableSurfacePlanes& surface) {
     const PinholeCamera& camera = surface.camera;
     const int row = v * camera.width;
     const bool is_border = v == 0 || v + 1 == camera.height;
     for (int u = 0; u < camera.width; u += Pack::kNumLanes) {
       const int count = lanes_until(camera.width - u);
       const Vector normal = is_border ? Vector{Float(kNaN), Float(kNaN), Float(kNaN)}
-                                      : normal_at(surface, v, u, count);
+                                      : normal_at(depth_m, tolerance, camera, v, u, count);
       store(normal, surface, row + u, count);
     }
   }
 
-  static void halve_surface(const SurfacePlanes& fine, int v, const MutableSurfacePlanes& half) {
+  static void halve_surface(const SurfacePlanes& fine, const DepthTolerance& tolerance, int v,
+                            const MutableSurfacePlanes& half) {
     const int width = half.camera.width;
     const int upper = 2 * v * fine.camera.width;
     const int lower = upper + fine.camera.width;
@@ -50,7 +77,7 @@ class SurfaceRows {
         const Mask is_valid = (depth.of[k] > Float(0.0F)) & (normal_z.of[k] == normal_z.of[k]);
         depth.of[k] = select(is_valid, depth.of[k], Float(kInfinity));
       }
-      const Nearest nearest(depth);
+      const Nearest nearest(depth, tolerance);
       const Vector sum = {nearest.sum(load(fine.normal_x)), nearest.sum(load(fine.normal_y)),
                           nearest.sum(normal_z)};
       const Vector normal = normalized(sum);
@@ -89,8 +116,7 @@ class SurfaceRows {
 
   static constexpr float kNaN = __builtin_nanf("");
   static constexpr float kInfinity = __builtin_inff();
-  static constexpr float kSameSurface_m = 0.05F;  ///< only depths this close are averaged
-  static constexpr float kNormalReach_m = 0.10F;  ///< no normal across a larger step in depth
+  static constexpr float kRoot2 = 1.41421356F;
 
   struct Vector {
     Float x, y, z;
@@ -100,6 +126,11 @@ class SurfaceRows {
     Float of[4];
   };
 
+  /// The largest step in depth between two pixels of the same surface, `steps` pixels apart.
+  static Float same_surface_m(const DepthTolerance& tolerance, const Float& depth_m, int steps) {
+    return Float(DepthTolerance::kSigmas * kRoot2) * depth_sigma_m(tolerance.variance, depth_m) +
+           Float(static_cast<float>(steps) * tolerance.slope) * depth_m;
+  }
   static int lanes_until(int remaining) {
     return remaining < Pack::kNumLanes ? remaining : Pack::kNumLanes;
   }
@@ -138,11 +169,12 @@ class SurfaceRows {
   /// Which of four depths (infinity: invalid) lie on the same surface as the nearest of them.
   class Nearest {
    public:
-    explicit Nearest(const Four& depth) {
+    Nearest(const Four& depth, const DepthTolerance& tolerance) {
       const Float nearest = min(min(depth.of[0], depth.of[1]), min(depth.of[2], depth.of[3]));
+      const Float largest_step = same_surface_m(tolerance, nearest, 1);
       number_ = Float(0.0F);
       for (int k = 0; k < 4; ++k) {
-        is_near_[k] = depth.of[k] - nearest < Float(kSameSurface_m);
+        is_near_[k] = depth.of[k] - nearest < largest_step;
         number_ = number_ + select(is_near_[k], Float(1.0F), Float(0.0F));
       }
     }
@@ -164,10 +196,9 @@ class SurfaceRows {
   };
 
   /// The normals of `count` pixels from column `u` on; row `v` is not at the image's border.
-  static Vector normal_at(const MutableSurfacePlanes& surface, int v, int u, int count) {
-    const PinholeCamera& camera = surface.camera;
-    const int pixel = v * camera.width + u;
-    const float* here = surface.depth_m + pixel;
+  static Vector normal_at(const float* depth_m, const DepthTolerance& tolerance,
+                          const PinholeCamera& camera, int v, int u, int count) {
+    const float* here = depth_m + v * camera.width + u;
     const auto ray_y = [&](int row) {
       return Float((static_cast<float>(row) - camera.cy) * camera.inverse_fy);
     };
@@ -186,11 +217,12 @@ class SurfaceRows {
     const Vector normal = normalized(
         {dv.y * du.z - dv.z * du.y, dv.z * du.x - dv.x * du.z, dv.x * du.y - dv.y * du.x});
     const Float column = Float(static_cast<float>(u)) + Float::iota();
-    const Float reach(kNormalReach_m);
+    const Float center = Float::load(here, count);
+    const Float reach = same_surface_m(tolerance, center, 2);
     // A NaN among the neighbours makes these comparisons false.
     const Mask is_surface =
         (column > Float(0.0F)) & (column < Float(static_cast<float>(camera.width - 1))) &
-        (Float::load(here, count) > Float(0.0F)) & (abs(du.z) < reach) & (abs(dv.z) < reach);
+        (center > Float(0.0F)) & (abs(du.z) < reach) & (abs(dv.z) < reach);
     const Float nan(kNaN);
     return {select(is_surface, normal.x, nan), select(is_surface, normal.y, nan),
             select(is_surface, normal.z, nan)};

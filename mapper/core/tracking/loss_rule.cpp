@@ -11,8 +11,9 @@ void Evidence::validate(const std::string& name) const {
   check_range(name + ".min_inlier_share", min_inlier_share, 0.0, 1.0);
   check_range(name + ".max_behind_share", max_behind_share, 0.0, 1.0);
   check_range(name + ".max_in_front_share", max_in_front_share, 0.0, 1.0);
-  check_range(name + ".max_rms_m", max_rms_m, 1e-6, 1.0);
-  check_range(name + ".max_sigma_m", max_sigma_m, 1e-6, 1e6);
+  check_range(name + ".max_rms_vox", max_rms_vox, 1e-3, 1e3);
+  check_range(name + ".max_rms_sigmas", max_rms_sigmas, 1e-3, 1e3);
+  check_range(name + ".max_sigma_vox", max_sigma_vox, 1e-3, 1e6);
 }
 
 std::optional<LossReason> find_fault(const RegistrationQuality& quality, const Evidence& needed) {
@@ -21,9 +22,12 @@ std::optional<LossReason> find_fault(const RegistrationQuality& quality, const E
   if (quality.inlier_share < needed.min_inlier_share) return LossReason::kTooFewInliers;
   if (quality.behind_share > needed.max_behind_share) return LossReason::kThroughSurface;
   if (quality.in_front_share > needed.max_in_front_share) return LossReason::kBeforeSurface;
-  if (quality.rms_m > needed.max_rms_m) return LossReason::kLargeResidual;
+  if (quality.rms_m > needed.max_rms_vox * quality.voxel_m &&
+      quality.rms_sigmas > needed.max_rms_sigmas) {
+    return LossReason::kLargeResidual;
+  }
   if (quality.undetermined > 0) return LossReason::kUndetermined;
-  if (quality.sigma_m > needed.max_sigma_m) return LossReason::kUncertain;
+  if (quality.sigma_m > needed.max_sigma_vox * quality.voxel_m) return LossReason::kUncertain;
   return std::nullopt;
 }
 

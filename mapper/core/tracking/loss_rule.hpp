@@ -31,8 +31,11 @@ struct Evidence {
   double min_inlier_share = 0.0;    ///< of the overlap
   double max_behind_share = 1.0;    ///< of the overlap
   double max_in_front_share = 1.0;  ///< of the overlap
-  double max_rms_m = 1.0;
-  double max_sigma_m = 1.0;
+  /// Larger residuals are a fault only if both are exceeded: near the camera the voxels, farther
+  /// away the noise of the depth limits how well a right pose fits.
+  double max_rms_vox = 100.0;
+  double max_rms_sigmas = 100.0;
+  double max_sigma_vox = 100.0;  ///< uncertainty of the pose
 
   /// @throws std::invalid_argument naming `name`.field, value and bound
   void validate(const std::string& name) const;
@@ -57,14 +60,16 @@ class LossRule {
                        .min_inlier_share = 0.3,
                        .max_behind_share = 0.2,
                        .max_in_front_share = 0.4,
-                       .max_rms_m = 0.014,
-                       .max_sigma_m = 0.02};
+                       .max_rms_vox = 1.6,
+                       .max_rms_sigmas = 2.2,
+                       .max_sigma_vox = 2.3};
     Evidence found_anew{.min_overlap_share = 0.25,
                         .min_inlier_share = 0.4,
                         .max_behind_share = 0.08,
                         .max_in_front_share = 0.15,
-                        .max_rms_m = 0.012,
-                        .max_sigma_m = 0.01};
+                        .max_rms_vox = 1.4,
+                        .max_rms_sigmas = 2.0,
+                        .max_sigma_vox = 1.15};
     int grace_frames = 10;  ///< accepted frames before min_inlier_share applies, because the model
                             ///< is noisy at the start
 

@@ -54,6 +54,8 @@ Tracker::Tracker(const Config& config) : config_(config), loss_rule_(config.loss
 void Tracker::start_at(const Pose& X_WC, const TrackingInput& frame, double covered_share) {
   X_WC_ = X_WC;
   utime_ = frame.utime;
+  X_WC_followed_ = X_WC_;
+  utime_followed_ = utime_;
   velocity_C_.setZero();
   motion_known_ = false;
   lost_ = false;
@@ -63,10 +65,16 @@ void Tracker::start_at(const Pose& X_WC, const TrackingInput& frame, double cove
   update_reference(known, {frame.surface_C, frame.color_rgb});
 }
 
+bool Tracker::motion_continues(std::int64_t utime) const {
+  if (!lost_) return utime - utime_ <= config_.max_prediction_us;
+  return utime - utime_followed_ <= config_.coast_us && utime - utime_ <= config_.coast_partly_us;
+}
+
 Pose Tracker::predict(std::int64_t utime) const {
-  const std::int64_t gap_us = utime - utime_;
-  if (lost_ || gap_us <= 0 || gap_us > config_.max_prediction_us) return X_WC_;
-  return X_WC_ * se3_retract(velocity_C_ * (1e-6 * static_cast<double>(gap_us)));
+  const std::int64_t gap_us = utime - utime_followed_;
+  if (!motion_continues(utime)) return X_WC_;
+  if (gap_us <= 0) return X_WC_followed_;
+  return X_WC_followed_ * se3_retract(velocity_C_ * (1e-6 * static_cast<double>(gap_us)));
 }
 
 TrackingResult Tracker::track(const TrackingInput& frame, const Model& model) {
@@ -78,14 +86,17 @@ TrackingResult Tracker::track(const TrackingInput& frame, const Model& model) {
   auto loss = follows_motion(registration.X_WC, frame.utime)
                   ? loss_rule_.judge(registration.quality)
                   : loss_rule_.judge_found_anew(registration.quality);
+  const std::optional<LossReason> first_loss = loss;
   if (loss) {
+    if (*loss == LossReason::kUndetermined) follow_partly(registration, frame.utime);
     registration = register_frame_widely(frame, model, colors, X_WC_, config_.registration);
     loss = loss_rule_.judge_found_anew(registration.quality);
   }
   loss_rule_.remember(registration.quality.covered_share, !loss);
-  if (loss) return lose(registration, *loss);
-  update_reference(registration, std::move(pyramid));
-  return accept(registration, frame);
+  if (!loss) update_reference(registration, std::move(pyramid));
+  TrackingResult result = loss ? lose(registration, *loss) : accept(registration, frame);
+  result.first_loss_reason = first_loss;
+  return result;
 }
 
 TrackingResult Tracker::register_anew(const TrackingInput& frame, const Model& model,
@@ -99,10 +110,9 @@ TrackingResult Tracker::register_anew(const TrackingInput& frame, const Model& m
 }
 
 bool Tracker::follows_motion(const Pose& X_WC, std::int64_t utime) const {
-  const std::int64_t gap_us = utime - utime_;
-  if (lost_ || gap_us > config_.max_prediction_us) return false;
+  if (!motion_continues(utime)) return false;
   if (!motion_known_) return true;
-  const double seconds = 1e-6 * static_cast<double>(gap_us);
+  const double seconds = 1e-6 * static_cast<double>(utime - utime_);
   const Pose X_PC = predict(utime).inverse() * X_WC;  // P: the predicted camera
   const double difference_m = std::max(X_PC.translation().norm(), rotation_angle_rad(X_PC));
   return difference_m < kPoseNoise_m + 0.5 * config_.max_acceleration * seconds * seconds;
@@ -126,11 +136,13 @@ void Tracker::update_reference(const Registration& registration, PhotometricPyra
 
 TrackingResult Tracker::accept(const Registration& registration, const TrackingInput& frame) {
   const double seconds = 1e-6 * static_cast<double>(frame.utime - utime_);
-  const bool continuous = !lost_ && seconds > 0.0;
+  const bool continuous = motion_continues(frame.utime) && seconds > 0.0;
   velocity_C_ = continuous ? velocity_between(X_WC_, registration.X_WC, seconds) : Vector6d::Zero();
   motion_known_ = continuous;
   X_WC_ = registration.X_WC;
   utime_ = frame.utime;
+  X_WC_followed_ = X_WC_;
+  utime_followed_ = utime_;
   lost_ = false;
 
   TrackingResult result = result_of(registration);
@@ -138,10 +150,17 @@ TrackingResult Tracker::accept(const Registration& registration, const TrackingI
   return result;
 }
 
+void Tracker::follow_partly(const Registration& registration, std::int64_t utime) {
+  if (!follows_motion(registration.X_WC, utime)) return;
+  const double seconds = 1e-6 * static_cast<double>(utime - utime_followed_);
+  if (seconds <= 0.0) return;
+  velocity_C_ = velocity_between(X_WC_followed_, registration.X_WC, seconds);
+  X_WC_followed_ = registration.X_WC;
+  utime_followed_ = utime;
+}
+
 TrackingResult Tracker::lose(const Registration& registration, LossReason reason) {
   lost_ = true;
-  velocity_C_.setZero();
-  motion_known_ = false;
   TrackingResult result = result_of(registration);
   result.state = TrackingState::kLost;
   result.X_WC = X_WC_;

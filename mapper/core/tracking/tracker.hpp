@@ -27,6 +27,12 @@ class Tracker {
   struct Config {
     RegistrationConfig registration;
     std::int64_t max_prediction_us = 500'000;  ///< no constant velocity across a longer gap
+    /// For so long a lost camera is still expected to go on with its velocity: what a hand does in
+    /// a third of a second, before it reverses.
+    std::int64_t coast_us = 300'000;
+    /// The same where only some directions of the motion are not determined, since the last good
+    /// pose.
+    std::int64_t coast_partly_us = 1'500'000;
     /// m/s^2 (and rad/s^2), of a hand-held camera: a pose farther from the prediction than this
     /// explains is judged as one found anew.
     double max_acceleration = 30.0;
@@ -61,17 +67,27 @@ class Tracker {
   /// The pose at this device time (microseconds) with constant velocity.
   Pose predict(std::int64_t utime) const;
 
+  /// Whether the last frame was lost, but the camera is still expected near predict(): its model
+  /// should be the map as seen from there.
+  bool is_coasting(std::int64_t utime) const { return lost_ && motion_continues(utime); }
+
  private:
+  bool motion_continues(std::int64_t utime) const;
   bool needs_new_reference(const Registration& registration) const;
   void update_reference(const Registration& registration, PhotometricPyramid frame);
   bool follows_motion(const Pose& X_WC, std::int64_t utime) const;
   TrackingResult accept(const Registration& registration, const TrackingInput& frame);
+  void follow_partly(const Registration& registration, std::int64_t utime);
   TrackingResult lose(const Registration& registration, LossReason reason);
 
   Config config_;
   LossRule loss_rule_;
   Pose X_WC_ = Pose::Identity();            ///< last good
   std::int64_t utime_ = 0;                  ///< of the last good pose
+  /// From which predict() goes on: the last good pose or, after it, one that was determined but for
+  /// some directions, in which it is predicted.
+  Pose X_WC_followed_ = Pose::Identity();
+  std::int64_t utime_followed_ = 0;
   Vector6d velocity_C_ = Vector6d::Zero();  ///< m/s, rad/s: X_WC(t + dt) = X_WC retract(v dt)
   bool motion_known_ = false;               ///< velocity_C_ was measured
   bool lost_ = false;
