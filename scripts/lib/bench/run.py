@@ -18,7 +18,7 @@ BENCH_PROGRAMS = os.path.join(ROOT, "build", "release", "bench")
 
 @dataclass(frozen=True)
 class Input:
-    """A recording (a folder in TUM layout with groundtruth.txt) or a synthetic room."""
+    """A recording (a folder in TUM layout) or a synthetic room."""
 
     name: str
     folder: str = ""
@@ -32,11 +32,33 @@ def room(name):
     return Input(name)
 
 
-def recording(folder):
-    folder = os.path.realpath(folder)
-    if not os.access(os.path.join(folder, "groundtruth.txt"), os.R_OK):
-        raise Problem(f"{folder} is no recording: there is no groundtruth.txt in it", exit_code=2)
-    return Input(os.path.basename(folder), folder)
+def is_recording(folder):
+    return (os.path.isfile(os.path.join(folder, "camera.txt")) and
+            any(os.path.isfile(os.path.join(folder, images)) for images in ("depth.txt", "associations.txt")))
+
+
+def recordings_under(folders):
+    """These folders, or the recordings in them at any depth, in order of their paths; none twice. Two with one name
+    are told apart by a number."""
+    found = {}
+    for folder in folders:
+        folder = os.path.realpath(folder)
+        here = [path for path in [folder, *sub_folders(folder)] if is_recording(path)]
+        if not here:
+            raise Problem(f"there is no recording in {folder}: a folder with camera.txt, and depth.txt or "
+                          "associations.txt", exit_code=2)
+        found.update(dict.fromkeys(here))
+    names = unique_names([os.path.basename(path) for path in found])
+    return [Input(name, path) for name, path in zip(names, found, strict=True)]
+
+
+def sub_folders(folder):
+    return sorted(os.path.join(parent, name) for parent, names, _ in os.walk(folder) for name in names)
+
+
+def unique_names(names):
+    return [name if names.count(name) == 1 else f"{name}-{names[:place].count(name) + 1}"
+            for place, name in enumerate(names)]
 
 
 @dataclass(frozen=True)
@@ -109,9 +131,10 @@ class Run:
         return self.tracked[source]
 
     def true_path(self, source):
-        """The file with the camera's true path; that of a synthetic room is written first."""
+        """The file with the camera's true path, or None; that of a synthetic room is written first."""
         if source.folder:
-            return Path(source.folder, "groundtruth.txt")
+            truth = Path(source.folder, "groundtruth.txt")
+            return truth if truth.exists() else None
         truth = self.folder / f"truth_{source.name}"
         if not (truth / "groundtruth.txt").exists():
             self.execute([f"{SCRIPTS}/private_bus", program("mapper"), "--device", source.device, "--replay",
