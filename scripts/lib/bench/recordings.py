@@ -17,7 +17,6 @@ class Outcome:
     parts: int  # of the map
     longest_loss_s: float
     errors: dict  # as trajectory_errors() gives them
-    points: int  # of the map
     cpu_ms: float  # a frame
     memory_MB: float  # the most
 
@@ -28,7 +27,10 @@ def recordings(run):
     rows, failures = [], []
     for source in run.recordings:
         try:
-            rows.append([source.name, *cells(outcome(run, f"recording_{source.name}", source))])
+            name = f"recording_{source.name}"
+            cloud = run.folder / f"{name}.ply"
+            found = outcome(run, name, source, "--cloud", cloud)
+            rows.append([source.name, *cells(found, num_points(cloud))])
         except Problem as problem:  # the others still count
             rows.append([source.name, None, "failed", *[None] * (len(header) - 3)])
             failures.append(f"`{source.name}` failed: {str(problem).splitlines()[-1]}\n")
@@ -37,20 +39,19 @@ def recordings(run):
 
 
 def outcome(run, name, source, *flags):
-    """Maps the input, with --cloud; the files in the folder of the measurement are called NAME."""
-    cloud = run.folder / f"{name}.ply"
-    mapped = run.map_alone(name, source, "--cloud", cloud, *flags)
+    """Maps the input; the files in the folder of the measurement are called NAME."""
+    mapped = run.map_alone(name, source, *flags)
     rows = read_csv(mapped.timings)
     return Outcome(frames=len(rows), located=sum(row["state"] in LOCATED for row in rows), parts=len(parts_of(rows)),
                    longest_loss_s=longest_loss_s(rows), errors=trajectory_errors(run, mapped, source),
-                   points=num_points(cloud), cpu_ms=mapped.cpu_ms,
+                   cpu_ms=mapped.cpu_ms,
                    memory_MB=max((float(row["memory_mb"]) for row in rows), default=0.0))
 
 
-def cells(found):
+def cells(found, points):
     return [found.frames, found.located, fixed(100 * found.located / max(found.frames, 1), 1), found.parts,
             fixed(found.longest_loss_s, 2), error(found.errors, "ate_m_rmse", 1e3),
-            error(found.errors, "rpe_m_rmse", 1e3), error(found.errors, "rpe_deg_rmse"), fixed(found.points, 0),
+            error(found.errors, "rpe_m_rmse", 1e3), error(found.errors, "rpe_deg_rmse"), fixed(points, 0),
             fixed(found.cpu_ms, 1), fixed(found.memory_MB, 0)]
 
 

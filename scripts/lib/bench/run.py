@@ -22,10 +22,11 @@ class Input:
 
     name: str
     folder: str = ""
+    address: str = ""  # of a synthetic room; empty: the room called NAME
 
     @property
     def device(self):
-        return f"folder://{self.folder}" if self.folder else f"synthetic://{self.name}"
+        return f"folder://{self.folder}" if self.folder else self.address or f"synthetic://{self.name}"
 
 
 def room(name):
@@ -80,10 +81,11 @@ class MapperRun:
 
 
 class Run:
-    def __init__(self, folder, recordings=(), frames=None):
+    def __init__(self, folder, recordings=(), frames=None, cases=None):
         self.folder = Path(folder)
         self.recordings = list(recordings)
         self.frames = frames  # only the first so many of each input; None: all
+        self.cases = cases  # of the battery: `all`, or words that they must have; None: the default ones
         self.tracked = {}
 
     def inputs(self, *rooms):
@@ -130,12 +132,16 @@ class Run:
             self.tracked[source] = self.map_alone(f"tracked_{source.name}", source)
         return self.tracked[source]
 
+    def truth_folder(self, source):
+        """Where the mapper writes the truth of a synthetic room."""
+        return self.folder / f"truth_{source.name}"
+
     def true_path(self, source):
         """The file with the camera's true path, or None; that of a synthetic room is written first."""
         if source.folder:
             truth = Path(source.folder, "groundtruth.txt")
             return truth if truth.exists() else None
-        truth = self.folder / f"truth_{source.name}"
+        truth = self.truth_folder(source)
         if not (truth / "groundtruth.txt").exists():
             self.execute([f"{SCRIPTS}/private_bus", program("mapper"), "--device", source.device, "--replay",
                           "--max-frames", "1", "--ground-truth", truth])
