@@ -136,7 +136,8 @@ class Truth(unittest.TestCase):
                                                      "0.166667 3.5 0 0 0 0 0 1\n")
 
     def test_seconds_stay(self):
-        for text in (poses("1.0", "2.0", "2.5"), poses("1341836537.8070", "1341836537.8183"), poses("1")):
+        for text in (poses("1.0", "2.0", "2.5"), poses("1341836537.8070", "1341836537.8183"), poses("1"),
+                     poses("0", "33", "67", "100")):
             self.file.write_text(text)
             self.assertEqual(accuracy.in_seconds(self.file, self.converted), self.file)
         self.assertFalse(self.converted.exists())

@@ -5,13 +5,15 @@ those within the parts, put together."""
 
 import math
 import re
+from statistics import median
 
 from trio.messages import Problem, say
 
 from .tables import fixed, read_csv
 
 LOCATED = ("tracking", "given")  # the states in which a frame has a pose
-FRAMES_A_SECOND = 30  # of an ICL-NUIM recording, whose times are numbers of frames
+FRAMES_A_SECOND = 30  # of a recording whose times are numbers of frames (ICL-NUIM)
+MAX_STEP = 10  # from one of these numbers to the next
 
 
 def trajectory_errors(run, mapped, source):
@@ -91,14 +93,16 @@ def microseconds(seconds):
 
 def in_seconds(truth, converted):
     """The true path with times in seconds: the given file or, if its times are numbers of frames (ICL-NUIM), a
-    converted copy. The rule is the mapper's: whole numbers that differ by 1 or more. A tracking system gives many poses
-    a second, and not on exact seconds."""
+    converted copy. The rule is the mapper's (frame_numbers.hpp): whole numbers in small steps."""
     lines = [line.split() for line in truth.read_text().splitlines() if line.strip() and not line.startswith("#")]
-    times = [words[0] for words in lines]
-    if len(times) < 2 or not all(re.fullmatch(r"\d+(\.0*)?", time) for time in times):
+    if not all(re.fullmatch(r"\d+(\.0*)?", words[0]) for words in lines):
         return truth
-    converted.write_text("".join(f"{float(time) / FRAMES_A_SECOND:.6f} {' '.join(words[1:])}\n"
-                                 for time, words in zip(times, lines, strict=True)))
+    numbers = [int(float(words[0])) for words in lines]
+    steps = [after - before for before, after in zip(numbers, numbers[1:])]
+    if not steps or median(steps) > MAX_STEP:
+        return truth
+    converted.write_text("".join(f"{number / FRAMES_A_SECOND:.6f} {' '.join(words[1:])}\n"
+                                 for number, words in zip(numbers, lines, strict=True)))
     return converted
 
 
