@@ -129,6 +129,8 @@ bool Playback::wait_for_turn(Lock& lock) {
     const auto next = next_position();
     if (ended_ || !any_running()) {
       changed_.wait(lock);
+    } else if (!next && !failure_of_all().empty()) {
+      finish(lock, failure_of_all());
     } else if (!next && repeat_) {
       position_ = 0;
       ++repeats_;
@@ -153,34 +155,56 @@ void Playback::play_next(Lock& lock) {
   const DepthUnit unit = unit_;
   position_ = position + 1;
   in_flight_ = true;
-  const auto count =
-      static_cast<std::int64_t>(item.kind == StreamKind::kDepth ? recording_.num_depth_frames()
-                                                                : recording_.num_color_frames());
-  const std::int64_t period_us = 1'000'000 / recording_.frame_rate_hz();
-  const std::int64_t length_us = items_.back().due_utime - items_.front().due_utime + period_us;
   const std::int64_t repeats = repeats_;
   lock.unlock();
 
-  const bool is_depth = item.kind == StreamKind::kDepth;
-  const std::int64_t stamp =
-      is_depth ? recording_.depth_stamp(item.index) : recording_.color_stamp(item.index);
-  PlayedFrame frame{.kind = item.kind,
-                    .number = static_cast<int>(repeats * count + item.index + 1),
-                    .utime = stamp + repeats * length_us,
-                    .due_utime = item.due_utime + repeats * length_us,
-                    .image = decode(item, unit)};
-  {
+  PlayedFrame frame = describe(item, repeats);
+  std::string failure;
+  bool delivered = false;
+  if (read(item, unit, frame.image, failure)) {
     // OpenNI2's core may poke more than once while it waits for this one frame. A trigger kept from
     // before would release the next frame too, and replace this one before it is read.
-    const Lock clear(mutex_);
-    triggered_ = false;
+    {
+      const Lock clear(mutex_);
+      triggered_ = false;
+    }
+    delivered = callbacks_.frame(frame);
+  } else {
+    callbacks_.unread(item.kind, failure);
   }
-  const bool delivered = callbacks_.frame(frame);
 
   lock.lock();
+  Reading& reading = readings_.at(slot(item.kind));
+  if (failure.empty()) reading.any_read = true;
+  if (reading.first_failure.empty()) reading.first_failure = failure;
   in_flight_ = false;
   if (!delivered) triggered_ = true;
   changed_.notify_all();
+}
+
+/// All but the image.
+PlayedFrame Playback::describe(const Item& item, std::int64_t repeats) const {
+  const bool is_depth = item.kind == StreamKind::kDepth;
+  const auto count = static_cast<std::int64_t>(is_depth ? recording_.num_depth_frames()
+                                                        : recording_.num_color_frames());
+  const std::int64_t period_us = 1'000'000 / recording_.frame_rate_hz();
+  const std::int64_t length_us = items_.back().due_utime - items_.front().due_utime + period_us;
+  const std::int64_t stamp =
+      is_depth ? recording_.depth_stamp(item.index) : recording_.color_stamp(item.index);
+  return {.kind = item.kind,
+          .number = static_cast<int>(repeats * count + item.index + 1),
+          .utime = stamp + repeats * length_us,
+          .due_utime = item.due_utime + repeats * length_us,
+          .image = {}};
+}
+
+/// Why nothing came of the stream that matters; empty: something did.
+std::string Playback::failure_of_all() const {
+  const bool has_depth = running_.at(slot(StreamKind::kDepth));
+  const Reading& reading = readings_.at(slot(has_depth ? StreamKind::kDepth : StreamKind::kColor));
+  if (reading.any_read || reading.first_failure.empty()) return "";
+  return std::string("no ") + (has_depth ? "depth" : "colour") +
+         " image of the recording can be read; the first: " + reading.first_failure;
 }
 
 /// The first item, from position_ on, of a stream that runs.
@@ -215,6 +239,17 @@ Playback::Clock::time_point Playback::due_time(const Item& item) {
   return due;
 }
 
+/// False: `failure` tells why.
+bool Playback::read(const Item& item, DepthUnit unit, cv::Mat& image, std::string& failure) {
+  try {
+    image = decode(item, unit);
+    return true;
+  } catch (const std::exception& error) {
+    failure = error.what();
+    return false;
+  }
+}
+
 cv::Mat Playback::decode(const Item& item, DepthUnit unit) {
   if (ahead_ && ahead_->item == item && ahead_->unit == unit) {
     return std::exchange(ahead_, std::nullopt)->image;
@@ -232,7 +267,7 @@ void Playback::decode_ahead(Lock& lock) {
   try {
     ahead_ = Decoded{.item = item, .unit = unit, .image = decode(item, unit)};
   } catch (const std::exception&) {
-    ahead_.reset();  // it fails again, and is reported, when its turn comes
+    ahead_.reset();  // it fails again, and is passed over, when its turn comes
   }
   lock.lock();
 }
@@ -248,6 +283,7 @@ void Playback::rewind() {
   ended_ = false;
   position_ = 0;
   repeats_ = 0;
+  readings_ = {};
 }
 
 }  // namespace kintsugi::mapper

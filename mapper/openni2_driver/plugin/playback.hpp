@@ -31,12 +31,17 @@ struct PlayedFrame {
 /// Speed: 1 is real time, 2 twice as fast, 0 as fast as possible. With a negative speed one frame
 /// is played for each trigger(). This is how OpenNI2 reads a file without loss: its core triggers
 /// when a reader waits and there is no frame. The next frame is decoded in advance.
+///
+/// An image that cannot be read is passed over. It is the end when this happens to every image of
+/// the depth stream (of the colour stream when that one alone is started).
 class Playback {
  public:
   struct Callbacks {
     /// Returns false when the frame was not delivered, so that the next one is played at once.
     std::function<bool(const PlayedFrame&)> frame;
-    /// Called after the last frame with an empty text, or after a failed read with the reason.
+    /// An image that cannot be read is passed over, for this reason.
+    std::function<void(StreamKind, const std::string&)> unread;
+    /// Called after the last frame with an empty text, or with the reason when there is none.
     std::function<void(const std::string&)> end;
   };
 
@@ -80,6 +85,11 @@ class Playback {
     DepthUnit unit = DepthUnit::k1mm;
     cv::Mat image;
   };
+  /// What became of the images of one stream, since the beginning.
+  struct Reading {
+    bool any_read = false;
+    std::string first_failure;  ///< empty: none failed
+  };
   using Lock = std::unique_lock<std::mutex>;
 
   void run();
@@ -88,6 +98,9 @@ class Playback {
   [[nodiscard]] std::optional<std::size_t> next_position() const;
   [[nodiscard]] bool any_running() const;
   [[nodiscard]] Clock::time_point due_time(const Item& item);
+  [[nodiscard]] PlayedFrame describe(const Item& item, std::int64_t repeats) const;
+  [[nodiscard]] std::string failure_of_all() const;
+  bool read(const Item& item, DepthUnit unit, cv::Mat& image, std::string& failure);
   [[nodiscard]] cv::Mat decode(const Item& item, DepthUnit unit);
   void decode_ahead(Lock& lock);
   void finish(Lock& lock, const std::string& error);
@@ -108,6 +121,7 @@ class Playback {
   bool in_flight_ = false;
   bool ended_ = false;
   bool quit_ = false;
+  std::array<Reading, kNumStreamKinds> readings_{};
   std::size_t position_ = 0;  ///< of the next item to consider
   std::int64_t repeats_ = 0;
   std::optional<Clock::time_point> time_zero_;  ///< when an item of utime_zero_ was due

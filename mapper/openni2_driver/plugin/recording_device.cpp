@@ -7,7 +7,6 @@
 #include "mapper/openni2_driver/plugin/imitated_image.hpp"
 #include "mapper/openni2_driver/plugin/offered_modes.hpp"
 #include "mapper/openni2_driver/plugin/property.hpp"
-#include "mapper/openni2_driver/recording/device_properties.hpp"
 
 namespace kintsugi::mapper {
 namespace {
@@ -39,8 +38,11 @@ RecordingDevice::RecordingDevice(std::unique_ptr<Recording> recording,
       modes_{offered_depth_modes(*recording_, imitation),
              offered_color_modes(*recording_, imitation)},
       registered_(imitation.registration == CameraImitation::Registration::kAligned),
-      playback_(*recording_, {.frame = [this](const PlayedFrame& frame) { return on_frame(frame); },
-                              .end = [this](const std::string& error) { on_end(error); }}) {
+      playback_(*recording_,
+                {.frame = [this](const PlayedFrame& frame) { return on_frame(frame); },
+                 .unread = [this](StreamKind kind,
+                                  const std::string& reason) { on_unread(kind, reason); },
+                 .end = [this](const std::string& error) { on_end(error); }}) {
   constexpr std::array kTypes = {ONI_SENSOR_DEPTH, ONI_SENSOR_COLOR};  // by StreamKind
   for (std::size_t i = 0; i < kNumStreamKinds; ++i) {
     if (modes_.at(i).empty()) continue;
@@ -97,6 +99,10 @@ OniStatus RecordingDevice::getProperty(int id, void* data, int* size) {
       return give_calibration(data, size);
     case kDevicePropertyPlaybackError:
       return give_playback_error(data, size);
+    case kDevicePropertyUnreadImages:
+      return give_unread_images(data, size);
+    case kDevicePropertyRemark:
+      return give_text(recording_->remark(), data, size);
     default:
       return ONI_STATUS_NOT_SUPPORTED;
   }
@@ -137,6 +143,8 @@ OniBool RecordingDevice::isPropertySupported(int id) {
     case ONI_DEVICE_PROPERTY_IMAGE_REGISTRATION:
     case ONI_DEVICE_PROPERTY_DRIVER_VERSION:
     case kDevicePropertyPlaybackError:
+    case kDevicePropertyUnreadImages:
+    case kDevicePropertyRemark:
       return TRUE;
     default:
       return FALSE;
@@ -200,6 +208,13 @@ void RecordingDevice::unplug(std::int64_t utime) {
   callbacks_.unplugged(utime);
 }
 
+void RecordingDevice::on_unread(StreamKind kind, const std::string& reason) {
+  const std::lock_guard lock(mutex_);
+  ++(kind == StreamKind::kDepth ? unread_.depth : unread_.color);
+  int size = sizeof(unread_.last_reason);
+  give_text(reason, unread_.last_reason, &size);
+}
+
 void RecordingDevice::on_end(const std::string& error) {
   {
     const std::lock_guard lock(mutex_);
@@ -214,6 +229,11 @@ OniStatus RecordingDevice::give_calibration(void* data, int* size) {
   const std::lock_guard lock(mutex_);
   if (RecordingStream* depth = streams_.front()) images = depth->image_size();
   return give_property(device_calibration(intrinsics, images), data, size);
+}
+
+OniStatus RecordingDevice::give_unread_images(void* data, int* size) {
+  const std::lock_guard lock(mutex_);
+  return give_property(unread_, data, size);
 }
 
 OniStatus RecordingDevice::give_playback_error(void* data, int* size) {

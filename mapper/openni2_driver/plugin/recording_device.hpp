@@ -13,12 +13,14 @@
 #include "mapper/openni2_driver/plugin/playback.hpp"
 #include "mapper/openni2_driver/plugin/recording_stream.hpp"
 #include "mapper/openni2_driver/recording/camera_imitation.hpp"
+#include "mapper/openni2_driver/recording/device_properties.hpp"
 
 namespace kintsugi::mapper {
 
 /// A recording as an OpenNI2 device. For a client it is a file (isFile() is true): it has a
 /// playback speed, repeats by default (like OpenNI2's own files), and knows its number of frames.
-/// At the end the state of the device becomes EOF, after a failed read ERROR.
+/// At the end the state of the device becomes EOF, or ERROR when no image could be read. Single
+/// images that cannot be read are passed over and counted.
 ///
 /// With an imitation it has the properties of that camera. CameraImitation::camera makes it a live
 /// device, which starts again at the end of the recording.
@@ -50,10 +52,12 @@ class RecordingDevice : public oni::driver::DeviceBase {
 
  private:
   bool on_frame(const PlayedFrame& frame);
+  void on_unread(StreamKind kind, const std::string& reason);
   void on_end(const std::string& error);
   void unplug(std::int64_t utime);
   OniStatus give_calibration(void* data, int* size);
   OniStatus give_playback_error(void* data, int* size);
+  OniStatus give_unread_images(void* data, int* size);
   OniStatus set_registration(OniImageRegistrationMode mode);
 
   const std::unique_ptr<Recording> recording_;
@@ -66,6 +70,7 @@ class RecordingDevice : public oni::driver::DeviceBase {
   std::mutex mutex_;  ///< guards what follows
   std::array<RecordingStream*, kNumStreamKinds> streams_{};
   std::string playback_error_;
+  UnreadImages unread_{};
   Playback playback_;  ///< last: its thread uses all of the above
 };
 

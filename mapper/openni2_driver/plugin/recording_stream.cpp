@@ -72,7 +72,7 @@ OniStatus RecordingStream::getProperty(int id, void* data, int* size) {
     case ONI_STREAM_PROPERTY_HORIZONTAL_FOV:
       return give_property(field_of_view_rad(camera.width, camera.fx), data, size);
     case ONI_STREAM_PROPERTY_VERTICAL_FOV:
-      return give_property(field_of_view_rad(camera.height, camera.fy), data, size);
+      return give_property(field_of_view_rad(camera.height, std::abs(camera.fy)), data, size);
     case ONI_STREAM_PROPERTY_NUMBER_OF_FRAMES:
       return give_property(kind_ == StreamKind::kDepth ? recording_.num_depth_frames()
                                                        : recording_.num_color_frames(),

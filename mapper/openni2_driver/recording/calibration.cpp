@@ -44,6 +44,12 @@ class CalibrationLine {
     return value;
   }
 
+  [[nodiscard]] double not_zero(std::size_t field) const {
+    const double value = number(field);
+    if (value == 0.0) bad(field, "a number other than 0");
+    return value;
+  }
+
   [[nodiscard]] int image_size(std::size_t field) const {
     const double value = positive(field);
     if (value > kMaxImageSize || value != std::floor(value)) {
@@ -82,7 +88,7 @@ Calibration read_calibration(const std::filesystem::path& file) {
   Calibration calibration;
   Intrinsics& intrinsics = calibration.intrinsics;
   intrinsics.fx = line.positive(0);
-  intrinsics.fy = line.positive(1);
+  intrinsics.fy = line.not_zero(1);
   intrinsics.cx = line.positive(2);
   intrinsics.cy = line.positive(3);
   intrinsics.width = line.image_size(4);

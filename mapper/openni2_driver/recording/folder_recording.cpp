@@ -6,6 +6,7 @@
 
 #include <opencv2/core.hpp>
 
+#include "mapper/openni2_driver/recording/frame_numbers.hpp"
 #include "mapper/openni2_driver/recording/image_decoder.hpp"
 
 namespace kintsugi::mapper {
@@ -32,13 +33,21 @@ cv::Size image_size(const Intrinsics& intrinsics) { return {intrinsics.width, in
 FolderRecording::FolderRecording(const std::filesystem::path& folder)
     : folder_(folder),
       images_(read_image_lists(folder)),
-      frame_rate_hz_(nominal_rate_hz(images_.depth)) {
+      has_frame_numbers_(mapper::has_frame_numbers(images_)) {
+  if (has_frame_numbers_) replace_frame_numbers(images_);
+  frame_rate_hz_ = nominal_rate_hz(images_.depth);
   calibration_ = read_calibration(folder / "camera.txt");
   tables_ = {make_table(DepthUnit::k1mm), make_table(DepthUnit::k100um)};
 }
 
 std::string FolderRecording::name() const {
   return std::filesystem::absolute(folder_ / "").parent_path().filename().string();
+}
+
+std::string FolderRecording::remark() const {
+  if (!has_frame_numbers_) return "";
+  return "the times of the images are frame numbers, not seconds: mapped at " +
+         std::to_string(kNumberedFrames_Hz) + " frames a second";
 }
 
 DepthUnit FolderRecording::finest_depth_unit() const {

@@ -13,7 +13,8 @@ namespace kintsugi::mapper {
 /// A recording in the layout of the TUM RGB-D benchmark: depth.txt and rgb.txt or associations.txt,
 /// the images they list (16-bit PNG depth, 8-bit colour), and camera.txt.
 ///
-/// Besides raw 0, raw 65535 is invalid (7-Scenes).
+/// Besides raw 0, raw 65535 is invalid (7-Scenes). Frame numbers instead of times (ICL-NUIM) are
+/// taken at 30 Hz.
 class FolderRecording : public Recording {
  public:
   /// Reads the lists and camera.txt, but no images.
@@ -21,6 +22,7 @@ class FolderRecording : public Recording {
   explicit FolderRecording(const std::filesystem::path& folder);
 
   [[nodiscard]] std::string name() const override;
+  [[nodiscard]] std::string remark() const override;
   [[nodiscard]] const Intrinsics& intrinsics() const override { return calibration_.intrinsics; }
   /// From the median interval between depth images.
   [[nodiscard]] int frame_rate_hz() const override { return frame_rate_hz_; }
@@ -40,6 +42,7 @@ class FolderRecording : public Recording {
   std::filesystem::path folder_;
   Calibration calibration_;
   ImageLists images_;
+  bool has_frame_numbers_ = false;  ///< in its lists, instead of times
   int frame_rate_hz_ = 0;
   std::array<DepthTable, 2> tables_;  ///< by DepthUnit
 };

@@ -29,11 +29,7 @@ class ListReader {
     const std::string& time = line.words[first_word];
     const auto utime = parse_seconds(time);
     if (!utime) fail(line, "'" + time + "' is not a time in decimal seconds");
-    TimedImage image{.utime = *utime, .file = file_.parent_path() / line.words[first_word + 1]};
-    if (!fs::is_regular_file(image.file)) {
-      fail(line, "image " + image.file.string() + " is missing");
-    }
-    return image;
+    return {.utime = *utime, .file = file_.parent_path() / line.words[first_word + 1]};
   }
 
   void append(const TextLine& line, std::vector<TimedImage>& images, TimedImage image) const {

@@ -20,8 +20,10 @@ struct ImageLists {
 /// Reads depth.txt and, if present, rgb.txt (lines `seconds file`). In a folder without depth.txt
 /// it reads associations.txt (lines `seconds file seconds file`, one of the two files under
 /// depth/), in which adjacent lines may repeat an image.
+///
+/// The images themselves are not looked at: one that is missing is found when it is read.
 /// @throws std::runtime_error naming file, line and what was expected, for a list that is missing,
-///   empty or malformed, times that do not ascend, or an image that is missing
+///   empty or malformed, or times that do not ascend
 ImageLists read_image_lists(const std::filesystem::path& folder);
 
 }  // namespace kintsugi::mapper

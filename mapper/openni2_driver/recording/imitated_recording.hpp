@@ -20,6 +20,7 @@ class ImitatedRecording : public Recording {
                     std::optional<std::int64_t> resume_utime);
 
   [[nodiscard]] std::string name() const override { return recording_->name(); }
+  [[nodiscard]] std::string remark() const override { return recording_->remark(); }
   [[nodiscard]] const Intrinsics& intrinsics() const override { return recording_->intrinsics(); }
   [[nodiscard]] int frame_rate_hz() const override { return recording_->frame_rate_hz(); }
   [[nodiscard]] DepthUnit finest_depth_unit() const override {

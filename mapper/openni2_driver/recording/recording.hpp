@@ -35,7 +35,11 @@ class Recording {
   /// Name for people.
   [[nodiscard]] virtual std::string name() const = 0;
 
-  /// Of both sequences. The images have the lens distortion that `distortion` describes.
+  /// What a person should know about how the recording is read, a sentence; empty: nothing.
+  [[nodiscard]] virtual std::string remark() const { return ""; }
+
+  /// Of both sequences. The images have the lens distortion that `distortion` describes. fy < 0:
+  /// C's y axis points up in the images.
   [[nodiscard]] virtual const Intrinsics& intrinsics() const = 0;
 
   /// Nominal, at least 1.

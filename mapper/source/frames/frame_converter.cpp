@@ -29,9 +29,19 @@ cv::Mat_<float> depth_to_metres(const cv::Mat_<std::uint16_t>& depth_raw, double
   return depth_m;
 }
 
+Intrinsics with_rows_reversed(const Intrinsics& intrinsics) {
+  Intrinsics reversed = intrinsics;
+  reversed.fy = -intrinsics.fy;
+  reversed.cy = intrinsics.height - 1 - intrinsics.cy;
+  return reversed;
+}
+
 FrameConverter::FrameConverter(const Intrinsics& intrinsics, double depth_units_per_m,
                                double max_range_m)
-    : undistorter_(intrinsics), depth_units_per_m_(depth_units_per_m), max_range_m_(max_range_m) {
+    : reverses_rows_(intrinsics.fy < 0.0),
+      undistorter_(reverses_rows_ ? with_rows_reversed(intrinsics) : intrinsics),
+      depth_units_per_m_(depth_units_per_m),
+      max_range_m_(max_range_m) {
   if (!(depth_units_per_m > 0.0)) {
     throw std::invalid_argument("depth_units_per_m is " + std::to_string(depth_units_per_m) +
                                 ", expected > 0");
@@ -46,9 +56,17 @@ RgbdFrame FrameConverter::convert(const RawFrame& raw) const {
   frame.utime = raw.utime;
   frame.frame_index = raw.frame_index;
   frame.intrinsics = undistorter_.intrinsics();
-  frame.depth_m = undistorter_.undistort_depth(
-      depth_to_metres(raw.depth_raw, depth_units_per_m_, max_range_m_));
-  if (!raw.color_rgb.empty()) frame.color_rgb = undistorter_.undistort_color(raw.color_rgb);
+  cv::Mat_<float> depth_m = depth_to_metres(raw.depth_raw, depth_units_per_m_, max_range_m_);
+  cv::Mat_<cv::Vec3b> color_rgb = raw.color_rgb;
+  if (reverses_rows_) {
+    constexpr int kAlongY = 0;
+    cv::flip(depth_m, depth_m, kAlongY);
+    cv::Mat_<cv::Vec3b> reversed;  // the raw image is not ours to change
+    if (!color_rgb.empty()) cv::flip(color_rgb, reversed, kAlongY);
+    color_rgb = reversed;
+  }
+  frame.depth_m = undistorter_.undistort_depth(depth_m);
+  if (!color_rgb.empty()) frame.color_rgb = undistorter_.undistort_color(color_rgb);
   return frame;
 }
 

@@ -14,7 +14,7 @@ struct SourceCounts {
   std::int64_t frames_dropped = 0;    ///< replaced by a newer frame before next() was called
   std::int64_t depth_unpaired = 0;    ///< delivered without colour: none within half a frame period
   std::int64_t color_unpaired = 0;    ///< colour images without a depth image
-  std::int64_t frames_bad = 0;        ///< refused: they cannot be decoded or have another size
+  std::int64_t frames_bad = 0;        ///< refused: missing, not to be decoded, of another size
   std::int64_t interruptions = 0;     ///< how often the camera was disconnected
   double convert_ms = 0.0;            ///< time spent on conversion to metres and undistortion
 };

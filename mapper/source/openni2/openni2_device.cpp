@@ -9,7 +9,6 @@
 
 #include <OpenNI.h>
 
-#include "mapper/openni2_driver/recording/device_properties.hpp"
 #include "mapper/source/openni2/openni2_image.hpp"
 #include "mapper/source/openni2/openni2_intrinsics.hpp"
 #include "mapper/source/openni2/openni2_modes.hpp"
@@ -111,6 +110,14 @@ struct OpenNi2Device::Implementation {
     return device.isFile() && !device.isPropertySupported(kDevicePropertyPlaybackError);
   }
 
+  /// A text property of our own devices; empty for others.
+  [[nodiscard]] std::string own_text(int property) const {
+    std::array<char, 1024> text{};
+    int size = static_cast<int>(text.size());
+    if (device.isPropertySupported(property)) device.getProperty(property, text.data(), &size);
+    return text.data();
+  }
+
   [[noreturn]] void fail(const char* what, const char* done) const {
     throw std::runtime_error("the " + std::string(what) + " stream of device '" + uri +
                              "' cannot be " + done + ": " + openni2_error());
@@ -186,13 +193,22 @@ bool OpenNi2Device::lock_exposure() {
 DeviceState OpenNi2Device::state() const { return implementation_->listener.state(); }
 
 std::string OpenNi2Device::failure() const {
+  const std::string reason = implementation_->own_text(kDevicePropertyPlaybackError);
+  return reason.empty() ? "the device reports a fault" : reason;
+}
+
+UnreadImages OpenNi2Device::unread_images() const {
   const openni::Device& device = implementation_->device;
-  std::array<char, 1024> text{};
-  int size = static_cast<int>(text.size());
-  if (device.isPropertySupported(kDevicePropertyPlaybackError)) {
-    device.getProperty(kDevicePropertyPlaybackError, text.data(), &size);
+  UnreadImages images{};
+  int size = sizeof(images);
+  if (device.isPropertySupported(kDevicePropertyUnreadImages)) {
+    device.getProperty(kDevicePropertyUnreadImages, &images, &size);
   }
-  return text.front() == '\0' ? "the device reports a fault" : text.data();
+  return images;
+}
+
+std::string OpenNi2Device::remark() const {
+  return implementation_->own_text(kDevicePropertyRemark);
 }
 
 std::string OpenNi2Device::name() const {

@@ -9,6 +9,7 @@
 #include <opencv2/core.hpp>
 
 #include "lcmtypes/geometry.hpp"
+#include "mapper/openni2_driver/recording/device_properties.hpp"
 #include "mapper/source/frames/source_config.hpp"
 #include "mapper/source/openni2/device_state.hpp"
 
@@ -56,6 +57,13 @@ class OpenNi2Device {
   /// Why state() is kFailed, if the device reports a reason.
   [[nodiscard]] std::string failure() const;
 
+  /// Images of a recording that were passed over since it was opened; {} when the device is not
+  /// ours.
+  [[nodiscard]] UnreadImages unread_images() const;
+
+  /// What a person should know about how the recording is read; empty: nothing.
+  [[nodiscard]] std::string remark() const;
+
   [[nodiscard]] std::string name() const;
   [[nodiscard]] std::string uri() const;
   [[nodiscard]] std::string serial_number() const;  ///< empty where the device has none
@@ -66,7 +74,8 @@ class OpenNi2Device {
   [[nodiscard]] int depth_rate_hz() const;  ///< nominal, at least 1
   [[nodiscard]] cv::Size image_size() const;
 
-  /// With the lens's distortion when the device is ours; otherwise from the field of view alone
+  /// With the lens's distortion when the device is ours, and fy < 0 where its y axis points up;
+  /// otherwise from the field of view alone
   /// (of the colour camera where depth is registered to it), the principal point in the middle.
   /// @throws std::runtime_error when the device does not provide them
   [[nodiscard]] Intrinsics intrinsics() const;

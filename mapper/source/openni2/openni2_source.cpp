@@ -33,10 +33,19 @@ OpenNi2Source::OpenNi2Source(const SourceConfig& config)
       color_clock_(depth_period_us(*device_)),
       pairer_(device_->has_color(), depth_period_us(*device_)),
       last_depth_s_(patience_.now_s()) {
-  converter_.emplace(find_intrinsics(config, *device_), device_->depth_units_per_m(),
-                     config.max_range_m);
+  const Intrinsics intrinsics = find_intrinsics(config, *device_);
+  converter_.emplace(intrinsics, device_->depth_units_per_m(), config.max_range_m);
   status_.name = device_->name();
   status_.frames_total = device_->num_depth_frames().value_or(-1);
+  tell_how_it_is_read(intrinsics.fy < 0.0);
+}
+
+void OpenNi2Source::tell_how_it_is_read(bool y_points_up) {
+  const std::string remark = device_->remark();
+  if (!remark.empty()) config_.notify({SourceNotice::Kind::kInformation, remark});
+  if (!y_points_up) return;
+  config_.notify({SourceNotice::Kind::kInformation,
+                  "fy < 0: the camera's y axis points up, so the rows of the images are reversed"});
 }
 
 std::optional<RgbdFrame> OpenNi2Source::next() {
@@ -63,13 +72,16 @@ SourceStatus OpenNi2Source::status() const {
   SourceStatus status = status_;
   status.counts.depth_unpaired = pairer_.depth_unpaired();
   status.counts.color_unpaired = pairer_.color_unpaired();
+  status.counts.frames_bad += unread_.total();
   return status;
 }
 
 void OpenNi2Source::read_image() {
   const DeviceState state_before = device_->state();
   try {
-    if (auto image = device_->wait(kPoll)) {
+    auto image = device_->wait(kPoll);
+    count_unread();
+    if (image) {
       add(std::move(*image));
     } else {
       check_for_end(state_before);
@@ -79,6 +91,12 @@ void OpenNi2Source::read_image() {
     last_refusal_ = refusal.what();
   }
   if (device_) check_for_silence();
+}
+
+void OpenNi2Source::count_unread() {
+  if (const auto said = unread_.update(device_->unread_images())) {
+    config_.notify({SourceNotice::Kind::kWarning, *said});
+  }
 }
 
 void OpenNi2Source::add(DeviceImage image) {
@@ -103,11 +121,12 @@ void OpenNi2Source::compare_clocks(std::int64_t depth_utime) {
                       ": taken into account"});
 }
 
-/// Continues the count when the device starts again from 0, and counts skipped images as dropped.
+/// Continues the count when the device starts again from 0. Images that were left out count as
+/// dropped, except those that cannot be read.
 std::int64_t OpenNi2Source::continuous_index(std::int64_t index) {
   const std::int64_t step = device_index_ && index > *device_index_ ? index - *device_index_ : 1;
   device_index_ = index;
-  status_.counts.frames_dropped += step - 1;
+  status_.counts.frames_dropped += step - 1 - unread_.explain_gap(step - 1);
   frame_index_ = frame_index_ ? *frame_index_ + step : index;
   return *frame_index_;
 }
@@ -156,6 +175,7 @@ void OpenNi2Source::interrupt(const std::string& reason) {
                   "device '" + status_.name + "' is gone: " + reason + "; waiting for it"});
   return_.emplace(config_, *device_);
   device_.reset();
+  unread_.device_closed();
   pairer_.finish();
   clock_.interrupt();
 }
@@ -182,6 +202,7 @@ void OpenNi2Source::wait_for_camera() {
 void OpenNi2Source::end(bool well, const std::string& reason) {
   status_.ended_well = well;
   status_.end_reason = reason;
+  if (unread_.total() > 0) config_.notify({SourceNotice::Kind::kWarning, unread_.summary()});
   if (device_) device_->stop();
   pairer_.finish();
 }

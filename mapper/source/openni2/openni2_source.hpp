@@ -14,6 +14,7 @@
 #include "mapper/source/frames/frame_source.hpp"
 #include "mapper/source/openni2/camera_return.hpp"
 #include "mapper/source/openni2/openni2_device.hpp"
+#include "mapper/source/openni2/unread_count.hpp"
 
 namespace kintsugi::mapper {
 
@@ -33,7 +34,9 @@ class OpenNi2Source : public FrameSource {
  private:
   using Clock = std::chrono::steady_clock;
 
+  void tell_how_it_is_read(bool y_points_up);
   void read_image();
+  void count_unread();
   void add(DeviceImage image);
   void compare_clocks(std::int64_t depth_utime);
   std::int64_t continuous_index(std::int64_t index);
@@ -52,6 +55,7 @@ class OpenNi2Source : public FrameSource {
   DeviceClock clock_;
   ColorClock color_clock_;
   FramePairer pairer_;
+  UnreadCount unread_;
   std::optional<std::int64_t> device_index_;    ///< of the last depth image, since it was opened
   std::optional<std::int64_t> frame_index_;     ///< the same, continued over interruptions
   std::optional<std::int64_t> first_stamp_us_;  ///< since it was opened

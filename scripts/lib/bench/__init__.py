@@ -5,6 +5,9 @@
     tables        Markdown tables, CSV files, the output of Google Benchmark
     run           runs the programs over an input, in the folder of the measurement
     mapping       sections about the mapper
+    recordings    the section about recordings of any kind
+    battery       the section about synthetic rooms under many conditions; battery_cases, battery_picture
+    accuracy      errors of the camera's path, also of a map of several parts
     segmenting    sections about the segmenter
     others        sections about the viewer, the bus, the machine and the source code
     summary       the main results, out of the tables of the sections

@@ -13,9 +13,10 @@ from typing import Callable
 from trio.messages import Problem, os_error_text, say
 from trio.programs import ROOT
 
-from . import mapping, others, segmenting
+from . import battery, mapping, others, recordings, segmenting
+from .battery_cases import chosen_cases
 from .document import Document
-from .run import Run, recording
+from .run import Run, recordings_under
 from .summary import summary
 
 
@@ -36,6 +37,10 @@ SECTIONS = (
     Section("live", "mapper, segmenter and viewer at the camera's rate: CPU of each, frames dropped", mapping.live,
             TRIO, needs_recording=True),
     Section("paths", "the mapper alone: time of a frame, error of the camera's path", mapping.paths, MAPPER),
+    Section("recordings", "every recording: frames located, parts of the map, error of the path, cost",
+            recordings.recordings, MAPPER, needs_recording=True),
+    Section("battery", "synthetic rooms x sensors x speeds x rates x colour (not in the default run: 25 minutes)",
+            battery.battery, MAPPER, in_default_run=False),
     Section("stages", "the stages of a frame: wall and CPU time, by threads", mapping.stages, ("bench_frame",)),
     Section("volume", "fusion, raycast and extraction by themselves, by instruction set", mapping.volume,
             ("bench_volume",)),
@@ -73,17 +78,22 @@ def parse(arguments):
         prog="scripts/bench", formatter_class=argparse.RawDescriptionHelpFormatter,
         description="Builds the programs, measures, and prints every table of BENCHMARK.md. Run it on a machine that "
                     "does nothing else.", epilog=f"sections:\n{lines}")
-    parser.add_argument("recordings", metavar="RECORDING", nargs="*",
-                        help="a folder in TUM layout with groundtruth.txt; without one, what needs it is skipped")
+    parser.add_argument("folders", metavar="DIR", nargs="*",
+                        help="a recording in TUM layout, if possible with groundtruth.txt, or a folder with such "
+                             "recordings; without one, what needs it is skipped")
     parser.add_argument("--only", metavar="NAME,...", help="only these sections")
     parser.add_argument("--frames", metavar="N", type=int,
                         help="only the first N frames of each input: quick, but not the figures of BENCHMARK.md")
+    parser.add_argument("--cases", metavar="WORD,...",
+                        help="of the battery: all, or those cases that have all of these words, as hall,d435,depth "
+                             "(default: about a third of all)")
     parser.add_argument("--out", metavar="DIR",
                         help="keep logs, tables and pictures in DIR (default: a temporary folder, which is removed)")
     parser.add_argument("--write", metavar="FILE",
                         help="also replace what is between the markers of each section in FILE")
     options = parser.parse_args(arguments)
     options.sections = chosen_sections(options.only)
+    chosen_cases(options.cases)  # wrong words are to be told before anything is measured
     return options
 
 
@@ -163,11 +173,11 @@ def run_sections(options, run):
 def main(arguments):
     try:
         options = parse(arguments)
-        recordings = [recording(folder) for folder in options.recordings]
+        found = recordings_under(options.folders)
         with contextlib.ExitStack() as stack:
             folder = os.path.realpath(options.out or stack.enter_context(tempfile.TemporaryDirectory()))
             os.makedirs(folder, exist_ok=True)
-            return run_sections(options, Run(folder, recordings, options.frames))
+            return run_sections(options, Run(folder, found, options.frames, options.cases))
     except Problem as problem:
         say(str(problem))
         return problem.exit_code

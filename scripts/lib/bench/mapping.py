@@ -3,11 +3,11 @@
 import re
 from collections import Counter
 
+from .accuracy import error, trajectory_errors
 from .run import room
 from .tables import first_table, fixed, markdown, number, quantile, read_csv
 
 VOXEL_M = 4.5 / 512  # the mapper's default
-FRAMES_A_SECOND = 30
 
 
 def stages(run):
@@ -47,20 +47,6 @@ def volume(run):
                number(m.wall_ms), number(m.cpu_ms)] for m in measured if m.name not in titles]
     return (markdown(["stage", "threads", *(f"{each}, ms" for each in sets)], rows) + "\n" +
             markdown(["stage, all threads", "wall, ms", "CPU, ms"], others))
-
-
-def trajectory_errors(run, mapped, source):
-    """The columns of kintsugi-evaluate --trajectory, as numbers; {} if there are too few poses for motions of one
-    second."""
-    if mapped.count("located") <= FRAMES_A_SECOND + 1:
-        return {}
-    file = run.folder / f"errors_{mapped.path.stem}.csv"
-    run.kintsugi("evaluate", "--trajectory", mapped.path, "--truth", run.true_path(source), "--csv", file)
-    return {name: float(text) for name, text in read_csv(file)[0].items() if re.fullmatch(r"-?[0-9.]+(e-?\d+)?", text)}
-
-
-def error(errors, name, scale=1.0):
-    return fixed(scale * errors[name], 2) if name in errors else "-"
 
 
 def paths(run):

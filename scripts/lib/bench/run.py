@@ -18,25 +18,48 @@ BENCH_PROGRAMS = os.path.join(ROOT, "build", "release", "bench")
 
 @dataclass(frozen=True)
 class Input:
-    """A recording (a folder in TUM layout with groundtruth.txt) or a synthetic room."""
+    """A recording (a folder in TUM layout) or a synthetic room."""
 
     name: str
     folder: str = ""
+    address: str = ""  # of a synthetic room; empty: the room called NAME
 
     @property
     def device(self):
-        return f"folder://{self.folder}" if self.folder else f"synthetic://{self.name}"
+        return f"folder://{self.folder}" if self.folder else self.address or f"synthetic://{self.name}"
 
 
 def room(name):
     return Input(name)
 
 
-def recording(folder):
-    folder = os.path.realpath(folder)
-    if not os.access(os.path.join(folder, "groundtruth.txt"), os.R_OK):
-        raise Problem(f"{folder} is no recording: there is no groundtruth.txt in it", exit_code=2)
-    return Input(os.path.basename(folder), folder)
+def is_recording(folder):
+    return (os.path.isfile(os.path.join(folder, "camera.txt")) and
+            any(os.path.isfile(os.path.join(folder, images)) for images in ("depth.txt", "associations.txt")))
+
+
+def recordings_under(folders):
+    """These folders, or the recordings in them at any depth, in order of their paths; none twice. Two with one name
+    are told apart by a number."""
+    found = {}
+    for folder in folders:
+        folder = os.path.realpath(folder)
+        here = [path for path in [folder, *sub_folders(folder)] if is_recording(path)]
+        if not here:
+            raise Problem(f"there is no recording in {folder}: a folder with camera.txt, and depth.txt or "
+                          "associations.txt", exit_code=2)
+        found.update(dict.fromkeys(here))
+    names = unique_names([os.path.basename(path) for path in found])
+    return [Input(name, path) for name, path in zip(names, found, strict=True)]
+
+
+def sub_folders(folder):
+    return sorted(os.path.join(parent, name) for parent, names, _ in os.walk(folder) for name in names)
+
+
+def unique_names(names):
+    return [name if names.count(name) == 1 else f"{name}-{names[:place].count(name) + 1}"
+            for place, name in enumerate(names)]
 
 
 @dataclass(frozen=True)
@@ -58,10 +81,11 @@ class MapperRun:
 
 
 class Run:
-    def __init__(self, folder, recordings=(), frames=None):
+    def __init__(self, folder, recordings=(), frames=None, cases=None):
         self.folder = Path(folder)
         self.recordings = list(recordings)
         self.frames = frames  # only the first so many of each input; None: all
+        self.cases = cases  # of the battery: `all`, or words that they must have; None: the default ones
         self.tracked = {}
 
     def inputs(self, *rooms):
@@ -108,11 +132,16 @@ class Run:
             self.tracked[source] = self.map_alone(f"tracked_{source.name}", source)
         return self.tracked[source]
 
+    def truth_folder(self, source):
+        """Where the mapper writes the truth of a synthetic room."""
+        return self.folder / f"truth_{source.name}"
+
     def true_path(self, source):
-        """The file with the camera's true path; that of a synthetic room is written first."""
+        """The file with the camera's true path, or None; that of a synthetic room is written first."""
         if source.folder:
-            return Path(source.folder, "groundtruth.txt")
-        truth = self.folder / f"truth_{source.name}"
+            truth = Path(source.folder, "groundtruth.txt")
+            return truth if truth.exists() else None
+        truth = self.truth_folder(source)
         if not (truth / "groundtruth.txt").exists():
             self.execute([f"{SCRIPTS}/private_bus", program("mapper"), "--device", source.device, "--replay",
                           "--max-frames", "1", "--ground-truth", truth])

@@ -21,6 +21,7 @@ RESULTS = (
            "{all three, CPU-ms a frame}"),
     Result("Mapping a frame: median wall time (CPU time), ms", "paths", 0, "{input}",
            "{wall p50, ms} ({CPU a frame, ms})"),
+    Result("Frames located of each recording", "recordings", 0, "{recording}", "{located} of {frames}"),
     Result("Error of the camera's path: ATE rmse, mm", "paths", 0, "{input}", "{ATE rmse, mm}"),
     Result("Drift at the end of the path, % of its length", "paths", 0, "{input}", "{drift, %}"),
     Result("Frames fused wrongly, and refused, under all disturbances", "recovery", 0, "{input}",

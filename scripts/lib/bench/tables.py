@@ -52,6 +52,11 @@ def number(value):
     return fixed(value, 0 if value >= 99.5 else 1 if value >= 9.95 else 2 if value >= 0.995 else 3)
 
 
+def percent_down(share):
+    """To a tenth, rounded down: only all are 100."""
+    return f"{math.floor(1000 * share + 1e-9) / 10:g}"
+
+
 def quantile(values, share):
     """The smallest value that at least this share of the values does not exceed."""
     ordered = sorted(values)

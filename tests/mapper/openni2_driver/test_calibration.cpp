@@ -48,6 +48,12 @@ TEST_F(CalibrationFile, ReadsDistortionInTheOrderOfOpenCv) {
   EXPECT_EQ(calibration.intrinsics.distortion, expected);
 }
 
+TEST_F(CalibrationFile, KeepsANegativeFy) {
+  const Calibration calibration = read("481.2 -480 319.5 239.5 640 480 5000\n");
+  EXPECT_EQ(calibration.intrinsics.fy, -480.0);
+  EXPECT_EQ(calibration.intrinsics.cy, 239.5);
+}
+
 TEST_F(CalibrationFile, MissingFieldIsNamed) {
   EXPECT_THAT(error("535 539 320 247 640 480\n"),
               AllOf(HasSubstr("camera.txt:1"), HasSubstr("6 fields"), HasSubstr("depth_scale")));
@@ -58,7 +64,9 @@ TEST_F(CalibrationFile, MissingFieldIsNamed) {
 TEST_F(CalibrationFile, BadValueIsNamedWithItsBound) {
   EXPECT_THAT(error("0 539 320 247 640 480 1000"),
               AllOf(HasSubstr("fx is '0'"), HasSubstr("greater than 0")));
-  EXPECT_THAT(error("535 -539 320 247 640 480 1000"), HasSubstr("fy is '-539'"));
+  EXPECT_THAT(error("-535 539 320 247 640 480 1000"), HasSubstr("fx is '-535'"));
+  EXPECT_THAT(error("535 0 320 247 640 480 1000"),
+              AllOf(HasSubstr("fy is '0'"), HasSubstr("other than 0")));
   EXPECT_THAT(error("535 539 abc 247 640 480 1000"), HasSubstr("cx is 'abc'"));
   EXPECT_THAT(error("535 539 320 2,5 640 480 1000"), HasSubstr("cy is '2,5'"));
   EXPECT_THAT(error("535 539 320 247 640.5 480 1000"), HasSubstr("width is '640.5'"));

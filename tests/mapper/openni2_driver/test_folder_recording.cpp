@@ -100,14 +100,38 @@ TEST(FolderRecording, SaysWhatIsMissing) {
   }
   {
     const RecordingFolder folder;
-    std::filesystem::remove(folder.path() / "depth/2.png");
-    EXPECT_THAT(open_error(folder), AllOf(HasSubstr("depth.txt:4: "), HasSubstr("depth/2.png")));
-  }
-  {
-    const RecordingFolder folder;
     test::write_text(folder.path() / "depth.txt", "# nothing\n");
     EXPECT_THAT(open_error(folder), HasSubstr("depth.txt: lists no image"));
   }
+}
+
+TEST(FolderRecording, FindsAMissingImageWhenItIsRead) {
+  const RecordingFolder folder;
+  std::filesystem::remove(folder.path() / "depth/2.png");
+  FolderRecording recording(folder.path());
+  EXPECT_THAT(error_of<std::runtime_error>([&] { (void)recording.depth(2, DepthUnit::k1mm); }),
+              HasSubstr("depth/2.png: cannot be read"));
+  EXPECT_TRUE(same(recording.depth(3, DepthUnit::k1mm), test::raw_depth_image(3)));
+}
+
+TEST(FolderRecording, TakesFrameNumbersAt30Hz) {
+  const RecordingFolder folder;
+  std::filesystem::remove(folder.path() / "depth.txt");
+  test::write_text(folder.path() / "associations.txt",
+                   "1 depth/0.png 1 rgb/0.png\n2 depth/1.png 2 rgb/1.png\n"
+                   "4 depth/3.png 4 rgb/3.png\n");
+  const FolderRecording recording(folder.path());
+  EXPECT_EQ(recording.depth_utime(0), 33'333);
+  EXPECT_EQ(recording.depth_utime(1), 66'667);
+  EXPECT_EQ(recording.depth_utime(2), 133'333);
+  EXPECT_EQ(recording.color_utime(2), 133'333);
+  EXPECT_EQ(recording.frame_rate_hz(), 15) << "the upper median of 1 and 2 frames";
+  EXPECT_THAT(recording.remark(), AllOf(HasSubstr("frame numbers"), HasSubstr("30 frames")));
+}
+
+TEST(FolderRecording, HasNoRemarkAboutSeconds) {
+  const RecordingFolder folder;
+  EXPECT_EQ(FolderRecording(folder.path()).remark(), "");
 }
 
 TEST(FolderRecording, RefusesLinesThatDoNotParse) {

@@ -186,20 +186,98 @@ TEST(Plugin, SaysWhyADeviceCannotBeOpened) {
   EXPECT_TRUE(Client(folder.uri()).is_open()) << "once it is mended";
 }
 
-TEST(Plugin, EndsWithItsReasonWhenAnImageCannotBeRead) {
+template <typename Value>
+Value property_of(Client& client, int property) {
+  Value value{};
+  int size = sizeof(value);
+  EXPECT_EQ(client.device().getProperty(property, &value, &size), openni::STATUS_OK);
+  return value;
+}
+
+std::vector<int> indices_of(const std::vector<test::ClientFrame>& frames) {
+  std::vector<int> indices;
+  for (const test::ClientFrame& frame : frames) indices.push_back(frame.index);
+  return indices;
+}
+
+TEST(Plugin, PassesOverAndCountsImagesThatCannotBeRead) {
   const OpenNi2Session session;
   const RecordingFolder folder;
+  std::filesystem::remove(folder.path() / "depth/0.png");
   std::filesystem::resize_file(folder.path() / "depth/3.png", 40);
+  std::filesystem::resize_file(folder.path() / "rgb/4.png", 0);
   Client client(folder.uri());
   client.start(-1.0F);
   client.read_all();
-  EXPECT_EQ(client.depth_frames.size(), 3) << "what came before it is kept";
-  EXPECT_EQ(session.device_state(), openni::DEVICE_STATE_ERROR);
-  std::array<char, 256> text{};
-  int size = text.size();
-  ASSERT_EQ(client.device().getProperty(kDevicePropertyPlaybackError, text.data(), &size),
-            openni::STATUS_OK);
-  EXPECT_THAT(text.data(), HasSubstr("depth/3.png: is cut off"));
+  EXPECT_THAT(indices_of(client.depth_frames), testing::ElementsAre(2, 3, 5));
+  EXPECT_THAT(indices_of(client.color_frames), testing::ElementsAre(1, 2, 3, 4));
+  EXPECT_TRUE(same(client.depth_frames.at(2).image, test::raw_depth_image(4)));
+  EXPECT_EQ(session.device_state(), openni::DEVICE_STATE_EOF);
+  const auto unread = property_of<UnreadImages>(client, kDevicePropertyUnreadImages);
+  EXPECT_EQ(unread.depth, 2);
+  EXPECT_EQ(unread.color, 1);
+  EXPECT_THAT(unread.last_reason, HasSubstr("rgb/4.png: is empty"));
+}
+
+TEST(Plugin, FailsWhenNoDepthImageCanBeRead) {
+  const OpenNi2Session session;
+  const RecordingFolder folder;
+  std::filesystem::remove_all(folder.path() / "depth");
+  for (const bool repeat : {false, true}) {
+    Client client(folder.uri());
+    client.start(-1.0F, repeat);
+    client.read_all();
+    EXPECT_EQ(client.depth_frames.size(), 0);
+    EXPECT_EQ(session.device_state(), openni::DEVICE_STATE_ERROR);
+    const auto text = property_of<std::array<char, 256>>(client, kDevicePropertyPlaybackError);
+    EXPECT_THAT(text.data(), HasSubstr("no depth image of the recording can be read; the first: "));
+    EXPECT_THAT(text.data(), HasSubstr("depth/0.png: cannot be read"));
+  }
+}
+
+TEST(Plugin, PlaysColorAloneWhileDepthIsNotStarted) {
+  const OpenNi2Session session;
+  const RecordingFolder folder;
+  std::filesystem::remove_all(folder.path() / "depth");
+  Client client(folder.uri());
+  client.device().getPlaybackControl()->setSpeed(-1.0F);
+  client.device().getPlaybackControl()->setRepeatEnabled(false);
+  client.color().start();
+  client.read_all();
+  EXPECT_EQ(client.color_frames.size(), kNumFrames);
+  EXPECT_EQ(session.device_state(), openni::DEVICE_STATE_EOF);
+}
+
+TEST(Plugin, TellsThatTimesAreFrameNumbers) {
+  const OpenNi2Session session;
+  const RecordingFolder folder;
+  {
+    Client seconds(folder.uri());
+    EXPECT_STREQ((property_of<std::array<char, 256>>(seconds, kDevicePropertyRemark).data()), "");
+  }
+  std::filesystem::remove(folder.path() / "rgb.txt");
+  test::write_text(folder.path() / "depth.txt", "0 depth/0.png\n1 depth/1.png\n2 depth/2.png\n");
+  Client client(folder.uri());
+  EXPECT_THAT((property_of<std::array<char, 256>>(client, kDevicePropertyRemark).data()),
+              HasSubstr("frame numbers"));
+  client.start(-1.0F);
+  client.read_all();
+  ASSERT_EQ(client.depth_frames.size(), 3);
+  EXPECT_EQ(client.depth_frames.back().utime, 66'667);
+}
+
+TEST(Plugin, LeavesRowsOfACameraWhoseYPointsUpAsTheyAre) {
+  const OpenNi2Session session;
+  const RecordingFolder folder("50 -51 31.5 20.5 64 48 1000\n");
+  Client client(folder.uri());
+  EXPECT_FLOAT_EQ(client.depth().getVerticalFieldOfView(),
+                  static_cast<float>(2.0 * std::atan(24.0 / 51.0)));
+  const auto calibration = property_of<DeviceCalibration>(client, kDevicePropertyCalibration);
+  EXPECT_EQ(calibration.fy, -51.0);
+  EXPECT_EQ(calibration.cy, 20.5);
+  client.start(-1.0F);
+  client.read_all(2000, 1);
+  EXPECT_TRUE(same(client.depth_frames.at(0).image, test::raw_depth_image(0)));
 }
 
 TEST(Plugin, StopsAtAnyMoment) {

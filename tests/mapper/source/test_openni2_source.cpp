@@ -102,13 +102,96 @@ TEST(OpenNi2Source, TakesTheCalibrationFileItIsGiven) {
               AllOf(HasSubstr("other.txt"), HasSubstr("640x480"), HasSubstr("64x48")));
 }
 
-TEST(OpenNi2Source, EndsWhereAnImageCannotBeRead) {
+/// A source, and what it says.
+struct Heard {
+  explicit Heard(SourceConfig config) {
+    config.notify = [this](const SourceNotice& notice) { notices.push_back(notice); };
+    source = open_frame_source(config);
+    frames = read_all(*source);
+  }
+
+  std::vector<SourceNotice> notices;
+  std::unique_ptr<FrameSource> source;
+  std::vector<RgbdFrame> frames;
+};
+
+TEST(OpenNi2Source, PassesOverImagesThatCannotBeRead) {
   const RecordingFolder folder;
+  fs::remove(folder.path() / "depth/1.png");
+  fs::resize_file(folder.path() / "depth/2.png", 40);
   fs::resize_file(folder.path() / "rgb/3.png", 40);
-  const auto source = open_frame_source(config_of(folder.uri()));
-  EXPECT_EQ(read_all(*source).size(), 3U);
-  EXPECT_FALSE(source->status().ended_well);
-  EXPECT_THAT(source->status().end_reason, HasSubstr("rgb/3.png: is cut off"));
+  const Heard heard(config_of(folder.uri()));
+  ASSERT_EQ(heard.frames.size(), 3U);
+  EXPECT_EQ(heard.frames[1].frame_index, 4);
+  EXPECT_TRUE(heard.frames[1].color_rgb.empty()) << "depth without its colour";
+  EXPECT_EQ(heard.frames[2].utime, RecordingFolder::depth_utime(4));
+  EXPECT_FALSE(heard.frames[2].color_rgb.empty());
+  const SourceStatus status = heard.source->status();
+  EXPECT_TRUE(status.ended_well);
+  EXPECT_EQ(status.counts.frames_bad, 3);
+  EXPECT_EQ(status.counts.frames_dropped, 0) << "none came too fast";
+  ASSERT_EQ(heard.notices.size(), 2U) << "the first one, and the total";
+  EXPECT_EQ(heard.notices[0].kind, SourceNotice::Kind::kWarning);
+  EXPECT_THAT(heard.notices[0].text, AllOf(HasSubstr(".png: "), HasSubstr("passed over")));
+  EXPECT_THAT(heard.notices[1].text, HasSubstr("3 images of the recording were passed over"));
+}
+
+TEST(OpenNi2Source, FailsWhenNoImageCanBeRead) {
+  const RecordingFolder folder;
+  fs::remove_all(folder.path() / "depth");
+  const Heard heard(config_of(folder.uri()));
+  EXPECT_EQ(heard.frames.size(), 0U);
+  EXPECT_FALSE(heard.source->status().ended_well);
+  EXPECT_THAT(heard.source->status().end_reason,
+              AllOf(HasSubstr("no depth image"), HasSubstr("depth/0.png: cannot be read")));
+}
+
+TEST(OpenNi2Source, TakesFrameNumbersAt30HzAndSaysSoOnce) {
+  const RecordingFolder folder;
+  std::string depth_list;
+  std::string color_list;
+  for (int i = 0; i < kNumFrames; ++i) {
+    depth_list += std::to_string(i + 1) + " depth/" + std::to_string(i) + ".png\n";
+    color_list += std::to_string(i + 1) + " rgb/" + std::to_string(i) + ".png\n";
+  }
+  test::write_text(folder.path() / "depth.txt", depth_list);
+  test::write_text(folder.path() / "rgb.txt", color_list);
+  const Heard heard(config_of(folder.uri()));
+  ASSERT_EQ(heard.frames.size(), kNumFrames);
+  EXPECT_EQ(heard.frames[0].utime, 33'333);
+  EXPECT_EQ(heard.frames[4].utime, 166'667);
+  for (const RgbdFrame& frame : heard.frames) EXPECT_FALSE(frame.color_rgb.empty());
+  ASSERT_EQ(heard.notices.size(), 1U);
+  EXPECT_EQ(heard.notices[0].kind, SourceNotice::Kind::kInformation);
+  EXPECT_THAT(heard.notices[0].text, HasSubstr("frame numbers, not seconds"));
+}
+
+/// Rows as they are in the files are those of a camera whose y axis points up.
+void expect_reversed(const Heard& heard) {
+  ASSERT_EQ(heard.frames.size(), kNumFrames);
+  const RgbdFrame& frame = heard.frames[2];
+  EXPECT_EQ(frame.intrinsics.fy, 51.0);
+  EXPECT_EQ(frame.intrinsics.cy, 48 - 1 - 20.5);
+  EXPECT_EQ(frame.depth_m(48 - 1 - 5, 9), static_cast<float>(test::raw_depth(2, 9, 5) * 0.001));
+  EXPECT_EQ(frame.color_rgb(48 - 1 - 5, 9), test::color_rgb(2, 9, 5));
+  ASSERT_EQ(heard.notices.size(), 1U);
+  EXPECT_THAT(heard.notices[0].text, HasSubstr("fy < 0"));
+}
+
+TEST(OpenNi2Source, ReversesRowsOfACameraWhoseYPointsUp) {
+  const RecordingFolder folder("50 -51 31.5 20.5 64 48 1000\n");
+  expect_reversed(Heard(config_of(folder.uri())));
+}
+
+TEST(OpenNi2Source, ReversesRowsOnceForTheCalibrationFileItIsGiven) {
+  for (const char* own : {"50 51 31.5 23.5 64 48 1000\n", "50 -51 31.5 20.5 64 48 1000\n"}) {
+    const RecordingFolder folder(own);
+    const fs::path file = folder.path() / "other.txt";
+    test::write_text(file, "50 -51 31.5 20.5 64 48 1000\n");
+    SourceConfig config = config_of(folder.uri());
+    config.calibration_file = file.string();
+    expect_reversed(Heard(config));
+  }
 }
 
 TEST(OpenNi2Source, StopsOnRequest) {
