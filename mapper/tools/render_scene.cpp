@@ -37,6 +37,12 @@ void render(const std::string& address, const std::string& folder, const std::st
   std::fprintf(stderr, "\nwrote %s\n", folder.c_str());
 }
 
+std::string scenes_and_options() {
+  std::string text = "Scenes:";
+  for (const std::string& name : kintsugi::synthetic::scene_names()) text += " " + name;
+  return text + "\nOptions: " + Sequence::Config::known_options();
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -47,10 +53,10 @@ int main(int argc, char** argv) {
     std::string address;
     std::string folder;
     std::string frames;
-    app.add_option("scene", address, "synthetic://NAME?noise=on|off&seed=N&start=N&frames=N")
-        ->required();
+    app.add_option("scene", address, "synthetic://NAME?key=value&..., see below")->required();
     app.add_option("--out", folder, "folder to write to")->required();
     app.add_option("--frames", frames, "first:end:step, all by default");
+    app.footer(scenes_and_options());
     CLI11_PARSE(app, argc, argv);
     render(address, folder, frames);
     return 0;

@@ -13,7 +13,12 @@ std::string SyntheticRecording::name() const { return "synthetic://" + sequence_
 
 cv::Mat_<std::uint16_t> SyntheticRecording::depth(int index, DepthUnit unit) {
   cv::Mat_<std::uint16_t> depth = sequence_.depth_mm(index);
-  if (unit == DepthUnit::k100um) depth *= 10;  // 16 bits hold the sensor's range of 5 m
+  if (unit == DepthUnit::k100um) {
+    constexpr int kUnitsPerMm = 10;
+    const int farthest_mm = max_depth_value(unit) / kUnitsPerMm;
+    depth.setTo(0, depth > farthest_mm);
+    depth *= kUnitsPerMm;
+  }
   return depth;
 }
 

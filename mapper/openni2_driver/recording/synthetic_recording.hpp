@@ -16,7 +16,7 @@ class SyntheticRecording : public Recording {
 
   [[nodiscard]] std::string name() const override;
   [[nodiscard]] const Intrinsics& intrinsics() const override { return sequence_.intrinsics(); }
-  [[nodiscard]] int frame_rate_hz() const override { return 30; }
+  [[nodiscard]] int frame_rate_hz() const override { return sequence_.config().rate_hz; }
   [[nodiscard]] DepthUnit finest_depth_unit() const override { return DepthUnit::k1mm; }
   [[nodiscard]] int num_depth_frames() const override { return sequence_.num_frames(); }
   [[nodiscard]] int num_color_frames() const override { return sequence_.num_frames(); }

@@ -193,16 +193,6 @@ void check_intrinsics(const Intrinsics& camera) {
 
 }  // namespace
 
-Intrinsics default_intrinsics() {
-  return {.fx = 525,
-          .fy = 525,
-          .cx = 319.5,
-          .cy = 239.5,
-          .width = 640,
-          .height = 480,
-          .distortion = {}};
-}
-
 RenderedFrame render(const Scene& scene, const Intrinsics& intrinsics, const Pose& X_WC) {
   check_intrinsics(intrinsics);
   const cv::Size size(intrinsics.width, intrinsics.height);

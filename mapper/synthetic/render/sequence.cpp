@@ -1,69 +1,29 @@
 #include "mapper/synthetic/render/sequence.hpp"
 
-#include <charconv>
-#include <limits>
+#include <cmath>
 #include <stdexcept>
 
 #include "lcmtypes/base/argument_check.hpp"
 
 namespace kintsugi::synthetic {
 
-namespace {
-
-template <typename Integer>
-Integer parse_integer(const std::string& key, const std::string& value) {
-  Integer number{};
-  const char* end = value.data() + value.size();
-  const auto [stopped, error] = std::from_chars(value.data(), end, number);
-  if (error != std::errc() || stopped != end) {
-    throw std::invalid_argument("synthetic: option " + key + " is '" + value +
-                                "', expected a whole number up to " +
-                                std::to_string(std::numeric_limits<Integer>::max()));
-  }
-  return number;
-}
-
-bool parse_switch(const std::string& key, const std::string& value) {
-  if (value == "on") return true;
-  if (value == "off") return false;
-  throw std::invalid_argument("synthetic: option " + key + " is '" + value +
-                              "', expected on or off");
-}
-
-}  // namespace
-
-Sequence::Config Sequence::Config::parse(const std::string& scene,
-                                         const std::map<std::string, std::string>& options) {
-  Config config;
-  config.scene = scene;
-  for (const auto& [key, value] : options) {
-    if (key == "noise") {
-      config.noise = parse_switch(key, value);
-    } else if (key == "seed") {
-      config.seed = parse_integer<std::uint32_t>(key, value);
-    } else if (key == "start") {
-      config.start = parse_integer<int>(key, value);
-    } else if (key == "frames") {
-      config.frames = parse_integer<int>(key, value);
-    } else if (key == "ground_truth") {
-      config.ground_truth = value;
-    } else {
-      throw std::invalid_argument("synthetic: no option '" + key +
-                                  "'; there are: noise=on|off seed=N start=N frames=N "
-                                  "ground_truth=FOLDER");
-    }
-  }
-  return config;
-}
-
 Sequence::Sequence(const Config& config)
     : config_(config),
       content_(make_scene_with_path(config.scene, config.seed)),
-      sensor_({.noise = config.noise, .seed = config.seed}) {
-  const int on_path = content_.trajectory.num_frames();
+      sensor_(make_sensor({.name = config.sensor, .noise = config.noise, .seed = config.seed})),
+      intrinsics_(sensor_->intrinsics()) {
+  check_range("synthetic: speed", config_.speed, 0.1, 10.0);
+  require(config_.rate_hz == 30 || config_.rate_hz == 15, "synthetic: rate", config_.rate_hz,
+          "30 or 15");
+  const int on_path = frames_on_path();
   check_range("synthetic: start", config_.start, 0, on_path - 1);
   num_frames_ = config_.frames.value_or(on_path - config_.start);
   check_range("synthetic: frames", num_frames_, 1, on_path - config_.start);
+}
+
+int Sequence::frames_on_path() const {
+  const double duration_s = content_.trajectory.duration_s() / config_.speed;
+  return 1 + static_cast<int>(std::floor(duration_s * config_.rate_hz + 1e-9));
 }
 
 void Sequence::check_index(int frame) const {
@@ -75,7 +35,12 @@ void Sequence::check_index(int frame) const {
 
 Pose Sequence::X_WC(int frame) const {
   check_index(frame);
-  return content_.trajectory.X_WC(1e-6 * static_cast<double>(utime(frame)));
+  // The path is sampled at the time of its own 30 Hz, to the microsecond as utime(): at twice the
+  // speed frame i is where frame 2 i is otherwise, exactly.
+  const double path_frames = config_.speed * kFrameRate_hz / config_.rate_hz;
+  const double path_us =
+      std::floor(path_frames * (config_.start + frame) * 1e6 / kFrameRate_hz + 0.5);
+  return content_.trajectory.X_WC(1e-6 * path_us);
 }
 
 const RenderedFrame& Sequence::truth(int frame) {
@@ -87,7 +52,7 @@ const RenderedFrame& Sequence::truth(int frame) {
 }
 
 cv::Mat_<std::uint16_t> Sequence::depth_mm(int frame) {
-  return sensor_.apply(truth(frame), config_.start + frame);
+  return sensor_->apply(truth(frame), config_.start + frame);
 }
 
 }  // namespace kintsugi::synthetic

@@ -3,34 +3,42 @@
 
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 
 #include <opencv2/core.hpp>
 
 #include "mapper/synthetic/render/renderer.hpp"
-#include "mapper/synthetic/render/sensor_model.hpp"
 #include "mapper/synthetic/rooms/scenes.hpp"
+#include "mapper/synthetic/sensors/sensors.hpp"
 
 namespace kintsugi::synthetic {
 
-/// Depth, colour and ground truth of a scene along its path. Frames can be rendered in any order
-/// with the same result; the one rendered last is kept.
+/// Depth, colour and ground truth of a scene along its path, with the image size and the geometry
+/// of the depth sensor. Frames can be rendered in any order with the same result; the one rendered
+/// last is kept.
 class Sequence {
  public:
   struct Config {
-    std::string scene = "office";  ///< one of scene_names()
-    bool noise = true;             ///< of the depth sensor
-    std::uint32_t seed = 1;        ///< for the noise of the sensor and the shake of the hand
-    int start = 0;                 ///< first frame of the path, >= 0 and on the path
-    std::optional<int> frames;     ///< how many, >= 1 and on the path; absent: to the path's end
-    std::string ground_truth;      ///< folder for write_ground_truth(); empty: none
+    std::string scene = "office";    ///< one of scene_names()
+    std::string sensor = "kinect1";  ///< one of sensor_names()
+    bool noise = true;               ///< of the depth sensor
+    double speed = 1.0;              ///< times that of the path, within [0.1, 10]
+    int rate_hz = 30;                ///< frames per second, 30 or 15
+    std::uint32_t seed = 1;          ///< for the noise of the sensor and the shake of the hand
+    int start = 0;                   ///< first frame, >= 0 and on the path
+    std::optional<int> frames;       ///< how many, >= 1 and on the path; absent: to the path's end
+    std::string ground_truth;        ///< folder for write_ground_truth(); empty: none
 
-    /// From the options of a `synthetic://scene?key=value&...` address: noise=on|off, seed=N,
-    /// start=N, frames=N, ground_truth=FOLDER.
+    /// From the options of a `synthetic://scene?key=value&...` address, as known_options() lists
+    /// them.
     /// @throws std::invalid_argument naming a bad key or value, and what is allowed
     static Config parse(const std::string& scene,
                         const std::map<std::string, std::string>& options);
+
+    /// "sensor=kinect1|... noise=on|off ...", for people.
+    static std::string known_options();
   };
 
   /// @throws std::invalid_argument naming scene or field, value and bound
@@ -42,7 +50,9 @@ class Sequence {
   int num_frames() const { return num_frames_; }
 
   /// Time since the start of the path, microseconds; frame 0 is at frame `start` of the path.
-  std::int64_t utime(int frame) const { return frame_utime(config_.start + frame); }
+  std::int64_t utime(int frame) const {
+    return frame_utime(std::int64_t{kFrameRate_hz / config_.rate_hz} * (config_.start + frame));
+  }
 
   /// True pose in the scene's frame (see Scene).
   Pose X_WC(int frame) const;
@@ -53,12 +63,13 @@ class Sequence {
   cv::Mat_<std::uint16_t> depth_mm(int frame);
 
  private:
+  int frames_on_path() const;
   void check_index(int frame) const;
 
   Config config_;
   SceneWithPath content_;
-  SensorModel sensor_;
-  Intrinsics intrinsics_ = default_intrinsics();
+  std::unique_ptr<SensorModel> sensor_;
+  Intrinsics intrinsics_;
   int num_frames_ = 0;
   int rendered_ = -1;
   RenderedFrame last_;

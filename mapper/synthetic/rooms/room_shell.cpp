@@ -70,7 +70,7 @@ void add_doorway(SceneBuilder& builder, const Pose& X_WG, const Opening& opening
 }  // namespace
 
 void add_wall(SceneBuilder& builder, const Eigen::Vector3d& start_W, const Eigen::Vector3d& end_W,
-              const Material& material, const std::vector<Opening>& openings) {
+              const Material& material, const std::vector<Opening>& openings, double height_m) {
   const Eigen::Vector3d along = end_W - start_W;
   const double length = along.norm();
   const Pose X_WG = at(start_W.x(), start_W.y(), start_W.z(), std::atan2(along.y(), along.x()));
@@ -79,12 +79,12 @@ void add_wall(SceneBuilder& builder, const Eigen::Vector3d& start_W, const Eigen
   for (const Opening& opening : openings) {
     const double left = opening.middle_m - opening.width_m / 2;
     const double right = opening.middle_m + opening.width_m / 2;
-    add_piece(builder, done, left, 0, kRoomHeight_m, kWallThickness_m, material);
+    add_piece(builder, done, left, 0, height_m, kWallThickness_m, material);
     add_piece(builder, left, right, 0, opening.bottom_m, kWallThickness_m, material);
-    add_piece(builder, left, right, opening.top_m, kRoomHeight_m, kWallThickness_m, material);
+    add_piece(builder, left, right, opening.top_m, height_m, kWallThickness_m, material);
     done = right;
   }
-  add_piece(builder, done, length, 0, kRoomHeight_m, kWallThickness_m, material);
+  add_piece(builder, done, length, 0, height_m, kWallThickness_m, material);
 
   done = 0.0;
   builder.begin_structure("skirting", X_WG);

@@ -25,7 +25,8 @@ struct Opening {
 /// A straight wall around the line from start_W to end_W at its foot, with a skirting on both
 /// sides. Openings must lie inside the wall, in ascending order, without overlap.
 void add_wall(SceneBuilder& builder, const Eigen::Vector3d& start_W, const Eigen::Vector3d& end_W,
-              const Material& material, const std::vector<Opening>& openings = {});
+              const Material& material, const std::vector<Opening>& openings = {},
+              double height_m = kRoomHeight_m);
 
 /// A slab whose upper side is at top_z, from corner to corner.
 void add_slab(SceneBuilder& builder, const char* name, const Eigen::Vector2d& min_W,

@@ -13,6 +13,9 @@ SceneWithPath box_room_scene(std::uint32_t seed);
 SceneWithPath office_scene(std::uint32_t seed);
 SceneWithPath loop_scene(std::uint32_t seed);
 SceneWithPath two_floors_scene(std::uint32_t seed);
+SceneWithPath hall_scene(std::uint32_t seed);
+SceneWithPath hallway_scene(std::uint32_t seed);
+SceneWithPath kitchen_scene(std::uint32_t seed);
 
 SceneWithPath wall_scene(bool is_textured, std::uint32_t seed);
 SceneWithPath floor_scene(bool is_textured, std::uint32_t seed);

@@ -9,11 +9,13 @@
 
 namespace kintsugi::synthetic {
 
-/// "office", "loop" and "two-floors" correspond to the three datasets of the paper. "sphere"
-/// (radius 0.5 m at the origin), "plane" (z = 0, 4 m x 4 m) and "box-room" are small, for tests. In
-/// "wall", "floor" and "corridor" the camera sees nothing else, so camera motion along the surface
-/// is unobservable from depth; in "wall-visit" the camera pans from some objects to the bare wall
-/// and back. The last four also exist as "...-plain", without texture.
+/// "office", "loop" and "two-floors" correspond to the three datasets of the paper. In "hall" (8 m
+/// x 12 m) surfaces are mostly 3 to 6 m from the camera, in "kitchen" 1 to 3 m; "hallway" is 1.8 m
+/// wide and bare, but for its doors. "sphere" (radius 0.5 m at the origin), "plane" (z = 0, 4 m x 4
+/// m) and "box-room" are small, for tests. In "wall", "floor" and "corridor" the camera sees
+/// nothing else, so camera motion along the surface is unobservable from depth; in "wall-visit" the
+/// camera pans from some objects to the bare wall and back. The last four also exist as
+/// "...-plain", without texture.
 const std::vector<std::string>& scene_names();
 
 /// @throws std::invalid_argument naming the known scenes, if `name` is none of them

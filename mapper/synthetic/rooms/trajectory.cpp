@@ -12,7 +12,6 @@ namespace kintsugi::synthetic {
 
 namespace {
 
-constexpr double kFrameRate_hz = 30.0;
 constexpr int kKnotsPerFrame = 4;
 constexpr double kSmoothing_s = 0.5;  // the speed changes over about this time
 
@@ -64,7 +63,9 @@ Pose look_at(const Eigen::Vector3d& position_W, const Eigen::Vector3d& target_W)
   return X_WC;
 }
 
-std::int64_t frame_utime(std::int64_t frame_index) { return (frame_index * 1'000'000 + 15) / 30; }
+std::int64_t frame_utime(std::int64_t frame_index) {
+  return (frame_index * 1'000'000 + kFrameRate_hz / 2) / kFrameRate_hz;
+}
 
 void Trajectory::Config::validate() const {
   require(std::isfinite(duration_s) && duration_s > 0, "duration_s", duration_s,

@@ -19,6 +19,8 @@ struct Waypoint {
   Eigen::Vector3d target_W;    ///< metres; the point that the camera looks at
 };
 
+inline constexpr int kFrameRate_hz = 30;  ///< of frame_utime() and Trajectory::num_frames()
+
 /// Time of frame i at 30 Hz, microseconds, rounded to the nearest.
 std::int64_t frame_utime(std::int64_t frame_index);
 

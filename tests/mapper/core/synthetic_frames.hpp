@@ -10,8 +10,8 @@
 #include "mapper/core/frame/rgbd_frame.hpp"
 #include "mapper/core/frame/surface_pyramid.hpp"
 #include "mapper/synthetic/render/renderer.hpp"
-#include "mapper/synthetic/render/sensor_model.hpp"
 #include "mapper/synthetic/rooms/scenes.hpp"
+#include "mapper/synthetic/sensors/sensors.hpp"
 
 namespace kintsugi::mapper::testing {
 
@@ -31,9 +31,7 @@ inline cv::Mat_<float> metres(const cv::Mat_<std::uint16_t>& depth_mm) {
 inline SyntheticRun synthetic_run(const std::string& scene_name, int count, bool noise,
                                   int step = 1) {
   const synthetic::SceneWithPath world = synthetic::make_scene_with_path(scene_name);
-  synthetic::SensorModel::Config sensor_config;
-  sensor_config.noise = noise;
-  const synthetic::SensorModel sensor(sensor_config);
+  const auto sensor = synthetic::make_sensor({.noise = noise});
   const Intrinsics camera = half_size(synthetic::default_intrinsics());
   SyntheticRun run;
   for (int i = 0; i < count * step; i += step) {
@@ -44,7 +42,7 @@ inline SyntheticRun synthetic_run(const std::string& scene_name, int count, bool
     frame.utime = utime;
     frame.frame_index = i;
     frame.intrinsics = camera;
-    frame.depth_m = metres(sensor.apply(picture, i));
+    frame.depth_m = metres(sensor->apply(picture, i));
     frame.color_rgb = picture.color_rgb;
     run.frames.push_back(frame);
     run.true_path.push_back({utime, X_WC});

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
+#include "mapper/openni2_driver/recording/imitated_recording.hpp"
 #include "mapper/openni2_driver/recording/recording_uri.hpp"
 #include "mapper/openni2_driver/recording/synthetic_recording.hpp"
 #include "mapper/synthetic/render/sequence.hpp"
@@ -29,15 +30,29 @@ std::string error_of(const std::map<std::string, std::string>& options) {
 }
 
 TEST(Sequence, OptionsAreReadAndWrongOnesNamed) {
-  const auto config = Sequence::Config::parse(
-      "loop", {{"noise", "off"}, {"seed", "9"}, {"frames", "30"}, {"start", "12"}});
+  const auto config = Sequence::Config::parse("loop", {{"noise", "off"},
+                                                       {"seed", "9"},
+                                                       {"frames", "30"},
+                                                       {"start", "12"},
+                                                       {"sensor", "d435"},
+                                                       {"speed", "0.5"},
+                                                       {"rate", "15"}});
   EXPECT_EQ(config.scene, "loop");
+  EXPECT_EQ(config.sensor, "d435");
+  EXPECT_EQ(config.speed, 0.5);
+  EXPECT_EQ(config.rate_hz, 15);
   EXPECT_FALSE(config.noise);
   EXPECT_EQ(config.seed, 9U);
   EXPECT_EQ(config.frames, 30);
   EXPECT_EQ(config.start, 12);
   EXPECT_THAT(error_of({{"nose", "off"}}), HasSubstr("nose"));
+  EXPECT_THAT(error_of({{"nose", "off"}}), HasSubstr("sensor=clean|d435|kinect1|kinect2|lidar"));
   EXPECT_THAT(error_of({{"noise", "maybe"}}), HasSubstr("on or off"));
+  EXPECT_THAT(error_of({{"sensor", "sonar"}}), HasSubstr("kinect1 kinect2 lidar"));
+  EXPECT_THAT(error_of({{"speed", "fast"}}), HasSubstr("expected a number"));
+  EXPECT_THAT(error_of({{"speed", "0"}}), HasSubstr("within [0.1, 10]"));
+  EXPECT_THAT(error_of({{"speed", "nan"}}), HasSubstr("within [0.1, 10]"));
+  EXPECT_THAT(error_of({{"rate", "60"}}), HasSubstr("30 or 15"));
   EXPECT_THAT(error_of({{"seed", "-1"}}), HasSubstr("whole number"));
   EXPECT_THAT(error_of({{"seed", "1x"}}), HasSubstr("1x"));
   EXPECT_THAT(error_of({{"start", "241"}}), HasSubstr("within [0, 240]"));
@@ -58,6 +73,85 @@ TEST(Sequence, PartOfAPathIsThatPartOfTheWhole) {
   EXPECT_THROW((void)part.X_WC(5), std::out_of_range);
 }
 
+TEST(Sequence, ImagesHaveTheSizeAndGeometryOfTheSensor) {
+  struct Expected {
+    int width;
+    int height;
+    double focal_length_px;
+  };
+  const std::map<std::string, Expected> expected = {{"kinect1", {640, 480, 525}},
+                                                    {"kinect2", {512, 424, 365}},
+                                                    {"d435", {640, 480, 615}},
+                                                    {"lidar", {256, 192, 212}},
+                                                    {"clean", {640, 480, 525}}};
+  for (const auto& [name, camera] : expected) {
+    Sequence sequence(Sequence::Config::parse("box-room", {{"sensor", name}}));
+    EXPECT_EQ(sequence.intrinsics(),
+              centred_camera(camera.width, camera.height, camera.focal_length_px))
+        << name;
+    const cv::Size size(camera.width, camera.height);
+    EXPECT_EQ(sequence.depth_mm(3).size(), size) << name;
+    EXPECT_EQ(sequence.truth(3).color_rgb.size(), size) << name;
+    EXPECT_EQ(sequence.truth(3).intrinsics, sequence.intrinsics()) << name;
+  }
+}
+
+TEST(Sequence, DefaultSensorIsTheFirstKinect) {
+  Sequence given(Sequence::Config::parse("box-room", {{"sensor", "kinect1"}}));
+  Sequence by_default(Sequence::Config::parse("box-room", {}));
+  const cv::Mat_<std::uint16_t> a = given.depth_mm(5);
+  const cv::Mat_<std::uint16_t> b = by_default.depth_mm(5);
+  EXPECT_TRUE(std::equal(a.begin(), a.end(), b.begin(), b.end()));
+}
+
+TEST(Sequence, SpeedChangesWhenTheCameraIsSomewhereButNotWhere) {
+  const Sequence once(Sequence::Config::parse("box-room", {}));
+  const Sequence twice(Sequence::Config::parse("box-room", {{"speed", "2"}}));
+  const Sequence half(Sequence::Config::parse("box-room", {{"speed", "0.5"}}));
+  ASSERT_EQ(once.num_frames(), 241);
+  EXPECT_EQ(twice.num_frames(), 121);
+  EXPECT_EQ(half.num_frames(), 481);
+  for (const int frame : {0, 1, 17, 60, 120}) {
+    EXPECT_EQ(twice.utime(frame), once.utime(frame));
+    EXPECT_TRUE(twice.X_WC(frame).isApprox(once.X_WC(2 * frame), 0.0)) << frame;
+    EXPECT_TRUE(half.X_WC(2 * frame).isApprox(once.X_WC(frame), 0.0)) << frame;
+  }
+}
+
+TEST(Sequence, AtFifteenHertzItIsEverySecondFrame) {
+  const Sequence all(Sequence::Config::parse("box-room", {}));
+  const Sequence every_second(Sequence::Config::parse("box-room", {{"rate", "15"}}));
+  const Sequence part(
+      Sequence::Config::parse("box-room", {{"rate", "15"}, {"start", "10"}, {"frames", "3"}}));
+  EXPECT_EQ(every_second.num_frames(), 121);
+  EXPECT_EQ(every_second.utime(1), 66'667);
+  EXPECT_EQ(every_second.utime(15), 1'000'000);
+  for (const int frame : {0, 1, 17, 120}) {
+    EXPECT_EQ(every_second.utime(frame), all.utime(2 * frame));
+    EXPECT_TRUE(every_second.X_WC(frame).isApprox(all.X_WC(2 * frame), 0.0)) << frame;
+  }
+  EXPECT_EQ(part.utime(1), every_second.utime(11));
+  EXPECT_TRUE(part.X_WC(1).isApprox(every_second.X_WC(11), 0.0));
+}
+
+TEST(Sequence, RecordingsHaveTheRateOfTheirFramesAndNoDepthBeyondTheirUnit) {
+  const mapper::SyntheticRecording recording(Sequence::Config::parse("box-room", {{"rate", "15"}}));
+  EXPECT_EQ(recording.frame_rate_hz(), 15);
+  EXPECT_EQ(recording.depth_utime(3), 200'000);
+  // Units of 0.1 mm end at 6.55 m; the corridor is longer.
+  mapper::SyntheticRecording corridor(Sequence::Config::parse("corridor", {{"sensor", "clean"}}));
+  const cv::Mat_<std::uint16_t> mm = corridor.depth(0, mapper::DepthUnit::k1mm);
+  const cv::Mat_<std::uint16_t> tenths = corridor.depth(0, mapper::DepthUnit::k100um);
+  int beyond = 0;
+  for (int v = 0; v < mm.rows; ++v) {
+    for (int u = 0; u < mm.cols; ++u) {
+      beyond += mm(v, u) > 6553 ? 1 : 0;
+      ASSERT_EQ(tenths(v, u), mm(v, u) > 6553 ? 0 : 10 * mm(v, u));
+    }
+  }
+  EXPECT_GT(beyond, 0);
+}
+
 TEST(Sequence, ScenesOpenAsRecordingsOfTheDriver) {
   const auto uri = mapper::parse_recording_uri("synthetic://box-room?noise=off&frames=3");
   const auto recording = mapper::open_recording(*uri);
@@ -70,6 +164,28 @@ TEST(Sequence, ScenesOpenAsRecordingsOfTheDriver) {
   EXPECT_EQ(tenths(240, 320), 10 * mm(240, 320));
   EXPECT_EQ(recording->color(1).size(), mm.size());
   EXPECT_TRUE(recording->depth_X_WC(1).has_value());
+}
+
+TEST(Sequence, ColourCanBeSwitchedOffAsOfAnyDevice) {
+  const auto uri = mapper::parse_recording_uri("synthetic://kitchen?color=off&sensor=lidar");
+  EXPECT_FALSE(uri->imitation.color);
+  EXPECT_EQ(uri->options, (std::map<std::string, std::string>{{"sensor", "lidar"}}));
+  mapper::ImitatedRecording recording(mapper::open_recording(*uri), uri->imitation, std::nullopt);
+  EXPECT_EQ(recording.num_color_frames(), 0);
+  EXPECT_GT(recording.num_depth_frames(), 0);
+}
+
+TEST(GroundTruth, CameraIsThatOfTheSensor) {
+  const auto folder =
+      std::filesystem::temp_directory_path() / ("kintsugi_camera_" + std::to_string(getpid()));
+  const mapper::SyntheticRecording recording(Sequence::Config::parse(
+      "box-room", {{"frames", "2"}, {"sensor", "lidar"}, {"ground_truth", folder.string()}}));
+  std::ifstream camera(folder / "camera.txt");
+  std::string line;
+  std::getline(camera, line);  // a comment
+  std::getline(camera, line);
+  EXPECT_EQ(line, "212 212 127.5 95.5 256 192 1000");
+  std::filesystem::remove_all(folder);
 }
 
 TEST(GroundTruth, IsWrittenWhenASyntheticDeviceIsOpenedWithAFolderForIt) {

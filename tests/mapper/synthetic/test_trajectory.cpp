@@ -1,13 +1,16 @@
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <numbers>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
+#include "mapper/synthetic/render/renderer.hpp"
 #include "mapper/synthetic/rooms/scenes.hpp"
 #include "mapper/synthetic/rooms/trajectory.hpp"
 
@@ -117,6 +120,48 @@ TEST(Paths, AreAtHandHeldSpeedAndClearOfAnySurface) {
     EXPECT_LT(speed, kMaxSpeed_m_per_s) << name;
     EXPECT_LT(turn, kMaxTurn_rad_per_s) << name;
     EXPECT_GT(clearance, kMinClearance_m) << name;
+  }
+}
+
+/// Quantiles of true depth over the whole path, every tenth frame.
+std::vector<double> depth_quantiles_m(const std::string& name, const std::vector<double>& shares) {
+  const auto [scene, path] = make_scene_with_path(name);
+  std::vector<float> depths_m;
+  for (int i = 0; i < path.num_frames(); i += 10) {
+    const RenderedFrame frame =
+        render(scene, centred_camera(160, 120, 525.0 / 4), path.X_WC(i * kFrame_s));
+    std::copy_if(frame.depth_m.begin(), frame.depth_m.end(), std::back_inserter(depths_m),
+                 [](float z) { return !std::isnan(z); });
+  }
+  std::sort(depths_m.begin(), depths_m.end());
+  std::vector<double> quantiles_m;
+  for (const double share : shares) {
+    const double index = share * static_cast<double>(depths_m.size() - 1);
+    quantiles_m.push_back(depths_m.at(static_cast<std::size_t>(index)));
+  }
+  return quantiles_m;
+}
+
+TEST(Paths, HallIsSeenFromAfarAndTheKitchenFromNearby) {
+  const auto hall_m = depth_quantiles_m("hall", {0.25, 0.5, 0.9});
+  EXPECT_GT(hall_m[0], 3.0);
+  EXPECT_GT(hall_m[1], 3.5);
+  EXPECT_LT(hall_m[1], 4.2);
+  EXPECT_LT(hall_m[2], 6.0);
+  const auto kitchen_m = depth_quantiles_m("kitchen", {0.05, 0.95});
+  EXPECT_GT(kitchen_m[0], 1.0);
+  EXPECT_LT(kitchen_m[1], 3.0);
+  // The wall at its end is in view and within the range of every sensor, so that it determines how
+  // far the camera has gone.
+  EXPECT_LT(depth_quantiles_m("hallway", {0.95})[0], 4.5);
+}
+
+TEST(Paths, RoomsOfTheBatteryTakeTenSeconds) {
+  for (const char* name : {"hall", "hallway", "kitchen"}) {
+    const Trajectory path = make_scene_with_path(name).trajectory;
+    EXPECT_EQ(path.num_frames(), 301) << name;
+    EXPECT_GT(path.length_m(), 2.0) << name;  // 0.2 to 0.4 m/s
+    EXPECT_LT(path.length_m(), 4.0) << name;
   }
 }
 
