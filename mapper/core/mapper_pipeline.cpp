@@ -18,10 +18,6 @@ Eigen::AlignedBox3d region_of(const TsdfVolume& volume) {
   return {volume.center_W() - reach, volume.center_W() + reach};
 }
 
-/// The surface of the model deviates from the true one by about this even if depth is exact: it is
-/// interpolated between voxels.
-constexpr double kModelNoise_vox = 0.125;
-
 }  // namespace
 
 void MapperPipeline::Config::validate() const {
@@ -40,7 +36,7 @@ MapperPipeline::MapperPipeline(const Config& config)
       integrator_(config.integrator),
       raycaster_(config.raycaster),
       tracker_(config.tracker),
-      noise_(std::getenv("NOISE0") ? DepthNoise{atof(std::getenv("NOISE0")),atof(std::getenv("NOISE1")),atof(std::getenv("NOISE2"))} : config.noise, kModelNoise_vox * config.volume.resolution_m),
+      noise_(std::getenv("NOISE0") ? DepthNoise{atof(std::getenv("NOISE0")),atof(std::getenv("NOISE1")),atof(std::getenv("NOISE2"))} : config.noise),
       relocalizer_(config.relocalizer),
       slice_worker_(config.slices) {}
 
@@ -116,7 +112,7 @@ TrackingResult MapperPipeline::start(const TrackingInput& input) {
 }
 
 void MapperPipeline::learn_noise(const TrackingInput& input, const Pose& X_WC) {
-  if (!config_.learn_noise) return;
+  if (!config_.learn_noise || getenv("NOLEARN")) return;
   const std::size_t level = std::min<std::size_t>(1, input.surface_C.size() - 1);
   noise_.add(input.surface_C[level], model_->surface_V[level], model_->X_WV.inverse() * X_WC);
   if (std::getenv("DBG")) std::fprintf(stderr, "NOISE %lld %.5f %.5f %.5f\n", (long long)input.utime, noise_.noise().base_m, noise_.noise().share, noise_.noise().growth_per_m);

@@ -37,7 +37,8 @@ struct ObservabilityConfig {
   double prior_m = 0.003;    ///< standard deviation of the predicted position,
   double prior_rad = 0.003;  ///< and of the predicted orientation
   /// Directions that are measured less certainly than predicted count as determined all the same if
-  /// their deviation is at most this, in units of the prior's: enough for the map.
+  /// their deviation is at most this, in units of the prior's, or at most the noise of single
+  /// depths: enough for the map.
   double max_weak_priors = 7.0;
   /// Least share of depth's information on a direction, not determined by depth alone, that is no
   /// noise of the normals. The noise of an image scatters rho by far less.

@@ -32,6 +32,7 @@ RegistrationQuality quality_of(const NormalEquations& equations, std::size_t num
     const auto inliers = static_cast<double>(equations.inliers);
     quality.rms_m = std::sqrt(equations.squared_residuals_m2 / inliers);
     quality.rms_sigmas = std::sqrt(equations.weighted_squares / inliers);
+    if (quality.rms_sigmas > 0.0) quality.noise_m = quality.rms_m / quality.rms_sigmas;
   }
   return quality;
 }

@@ -17,6 +17,7 @@ struct RegistrationQuality {
   double rms_sigmas = 0.0;      ///< the same, each in units of the noise of its depth
   double sigma_m = 0.0;         ///< uncertainty of the pose, see pose_sigma_m()
   double voxel_m = 0.0;         ///< side of the model's voxels
+  double noise_m = 0.0;         ///< typical noise of the inliers' depths
   bool solved = false;          ///< the normal equations had a solution at every step
   int undetermined = 0;         ///< directions of motion that neither depth nor colour determines
 };

@@ -1,7 +1,8 @@
 #include "mapper/core/registration/step_solver.hpp"
 
 #include <Eigen/Cholesky>
-#include <cstdlib>
+#include <algorithm>
+#include <cmath>
 
 
 namespace kintsugi::mapper {
@@ -41,7 +42,7 @@ std::optional<Step> StepSolver::solve(const NormalEquations& geometric, int leve
 void StepSolver::add_open_part(const NormalEquations& geometric, int level, const Pose& X_VC,
                                Step& step) {
   FurtherEquations sum;
-  if (!getenv("NOEDGE")) add_edges(level, X_VC, sum);
+  add_edges(level, X_VC, sum);
   if (colors_.frame_C != nullptr && colors_.reference != nullptr) {
     add_intensities(level, X_VC, sum, step);
   }
@@ -49,19 +50,27 @@ void StepSolver::add_open_part(const NormalEquations& geometric, int level, cons
   sum.information.A += pure_.information;
   sum.information.C += pure_.information;
 
-  ObservabilityConfig weak = config_.observability;
-  if (getenv("WEAK")) weak.max_weak_priors = atof(getenv("WEAK"));
-  weak.min_reliability = 1.0 / (1.0 + weak.max_weak_priors * weak.max_weak_priors);
-  const ObservableSplit split = split_observable(sum.information, geometry_.open, weak);
+  const ObservableSplit split =
+      split_observable(sum.information, geometry_.open, weak_observability(geometric));
   step.undetermined = split.open;
   step.photometric_reliability = split.least_determined;
 
-  if (getenv("NOPURE")) pure_ = PureInformation();
   const Matrix6d& W = pure_.weighting;
   const Matrix6d H = sum.H + W.transpose() * geometric.A * W;
   const Vector6d g = sum.g - sum.H * step.xi +
                      (W * W).transpose() * (geometric.b - geometric.A * step.xi);
   step.xi += solve_in(split.determined, H, g);
+}
+
+ObservabilityConfig StepSolver::weak_observability(const NormalEquations& geometric) const {
+  ObservabilityConfig weak = config_.observability;
+  // The typical noise of the inliers' depths.
+  const double noise_m = geometric.weighted_squares > 0.0
+                             ? std::sqrt(geometric.squared_residuals_m2 / geometric.weighted_squares)
+                             : 0.0;
+  const double priors = std::max(weak.max_weak_priors, noise_m / weak.prior_m);
+  weak.min_reliability = 1.0 / (1.0 + priors * priors);
+  return weak;
 }
 
 void StepSolver::add_edges(int level, const Pose& X_VC, FurtherEquations& sum) {

@@ -78,6 +78,8 @@ class StepSolver {
   };
 
   void add_open_part(const NormalEquations& geometric, int level, const Pose& X_VC, Step& step);
+  /// Which certainty is enough for directions that depth alone does not determine.
+  ObservabilityConfig weak_observability(const NormalEquations& geometric) const;
   void add_edges(int level, const Pose& X_VC, FurtherEquations& sum);
   void add_intensities(int level, const Pose& X_VC, FurtherEquations& sum, Step& step);
 

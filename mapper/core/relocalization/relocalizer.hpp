@@ -40,7 +40,8 @@ class Relocalizer {
                            .max_in_front_share = 0.2,
                            .max_rms_vox = 1.6,
                            .max_rms_sigmas = 2.2,
-                           .max_sigma_vox = 1.15};
+                           .max_sigma_vox = 1.15,
+                           .max_sigma_noises = 0.5};
 
     /// @throws std::invalid_argument naming field, value and bound
     void validate() const;

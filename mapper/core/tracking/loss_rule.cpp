@@ -14,6 +14,7 @@ void Evidence::validate(const std::string& name) const {
   check_range(name + ".max_rms_vox", max_rms_vox, 1e-3, 1e3);
   check_range(name + ".max_rms_sigmas", max_rms_sigmas, 1e-3, 1e3);
   check_range(name + ".max_sigma_vox", max_sigma_vox, 1e-3, 1e6);
+  check_range(name + ".max_sigma_noises", max_sigma_noises, 0.0, 1e6);
 }
 
 std::optional<LossReason> find_fault(const RegistrationQuality& quality, const Evidence& needed) {
@@ -27,7 +28,10 @@ std::optional<LossReason> find_fault(const RegistrationQuality& quality, const E
     return LossReason::kLargeResidual;
   }
   if (quality.undetermined > 0) return LossReason::kUndetermined;
-  if (quality.sigma_m > needed.max_sigma_vox * quality.voxel_m) return LossReason::kUncertain;
+  if (quality.sigma_m > std::max(needed.max_sigma_vox * quality.voxel_m,
+                                 needed.max_sigma_noises * quality.noise_m)) {
+    return LossReason::kUncertain;
+  }
   return std::nullopt;
 }
 
@@ -37,6 +41,8 @@ void LossRule::Config::validate() const {
   check_range("recent_view_decay", recent_view_decay, 0.0, 1.0);
   following.validate("following");
   found_anew.validate("found_anew");
+  check_range("usual_decay", usual_decay, 0.0, 1.0);
+  check_range("max_usual_share", max_usual_share, 0.0, 1.0);
   check_range("grace_frames", grace_frames, 0, 1'000'000);
 }
 
@@ -71,20 +77,32 @@ LossRule::LossRule(const Config& config) : config_(config) { config_.validate();
 std::optional<LossReason> LossRule::judge(const RegistrationQuality& quality) const {
   if (quality.covered_share < config_.min_covered_share) return LossReason::kTooFewPixels;
   if (is_cut_off(quality)) return LossReason::kViewCutOff;
-  Evidence needed = config_.following;
+  Evidence needed = allow_usual(config_.following);
   if (accepted_frames_ < config_.grace_frames) needed.min_inlier_share = 0.0;
   return find_fault(quality, needed);
 }
 
 std::optional<LossReason> LossRule::judge_found_anew(const RegistrationQuality& quality) const {
   if (quality.covered_share < config_.min_covered_share) return LossReason::kTooFewPixels;
-  return find_fault(quality, config_.found_anew);
+  return find_fault(quality, allow_usual(config_.found_anew));
 }
 
-void LossRule::remember(double covered_share, bool accepted) {
+void LossRule::remember(const RegistrationQuality& quality, bool accepted) {
   recent_covered_share_ =
-      std::max(covered_share, config_.recent_view_decay * recent_covered_share_);
-  if (accepted) ++accepted_frames_;
+      std::max(quality.covered_share, config_.recent_view_decay * recent_covered_share_);
+  if (!accepted) return;
+  ++accepted_frames_;
+  const auto mix = [this](double& usual, double share) {
+    usual = config_.usual_decay * usual + (1.0 - config_.usual_decay) * share;
+  };
+  mix(usual_behind_share_, quality.behind_share);
+  mix(usual_in_front_share_, quality.in_front_share);
+}
+
+Evidence LossRule::allow_usual(Evidence needed) const {
+  needed.max_behind_share += std::min(usual_behind_share_, config_.max_usual_share);
+  needed.max_in_front_share += std::min(usual_in_front_share_, config_.max_usual_share);
+  return needed;
 }
 
 bool LossRule::is_cut_off(const RegistrationQuality& quality) const {

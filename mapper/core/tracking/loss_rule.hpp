@@ -35,7 +35,9 @@ struct Evidence {
   /// away the noise of the depth limits how well a right pose fits.
   double max_rms_vox = 100.0;
   double max_rms_sigmas = 100.0;
-  double max_sigma_vox = 100.0;  ///< uncertainty of the pose
+  /// Likewise for the uncertainty of the pose.
+  double max_sigma_vox = 100.0;
+  double max_sigma_noises = 100.0;  ///< in units of the noise of the depths
 
   /// @throws std::invalid_argument naming `name`.field, value and bound
   void validate(const std::string& name) const;
@@ -62,14 +64,18 @@ class LossRule {
                        .max_in_front_share = 0.4,
                        .max_rms_vox = 1.6,
                        .max_rms_sigmas = 2.2,
-                       .max_sigma_vox = 2.3};
+                       .max_sigma_vox = 2.3,
+                       .max_sigma_noises = 1.0};
     Evidence found_anew{.min_overlap_share = 0.25,
                         .min_inlier_share = 0.4,
                         .max_behind_share = 0.08,
                         .max_in_front_share = 0.15,
                         .max_rms_vox = 1.4,
                         .max_rms_sigmas = 2.0,
-                        .max_sigma_vox = 1.15};
+                        .max_sigma_vox = 1.15,
+                        .max_sigma_noises = 0.5};
+    double usual_decay = 0.98;       ///< of what the usual shares were, per accepted frame
+    double max_usual_share = 0.2;    ///< the usual shares count up to this
     int grace_frames = 10;  ///< accepted frames before min_inlier_share applies, because the model
                             ///< is noisy at the start
 
@@ -87,13 +93,18 @@ class LossRule {
   std::optional<LossReason> judge_found_anew(const RegistrationQuality& quality) const;
 
   /// To be called once for each frame, after it was judged.
-  void remember(double covered_share, bool accepted);
+  void remember(const RegistrationQuality& quality, bool accepted);
 
  private:
   bool is_cut_off(const RegistrationQuality& quality) const;
+  /// Some cameras often measure a depth that is grossly wrong, even if the pose is right: the shares
+  /// of points behind and in front of surfaces may exceed the limits by what is usual.
+  Evidence allow_usual(Evidence needed) const;
 
   Config config_;
   double recent_covered_share_ = 0.0;
+  double usual_behind_share_ = 0.0;  ///< of the accepted frames
+  double usual_in_front_share_ = 0.0;
   int accepted_frames_ = 0;
 };
 

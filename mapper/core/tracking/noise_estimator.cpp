@@ -12,8 +12,8 @@
 namespace kintsugi::mapper {
 namespace {
 
-/// What a frame counts after each further one: 100 frames, three seconds, remain in effect.
-constexpr double kDecay = 0.99;
+/// What a frame counts after each further one: 500 frames, 17 seconds, remain in effect.
+constexpr double kDecay = 0.998;
 /// The median of the amounts of normally distributed numbers, times this, is their deviation.
 constexpr double kDeviationOfMedian = 1.4826;
 /// Pairs whose points are farther apart, in deviations of the estimate so far, show different
@@ -21,8 +21,10 @@ constexpr double kDeviationOfMedian = 1.4826;
 constexpr double kMaxSigmas = 6.0;
 /// Steeper surfaces show the error across the image, not that of the depth.
 constexpr float kMinCosine = 0.5F;
-/// Weight of a depth that was not seen, in which the start value stands, among those that were.
-constexpr double kWeightOfStart = 0.01;
+/// The start value counts like so many images at each depth.
+constexpr double kImagesOfStart = 3.0;
+/// Weight in the fit of a depth that was not seen, in images.
+constexpr double kWeightOfStart = 0.1;
 
 struct Deviation {
   double depth_m = 0.0;
@@ -122,14 +124,18 @@ DepthNoise NoiseEstimator::fit(double pixels_of_an_image) const {
   for (int bin = 0; bin < kDepthBins; ++bin) {
     const double z_m = depth_of_bin_m(bin);
     const double seen = std::accumulate(counts_[bin].begin(), counts_[bin].end(), 0.0);
-    const bool is_known = seen >= pixels_of_an_image;
+    const double start_m = start_.sigma_m(z_m);
+    const double measured_m = seen > 0.0 ? kDeviationOfMedian * median_m(counts_[bin], seen) : 0.0;
+    const double images = seen / pixels_of_an_image;
+    const double variance_m2 =
+        (kImagesOfStart * start_m * start_m + images * measured_m * measured_m) /
+        (kImagesOfStart + images);
     deviations.push_back({.depth_m = z_m,
-                          .sigma_m = is_known ? kDeviationOfMedian * median_m(counts_[bin], seen)
-                                              : start_.sigma_m(z_m),
-                          .weight = is_known ? 1.0 : kWeightOfStart});
+                          .sigma_m = std::max(start_m, std::sqrt(variance_m2)),
+                          .weight = kWeightOfStart + images});
   }
   const Eigen::Vector3d squares = fit_squares(deviations);
-  return {.base_m = std::max(least_m_, std::sqrt(squares(0))),
+  return {.base_m = std::sqrt(squares(0)),
           .share = std::sqrt(squares(1)),
           .growth_per_m = std::sqrt(squares(2))};
 }

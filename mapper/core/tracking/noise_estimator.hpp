@@ -14,13 +14,12 @@ namespace kintsugi::mapper {
 /// The residuals, along the camera's z, are counted by depth. Each depth's deviation is 1.4826 times
 /// the median of their amounts, which up to half of wrong pairs cannot carry away, and the three
 /// terms of DepthNoise are fitted to these deviations by least squares, none of them negative.
-/// Depths of which less than one image was seen keep what the start value says. Older frames count
-/// less and less, so that the estimate follows a camera that is exchanged or warms up.
+/// The start value counts like a few images, and it is the least value: the residuals of a camera that
+/// is more precise are those of the model, which the same weights suit. Older frames count less and
+/// less, so that the estimate follows a camera that warms up.
 class NoiseEstimator {
  public:
-  /// `least_m`: no estimate is below it, metres.
-  NoiseEstimator(const DepthNoise& start, double least_m)
-      : start_(start), least_m_(least_m), noise_(start) {}
+  explicit NoiseEstimator(const DepthNoise& start) : start_(start), noise_(start) {}
 
   /// Counts a frame that was registered with a model: V is the model's camera, C the frame's.
   void add(const SurfaceMap& frame_C, const SurfaceMap& model_V, const Pose& X_VC);
@@ -44,7 +43,6 @@ class NoiseEstimator {
   DepthNoise fit(double pixels_of_an_image) const;
 
   DepthNoise start_;
-  double least_m_;
   DepthNoise noise_;
   std::array<Histogram, kDepthBins> counts_{};
 };

@@ -11,7 +11,10 @@
 namespace kintsugi::mapper {
 namespace {
 
-/// The noise of single poses is smaller than this, metres (and radians).
+/// The errors of a pose and of the prediction from the two before it are smaller than this, in units
+/// of the pose's uncertainty...
+constexpr double kPoseNoise_sigmas = 4.0;
+/// ...or than this, metres (and radians): shaking hands.
 constexpr double kPoseNoise_m = 0.02;
 /// Metres or radians between photometric references while colour is needed.
 constexpr double kMinReferenceStep = 0.05;
@@ -59,7 +62,7 @@ void Tracker::start_at(const Pose& X_WC, const TrackingInput& frame, double cove
   velocity_C_.setZero();
   motion_known_ = false;
   lost_ = false;
-  loss_rule_.remember(covered_share, true);
+  loss_rule_.remember({.covered_share = covered_share}, true);
   Registration known;
   known.X_WC = X_WC;
   update_reference(known, {frame.surface_C, frame.color_rgb});
@@ -83,7 +86,7 @@ TrackingResult Tracker::track(const TrackingInput& frame, const Model& model) {
                                pyramid.has_color() && reference_ ? &*reference_ : nullptr};
   Registration registration =
       register_frame(frame, model, colors, predict(frame.utime), config_.registration);
-  auto loss = follows_motion(registration.X_WC, frame.utime)
+  auto loss = follows_motion(registration, frame.utime)
                   ? loss_rule_.judge(registration.quality)
                   : loss_rule_.judge_found_anew(registration.quality);
   const std::optional<LossReason> first_loss = loss;
@@ -92,7 +95,7 @@ TrackingResult Tracker::track(const TrackingInput& frame, const Model& model) {
     registration = register_frame_widely(frame, model, colors, X_WC_, config_.registration);
     loss = loss_rule_.judge_found_anew(registration.quality);
   }
-  loss_rule_.remember(registration.quality.covered_share, !loss);
+  loss_rule_.remember(registration.quality, !loss);
   if (!loss) update_reference(registration, std::move(pyramid));
   TrackingResult result = loss ? lose(registration, *loss) : accept(registration, frame);
   result.first_loss_reason = first_loss;
@@ -109,13 +112,14 @@ TrackingResult Tracker::register_anew(const TrackingInput& frame, const Model& m
   return result;
 }
 
-bool Tracker::follows_motion(const Pose& X_WC, std::int64_t utime) const {
+bool Tracker::follows_motion(const Registration& registration, std::int64_t utime) const {
   if (!motion_continues(utime)) return false;
   if (!motion_known_) return true;
   const double seconds = 1e-6 * static_cast<double>(utime - utime_);
-  const Pose X_PC = predict(utime).inverse() * X_WC;  // P: the predicted camera
+  const Pose X_PC = predict(utime).inverse() * registration.X_WC;  // P: the predicted camera
+  const double noise_m = std::max(kPoseNoise_m, kPoseNoise_sigmas * registration.quality.sigma_m);
   const double difference_m = std::max(X_PC.translation().norm(), rotation_angle_rad(X_PC));
-  return difference_m < kPoseNoise_m + 0.5 * config_.max_acceleration * seconds * seconds;
+  return difference_m < noise_m + 0.5 * config_.max_acceleration * seconds * seconds;
 }
 
 bool Tracker::needs_new_reference(const Registration& registration) const {
@@ -151,7 +155,7 @@ TrackingResult Tracker::accept(const Registration& registration, const TrackingI
 }
 
 void Tracker::follow_partly(const Registration& registration, std::int64_t utime) {
-  if (!follows_motion(registration.X_WC, utime)) return;
+  if (!follows_motion(registration, utime)) return;
   const double seconds = 1e-6 * static_cast<double>(utime - utime_followed_);
   if (seconds <= 0.0) return;
   velocity_C_ = velocity_between(X_WC_followed_, registration.X_WC, seconds);

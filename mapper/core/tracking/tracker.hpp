@@ -75,7 +75,7 @@ class Tracker {
   bool motion_continues(std::int64_t utime) const;
   bool needs_new_reference(const Registration& registration) const;
   void update_reference(const Registration& registration, PhotometricPyramid frame);
-  bool follows_motion(const Pose& X_WC, std::int64_t utime) const;
+  bool follows_motion(const Registration& registration, std::int64_t utime) const;
   TrackingResult accept(const Registration& registration, const TrackingInput& frame);
   void follow_partly(const Registration& registration, std::int64_t utime);
   TrackingResult lose(const Registration& registration, LossReason reason);
