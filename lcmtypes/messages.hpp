@@ -53,7 +53,7 @@ enum class SliceKind : std::int8_t {
 /// again with a higher revision replaces the earlier one. A slice may have no points.
 struct CloudSlice {
   std::int64_t utime = 0;    ///< device time of the frame at which it left, microseconds
-  std::int64_t session = 0;  ///< one run of one mapper; > 0
+  std::int64_t session = 0;  ///< one part of one run of a mapper; > 0
   std::string map_name;      ///< distinguishes mappers on one bus
   /// Sequence number of its first chunk, and how many chunks it has. Set by the receiver, not by
   /// the sender; num_chunks is 0 when the slice was not received from a stream.
@@ -62,6 +62,10 @@ struct CloudSlice {
   std::int32_t id = 0;  ///< >= 0
   std::int32_t revision = 0;
   SliceKind kind = SliceKind::kFinal;
+  /// A run whose camera stays lost goes on in another part: a map of its own, in a frame W of its
+  /// own, in the session with the next number. So session - part is the session of part 0.
+  std::int32_t part = 0;      ///< from 0, < session
+  bool part_follows = false;  ///< of the final slice: the run goes on with another part
   float resolution_m = 0.0F;  ///< voxel size, > 0
   Pose X_WC = Pose::Identity();
   std::vector<CloudPoint> points_W;

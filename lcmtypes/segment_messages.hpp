@@ -109,7 +109,8 @@ struct SegmentUpdate {
   std::string map_name;
   std::int32_t slice_id = 0;
   std::int32_t slice_revision = 0;
-  bool is_final = false;              ///< the final slice and all earlier ones are in the map
+  /// The final slice and all earlier ones are in the map, and no other part of the run follows.
+  bool is_final = false;
   std::int32_t num_slices = 0;        ///< in the map after this update
   std::int64_t num_points = 0;        ///< in the map after this update
   std::int64_t num_segments = 0;      ///< in the map after this update

@@ -39,6 +39,7 @@ struct MapperStatus {
 
   std::int64_t utime = 0;
   std::int64_t session = 0;
+  std::int32_t part = 0;
   TrackingState state = TrackingState::kStarting;
   bool finished = false;
   bool lingering = false;
@@ -89,6 +90,7 @@ struct MapperStatus {
   static constexpr void visit_fields(const Visit& visit, Statuses&... s) {
     visit("utime", s.utime...);
     visit({"session", 1}, s.session...);
+    visit("part", s.part...);
     visit("state", s.state...);
     visit("finished", s.finished...);
     visit("lingering", s.lingering...);

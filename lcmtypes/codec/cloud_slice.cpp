@@ -26,6 +26,8 @@ struct Bulk<CloudSlice> {
     to.session = from.session;
     to.revision = from.revision;
     to.kind = static_cast<decltype(to.kind)>(from.kind);
+    to.part = from.part;
+    to.part_follows = from.part_follows != 0;
     to.resolution_m = from.resolution_m;
     to.map_name = from.map_name;
   }
@@ -64,6 +66,7 @@ struct Bulk<CloudSlice> {
     check.not_negative("slice_id", slice.id);
     check.not_negative("revision", slice.revision);
     check.range("kind", static_cast<int>(slice.kind), 0, static_cast<int>(SliceKind::kShiftMinusZ));
+    check.range<std::int64_t>("part", slice.part, 0, slice.session - 1);
     check.range("resolution_m", slice.resolution_m, kMinResolution_m, kMaxResolution_m);
     check.pose("X_WC", slice.X_WC);
     check.text("map_name", slice.map_name);

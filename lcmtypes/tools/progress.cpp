@@ -26,10 +26,18 @@ std::string problem_text(const char* process, const std::string& problem) {
                          : std::string(" | PROBLEM of the ") + process + ": " + problem;
 }
 
-/// Each run of a process has a larger session number than the one before it.
+/// Each part of a run of the mapper has a session, the next number.
+std::int64_t first_session(const MapperStatus& status) { return status.session - status.part; }
+
+template <class Status>
+std::int64_t first_session(const Status& status) {
+  return status.session;
+}
+
+/// Each run of a process has larger session numbers than the one before it.
 template <class Status>
 bool is_later_run(const std::optional<Status>& before, const Status& status) {
-  return before && status.session > before->session;
+  return before && first_session(status) > first_session(*before);
 }
 
 }  // namespace

@@ -59,7 +59,7 @@ class Progress {
   std::optional<MapperStatus> mapper_;
   std::optional<SegmenterStatus> segmenter_;
   std::optional<ViewerStatus> viewer_;
-  int mapper_restarts_ = 0;  // sessions after the first
+  int mapper_restarts_ = 0;  // runs after the first
   int segmenter_restarts_ = 0;
   int viewer_restarts_ = 0;
   std::int64_t work_done_ = -1;

@@ -53,6 +53,7 @@ std::string text_of(const MapperStatus& status) {
     text += state_text(status.state);
     text += format(" %.1f Hz", status.frame_rate_hz);
   }
+  if (status.part > 0) text += format(", part %d", status.part);
   if (!status.finished && !status.loss_reason.empty()) text += " (" + status.loss_reason + ")";
   text += some(status.frames_lost, "lost") + some(status.frames_dropped, "dropped") + " | " +
           count(status.slices_published) + " slices " + count(status.points_published) + " points";

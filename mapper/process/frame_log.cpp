@@ -14,16 +14,16 @@ namespace kintsugi::mapper {
 namespace {
 
 std::string header() {
-  std::string line = "frame_index,utime_us,state,reason,frame_ms,cpu_ms,read_ms,convert_ms";
+  std::string line = "frame_index,utime_us,part,state,reason,frame_ms,cpu_ms,read_ms,convert_ms";
   for (const Stage& stage : kStages) line += std::string(",") + stage.name;
   return line +
          ",extract_ms,publish_ms,covered_share,overlap_share,inlier_share,behind_share,"
          "in_front_share,rms_m,sigma_m,rms_sigmas,first,iterations,undetermined,slices,memory_mb\n";
 }
 
-std::string line_of(const RgbdFrame& frame, const TrackingResult& tracking, std::size_t num_slices,
-                    const FrameTimings& timings) {
-  std::string line = fmt::format("{},{},{},{}", frame.frame_index, frame.utime,
+std::string line_of(const RgbdFrame& frame, int part, const TrackingResult& tracking,
+                    std::size_t num_slices, const FrameTimings& timings) {
+  std::string line = fmt::format("{},{},{},{},{}", frame.frame_index, frame.utime, part,
                                  to_string(tracking.state), reason_text(tracking));
   const auto add_ms = [&line](double ms) { line += fmt::format(",{:.3f}", ms); };
   add_ms(timings.frame_ms);
@@ -55,10 +55,10 @@ FrameLog::FrameLog(const std::filesystem::path& path) : path_(path), out_(path) 
   }
 }
 
-void FrameLog::append(const RgbdFrame& frame, const TrackingResult& tracking,
+void FrameLog::append(const RgbdFrame& frame, int part, const TrackingResult& tracking,
                       std::size_t num_slices, const FrameTimings& timings) {
   if (!out_) return;
-  if (out_ << line_of(frame, tracking, num_slices, timings) << std::flush) return;
+  if (out_ << line_of(frame, part, tracking, num_slices, timings) << std::flush) return;
   spdlog::error("{}: {}; it ends before frame {}, mapping goes on", path_.string(),
                 std::strerror(errno), frame.frame_index);
 }

@@ -20,9 +20,10 @@ class FrameLog {
   /// @throws std::runtime_error naming the file and the reason when it cannot be written
   explicit FrameLog(const std::filesystem::path& path);
 
+  /// @param part of the map, from 0
   /// @param num_slices published with this frame
-  void append(const RgbdFrame& frame, const TrackingResult& tracking, std::size_t num_slices,
-              const FrameTimings& timings);
+  void append(const RgbdFrame& frame, int part, const TrackingResult& tracking,
+              std::size_t num_slices, const FrameTimings& timings);
 
  private:
   std::filesystem::path path_;

@@ -1,13 +1,13 @@
 #include "mapper/process/map_files.hpp"
 
-#include <exception>
-
 #include <spdlog/spdlog.h>
+
+#include "mapper/output/part_file.hpp"
 
 namespace kintsugi::mapper {
 
 template <typename Writer>
-MapFiles::Output<Writer>::Output(const std::string& path) : path(path) {
+MapFiles::Output<Writer>::Output(const std::string& name) : name(name), path(name) {
   if (!path.empty()) writer.emplace(path);
 }
 
@@ -17,10 +17,26 @@ void MapFiles::Output<Writer>::attempt(const std::function<void(Writer&)>& actio
   try {
     action(*writer);
   } catch (const std::exception& error) {
-    spdlog::error("{}: given up, mapping goes on: {}", path, error.what());
-    writer.reset();
-    failed = true;
+    note_failure(error);
   }
+}
+
+template <typename Writer>
+void MapFiles::Output<Writer>::begin_part(int part) {
+  if (name.empty()) return;
+  path = part_file(name, part).string();
+  try {
+    writer.emplace(path);
+  } catch (const std::exception& error) {
+    note_failure(error);
+  }
+}
+
+template <typename Writer>
+void MapFiles::Output<Writer>::note_failure(const std::exception& error) {
+  spdlog::error("{}: given up, mapping goes on: {}", path, error.what());
+  writer.reset();
+  failed = true;
 }
 
 MapFiles::MapFiles(const std::string& cloud, const std::string& mesh)
@@ -48,6 +64,11 @@ void MapFiles::commit() {
     writer.commit();
     spdlog::info("mesh of {} triangles in {}", writer.num_triangles(), mesh_.path);
   });
+}
+
+void MapFiles::begin_part(int part) {
+  cloud_.begin_part(part);
+  mesh_.begin_part(part);
 }
 
 }  // namespace kintsugi::mapper

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <exception>
 #include <functional>
 #include <optional>
 #include <string>
@@ -11,7 +12,7 @@
 
 namespace kintsugi::mapper {
 
-/// The map of a run as PLY files.
+/// The map of a run as PLY files, those of each part with a name of their own (part_file()).
 ///
 /// Mapping continues when a file cannot be written (full disk): the first error is logged, nothing
 /// remains of that file, and failed() returns true.
@@ -23,24 +24,30 @@ class MapFiles {
 
   void add(const std::vector<CloudSlice>& slices);
 
-  /// Takes pieces of the mesh; empty when there is no mesh file. To be called from one thread,
-  /// which may differ from that of add().
+  /// Takes pieces of the mesh of this part; empty when there is no mesh file. To be called from one
+  /// thread, which may differ from that of add().
   std::function<void(const MeshPiece&)> mesh_sink();
 
-  /// Completes the files; nothing can be added afterwards.
+  /// Completes the files; nothing can be added until begin_part().
   void commit();
+
+  /// Begins the files of another part. Never fails: see above.
+  void begin_part(int part);
 
   bool failed() const { return cloud_.failed || mesh_.failed; }
 
  private:
   template <typename Writer>
   struct Output {
-    std::string path;
+    std::string name;  ///< of part 0
+    std::string path;  ///< of this part
     std::optional<Writer> writer;
     bool failed = false;
 
-    explicit Output(const std::string& path);
+    explicit Output(const std::string& name);
     void attempt(const std::function<void(Writer&)>& action);
+    void begin_part(int part);
+    void note_failure(const std::exception& error);
   };
 
   Output<CloudWriter> cloud_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "lcmtypes/bus/message_subscriber.hpp"
 #include "lcmtypes/channels.hpp"
 #include "mapper/session/mapping_options.hpp"
 #include "mapper/session/stored_stream.hpp"
@@ -12,20 +13,14 @@ namespace kintsugi::mapper {
 
 MapPublisher::MapPublisher(const Config& config, SessionStore& store)
     : config_(config), store_(store), bus_(config.lcm_url) {
-  const auto send = [this](const std::string& channel, ByteView message) {
-    if (channel == channels::kHeartbeat)
-      store_.add(channel, message);  // streams store their chunks themselves
-    bus_.publish(channel, message);
-  };
-  slice_stream_ = std::make_unique<StreamPublisher>(
-      send, channels::kCloudSlice, config_.session, stream_config(config_.map_name),
-      &store_.stream(channels::kCloudSlice, config_.session));
-  slice_stream_->subscribe(bus_);
+  begin_part(0, config_.session);
   if (config_.publish_frames) {
     frame_stream_ = std::make_unique<StreamPublisher>(bus_, channels::kRgbdFrame, config_.session,
                                                       stream_config(config_.map_name));
   }
-  serve_earlier_sessions();
+  serve_stored_sessions();
+  kintsugi::subscribe<ResendRequest>(bus_, channels::kResendRequest,
+                                     [this](const ResendRequest& request) { answer(request); });
   bus_thread_.emplace(bus_, [this] { store_.retry(); });
 }
 
@@ -36,16 +31,50 @@ StreamPublisher::Config MapPublisher::stream_config(const std::string& map_name)
   return config;
 }
 
-void MapPublisher::serve_earlier_sessions() {
-  for (const StoredSession& earlier : store_.sessions()) {
-    if (earlier.session == config_.session) continue;
-    const auto name = earlier.options.find(kMapNameOption);
-    earlier_sessions_.push_back(std::make_unique<StreamPublisher>(
-        bus_, channels::kCloudSlice, earlier.session,
-        stream_config(name == earlier.options.end() ? "" : name->second),
-        &store_.stream(channels::kCloudSlice, earlier.session)));
-    earlier_sessions_.back()->subscribe(bus_);
+/// Made when it is not there yet.
+StreamPublisher& MapPublisher::slice_stream(std::int64_t session, const std::string& map_name) {
+  const std::scoped_lock lock(mutex_);
+  const bool is_of_run = session >= config_.session;  // not only in its log
+  Stream& stream = slice_streams_[session];
+  if (!stream) {
+    stream = std::make_unique<StreamPublisher>(
+        [this, is_of_run](const std::string& channel, ByteView message) {
+          // Streams store their chunks themselves.
+          if (is_of_run && channel == channels::kHeartbeat) store_.add(channel, message);
+          bus_.publish(channel, message);
+        },
+        channels::kCloudSlice, session, stream_config(map_name),
+        &store_.stream(channels::kCloudSlice, session));
   }
+  return *stream;
+}
+
+void MapPublisher::serve_stored_sessions() {
+  for (const StoredSession& stored : store_.sessions()) {
+    const auto name = stored.options.find(kMapNameOption);
+    slice_stream(stored.session, name == stored.options.end() ? "" : name->second);
+  }
+}
+
+void MapPublisher::answer(const ResendRequest& request) {
+  const std::scoped_lock lock(mutex_);
+  const auto stream = slice_streams_.find(request.session);
+  if (stream != slice_streams_.end()) stream->second->request(request);
+}
+
+void MapPublisher::begin_part(int part, std::int64_t session) {
+  earlier_parts_ = published();
+  this_part_ = {};
+  part_ = part;
+  session_ = session;
+  slice_stream_ = &slice_stream(session, config_.map_name);
+}
+
+MapPublisher::Published MapPublisher::published() const {
+  const std::int64_t chunks = slice_stream_ == nullptr ? 0 : slice_stream_->chunks_published();
+  return {.slices = earlier_parts_.slices + this_part_.slices,
+          .points = earlier_parts_.points + this_part_.points,
+          .chunks = earlier_parts_.chunks + chunks};
 }
 
 template <SmallMessage Message>
@@ -55,37 +84,37 @@ void MapPublisher::publish(const std::string& channel, const Message& message) {
   bus_.publish(channel, bytes);
 }
 
-void MapPublisher::publish_slices(std::vector<CloudSlice> slices) {
+void MapPublisher::publish_slices(std::vector<CloudSlice> slices, bool part_follows) {
   for (CloudSlice& slice : slices) {
-    slice.session = config_.session;
+    slice.session = session_;
     slice.map_name = config_.map_name;
-    points_published_ += static_cast<std::int64_t>(slice.points_W.size());
-    ++slices_published_;
+    slice.part = part_;
+    slice.part_follows = part_follows && slice.kind == SliceKind::kFinal;
+    this_part_.points += static_cast<std::int64_t>(slice.points_W.size());
+    ++this_part_.slices;
     slice_stream_->publish(std::move(slice));
   }
 }
 
 void MapPublisher::publish_pose(CameraPose pose) {
-  pose.session = config_.session;
+  pose.session = session_;
   publish(channels::kCameraPose, pose);
 }
 
 void MapPublisher::publish_status(MapperStatus status) {
   status.utime = wall_clock_us();
-  status.session = config_.session;
+  status.session = session_;
   status.map_name = config_.map_name;
   status.slices_published +=
-      slices_published_;  // those of a completed session were published earlier
-  status.points_published += points_published_;
-  status.chunks_published = chunks_published();
+      this_part_.slices;  // those of a completed session were published earlier
+  status.points_published += this_part_.points;
+  status.chunks_published = slice_stream_->chunks_published();
   status.queue_bytes = static_cast<std::int64_t>(queued_bytes());
-  const auto add_counts = [&status](const StreamPublisher& stream) {
-    const StreamPublisherCounts counts = stream.counts();
+  for (const auto& [session, stream] : slice_streams_) {
+    const StreamPublisherCounts counts = stream->counts();
     status.chunks_resent += counts.chunks_resent;
     status.requests_received += counts.requests_received;
-  };
-  add_counts(*slice_stream_);
-  for (const Stream& earlier : earlier_sessions_) add_counts(*earlier);
+  }
   const BufferedLog::Report report = store_.report();
   status.store_bytes = report.size_bytes;
   status.store_waiting_bytes = report.waiting_bytes;
@@ -100,28 +129,31 @@ void MapPublisher::publish_frame(const RgbdFrame& frame) {
 }
 
 void MapPublisher::flush() {
-  slice_stream_->flush();
+  for (const auto& [session, stream] : slice_streams_) stream->flush();
   if (frame_stream_) frame_stream_->flush();
 }
 
 double MapPublisher::time_since_request_s() const {
   double time_s = slice_stream_->time_since_request_s();
-  for (const Stream& earlier : earlier_sessions_) {
-    time_s = std::min(time_s, earlier->time_since_request_s());
+  for (const auto& [session, stream] : slice_streams_) {
+    time_s = std::min(time_s, stream->time_since_request_s());
   }
   return time_s;
 }
 
-std::size_t MapPublisher::queued_bytes() const {
-  return slice_stream_->queued_bytes() + (frame_stream_ ? frame_stream_->queued_bytes() : 0);
+std::size_t MapPublisher::queued_slice_bytes() const {
+  std::size_t bytes = 0;
+  for (const auto& [session, stream] : slice_streams_) bytes += stream->queued_bytes();
+  return bytes;
+}
+
+std::size_t MapPublisher::queued_frame_bytes() const {
+  return frame_stream_ ? frame_stream_->queued_bytes() : 0;
 }
 
 bool MapPublisher::has_room() const {
   const double max_bytes = config_.max_queue_s * config_.stream.rate_bytes_per_s;
-  const auto has_room = [max_bytes](const Stream& stream) {
-    return !stream || static_cast<double>(stream->queued_bytes()) <= max_bytes;
-  };
-  return has_room(slice_stream_) && has_room(frame_stream_);
+  return static_cast<double>(std::max(queued_slice_bytes(), queued_frame_bytes())) <= max_bytes;
 }
 
 MapPublisher::Config publisher_config(const Options& options, std::int64_t session) {

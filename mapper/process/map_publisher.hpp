@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -21,13 +23,19 @@ namespace kintsugi::mapper {
 /// caller waits while has_room() is false.
 ///
 /// In a resumed session all slices must be published again from the first one: those in the log are
-/// compared with it and not sent. Requests for earlier sessions in the log are answered, too.
+/// compared with it and not sent. Requests for the other sessions in the log are answered, too.
 class MapPublisher {
  public:
+  /// What was published of slices.
+  struct Published {
+    std::int64_t slices = 0;
+    std::int64_t points = 0;
+    std::int64_t chunks = 0;
+  };
   struct Config {
     std::string lcm_url;  ///< empty: LCM's default
     std::string map_name;
-    std::int64_t session = 0;
+    std::int64_t session = 0;  ///< of part 0
     bool publish_frames = false;
     int jpeg_quality = 90;  ///< of published frames
     StreamPublisher::Config
@@ -38,7 +46,12 @@ class MapPublisher {
   /// @throws std::runtime_error when the bus cannot be opened, with a remedy
   MapPublisher(const Config& config, SessionStore& store);
 
-  void publish_slices(std::vector<CloudSlice> slices);
+  /// From now on everything belongs to another part of the run, except raw frames. What was
+  /// published before is still sent, and sent again.
+  void begin_part(int part, std::int64_t session);
+
+  /// @param part_follows another part will begin, so that the final slice is not the end of the run
+  void publish_slices(std::vector<CloudSlice> slices, bool part_follows = false);
   void publish_pose(CameraPose pose);
   void publish_status(MapperStatus status);
   /// Does nothing unless frames are to be published.
@@ -49,7 +62,7 @@ class MapPublisher {
   bool has_room() const;
 
   /// Bytes that wait to be sent.
-  std::size_t queued_bytes() const;
+  std::size_t queued_bytes() const { return queued_slice_bytes() + queued_frame_bytes(); }
 
   /// Waits until everything is sent.
   /// @throws std::runtime_error when sending failed, or when a slice of a resumed session differs
@@ -59,26 +72,32 @@ class MapPublisher {
   /// Time since the last request for a resend, seconds.
   double time_since_request_s() const;
 
-  std::int64_t slices_published() const { return slices_published_; }
-  std::int64_t points_published() const { return points_published_; }
-  std::int64_t chunks_published() const { return slice_stream_->chunks_published(); }
+  /// In all parts.
+  Published published() const;
 
  private:
   using Stream = std::unique_ptr<StreamPublisher>;
 
   StreamPublisher::Config stream_config(const std::string& map_name) const;
-  void serve_earlier_sessions();
+  StreamPublisher& slice_stream(std::int64_t session, const std::string& map_name);
+  void serve_stored_sessions();
+  void answer(const ResendRequest& request);
+  std::size_t queued_slice_bytes() const;
+  std::size_t queued_frame_bytes() const;
   template <SmallMessage Message>
   void publish(const std::string& channel, const Message& message);
 
   Config config_;
   SessionStore& store_;
   Bus bus_;
-  Stream slice_stream_;
-  Stream frame_stream_;                   ///< null: frames are not published
-  std::vector<Stream> earlier_sessions_;  ///< only for resends
-  std::int64_t slices_published_ = 0;
-  std::int64_t points_published_ = 0;
+  std::mutex mutex_;                              ///< guards slice_streams_ while it grows
+  std::map<std::int64_t, Stream> slice_streams_;  ///< by session: of this run, and in the log
+  StreamPublisher* slice_stream_ = nullptr;       ///< of this part; the others only resend
+  Stream frame_stream_;                           ///< null: frames are not published
+  int part_ = 0;
+  std::int64_t session_ = 0;  ///< of this part
+  Published this_part_;       ///< without chunks
+  Published earlier_parts_;
   std::optional<BusThread>
       bus_thread_;  ///< last: stops before the members that it uses are destroyed
 };

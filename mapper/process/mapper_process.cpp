@@ -6,11 +6,13 @@
 #include <thread>
 #include <utility>
 
+#include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 
 #include "lcmtypes/base/atomic_file.hpp"
 #include "lcmtypes/base/stop_signal.hpp"
 #include "lcmtypes/channels.hpp"
+#include "mapper/output/part_file.hpp"
 #include "mapper/process/linger.hpp"
 #include "mapper/process/state_text.hpp"
 #include "mapper/source/frames/paced_source.hpp"
@@ -52,6 +54,11 @@ MapperPipeline::Config pipeline_config(const Options& options, MapFiles& map_fil
   return config;
 }
 
+/// With a given path a lost frame is one without a pose: another part would not help.
+double restart_after_s(const Options& options) {
+  return options.pipeline.given_path.empty() ? options.restart_after_s : 0.0;
+}
+
 }  // namespace
 
 MapperProcess::MapperProcess(const Options& options, SessionStore& store, Resumption& resumption)
@@ -61,7 +68,8 @@ MapperProcess::MapperProcess(const Options& options, SessionStore& store, Resump
               [&](auto source) { return session_source(std::move(source), options, resumption); }),
       map_files_(options.cloud_file, options.mesh_file),
       pipeline_(pipeline_config(options, map_files_)),
-      publisher_(publisher_config(options, resumption.session()), store) {
+      publisher_(publisher_config(options, resumption.session()), store),
+      restart_rule_(restart_after_s(options)) {
   if (!options.timings_file.empty()) frame_log_.emplace(options.timings_file);
   if (options.store_frames) {
     const std::int64_t session = resumption.session();
@@ -75,7 +83,7 @@ void MapperProcess::run() {
   map_frames();
   publish_rest();
   map_files_.commit();
-  write_path();
+  write_paths();
   log_summary();
   lingering_ = true;
   linger(publisher_, options_.linger_s, [this] { publish_status(); });
@@ -100,37 +108,72 @@ void MapperProcess::map_frame(const TimedFrame& read) {
   const RgbdFrame& frame = read.frame;
   Stopwatch stopwatch;
   if (frame_store_) frame_store_->add(frame);
-  FrameResult result = pipeline_.process(frame);
+  FrameResult result = pipeline_->process(frame);
+  std::size_t num_slices = 0;
+  if (restart_rule_.is_due(frame.utime, result.tracking.state)) {
+    num_slices = restart(frame, std::move(result));
+    result = pipeline_->process(frame);
+  }
   const TrackingResult& tracking = result.tracking;
   log_change_of_state(result, frame);
-  if (is_located(tracking.state)) path_.push_back({frame.utime, tracking.X_WC});
+  if (is_located(tracking.state)) paths_.back().push_back({frame.utime, tracking.X_WC});
 
-  const std::size_t num_slices = result.slices.size();
+  num_slices += result.slices.size();
   const double mapped_ms = stopwatch.elapsed_ms();
-  publish_frame(frame, result);
+  publisher_.publish_frame(frame);
+  publish_result(frame, result);
   FrameTimings timings;
   timings.stages = result.times;
   timings.frame_ms = stopwatch.elapsed_ms();
   timings.publish_ms = timings.frame_ms - mapped_ms;
   measure(read, timings);
   statistics_.add(tracking, timings);
-  if (frame_log_) frame_log_->append(frame, tracking, num_slices, timings);
+  if (frame_log_) frame_log_->append(frame, statistics_.part(), tracking, num_slices, timings);
   if (resumption_.was_mapped(frame.utime)) ++frames_resumed_;
   last_utime_ = frame.utime;
 }
 
-void MapperProcess::publish_frame(const RgbdFrame& frame, FrameResult& result) {
+/// Ends this part with a frame that is lost in it, and begins the next. Returns the number of
+/// slices that were published.
+std::size_t MapperProcess::restart(const RgbdFrame& frame, FrameResult lost) {
+  spdlog::warn("frame {}: part {} of the map ends here, lost for {:g} s (--restart-after), {}",
+               frame.frame_index, statistics_.part(), options_.restart_after_s,
+               reason_text(lost.tracking));
+  // The pose first: a run that is resumed then ends the part at this frame, too.
+  std::vector<CloudSlice> rest = pipeline_->finish();
+  const std::size_t num_slices = lost.slices.size() + rest.size();
+  publish_result(frame, lost);
+  publish_slices(std::move(rest), true);
+  map_files_.commit();
+  begin_part();
+  return num_slices;
+}
+
+void MapperProcess::begin_part() {
+  statistics_.begin_part();
+  const int part = statistics_.part();
+  const std::int64_t session = resumption_.begin_part(part);
+  publisher_.begin_part(part, session);
+  pipeline_.reset();  // before the next one takes as much memory
+  map_files_.begin_part(part);
+  pipeline_.emplace(pipeline_config(options_, map_files_));
+  paths_.emplace_back();
+  extraction_ms_ = 0.0;
+  last_state_ = TrackingState::kStarting;
+  spdlog::info("part {} of the map begins in a frame W of its own, session {}", part, session);
+}
+
+void MapperProcess::publish_result(const RgbdFrame& frame, FrameResult& result) {
   const TrackingResult& tracking = result.tracking;
-  if (!resumption_.was_mapped(frame.utime)) {
+  if (!resumption_.has_pose(statistics_.part(), frame.utime)) {
     publisher_.publish_pose({frame.utime, 0, frame.frame_index, tracking.state, tracking.X_WC});
   }
-  publisher_.publish_frame(frame);
   publish_slices(std::move(result.slices));
 }
 
-void MapperProcess::publish_slices(std::vector<CloudSlice> slices) {
+void MapperProcess::publish_slices(std::vector<CloudSlice> slices, bool part_follows) {
   map_files_.add(slices);
-  publisher_.publish_slices(std::move(slices));
+  publisher_.publish_slices(std::move(slices), part_follows);
 }
 
 /// Fills in the times of the other threads.
@@ -139,14 +182,14 @@ void MapperProcess::measure(const TimedFrame& read, FrameTimings& timings) {
   timings.convert_ms = read.convert_ms;
   const double cpu_ms = process_cpu_ms();
   timings.cpu_ms = cpu_ms - std::exchange(cpu_ms_, cpu_ms);
-  const double extraction_ms = pipeline_.extraction_ms();
+  const double extraction_ms = pipeline_->extraction_ms();
   timings.extract_ms = extraction_ms - std::exchange(extraction_ms_, extraction_ms);
 }
 
 void MapperProcess::publish_rest() {
   finished_ = resumption_.has_caught_up(last_utime_);
   if (finished_) {
-    publish_slices(pipeline_.finish());
+    publish_slices(pipeline_->finish());
   } else {
     spdlog::warn(
         "stopped before all frames that were mapped before are mapped again: resume once more");
@@ -155,11 +198,13 @@ void MapperProcess::publish_rest() {
   publish_status();
 }
 
-void MapperProcess::write_path() {
+void MapperProcess::write_paths() {
   if (options_.output_path_file.empty()) return;
-  AtomicFile file(options_.output_path_file);
-  write_tum(file.stream(), path_);
-  file.commit();
+  for (std::size_t part = 0; part < paths_.size(); ++part) {
+    AtomicFile file(part_file(options_.output_path_file, static_cast<int>(part)));
+    write_tum(file.stream(), paths_[part]);
+    file.commit();
+  }
 }
 
 void MapperProcess::publish_status() {
@@ -175,9 +220,9 @@ void MapperProcess::publish_status() {
   const SourceStatus source = reader_.status();
   status.frames_total = source.frames_total;
   status.frames_dropped = source.counts.frames_dropped;
-  status.keyframes = pipeline_.num_keyframes();
-  status.blocks = pipeline_.num_blocks();
-  status.volume_bytes = pipeline_.volume_bytes();
+  status.keyframes = pipeline_->num_keyframes();
+  status.blocks = pipeline_->num_blocks();
+  status.volume_bytes = pipeline_->volume_bytes();
   publisher_.publish_status(std::move(status));
   status_clock_ = Stopwatch();
 }
@@ -224,11 +269,23 @@ void MapperProcess::log_summary() const {
       statistics_.frames(), elapsed_s, statistics_.mean_frame_ms(), statistics_.mean_cpu_ms(),
       statistics_.frames_tracked(), statistics_.frames_lost(), statistics_.frames_relocalised(),
       counts.frames_dropped, counts.frames_bad, counts.interruptions);
-  spdlog::info("{} slices, {} points, {} messages published", publisher_.slices_published(),
-               publisher_.points_published(), publisher_.chunks_published());
-  if (!options_.output_path_file.empty()) {
-    spdlog::info("camera path of {} poses in {}", path_.size(), options_.output_path_file);
+  const MapPublisher::Published published = publisher_.published();
+  spdlog::info("{} slices, {} points, {} messages published", published.slices, published.points,
+               published.chunks);
+  if (paths_.size() > 1) log_parts();
+  if (options_.output_path_file.empty()) return;
+  for (std::size_t part = 0; part < paths_.size(); ++part) {
+    spdlog::info("camera path of {} poses in {}", paths_[part].size(),
+                 part_file(options_.output_path_file, static_cast<int>(part)).string());
   }
+}
+
+void MapperProcess::log_parts() const {
+  std::string text;
+  for (const RunStatistics::Part& part : statistics_.parts()) {
+    text += fmt::format("{}{} of {}", text.empty() ? "" : ", ", part.frames_tracked, part.frames);
+  }
+  spdlog::info("{} parts, frames located in each: {}", paths_.size(), text);
 }
 
 void MapperProcess::throw_failures() const {

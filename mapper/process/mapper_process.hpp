@@ -11,13 +11,16 @@
 #include "mapper/process/map_files.hpp"
 #include "mapper/process/map_publisher.hpp"
 #include "mapper/process/options.hpp"
+#include "mapper/process/restart_rule.hpp"
 #include "mapper/process/run_statistics.hpp"
 #include "mapper/session/resumption.hpp"
 #include "mapper/session/stored_frames.hpp"
 
 namespace kintsugi::mapper {
 
-/// Reads frames, maps them, and publishes the result on the bus.
+/// Reads frames, maps them, and publishes the result on the bus. A camera that stays lost begins
+/// another part (RestartRule): a map of its own, with a session and files of its own. Its frame W
+/// is the camera at its first frame, which is the one at which the part before it was given up.
 class MapperProcess {
  public:
   /// Opens the device and the bus. `store` and `resumption` must outlive this.
@@ -35,28 +38,32 @@ class MapperProcess {
  private:
   void map_frames();
   void map_frame(const TimedFrame& read);
-  void publish_frame(const RgbdFrame& frame, FrameResult& result);
-  void publish_slices(std::vector<CloudSlice> slices);
+  std::size_t restart(const RgbdFrame& frame, FrameResult lost);
+  void begin_part();
+  void publish_result(const RgbdFrame& frame, FrameResult& result);
+  void publish_slices(std::vector<CloudSlice> slices, bool part_follows = false);
   void measure(const TimedFrame& read, FrameTimings& timings);
   void publish_rest();
-  void write_path();
+  void write_paths();
   void publish_status();
   void publish_status_when_due();
   void log_start() const;
   void log_change_of_state(const FrameResult& result, const RgbdFrame& frame);
   void log_summary() const;
+  void log_parts() const;
   void throw_failures() const;
 
   const Options options_;
   Resumption& resumption_;
   FrameReader reader_;
-  MapFiles map_files_;  ///< before pipeline_, whose worker writes to it
-  MapperPipeline pipeline_;
+  MapFiles map_files_;                      ///< before pipeline_, whose worker writes to it
+  std::optional<MapperPipeline> pipeline_;  ///< of this part; always there
   MapPublisher publisher_;
+  RestartRule restart_rule_;
   RunStatistics statistics_;
   std::optional<FrameLog> frame_log_;
   std::optional<FrameStore> frame_store_;
-  Trajectory path_;  ///< poses of the frames that were tracked or given
+  std::vector<Trajectory> paths_{1};  ///< of each part: the frames that were tracked or given
   TrackingState last_state_ = TrackingState::kStarting;
   double cpu_ms_ = 0.0;         ///< of the process, at the last frame
   double extraction_ms_ = 0.0;  ///< of the pipeline, at the last frame

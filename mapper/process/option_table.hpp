@@ -18,6 +18,7 @@ struct Options {
   double lock_exposure_s = -1.0;  ///< after the first image; < 0: never
   MapperPipeline::Config pipeline;
   double resolution_m = 0.0;     ///< side of a voxel; 0: 1/512 of the volume's side
+  double restart_after_s = 5.0;  ///< lost for so long: another part begins; 0: never
   std::string given_path_file;   ///< TUM; empty: track
   std::string output_path_file;  ///< TUM; empty: none is written
   std::string cloud_file;        ///< PLY; empty: none is written
@@ -28,7 +29,7 @@ struct Options {
   bool publish_frames = false;   ///< RGBD_FRAME, too
   std::string lcm_url;           ///< empty: LCM's default
   std::string map_name = "map";
-  std::int64_t session = 0;  ///< > 0; 0: from the clock, or that of the resumed session
+  std::int64_t session = 0;  ///< of part 0, > 0; 0: from the clock, or that of the resumed session
   double rate_mb_s = 10.0;   ///< of slices and frames on the bus, 1e6 bytes per second
   std::string store_file;    ///< LCM log of all published messages; empty: an unnamed one
   std::string resume_file;   ///< log to continue, instead of store_file; empty: a new session

@@ -18,6 +18,11 @@ double quantile(const std::vector<double>& ascending, double share) {
 
 }  // namespace
 
+void RunStatistics::begin_part() {
+  parts_.emplace_back();
+  state_ = TrackingState::kStarting;  // the end of the loss is not a relocalisation
+}
+
 void RunStatistics::add(const TrackingResult& tracking, const FrameTimings& timings) {
   if (state_ == TrackingState::kLost && tracking.state == TrackingState::kTracking) {
     ++frames_relocalised_;
@@ -26,7 +31,11 @@ void RunStatistics::add(const TrackingResult& tracking, const FrameTimings& timi
   loss_reason_ = reason_text(tracking);
   undetermined_ = tracking.quality.undetermined;
   ++frames_;
-  if (is_located(state_)) ++frames_tracked_;
+  ++parts_.back().frames;
+  if (is_located(state_)) {
+    ++frames_tracked_;
+    ++parts_.back().frames_tracked;
+  }
   if (state_ == TrackingState::kLost) ++frames_lost_;
   frame_ms_ += timings.frame_ms;
   cpu_ms_ += timings.cpu_ms;
@@ -42,6 +51,7 @@ void RunStatistics::report(MapperStatus& status) {
   const double elapsed_s = 1e-3 * report_clock_.lap_ms();
   const auto frames = static_cast<double>(frame_times_ms_.size());
   const auto mean = [frames](double sum) { return frames > 0.0 ? sum / frames : 0.0; };
+  status.part = part();
   status.state = state_;
   status.loss_reason = loss_reason_;
   status.undetermined = undetermined_;

@@ -14,9 +14,19 @@ namespace kintsugi::mapper {
 /// Counts and times of a run, as MAPPER_STATUS shows them.
 class RunStatistics {
  public:
+  struct Part {
+    std::int64_t frames = 0;
+    std::int64_t frames_tracked = 0;
+  };
+
+  /// The frames that follow are of another part.
+  void begin_part();
   /// One mapped frame.
   void add(const TrackingResult& tracking, const FrameTimings& timings);
 
+  /// Of the current part, from 0.
+  int part() const { return static_cast<int>(parts_.size()) - 1; }
+  const std::vector<Part>& parts() const { return parts_; }
   std::int64_t frames() const { return frames_; }
   std::int64_t frames_tracked() const { return frames_tracked_; }
   std::int64_t frames_lost() const { return frames_lost_; }
@@ -25,12 +35,13 @@ class RunStatistics {
   double mean_frame_ms() const { return mean_over_run(frame_ms_); }
   double mean_cpu_ms() const { return mean_over_run(cpu_ms_); }
 
-  /// Fills state, frame counts, rate and times, these over the frames since the last call.
+  /// Fills part, state, frame counts, rate and times, these over the frames since the last call.
   void report(MapperStatus& status);
 
  private:
   double mean_over_run(double total) const;
 
+  std::vector<Part> parts_{1};
   std::int64_t frames_ = 0;
   std::int64_t frames_tracked_ = 0;
   std::int64_t frames_lost_ = 0;

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 #include <memory>
-#include <optional>
+#include <vector>
 
 #include "mapper/session/mapping_options.hpp"
 #include "mapper/session/session_store.hpp"
@@ -10,51 +10,68 @@
 
 namespace kintsugi::mapper {
 
-/// Decides which session a run maps: a new one, or the last one of its log, which was interrupted.
+/// Decides whether a run is a new one, or continues the last one of its log, which was interrupted.
+/// A run has a session for each of its parts: their numbers follow that of part 0 without gaps.
 ///
-/// The log does not contain the state of the mapper. A resumed run maps the same frames again to
-/// restore it; slices that the log already contains are not sent again.
+/// The log does not contain the state of the mapper. A resumed run maps the same frames again, from
+/// the first one of part 0 on, to restore it; slices that the log already contains are not sent
+/// again.
 class Resumption {
  public:
   struct Config {
     MappingOptions options;
-    std::int64_t session = 0;  ///< 0: by the clock, or that of the log
+    std::int64_t session = 0;  ///< of part 0; 0: by the clock, or that of the log
     double max_range_m = 6.5;  ///< of stored frames that are mapped again
   };
 
   /// @param store must outlive this
-  /// @throws std::runtime_error when the last session of the log was begun with other options or
-  /// has
+  /// @throws std::runtime_error when the last run of the log was begun with other options or
   ///   another number; nothing is written then
   Resumption(SessionStore& store, const Config& config);
 
-  /// The source for the session: it begins with the frames that the session had mapped. A live
-  /// camera cannot repeat them; unless the log contains them, a new session begins, with a warning.
+  /// The source for the run: it begins with the frames that were mapped already. A live camera
+  /// cannot repeat them; unless the log contains them, a new run begins, with a warning.
   std::unique_ptr<FrameSource> attach(std::unique_ptr<FrameSource> source);
 
+  /// Of part 0.
   std::int64_t session() const { return session_; }
-  /// The last session of the log if it is complete, so that there is nothing to map; else null.
+  /// Begins a part after part 0 in the log, unless that was done before the interruption. Returns
+  /// its session.
+  /// @throws std::runtime_error when another run of the log has that session
+  std::int64_t begin_part(int part);
+
+  /// The last session of the log if its run is complete, so that there is nothing to map; else
+  /// null.
   const StoredSession* ended_session() const;
 
   /// Time of the last frame that was mapped before the interruption; -1: none.
   std::int64_t last_mapped_utime() const { return last_mapped_utime_; }
   /// Time of the last raw frame in the log; -1: none.
-  std::int64_t last_stored_utime() const { return continued_ ? continued_->last_frame_utime : -1; }
+  std::int64_t last_stored_utime() const {
+    return continued_.empty() ? -1 : continued_.front().last_frame_utime;
+  }
   /// Whether the frame of this time was mapped before the interruption.
   bool was_mapped(std::int64_t utime) const { return utime <= last_mapped_utime_; }
+  /// Whether the pose of the frame of this time is in the log, as one of this part.
+  bool has_pose(int part, std::int64_t utime) const;
   /// Whether a run whose last mapped frame has this time has repeated all frames that were mapped
   /// before the interruption.
   bool has_caught_up(std::int64_t last_utime) const;
 
  private:
-  void begin_session(std::int64_t session);
+  void begin_run(std::int64_t session);
+  void continue_last_run();
+  bool has_all_slices(const StoredSession& part) const;
   bool has_all_frames() const;
+  /// Mapping had ended, and the rest was being published.
+  bool had_ended() const;
+  std::vector<std::int64_t> mapped_utimes() const;
   std::unique_ptr<FrameSource> stored_frames_before(std::unique_ptr<FrameSource> camera) const;
 
   SessionStore& store_;
   const Config config_;
   std::int64_t session_ = 0;
-  std::optional<StoredSession> continued_;
+  std::vector<StoredSession> continued_;  ///< the parts in the log; empty: a new run
   std::int64_t last_mapped_utime_ = -1;
 };
 

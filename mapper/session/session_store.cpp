@@ -26,7 +26,11 @@ void SessionStore::read_event(const LogEvent& event, const LogPlace& place) {
 }
 
 void SessionStore::begin_session(std::int64_t session, const MappingOptions& options) {
-  log_.begin(kOptionsChannel, encode_options(session, options));
+  log_.begin(kOptionsChannel, encode_options(session, 0, options));
+}
+
+void SessionStore::begin_part(std::int64_t session, int part, const MappingOptions& options) {
+  log_.append(kOptionsChannel, encode_options(session, part, options));
 }
 
 StoredStream& SessionStore::stream(const std::string& channel, std::int64_t session) {

@@ -18,7 +18,7 @@ namespace {
 // segment ids (uint32); the last change of each segment (LastChange); thetas (double); the chunks
 // that are in the map (SequenceRange); the checksum. A change of any of this is a new version.
 constexpr std::array<char, 8> kMagic = {'K', 'S', 'E', 'G', 'M', 'A', 'P', '\n'};
-constexpr std::uint32_t kVersion = 3;
+constexpr std::uint32_t kVersion = 4;
 static_assert(kMapParameters.size() == 7, "other parameters are a new version of the file");
 
 struct Start {
@@ -31,6 +31,8 @@ struct Header {
   std::int64_t session = 0;
   std::int64_t map_session = 0;
   std::array<double, kMapParameters.size()> parameters{};
+  std::int32_t part = 0;
+  std::uint32_t part_follows = 0;
   std::int32_t final_slice_id = 0;
   std::uint32_t next_id = 0;
   std::uint32_t num_mode_bytes = 0;
@@ -49,7 +51,7 @@ struct SliceHeader {
   std::int32_t num_points = 0;
   std::uint32_t num_rejected = 0;
 };
-static_assert(sizeof(Start) == 16 && sizeof(Header) == 112 && sizeof(SliceHeader) == 16,
+static_assert(sizeof(Start) == 16 && sizeof(Header) == 120 && sizeof(SliceHeader) == 16,
               "no padding, which would be written with whatever is in it");
 
 Header header_of(const SegmentMapState& state) {
@@ -59,6 +61,8 @@ Header header_of(const SegmentMapState& state) {
   for (std::size_t i = 0; i < kMapParameters.size(); ++i) {
     header.parameters[i] = state.config.engine.*kMapParameters[i].value;
   }
+  header.part = state.part;
+  header.part_follows = state.part_follows ? 1 : 0;
   header.final_slice_id = state.final_slice_id;
   header.next_id = state.next_id;
   header.num_mode_bytes = static_cast<std::uint32_t>(state.config.mode.size());
@@ -185,6 +189,8 @@ SegmentMapState read_map_state(const std::filesystem::path& path) {
   state.config = config_of(start, header);
   state.session = header.session;
   state.map_session = header.map_session;
+  state.part = header.part;
+  state.part_follows = header.part_follows != 0;
   state.final_slice_id = header.final_slice_id;
   state.next_id = header.next_id;
   state.config.mode = read_text(file, header.num_mode_bytes);

@@ -24,6 +24,7 @@ SegmentMap::SegmentMap(const SegmentMapConfig& config, std::int64_t session,
       session_(session),
       map_session_(first.session),
       map_name_(first.map_name),
+      part_(first.part),
       engine_(make_engine(config_.mode, cloud_, config_.engine)),
       statistics_(first.resolution_m) {}
 
@@ -53,7 +54,7 @@ std::vector<SegmentUpdate> SegmentMap::add(std::span<const CloudSlice> slices) {
     update.labels = slice_labels(*cloud_.find_slice(update.slice_id), ids_.ids());
   }
   SegmentUpdate& last = updates.back();
-  last.is_final = is_complete();
+  last.is_final = ends_run();
   last.runs = label_runs(cloud_, id_update.changes);
   const LastChange now{last.utime, last.slice_id};
   for (const std::uint32_t id : statistics_.apply(cloud_, ids_, id_update.changes, now)) {
@@ -72,6 +73,7 @@ void SegmentMap::store(const CloudSlice& slice) {
   }
   if (slice.kind == SliceKind::kFinal) {
     final_slice_id_ = slice.id;
+    part_follows_ = slice.part_follows;
   }
   if (slice.num_chunks > 0) {
     chunks_.insert({slice.sequence, slice.sequence + slice.num_chunks - 1});
@@ -94,7 +96,7 @@ std::vector<SegmentUpdate> SegmentMap::describe() const {
     update.labels = slice_labels(slice, ids_.ids());
   }
   if (!updates.empty()) {
-    updates.back().is_final = is_complete();
+    updates.back().is_final = ends_run();
     updates.back().statistics = statistics_.all();
   }
   return updates;

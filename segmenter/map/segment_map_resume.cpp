@@ -55,6 +55,9 @@ void clear_for(std::vector<Record>& records, std::size_t size) {
 }
 
 void check_counts(const SegmentMapState& state) {
+  if (state.part < 0) {
+    throw std::invalid_argument("part is " + std::to_string(state.part) + ", expected >= 0");
+  }
   std::uint64_t num_points = 0;
   for (const SliceRecord& slice : state.slices) {
     const bool is_ascending = std::adjacent_find(slice.rejected.begin(), slice.rejected.end(),
@@ -134,6 +137,8 @@ SegmentMap::SegmentMap(const SegmentMapState& state)
       session_(state.session),
       map_session_(state.map_session),
       map_name_(state.map_name),
+      part_(state.part),
+      part_follows_(state.part_follows),
       engine_(make_engine(config_.mode, cloud_, config_.engine)),
       statistics_(static_cast<float>(config_.engine.resolution_m)),
       final_slice_id_(state.final_slice_id),
@@ -172,6 +177,8 @@ void SegmentMap::copy_state(SegmentMapState& state) const {
   state.session = session_;
   state.map_session = map_session_;
   state.map_name = map_name_;
+  state.part = part_;
+  state.part_follows = part_follows_;
   state.final_slice_id = final_slice_id_;
   state.next_id = ids_.next_id();
   state.chunks = chunks_.ranges();

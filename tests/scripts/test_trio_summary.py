@@ -35,6 +35,20 @@ class Summary(FolderTest):
         self.assertIn("2 pictures of the run", self.said)
         self.assertNotIn("trajectory.txt", self.said)
 
+    def test_tells_the_parts_of_the_map_and_their_files(self):
+        for name in ("segments.ply", "segments.part1.ply", "segments.part2.ply", "segments.part10.ply",
+                     "trajectory.part1.txt", "run.lcm.partial"):
+            (self.folder.path / name).touch()
+        show_summary(self.folder, [])
+        self.assertIn("the map has 4 parts", self.said)
+        self.assertRegex(self.said, r"(?s)segments\.ply .*part1\.ply +the same of part 1.*part2\.ply .*part10\.ply ")
+        self.assertIn(self.folder.file("trajectory.part1.txt") + " ", self.said)
+
+    def test_says_nothing_of_parts_when_there_is_one(self):
+        (self.folder.path / "segments.ply").touch()
+        show_summary(self.folder, [])
+        self.assertNotIn("part", self.said)
+
 
 if __name__ == "__main__":
     unittest.main()

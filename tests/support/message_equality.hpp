@@ -10,11 +10,12 @@ namespace kintsugi {
 inline bool equal(const Pose& a, const Pose& b) { return a.matrix() == b.matrix(); }
 
 inline bool operator==(const CloudSlice& a, const CloudSlice& b) {
-  const auto& [utime, session, map_name, sequence, num_chunks, id, revision, kind, resolution_m,
-               X_WC, points_W] = a;
+  const auto& [utime, session, map_name, sequence, num_chunks, id, revision, kind, part,
+               part_follows, resolution_m, X_WC, points_W] = a;
   return utime == b.utime && session == b.session && map_name == b.map_name && id == b.id &&
-         revision == b.revision && kind == b.kind && resolution_m == b.resolution_m &&
-         equal(X_WC, b.X_WC) && points_W == b.points_W;
+         revision == b.revision && kind == b.kind && part == b.part &&
+         part_follows == b.part_follows && resolution_m == b.resolution_m && equal(X_WC, b.X_WC) &&
+         points_W == b.points_W;
 }
 
 inline bool operator==(const SegmentUpdate& a, const SegmentUpdate& b) {

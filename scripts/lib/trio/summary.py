@@ -1,5 +1,7 @@
 """What a run took and wrote, for the person."""
 
+import re
+
 from .messages import STDOUT, say, write
 
 WRITTEN_FILES = (
@@ -23,9 +25,31 @@ def show_summary(folder, processes):
     cpu = ", ".join(f"{p.name} {p.cpu_s:.2f} s" for p in processes if p.cpu_s is not None)
     memory = ", ".join(f"{p.name} {p.peak_memory_MB} MB" for p in processes if p.peak_memory_MB is not None)
     write(STDOUT, f"  CPU: {cpu}\n  memory at most: {memory}\n")
+    parts = later_parts(folder)
+    if parts:
+        say(f"the camera stayed lost, so the map has {len(parts) + 1} parts, each in a frame W of its own; "
+            "final.png shows the last")
     say("written:")
     for name, text in WRITTEN_FILES:
-        if (folder.path / name).exists():
-            write(STDOUT, f"  {folder.file(name):<28} {text}\n")
+        show_file(folder, name, text)
+        for part in parts:
+            show_file(folder, name_in_part(name, part), f"the same of part {part}")
     num_snapshots = len(list(folder.path.glob("snapshot_*.png")))
     write(STDOUT, f"  {folder.file('snapshot_*.png'):<28} {num_snapshots} pictures of the run\n")
+
+
+def show_file(folder, name, text):
+    """If there is one."""
+    if (folder.path / name).exists():
+        write(STDOUT, f"  {folder.file(name):<28} {text}\n")
+
+
+def later_parts(folder):
+    """The numbers of the parts of the map after part 0, whose files have plain names."""
+    found = (re.search(r"\.part(\d+)\.", file.name) for file in folder.path.glob("*.part*.*"))
+    return sorted({int(match[1]) for match in found if match})
+
+
+def name_in_part(name, part):
+    stem, dot, extension = name.rpartition(".")
+    return f"{stem}.part{part}{dot}{extension}"

@@ -196,6 +196,9 @@ TEST(CodecBounds, ErrorsNameTypeFieldValueAndBound) {
   EXPECT_THAT(refusal(example_slice(1), [](CloudSlice& s) { s.id = -1; }), HasSubstr("slice_id"));
   EXPECT_THAT(refusal(example_slice(1), [](CloudSlice& s) { s.kind = SliceKind{7}; }),
               HasSubstr("kind is 7"));
+  EXPECT_THAT(refusal(example_slice(1), [](CloudSlice& s) { s.part = -1; }), HasSubstr("part"));
+  EXPECT_THAT(refusal(example_slice(1), [](CloudSlice& s) { s.part = 42; }),  // of session 42
+              HasSubstr("part"));
   EXPECT_THAT(refusal(example_slice(1), [](CloudSlice& s) { s.X_WC.linear() *= 1.001; }),
               AllOf(HasSubstr("X_WC"), HasSubstr("a rotation")));
   EXPECT_THAT(refusal(example_slice(1), [](CloudSlice& s) { s.X_WC.linear().col(0) *= -1.0; }),

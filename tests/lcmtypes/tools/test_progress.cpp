@@ -71,6 +71,21 @@ TEST(Progress, ReportsLosses) {
                     HasSubstr("5 chunks MISSING"), HasSubstr("2 bad messages")));
 }
 
+TEST(Progress, NamesThePartAndDoesNotTakeItForARestart) {
+  Progress progress;
+  MapperStatus status = mapper(250, false);
+  progress.update(status, 0);
+  EXPECT_THAT(progress.line(0), Not(HasSubstr("part")));
+  ++status.session;
+  status.part = 1;
+  progress.update(status, 0);
+  EXPECT_THAT(progress.line(0), AllOf(HasSubstr("part 1"), Not(HasSubstr("restarted"))));
+  status.session = 99;
+  status.part = 0;
+  progress.update(status, 0);
+  EXPECT_THAT(progress.line(0), HasSubstr("mapper restarted"));
+}
+
 TEST(Progress, ReportsTheLogRestartsAndProblems) {
   Progress progress;
   MapperStatus stored = mapper(250, false);

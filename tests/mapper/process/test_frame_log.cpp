@@ -46,7 +46,7 @@ void append_to_a_file_that_cannot_grow(const std::filesystem::path& path) {
   std::signal(SIGXFSZ, SIG_IGN);
   const rlimit limit{std::filesystem::file_size(path) + 10, RLIM_INFINITY};
   setrlimit(RLIMIT_FSIZE, &limit);
-  for (int i = 0; i < 3; ++i) log.append({}, {}, 0, {});
+  for (int i = 0; i < 3; ++i) log.append({}, 0, {}, 0, {});
   std::exit(0);
 }
 
@@ -63,7 +63,7 @@ TEST(FrameLog, HasALineForEachFrameAsSoonAsItIsAppended) {
   FrameTimings timings;
   timings.stages.raycast_ms = 4.25;
   timings.cpu_ms = 31.5;
-  log.append(frame, tracking, 2, timings);
+  log.append(frame, 3, tracking, 2, timings);
 
   // The log is still open: nothing waits in a buffer that a crash would lose.
   const auto lines = lines_of(folder / "frames.csv");
@@ -71,6 +71,7 @@ TEST(FrameLog, HasALineForEachFrameAsSoonAsItIsAppended) {
   EXPECT_EQ(cells_of(lines[0]).size(), cells_of(lines[1]).size());
   EXPECT_EQ(cell(lines, 1, "frame_index"), "12");
   EXPECT_EQ(cell(lines, 1, "utime_us"), "1341836537655691");
+  EXPECT_EQ(cell(lines, 1, "part"), "3");
   EXPECT_EQ(cell(lines, 1, "state"), "tracking");
   EXPECT_EQ(cell(lines, 1, "reason"), "");
   EXPECT_EQ(cell(lines, 1, "raycast_ms"), "4.250");
@@ -87,9 +88,9 @@ TEST(FrameLog, SaysWhyAFrameIsLost) {
   TrackingResult lost;
   lost.state = TrackingState::kLost;
   lost.loss_reason = LossReason::kLargeResidual;
-  log.append({}, lost, 0, {});
+  log.append({}, 0, lost, 0, {});
   lost.loss_reason.reset();
-  log.append({}, lost, 0, {});
+  log.append({}, 0, lost, 0, {});
   const auto lines = lines_of(folder / "frames.csv");
   EXPECT_EQ(cell(lines, 1, "reason"), to_string(LossReason::kLargeResidual));
   EXPECT_EQ(cell(lines, 2, "reason"), "no given pose within 20 ms");

@@ -109,6 +109,8 @@ TEST_P(SavedMap, KeepsWhatItIs) {
   auto slices = testing::wavy_session(3, 50);
   slices[1].points_W.clear();
   slices[2].revision = 8;
+  slices[2].part_follows = true;
+  slices[0].part = 3;
   SegmentMapConfig config = config_of(GetParam());
   config.engine.neighbour_search = NeighbourSearch::kFlann;
   SegmentMap map(config, 99, slices[0]);
@@ -118,6 +120,8 @@ TEST_P(SavedMap, KeepsWhatItIs) {
   EXPECT_EQ(loaded->session(), 99);
   EXPECT_EQ(loaded->map_session(), 5);
   EXPECT_EQ(loaded->map_name(), "map");
+  EXPECT_EQ(loaded->part(), 3);
+  EXPECT_TRUE(loaded->part_follows());
   EXPECT_EQ(loaded->config().mode, GetParam());
   EXPECT_EQ(loaded->config().engine.threshold, 0.002);
   EXPECT_EQ(loaded->config().engine.resolution_m, static_cast<double>(0.01F));
@@ -213,11 +217,11 @@ TEST_F(SavedMapFile, ReasonsSayWhatWasExpected) {
   EXPECT_THAT(reason("ply\nformat ascii 1.0\nand so on"),
               AllOf(HasSubstr("no saved segment map"), HasSubstr("KSEGMAP")));
   std::string newer = bytes_;
-  newer[8] = 4;
-  EXPECT_THAT(reason(newer), AllOf(HasSubstr("version 4"), HasSubstr("expected 3")));
+  newer[8] = 5;
+  EXPECT_THAT(reason(newer), AllOf(HasSubstr("version 5"), HasSubstr("expected 4")));
   std::string older = bytes_;
-  older[8] = 2;
-  EXPECT_THAT(reason(older), AllOf(HasSubstr("version 2"), HasSubstr("expected 3")));
+  older[8] = 3;
+  EXPECT_THAT(reason(older), AllOf(HasSubstr("version 3"), HasSubstr("expected 4")));
   EXPECT_THAT(reason(bytes_.substr(0, bytes_.size() - 3)), HasSubstr("cut off"));
   std::string damaged = bytes_;
   damaged[200] ^= 1;
@@ -242,6 +246,7 @@ TEST_F(SavedMapFile, ClaimsAreHeldAgainstItsSizeBeforeMemoryIsTaken) {
 }
 
 TEST_F(SavedMapFile, IsRefusedWhenItIsNoStateOfAMap) {
+  expect_refused([](auto& s) { s.part = -1; }, "part is -1");
   expect_refused([](auto& s) { s.config.mode = "spectral"; }, "mode is 'spectral'");
   expect_refused([](auto& s) { s.config.engine.threshold = -1; }, "threshold is -1");
   expect_refused([](auto& s) { s.config.engine.resolution_m = NAN; }, "resolution_m");
