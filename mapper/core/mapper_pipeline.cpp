@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "lcmtypes/base/argument_check.hpp"
+#include "mapper/core/frame/camera.hpp"
 #include "mapper/core/frame/covered_share.hpp"
 
 namespace kintsugi::mapper {
@@ -40,9 +41,10 @@ MapperPipeline::MapperPipeline(const Config& config)
       relocalizer_(config.relocalizer),
       slice_worker_(config.slices) {}
 
-FrameResult MapperPipeline::process(const RgbdFrame& frame) {
+FrameResult MapperPipeline::process(const RgbdFrame& measured) {
   FrameResult result;
   StageClock clock;
+  const RgbdFrame frame = cleaned(measured);
   utime_ = frame.utime;
   const TrackingInput input = prepare(frame);
   clock.end_of(&StageTimes::prepare_ms);
@@ -71,12 +73,21 @@ std::vector<CloudSlice> MapperPipeline::finish() {
   return slice_worker_.drain();
 }
 
+RgbdFrame MapperPipeline::cleaned(const RgbdFrame& frame) {
+  check_image_size("depth_m", frame.depth_m.size(), frame.intrinsics);
+  local_noise_.add(frame.depth_m);
+  RgbdFrame clean = frame;
+  clean.depth_m = without_mixed_pixels(frame.depth_m, frame.intrinsics, local_noise_.noise());
+  return clean;
+}
+
 TrackingInput MapperPipeline::prepare(const RgbdFrame& frame) const {
   if (!config_.given_path.empty()) return {frame.utime, {}, frame.color_rgb};
   return {frame.utime,
           pyramid_from_depth(frame.depth_m, frame.intrinsics, halvings(frame.intrinsics),
                              static_cast<int>(config_.tracker.registration.iterations.size()),
-                             static_cast<float>(config_.integrator.max_depth_m), noise_.noise()),
+                             static_cast<float>(config_.integrator.max_depth_m),
+                             {noise_.noise(), local_noise_.noise()}),
           frame.color_rgb};
 }
 
@@ -115,7 +126,7 @@ void MapperPipeline::learn_noise(const TrackingInput& input, const Pose& X_WC) {
   if (!config_.learn_noise || getenv("NOLEARN")) return;
   const std::size_t level = std::min<std::size_t>(1, input.surface_C.size() - 1);
   noise_.add(input.surface_C[level], model_->surface_V[level], model_->X_WV.inverse() * X_WC);
-  if (std::getenv("DBG")) std::fprintf(stderr, "NOISE %lld %.5f %.5f %.5f\n", (long long)input.utime, noise_.noise().base_m, noise_.noise().share, noise_.noise().growth_per_m);
+  if (std::getenv("DBG")) std::fprintf(stderr, "LOCAL %.5f %.5f %.5f\n", local_noise_.noise().base_m, local_noise_.noise().share, local_noise_.noise().growth_per_m), std::fprintf(stderr, "NOISE %lld %.5f %.5f %.5f\n", (long long)input.utime, noise_.noise().base_m, noise_.noise().share, noise_.noise().growth_per_m);
 }
 
 std::optional<TrackingResult> MapperPipeline::find_again(const TrackingInput& input) {

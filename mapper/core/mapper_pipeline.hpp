@@ -10,6 +10,7 @@
 #include "lcmtypes/messages.hpp"
 #include "lcmtypes/trajectory.hpp"
 #include "mapper/core/extraction/slice_worker.hpp"
+#include "mapper/core/frame/local_noise.hpp"
 #include "mapper/core/frame/rgbd_frame.hpp"
 #include "mapper/core/fusion/integrator.hpp"
 #include "mapper/core/fusion/raycaster.hpp"
@@ -69,7 +70,7 @@ class MapperPipeline {
   /// Frames must be in order of time and have the same intrinsics.
   /// @throws std::invalid_argument if the sizes of an image and of the intrinsics differ; the map
   /// and the pose are unchanged then
-  FrameResult process(const RgbdFrame& frame);
+  FrameResult process(const RgbdFrame& measured);
 
   /// Ends the run: waits for the slices that are being extracted and returns them; the last one is
   /// the final slice, with all that is still in the volume. process() must not be called
@@ -83,6 +84,8 @@ class MapperPipeline {
   double extraction_ms() const { return slice_worker_.busy_ms(); }
 
  private:
+  /// The frame without depths that are no surface.
+  RgbdFrame cleaned(const RgbdFrame& frame);
   TrackingInput prepare(const RgbdFrame& frame) const;
   TrackingResult locate(const TrackingInput& input);
   TrackingResult locate_on_given_path(std::int64_t utime) const;
@@ -102,6 +105,7 @@ class MapperPipeline {
   Raycaster raycaster_;
   Tracker tracker_;
   NoiseEstimator noise_;
+  LocalNoiseEstimator local_noise_;
   Relocalizer relocalizer_;
   SliceWorker slice_worker_;
   std::optional<Model> model_;    ///< none before the first fused frame

@@ -22,4 +22,10 @@ struct DepthNoise {
   double sigma_m(double z_m) const { return std::sqrt(variance_m2(z_m)); }
 };
 
+/// The two kinds of noise of a camera.
+struct SensorNoise {
+  DepthNoise depth;  ///< of a depth against the true one
+  DepthNoise local;  ///< of neighbouring depths against each other
+};
+
 }  // namespace kintsugi::mapper

@@ -40,9 +40,9 @@ DepthVariance depth_variance(const DepthNoise& noise) {
            static_cast<float>(noise.growth_per_m * noise.growth_per_m)}};
 }
 
-DepthTolerance depth_tolerance(const DepthNoise& noise, const Intrinsics& intrinsics) {
+DepthTolerance depth_tolerance(const DepthNoise& local_noise, const Intrinsics& intrinsics) {
   const double focal_length_px = std::min(intrinsics.fx, intrinsics.fy);
-  return {.variance = depth_variance(noise),
+  return {.variance = depth_variance(local_noise),
           .slope = DepthTolerance::kSlope / static_cast<float>(focal_length_px)};
 }
 

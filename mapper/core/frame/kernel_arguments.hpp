@@ -18,6 +18,6 @@ RigidMotion rigid_motion(const Pose& X_BA);
 DepthVariance depth_variance(const DepthNoise& noise);
 
 /// Which neighbouring depths of a camera belong to the same surface.
-DepthTolerance depth_tolerance(const DepthNoise& noise, const Intrinsics& intrinsics);
+DepthTolerance depth_tolerance(const DepthNoise& local_noise, const Intrinsics& intrinsics);
 
 }  // namespace kintsugi::mapper

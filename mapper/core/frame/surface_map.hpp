@@ -17,7 +17,8 @@ namespace kintsugi::mapper {
 /// register.
 struct SurfaceMap {
   Intrinsics intrinsics;     ///< without distortion
-  DepthNoise noise;          ///< of measured depths; a raycast surface does not use it
+  DepthNoise noise;          ///< of measured depths; of a raycast surface not used
+  DepthNoise local_noise;    ///< of neighbouring depths against each other
   cv::Mat_<float> depth_m;   ///< height x width, along the camera's z; invalid is NaN
   cv::Mat_<float> normal_x;  ///< unit normal towards the camera; invalid is NaN in all three
   cv::Mat_<float> normal_y;

@@ -40,11 +40,12 @@ cv::Mat_<float> smoothed(const cv::Mat_<float>& depth_m, const DepthTolerance& t
 
 /// The result shares the depth image.
 SurfaceMap surface_of(cv::Mat_<float> depth_m, const Intrinsics& intrinsics,
-                      const DepthNoise& noise, bool smooth_normals, const Kernels& kernels) {
+                      const SensorNoise& noise, bool smooth_normals, const Kernels& kernels) {
   SurfaceMap surface(intrinsics);
-  surface.noise = noise;
+  surface.noise = noise.depth;
+  surface.local_noise = noise.local;
   surface.depth_m = std::move(depth_m);
-  const DepthTolerance tolerance = depth_tolerance(noise, intrinsics);
+  const DepthTolerance tolerance = depth_tolerance(noise.local, intrinsics);
   const cv::Mat_<float> depth_of_normals_m =
       smooth_normals ? smoothed(surface.depth_m, tolerance, kernels) : surface.depth_m;
   const MutableSurfacePlanes planes = planes_of(surface);
@@ -57,7 +58,8 @@ SurfaceMap surface_of(cv::Mat_<float> depth_m, const Intrinsics& intrinsics,
 SurfaceMap half_size_surface(const SurfaceMap& fine, const Kernels& kernels) {
   SurfaceMap half(half_size(fine.intrinsics));
   half.noise = fine.noise;
-  const DepthTolerance tolerance = depth_tolerance(fine.noise, fine.intrinsics);
+  half.local_noise = fine.local_noise;
+  const DepthTolerance tolerance = depth_tolerance(fine.local_noise, fine.intrinsics);
   const SurfacePlanes from = planes_of(fine);
   const MutableSurfacePlanes to = planes_of(half);
   for_each_row(half.depth_m.size(), [&](int v) { kernels.halve_surface_row(from, tolerance, v, to); });
@@ -77,13 +79,13 @@ cv::Mat_<float> half_size(const cv::Mat_<float>& depth_m, const DepthTolerance& 
 }
 
 SurfaceMap surface_from_depth(const cv::Mat_<float>& depth_m, const Intrinsics& intrinsics,
-                              const DepthNoise& noise, const Kernels& kernels) {
+                              const SensorNoise& noise, const Kernels& kernels) {
   check_image_size("depth_m", depth_m.size(), intrinsics);
   return surface_of(depth_m.clone(), intrinsics, noise, false, kernels);
 }
 
 SurfacePyramid pyramid_from_depth(const cv::Mat_<float>& depth_m, const Intrinsics& intrinsics,
-                                  int skip, int levels, float max_depth_m, const DepthNoise& noise,
+                                  int skip, int levels, float max_depth_m, const SensorNoise& noise,
                                   const Kernels& kernels) {
   check_image_size("depth_m", depth_m.size(), intrinsics);
   cv::Mat_<float> depth = depth_m;
@@ -95,7 +97,7 @@ SurfacePyramid pyramid_from_depth(const cv::Mat_<float>& depth_m, const Intrinsi
   SurfacePyramid pyramid;
   for (int level = 0; level < skip + levels; ++level) {
     if (level > 0) {
-      depth = half_size(depth, depth_tolerance(noise, camera), max_depth_m, kernels);
+      depth = half_size(depth, depth_tolerance(noise.local, camera), max_depth_m, kernels);
       camera = half_size(camera);
     }
     if (level < skip) continue;

@@ -30,7 +30,7 @@ cv::Mat_<float> half_size(const cv::Mat_<float>& depth_m, const DepthTolerance& 
 /// has no normal (NaN).
 /// @throws std::invalid_argument if the size of the image is not that of the intrinsics
 SurfaceMap surface_from_depth(const cv::Mat_<float>& depth_m, const Intrinsics& intrinsics,
-                              const DepthNoise& noise = {},
+                              const SensorNoise& noise = {},
                               const Kernels& kernels = best_kernels());
 
 /// The pyramid of a measured depth image, halved `skip` times (1: a 640x480 image starts at
@@ -40,7 +40,7 @@ SurfaceMap surface_from_depth(const cv::Mat_<float>& depth_m, const Intrinsics& 
 /// @throws std::invalid_argument if the size of the image is not that of the intrinsics
 SurfacePyramid pyramid_from_depth(const cv::Mat_<float>& depth_m, const Intrinsics& intrinsics,
                                   int skip, int levels, float max_depth_m,
-                                  const DepthNoise& noise = {},
+                                  const SensorNoise& noise = {},
                                   const Kernels& kernels = best_kernels());
 
 /// The pyramid of a raycast surface: depths and normals are averaged over those of 2x2 pixels that

@@ -18,7 +18,8 @@ constexpr float kMaxGapShare = 0.1F;   ///< of the image: widest gap between the
 class Tolerance {
  public:
   explicit Tolerance(const SurfaceMap& surface)
-      : noise_(surface.noise), slope_(depth_tolerance(surface.noise, surface.intrinsics).slope) {}
+      : noise_(surface.noise),
+        slope_(depth_tolerance(surface.noise, surface.intrinsics).slope) {}
 
   float at(float depth_m, int steps) const {
     return DepthTolerance::kSigmas * std::numbers::sqrt2_v<float> *
