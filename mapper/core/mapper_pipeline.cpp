@@ -10,6 +10,8 @@ namespace kintsugi::mapper {
 namespace {
 
 Eigen::AlignedBox3d region_of(const TsdfVolume& volume) {
+  // The ball holds all that is measured within the range.
+  if (volume.config().region == RegionShape::kBall) return Model().region_W;
   const double half_side_m = 0.5 * volume.side_blocks() * kBlockSide * volume.config().resolution_m;
   const Eigen::Vector3d reach = Eigen::Vector3d::Constant(half_side_m);
   return {volume.center_W() - reach, volume.center_W() + reach};

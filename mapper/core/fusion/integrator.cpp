@@ -77,6 +77,7 @@ void Integrator::integrate(const RgbdFrame& frame, const Pose& X_WC, TsdfVolume&
   const Eigen::Matrix3f R_WC = X_WC.linear().cast<float>();
   const std::vector<VisibleBlock> visible =
       find_visible_blocks(volume, camera, X_WC, max_depth_m + volume.truncation_m());
+  for (const VisibleBlock& block : visible) volume.mark_seen(block.slot);
 
   cv::Mat_<cv::Vec4b> color_rgbx;
   if (has_color) cv::cvtColor(frame.color_rgb, color_rgbx, cv::COLOR_RGB2RGBA);

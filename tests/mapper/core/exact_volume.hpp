@@ -54,7 +54,8 @@ void set_exact_distances(TsdfVolume& volume, int weight, Function signed_distanc
 template <typename Function>
 TsdfVolume exact_volume(double size_m, double resolution_m, int weight,
                         Function signed_distance_m) {
-  TsdfVolume volume({.volume_size_m = size_m, .resolution_m = resolution_m});
+  TsdfVolume volume(
+      {.region = RegionShape::kCube, .volume_size_m = size_m, .resolution_m = resolution_m});
   allocate_around_surface(volume, signed_distance_m);
   set_exact_distances(volume, weight, signed_distance_m);
   return volume;

@@ -171,7 +171,8 @@ TEST(MeshExtractor, ClosesAnExactSphere) {
 
 TEST(MeshExtractor, ClosesAFusedSphere) {
   const auto scene = synthetic::make_scene("sphere");
-  TsdfVolume volume({.volume_size_m = 1.6, .resolution_m = kResolution_m});
+  TsdfVolume volume(
+      {.region = RegionShape::kCube, .volume_size_m = 1.6, .resolution_m = kResolution_m});
   fuse(testing::views_around(scene, 1.3, {-0.9, -0.3, 0.3, 0.9}, 12), volume);
   const MeshPiece mesh = mesh_of(volume.snapshot());
   ASSERT_GT(mesh.triangles.size(), 40000U);
@@ -186,7 +187,8 @@ TEST(MeshExtractor, ClosesAFusedSphere) {
 
 TEST(MeshExtractor, JoinsSlicesToTheMeshOfTheWhole) {
   const auto scene = synthetic::make_scene("sphere");
-  TsdfVolume volume({.volume_size_m = 1.6, .resolution_m = kResolution_m});
+  TsdfVolume volume(
+      {.region = RegionShape::kCube, .volume_size_m = 1.6, .resolution_m = kResolution_m});
   fuse(testing::views_around(scene, 1.3, {-0.9, -0.3, 0.3, 0.9}, 6), volume);
   const MeshPiece whole = mesh_of(volume.snapshot());
   int num_slices = 0;
@@ -268,7 +270,8 @@ TEST(MeshExtractor, TakesTheColorThatWasSeen) {
   testing::View view =
       testing::make_view(scene, synthetic::look_at({0.0, -0.3, 0.8}, {0.0, 0.0, 0.0}));
   view.frame.color_rgb.setTo(cv::Scalar(200, 100, 7));
-  TsdfVolume volume({.volume_size_m = 2.4, .resolution_m = kResolution_m});
+  TsdfVolume volume(
+      {.region = RegionShape::kCube, .volume_size_m = 2.4, .resolution_m = kResolution_m});
   fuse({view, view, view}, volume);
   const MeshPiece mesh = mesh_of(volume.snapshot());
   ASSERT_FALSE(mesh.vertices.empty());

@@ -28,7 +28,7 @@ using Cloud = std::vector<CloudPoint>;
 constexpr double kResolution_m = 0.01;
 
 TsdfVolume::Config volume_of(double size_m) {
-  return {.volume_size_m = size_m, .resolution_m = kResolution_m};
+  return {.region = RegionShape::kCube, .volume_size_m = size_m, .resolution_m = kResolution_m};
 }
 
 Cloud extract(const DetachedBlocks& blocks, int weight_threshold = 0) {
