@@ -8,6 +8,7 @@
 #include <CLI/CLI.hpp>
 
 #include "lcmtypes/codec/codec.hpp"
+#include "mapper/core/fusion/truncation.hpp"
 #include "mapper/source/openni2/device_listing.hpp"
 
 namespace kintsugi::mapper {
@@ -93,7 +94,9 @@ void complete_volume(Options& options) {
     throw std::invalid_argument("--volume is '" + options.volume + "', must be range or cube");
   }
   if (max_range_m == 0.0) {
-    max_range_m = std::min(volume.max_range_m, TsdfVolume::longest_range_m(volume));
+    const double by_noise_m =
+        range_of(DepthNoise(), volume.resolution_m * volume.largest_truncation_vox());
+    max_range_m = std::min({by_noise_m, TsdfVolume::longest_range_m(volume), kReachOfCamera_m});
   }
   options.source.max_range_m = max_range_m;
   volume.max_range_m = max_range_m;

@@ -9,6 +9,7 @@
 #include "lcmtypes/base/argument_check.hpp"
 #include "mapper/core/frame/camera.hpp"
 #include "mapper/core/fusion/block_allocation.hpp"
+#include "mapper/core/fusion/truncation.hpp"
 #include "mapper/core/kernels/kernels.hpp"
 #include "mapper/core/volume/block_visibility.hpp"
 
@@ -23,7 +24,7 @@ Image continuous(const Image& image) {
 
 /// All but the images and their range of depths.
 IntegrationFrame make_integration_frame(const PinholeCamera& camera, const Eigen::Matrix3f& R_WC,
-                                        const TsdfVolume& volume) {
+                                        const TsdfVolume& volume, const DepthNoise& noise) {
   IntegrationFrame frame{.camera = camera};
   for (int axis_W = 0; axis_W < 3; ++axis_W) {
     for (int axis_C = 0; axis_C < 3; ++axis_C) {
@@ -31,8 +32,7 @@ IntegrationFrame make_integration_frame(const PinholeCamera& camera, const Eigen
     }
   }
   const int max_weight = volume.config().max_weight;
-  frame.truncation_m = volume.truncation_m();
-  frame.inverse_truncation = 1.0F / frame.truncation_m;
+  frame.truncation = truncation_by_depth(volume, noise);
   frame.max_weight = static_cast<float>(max_weight);
   frame.max_color_weight = static_cast<float>(std::min(max_weight, 255));
   return frame;
@@ -62,7 +62,8 @@ Integrator::Integrator(const Config& config) : config_(config) {
   instruction_set_ = config_.instruction_set ? *config_.instruction_set : best_instruction_set();
 }
 
-void Integrator::integrate(const RgbdFrame& frame, const Pose& X_WC, TsdfVolume& volume) const {
+void Integrator::integrate(const RgbdFrame& frame, const Pose& X_WC, TsdfVolume& volume,
+                           const DepthNoise& noise) const {
   check_camera(frame.intrinsics, X_WC);
   check_image_size("depth_m", frame.depth_m.size(), frame.intrinsics);
   const bool has_color = !frame.color_rgb.empty();
@@ -76,12 +77,12 @@ void Integrator::integrate(const RgbdFrame& frame, const Pose& X_WC, TsdfVolume&
   allocate_seen_blocks(depth_m, camera, X_WC, min_depth_m, max_depth_m, kernels, volume);
   const Eigen::Matrix3f R_WC = X_WC.linear().cast<float>();
   const std::vector<VisibleBlock> visible =
-      find_visible_blocks(volume, camera, X_WC, max_depth_m + volume.truncation_m());
+      find_visible_blocks(volume, camera, X_WC, max_depth_m + volume.max_truncation_m());
   for (const VisibleBlock& block : visible) volume.mark_seen(block.slot);
 
   cv::Mat_<cv::Vec4b> color_rgbx;
   if (has_color) cv::cvtColor(frame.color_rgb, color_rgbx, cv::COLOR_RGB2RGBA);
-  IntegrationFrame integration_frame = make_integration_frame(camera, R_WC, volume);
+  IntegrationFrame integration_frame = make_integration_frame(camera, R_WC, volume, noise);
   integration_frame.min_depth_m = min_depth_m;
   integration_frame.max_depth_m = max_depth_m;
   integration_frame.depth_m = depth_m[0];

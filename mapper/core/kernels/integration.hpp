@@ -7,6 +7,16 @@
 
 namespace kintsugi::mapper {
 
+/// The truncation distance of a measurement of depth d, as a share of the largest:
+/// base_share + growth_share_per_m2 d^2 within [min_share, 1].
+struct TruncationByDepth {
+  float max_m = 0.0F;  ///< stored distances are fractions of this
+  float inverse_max = 0.0F;
+  float min_share = 1.0F;
+  float base_share = 0.0F;
+  float growth_share_per_m2 = 0.0F;
+};
+
 /// What is the same for all blocks of a frame. Images have no padding between rows.
 struct IntegrationFrame {
   const float* depth_m = nullptr;             ///< height x width; NaN is invalid
@@ -15,8 +25,7 @@ struct IntegrationFrame {
   float step_C[3][3] = {};  ///< [axis of W]: metres in C from one voxel to the next
   float min_depth_m = 0.0F;
   float max_depth_m = 0.0F;
-  float truncation_m = 0.0F;
-  float inverse_truncation = 0.0F;  ///< 1 / truncation_m
+  TruncationByDepth truncation = {};
   float max_weight = 0.0F;
   float max_color_weight = 0.0F;
 };

@@ -24,7 +24,8 @@ struct VolumeAccess {
   int table_side = 0;                     ///< blocks; a power of two, at least kBrickSide
   int side_blocks = 0;                    ///< of the cube around the volume's region
   int min_block[3] = {};                  ///< the cube's lowest block, counted from W's origin
-  float truncation_vox = 0.0F;
+  float truncation_vox = 0.0F;            ///< stored distances are fractions of this
+  float max_step_vox = 0.0F;              ///< of a ray: no surface's band is thinner
 };
 
 }  // namespace kintsugi::mapper

@@ -27,12 +27,13 @@ class VolumeLanes {
   };
   struct Sample {
     Mask is_known;
-    Float distance;  ///< as a fraction of the truncation distance
+    Float distance;  ///< as a fraction of truncation_vox()
   };
 
   explicit VolumeLanes(const VolumeAccess& volume) : volume_(volume) {}
 
   Float truncation_vox() const { return Float(volume_.truncation_vox); }
+  Float max_step_vox() const { return Float(volume_.max_step_vox); }
 
   static Float distance_of(const Int& voxel) {
     return to_float(shift_right_signed<16>(shift_left<16>(voxel))) *

@@ -13,7 +13,7 @@ namespace kintsugi::mapper {
 struct DetachedBlocks {
   SliceKind kind = SliceKind::kFinal;
   float resolution_m = 0.0F;
-  float truncation_m = 0.0F;
+  float truncation_m = 0.0F;  ///< stored distances are fractions of this
 
   /// Ascending; `voxels` and `colors` are in the same order.
   std::vector<BlockCoord> coords;

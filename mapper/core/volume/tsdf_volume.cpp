@@ -41,6 +41,7 @@ void TsdfVolume::Config::validate() const {
   check_range("volume_size_m", volume_size_m, 0.01, 100.0);
   check_range("resolution_m", resolution_m, 0.0005, 1.0);
   check_range("truncation_vox", truncation_vox, 2.0, 16.0);
+  check_range("max_truncation_vox", max_truncation_vox, truncation_vox, 64.0);
   check_range("max_weight", max_weight, 1, 65535);
   check_range("max_memory_mb", max_memory_mb, 1.0, TsdfBlockPool::kMaxBlocks * kBlockBytes / 1e6);
   if (region == RegionShape::kCube) {
@@ -101,7 +102,8 @@ VolumeAccess TsdfVolume::kernel_access() const {
           .table_side = table_.side(),
           .side_blocks = region_.side,
           .min_block = {region_.min.x, region_.min.y, region_.min.z},
-          .truncation_vox = static_cast<float>(config_.truncation_vox)};
+          .truncation_vox = static_cast<float>(config_.largest_truncation_vox()),
+          .max_step_vox = static_cast<float>(config_.truncation_vox)};
 }
 
 std::size_t TsdfVolume::memory_bytes() const {

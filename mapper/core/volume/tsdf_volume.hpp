@@ -35,13 +35,18 @@ class TsdfVolume {
     double max_range_m = 5.0;
     double volume_size_m = 4.5;       ///< side of the cube, rounded up to whole blocks
     double resolution_m = 4.5 / 512;  ///< side of a voxel
-    double truncation_vox = 4.0;      ///< distances are clamped to this
-    int max_weight = 128;             ///< beyond this the running mean forgets old observations
+    double truncation_vox = 4.0;  ///< distances are clamped to this, or more where depth is noisy
+    double max_truncation_vox =
+        16.0;              ///< of the ball, where depth is noisy; the cube has one truncation
+    int max_weight = 128;  ///< beyond this the running mean forgets old observations
     /// The region moves when the camera is farther than this from its centre along an axis.
     int shift_vox = 14;
     /// Of the ball's blocks, 1e6 bytes; more only while more are in view.
-    double max_memory_mb = 270.0;
+    double max_memory_mb = 200.0;
 
+    double largest_truncation_vox() const {
+      return region == RegionShape::kCube ? truncation_vox : max_truncation_vox;
+    }
     /// @throws std::invalid_argument naming field, value and bound
     void validate() const;
   };
@@ -56,8 +61,13 @@ class TsdfVolume {
 
   const Config& config() const { return config_; }
   float resolution_m() const { return static_cast<float>(config_.resolution_m); }
+  /// The smallest; see truncation_by_depth().
   float truncation_m() const {
     return static_cast<float>(config_.resolution_m * config_.truncation_vox);
+  }
+  /// Stored distances are fractions of this.
+  float max_truncation_m() const {
+    return static_cast<float>(config_.resolution_m * config_.largest_truncation_vox());
   }
   /// As many as fit into max_memory_mb.
   std::size_t max_blocks() const {

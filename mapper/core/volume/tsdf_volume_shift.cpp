@@ -194,7 +194,7 @@ DetachedBlocks TsdfVolume::describe(const std::vector<BlockSlot>& leaving, Slice
   DetachedBlocks blocks;
   blocks.kind = kind;
   blocks.resolution_m = resolution_m();
-  blocks.truncation_m = truncation_m();
+  blocks.truncation_m = max_truncation_m();
   for (const BlockSlot slot : leaving) {
     blocks.coords.push_back(coord(slot));
     const KeptBlock kept = keep(slot, false);

@@ -161,7 +161,14 @@ TEST(Options, TheVolumeReachesAsFarAsDepthIsUsed) {
   EXPECT_DOUBLE_EQ(options.pipeline.integrator.max_depth_m, 4.0);
   EXPECT_GE(options.pipeline.raycaster.max_depth_m, 4.0);
   EXPECT_THAT(error_of({"--max-range", "9"}), HasSubstr("max_range_m is 9"));
-  EXPECT_LT(options_of({"--resolution", "0.003"}).source.max_range_m, 3.0) << "what fits";
+}
+
+TEST(Options, TheRangeEndsWhereDepthIsTooNoisyOrTheVolumeEnds) {
+  const double resolution_m = 4.5 / 512;
+  const double range_m = options_of({}).source.max_range_m;
+  EXPECT_NEAR(3.0 * DepthNoise().sigma_m(range_m), 16 * resolution_m, 1e-9);
+  EXPECT_LT(options_of({"--resolution", "0.003"}).source.max_range_m, 3.2);
+  EXPECT_DOUBLE_EQ(options_of({"--resolution", "0.02"}).source.max_range_m, 6.5);
 }
 
 TEST(Options, NamesWhatIsWrong) {

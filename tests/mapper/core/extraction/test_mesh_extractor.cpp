@@ -215,6 +215,32 @@ TEST(MeshExtractor, JoinsSlicesToTheMeshOfTheWhole) {
   EXPECT_TRUE(sorted_positions(joined) == sorted_positions(whole));
 }
 
+TEST(MeshExtractor, ClosesASphereThatLeavesAFullBallInPieces) {
+  constexpr double kRadius_m = 0.4;
+  TsdfVolume volume({.max_range_m = 0.6, .resolution_m = kResolution_m, .max_memory_mb = 1.0});
+  const auto sphere = [](const Eigen::Vector3d& p_W) { return p_W.norm() - kRadius_m; };
+  testing::allocate_around_surface(volume, sphere);
+  testing::set_exact_distances(volume, 10, sphere);
+  MeshExtractor extractor({.weight_threshold = 0});
+  MeshPiece mesh;
+  int num_slices = 0;
+  for (int lowest = -8; lowest <= 8; lowest += 2) {
+    for (const DetachedBlocks& slice : volume.shift_to(Eigen::Vector3d::Zero())) {
+      append(mesh, extractor.extract(slice));
+      ++num_slices;
+    }
+    for (BlockSlot slot = 0; slot < volume.slots_end(); ++slot) {
+      const BlockCoord& coord = volume.coord(slot);
+      if (volume.in_use(slot) && coord.x + coord.y >= lowest) volume.mark_seen(slot);
+    }
+  }
+  ASSERT_GE(num_slices, 3);
+  append(mesh, extractor.extract(volume.detach_all()));
+  expect_closed_manifold(mesh);
+  expect_each_vertex_once_and_used(mesh);
+  EXPECT_EQ(euler_characteristic(mesh), 2);
+}
+
 TEST(MeshExtractor, StaysClosedWhereBlocksChangeAfterTheirNeighboursLeft) {
   // A sphere that grows a little between slices: what left earlier has the smaller radius.
   const auto grown = [](double radius_m) {
