@@ -28,8 +28,8 @@ class SliceWorker {
  public:
   struct Config {
     SurfaceExtractor::Config extractor;
-    /// Largest number of blocks in the queue; a slice larger than this waits for an empty queue.
-    /// 16,384 blocks are 64 MB, about a dozen slices of a room.
+    /// Largest number of blocks in the queue, with those around the slices; a slice larger than this
+    /// waits for an empty queue. 16,384 blocks are 64 MB, about six slices of a room.
     std::size_t max_queued_blocks = 16'384;
     /// Called with each piece of the mesh, in order, on the worker's thread; if empty, no mesh is
     /// made. Exceptions from it are treated like those from extraction.

@@ -1,6 +1,7 @@
 #include "mapper/core/fusion/integrator.hpp"
 
 #include <algorithm>
+#include <cstdint>
 
 #include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/parallel_for.h>
@@ -49,6 +50,27 @@ IntegrationBlock make_integration_block(const VisibleBlock& block, const Eigen::
           .origin_C = {origin_C.x(), origin_C.y(), origin_C.z()}};
 }
 
+/// Whether a block was observed often enough, and each of its observed voxels is at least the
+/// smallest truncation distance before a surface. Noisy depth allocates many such blocks: they tell
+/// no more than that nothing is there, as blocks that do not exist do.
+bool is_free_space(const VoxelBlock& block, int least_distance_raw) {
+  constexpr int kEnough = 8;  // observations
+  bool is_near_surface = false;
+  int most_observations = 0;
+  for (const Voxel voxel : block.voxels) {  // no branches, so that the compiler can vectorise it
+    const bool is_observed = voxel_weight(voxel) > 0;
+    is_near_surface |= is_observed & (voxel_distance_raw(voxel) < least_distance_raw);
+    most_observations = std::max(most_observations, voxel_weight(voxel));
+  }
+  return !is_near_surface && most_observations >= kEnough;
+}
+
+/// Whether it is a block's turn to be looked at: once in 16 frames.
+bool is_due(const BlockCoord& coord, std::uint32_t frame) {
+  const auto sum = static_cast<std::uint32_t>(coord.x + coord.y + coord.z);
+  return (sum + frame) % 16 == 0;
+}
+
 }  // namespace
 
 void Integrator::Config::validate() const {
@@ -88,11 +110,21 @@ void Integrator::integrate(const RgbdFrame& frame, const Pose& X_WC, TsdfVolume&
   integration_frame.depth_m = depth_m[0];
   if (has_color) integration_frame.color_rgbx = color_rgbx.ptr<std::uint32_t>();
 
+  const bool keeps_free_space = volume.config().region == RegionShape::kCube;
+  const int least_distance_raw =
+      static_cast<int>(kDistanceScale * volume.truncation_m() / volume.max_truncation_m());
+  std::vector<std::uint8_t> is_empty(visible.size(), 0);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, visible.size(), 32), [&](const auto& range) {
     for (std::size_t i = range.begin(); i < range.end(); ++i) {
+      const BlockSlot slot = visible[i].slot;
       kernels.integrate_block(integration_frame, make_integration_block(visible[i], R_WC, volume));
+      if (keeps_free_space || !is_due(volume.coord(slot), volume.num_moves())) continue;
+      is_empty[i] = is_free_space(volume.voxels(slot), least_distance_raw) ? 1 : 0;
     }
   });
+  for (std::size_t i = 0; i < visible.size(); ++i) {
+    if (is_empty[i] != 0) volume.discard(visible[i].slot);
+  }
 }
 
 }  // namespace kintsugi::mapper

@@ -30,8 +30,9 @@ class Integrator {
   /// Allocates the blocks of the volume that rays meet within its smallest truncation distance of
   /// their measured depth, then updates every block in view. Pixels whose depth is NaN, infinite or
   /// outside [min_depth_m, max_depth_m] change nothing. The truncation distance grows with the
-  /// depth's noise, see truncation_by_depth(). Colour is fused within the truncation distance; a
-  /// frame without colour leaves colours as they are. The result does not depend on the number of
+  /// depth's noise, see truncation_by_depth(). Of a ball, blocks
+  /// that turn out to be free space are discarded. Colour is fused within the truncation distance;
+  /// a frame without colour leaves colours as they are. The result does not depend on the number of
   /// threads.
   /// @throws std::invalid_argument where images and intrinsics disagree in size, the focal length
   /// is not positive, there is lens distortion or X_WC is not finite; the volume is unchanged then

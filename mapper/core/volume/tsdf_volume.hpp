@@ -88,6 +88,11 @@ class TsdfVolume {
   /// Says that a block is in view, so that it is among the last to leave a ball that is too full.
   void mark_seen(BlockSlot slot) { last_seen_[slot] = num_moves_; }
 
+  /// Frees a block without surface: it is in no slice.
+  void discard(BlockSlot slot);
+  /// The number of calls of shift_to().
+  std::uint32_t num_moves() const { return num_moves_; }
+
   VoxelBlock& voxels(BlockSlot slot) { return pool_.voxels(slot); }
   const VoxelBlock& voxels(BlockSlot slot) const { return pool_.voxels(slot); }
   ColorBlock& colors(BlockSlot slot) { return pool_.colors(slot); }
@@ -110,8 +115,8 @@ class TsdfVolume {
   /// after the returned object has been destroyed, which may happen on any thread.
   ///
   /// To be called once a frame, before the frame is fused: of a ball with more than max_blocks(),
-  /// the blocks that were in view longest ago leave until a sixteenth is free; never those seen
-  /// since the call before.
+  /// the blocks that were in view longest ago leave, a sixteenth of max_blocks() at a time; never
+  /// those seen since the call before.
   /// @throws std::invalid_argument where the position is not finite or farther than 100 km from W's
   /// origin; the volume is unchanged then
   std::vector<DetachedBlocks> shift_to(const Eigen::Vector3d& camera_W);

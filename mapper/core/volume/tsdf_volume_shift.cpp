@@ -83,12 +83,12 @@ std::vector<DetachedBlocks> TsdfVolume::shift_ball(const Eigen::Vector3d& offset
   std::vector<BlockSlot> leaving = slots_outside(moved);
   const std::size_t num_staying = num_blocks_ - leaving.size();
   if (num_staying > max_blocks()) {
-    // A sixteenth at a time, so that slices are not too small.
-    const std::vector<BlockSlot> surplus =
-        longest_out_of_view(moved, num_staying - max_blocks() / 16 * 15);
+    // A sixteenth at a time: slices are not too small, and need little memory while they wait.
+    const std::vector<BlockSlot> surplus = longest_out_of_view(moved, max_blocks() / 16);
     leaving.insert(leaving.end(), surplus.begin(), surplus.end());
     sort_by_coord(leaving);
   }
+  if (leaving.empty() && moved.min == region_.min) return {};
   const SliceKind kind = kind_of(leaving, moved);
   DetachedBlocks slice = detach(leaving, kind, moved);
   std::vector<DetachedBlocks> slices;
@@ -241,6 +241,11 @@ void TsdfVolume::remove(const std::vector<BlockSlot>& slots) {
     in_use_[slot] = 0;
   }
   num_blocks_ -= slots.size();
+}
+
+void TsdfVolume::discard(BlockSlot slot) {
+  remove({slot});
+  pool_.give_back(slot);
 }
 
 template <typename Predicate>

@@ -217,14 +217,14 @@ TEST(MeshExtractor, JoinsSlicesToTheMeshOfTheWhole) {
 
 TEST(MeshExtractor, ClosesASphereThatLeavesAFullBallInPieces) {
   constexpr double kRadius_m = 0.4;
-  TsdfVolume volume({.max_range_m = 0.6, .resolution_m = kResolution_m, .max_memory_mb = 1.0});
+  TsdfVolume volume({.max_range_m = 0.6, .resolution_m = kResolution_m, .max_memory_mb = 2.0});
   const auto sphere = [](const Eigen::Vector3d& p_W) { return p_W.norm() - kRadius_m; };
   testing::allocate_around_surface(volume, sphere);
   testing::set_exact_distances(volume, 10, sphere);
   MeshExtractor extractor({.weight_threshold = 0});
   MeshPiece mesh;
   int num_slices = 0;
-  for (int lowest = -8; lowest <= 8; lowest += 2) {
+  for (int lowest = -8; lowest <= 16; ++lowest) {
     for (const DetachedBlocks& slice : volume.shift_to(Eigen::Vector3d::Zero())) {
       append(mesh, extractor.extract(slice));
       ++num_slices;
