@@ -10,6 +10,7 @@
 #include "lcmtypes/base/argument_check.hpp"
 #include "mapper/core/frame/camera.hpp"
 #include "mapper/core/fusion/block_allocation.hpp"
+#include "mapper/core/fusion/farthest_depths.hpp"
 #include "mapper/core/fusion/truncation.hpp"
 #include "mapper/core/kernels/kernels.hpp"
 #include "mapper/core/volume/block_visibility.hpp"
@@ -100,7 +101,6 @@ void Integrator::integrate(const RgbdFrame& frame, const Pose& X_WC, TsdfVolume&
   const Eigen::Matrix3f R_WC = X_WC.linear().cast<float>();
   const std::vector<VisibleBlock> visible =
       find_visible_blocks(volume, camera, X_WC, max_depth_m + volume.max_truncation_m());
-  for (const VisibleBlock& block : visible) volume.mark_seen(block.slot);
 
   cv::Mat_<cv::Vec4b> color_rgbx;
   if (has_color) cv::cvtColor(frame.color_rgb, color_rgbx, cv::COLOR_RGB2RGBA);
@@ -113,17 +113,25 @@ void Integrator::integrate(const RgbdFrame& frame, const Pose& X_WC, TsdfVolume&
   const bool keeps_free_space = volume.config().region == RegionShape::kCube;
   const int least_distance_raw =
       static_cast<int>(kDistanceScale * volume.truncation_m() / volume.max_truncation_m());
-  std::vector<std::uint8_t> is_empty(visible.size(), 0);
+  const FarthestDepths farthest(depth_m, camera, max_depth_m);
+  const float radius_m = block_radius_m(volume);
+  const TruncationByDepth truncation = integration_frame.truncation;
+  enum class Outcome : std::uint8_t { kHidden, kFused, kFreeSpace };
+  std::vector<Outcome> outcomes(visible.size(), Outcome::kHidden);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, visible.size(), 32), [&](const auto& range) {
     for (std::size_t i = range.begin(); i < range.end(); ++i) {
-      const BlockSlot slot = visible[i].slot;
+      const auto& [slot, center_C] = visible[i];
+      const float farthest_m = farthest.within(center_C, radius_m);
+      if (center_C.z() - radius_m > farthest_m + truncation_at(farthest_m, truncation)) continue;
       kernels.integrate_block(integration_frame, make_integration_block(visible[i], R_WC, volume));
+      outcomes[i] = Outcome::kFused;
       if (keeps_free_space || !is_due(volume.coord(slot), volume.num_moves())) continue;
-      is_empty[i] = is_free_space(volume.voxels(slot), least_distance_raw) ? 1 : 0;
+      if (is_free_space(volume.voxels(slot), least_distance_raw)) outcomes[i] = Outcome::kFreeSpace;
     }
   });
   for (std::size_t i = 0; i < visible.size(); ++i) {
-    if (is_empty[i] != 0) volume.discard(visible[i].slot);
+    if (outcomes[i] == Outcome::kFused) volume.mark_seen(visible[i].slot);
+    if (outcomes[i] == Outcome::kFreeSpace) volume.discard(visible[i].slot);
   }
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+
 #include "mapper/core/frame/depth_noise.hpp"
 #include "mapper/core/kernels/integration.hpp"
 #include "mapper/core/volume/tsdf_volume.hpp"
@@ -12,6 +14,12 @@ namespace kintsugi::mapper {
 inline constexpr double kTruncationSigmas = 3.0;
 
 TruncationByDepth truncation_by_depth(const TsdfVolume& volume, const DepthNoise& noise);
+
+/// In metres; never falls with the depth.
+inline float truncation_at(float depth_m, const TruncationByDepth& truncation) {
+  const float share = truncation.base_share + depth_m * depth_m * truncation.growth_share_per_m2;
+  return std::clamp(share, truncation.min_share, 1.0F) * truncation.max_m;
+}
 
 /// The depth at which the noise asks for the largest truncation distance: measurements from beyond
 /// are too noisy for one surface. Infinite for a camera without noise.
