@@ -26,7 +26,11 @@ ReservedMemory::ReservedMemory(std::size_t reserved_bytes, HugePages huge_pages)
   std::size_t space = range_bytes_;
   void* start = range_;
   data_ = static_cast<std::byte*>(std::align(kHugePageBytes, reserved_bytes, start, space));
-  // A failure is ignored: without huge pages everything works, only slower.
+  // A failure of either is ignored: everything works, only slower or with more memory.
+  if (huge_pages == HugePages::kNowhere) {
+    ::madvise(data_, reserved_bytes, MADV_NOHUGEPAGE);
+    return;
+  }
   const std::size_t first = huge_pages == HugePages::kEverywhere ? 0 : kHugePageBytes;
   if (first < reserved_bytes) ::madvise(data_ + first, reserved_bytes - first, MADV_HUGEPAGE);
 }

@@ -11,7 +11,8 @@ class ReservedMemory {
   /// The system is advised to use huge pages, because scattered reads in pages of 4 kB cost a page
   /// walk each. kAfterTheFirst leaves the first 2 MB in small pages, so that an array that stays
   /// small does not take a whole huge page.
-  enum class HugePages { kEverywhere, kAfterTheFirst };
+  /// kNowhere is for an array of which only pages here and there are used.
+  enum class HugePages { kEverywhere, kAfterTheFirst, kNowhere };
 
   /// Reserves nothing.
   ReservedMemory() = default;

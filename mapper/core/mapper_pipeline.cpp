@@ -4,16 +4,20 @@
 #include <cstdio>
 #include <cstdlib>
 #include <iterator>
+#include <limits>
 #include <utility>
 
 #include "lcmtypes/base/argument_check.hpp"
 #include "mapper/core/frame/camera.hpp"
 #include "mapper/core/frame/covered_share.hpp"
+#include "mapper/core/fusion/truncation.hpp"
 
 namespace kintsugi::mapper {
 namespace {
 
 Eigen::AlignedBox3d region_of(const TsdfVolume& volume) {
+  // The ball holds all that is measured within the range.
+  if (volume.config().region == RegionShape::kBall) return Model().region_W;
   const double half_side_m = 0.5 * volume.side_blocks() * kBlockSide * volume.config().resolution_m;
   const Eigen::Vector3d reach = Eigen::Vector3d::Constant(half_side_m);
   return {volume.center_W() - reach, volume.center_W() + reach};
@@ -57,7 +61,7 @@ FrameResult MapperPipeline::process(const RgbdFrame& measured) {
     X_WC_ = result.tracking.X_WC;
     result.slices_left = shift(frame, X_WC_);
     clock.end_of(&StageTimes::shift_ms);
-    integrator_.integrate(frame, X_WC_, volume_);
+    integrator_.integrate(frame, X_WC_, volume_, noise_.noise());
     clock.end_of(&StageTimes::integrate_ms);
     update_model(frame, input);
     clock.end_of(&StageTimes::raycast_ms);
@@ -78,6 +82,10 @@ RgbdFrame MapperPipeline::cleaned(const RgbdFrame& frame) {
   local_noise_.add(frame.depth_m);
   RgbdFrame clean = frame;
   clean.depth_m = without_mixed_pixels(frame.depth_m, frame.intrinsics, local_noise_.noise());
+  if (config_.limit_range_by_noise) {
+    const double range_m = range_of(noise_.noise(), volume_.max_truncation_m());
+    clean.depth_m.setTo(std::numeric_limits<float>::quiet_NaN(), clean.depth_m > range_m);
+  }
   return clean;
 }
 

@@ -57,6 +57,8 @@ class MapperPipeline {
     SliceWorker::Config slices;
     DepthNoise noise;         ///< of the camera's depth
     bool learn_noise = true;  ///< `noise` is only where the estimate starts
+    /// Depth farther than where the noise asks for the largest truncation distance is not used.
+    bool limit_range_by_noise = false;
     int finest_tracking_width_px = 320;  ///< images are halved while at least this remains
     Trajectory given_path;  ///< if not empty, replaces tracking; a frame without a pose is lost
 

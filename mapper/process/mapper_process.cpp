@@ -238,7 +238,10 @@ void MapperProcess::log_start() const {
   const SourceStatus source = reader_.status();
   spdlog::info("device '{}'{}, {} frames", source.name, options_.source.replay ? ", replayed" : "",
                source.frames_total < 0 ? "unknown" : std::to_string(source.frames_total));
-  spdlog::info("volume {:.2f} m, voxel {:.2f} mm, map '{}', session {}", volume.volume_size_m,
+  const std::string region = volume.region == RegionShape::kCube
+                                 ? fmt::format("a cube of {:.2f} m", volume.volume_size_m)
+                                 : fmt::format("{:.2f} m around the camera", volume.max_range_m);
+  spdlog::info("volume: {}; voxel {:.2f} mm, map '{}', session {}", region,
                1e3 * volume.resolution_m, options_.map_name, resumption_.session());
 }
 

@@ -15,9 +15,12 @@ namespace kintsugi::mapper {
 /// option_table().
 struct Options {
   SourceConfig source;
+  double max_range_m = 0.0;       ///< depth beyond it is not used; 0: as --max-range says
   double lock_exposure_s = -1.0;  ///< after the first image; < 0: never
   MapperPipeline::Config pipeline;
-  double resolution_m = 0.0;     ///< side of a voxel; 0: 1/512 of the volume's side
+  std::string volume;            ///< "range" or "cube"; empty: as --volume says
+  double volume_size_m = 0.0;    ///< side of the cube; 0: that of TsdfVolume::Config
+  double resolution_m = 0.0;     ///< side of a voxel; 0: that of TsdfVolume::Config
   double restart_after_s = 5.0;  ///< lost for so long: another part begins; 0: never
   std::string given_path_file;   ///< TUM; empty: track
   std::string output_path_file;  ///< TUM; empty: none is written

@@ -1,5 +1,6 @@
 #include "mapper/process/options.hpp"
 
+#include <algorithm>
 #include <iostream>
 #include <stdexcept>
 #include <type_traits>
@@ -7,12 +8,14 @@
 #include <CLI/CLI.hpp>
 
 #include "lcmtypes/codec/codec.hpp"
+#include "mapper/core/fusion/truncation.hpp"
 #include "mapper/source/openni2/device_listing.hpp"
 
 namespace kintsugi::mapper {
 namespace {
 
-constexpr int kDefaultVoxelsPerSide = 512;
+constexpr double kReachOfCamera_m = 6.5;  // 16 bits in units of 0.1 mm
+constexpr double kRaysBeyondRange = 1.2;  // the camera may have moved back from what it mapped
 constexpr std::string_view kSyntheticScheme = "synthetic://";
 
 void add_flag(CLI::App& app, const MapperOption& option) {
@@ -69,13 +72,42 @@ void validate(const Options& options) {
   }
 }
 
+/// The volume, and the depths that it is made for.
+void complete_volume(Options& options) {
+  auto& volume = options.pipeline.volume;
+  if (options.resolution_m == 0.0) options.resolution_m = volume.resolution_m;
+  volume.resolution_m = options.resolution_m;
+  if (options.volume.empty()) options.volume = options.volume_size_m == 0.0 ? "range" : "cube";
+  if (options.volume == "range" && options.volume_size_m != 0.0) {
+    throw std::invalid_argument("--volume-size is for --volume cube, --volume is 'range'");
+  }
+  if (options.volume_size_m == 0.0) options.volume_size_m = volume.volume_size_m;
+  volume.volume_size_m = options.volume_size_m;
+  double& max_range_m = options.max_range_m;
+  if (options.volume == "cube") {
+    volume.region = RegionShape::kCube;
+    if (max_range_m == 0.0) max_range_m = kReachOfCamera_m;
+    options.source.max_range_m = max_range_m;
+    return;
+  }
+  if (options.volume != "range") {
+    throw std::invalid_argument("--volume is '" + options.volume + "', must be range or cube");
+  }
+  options.pipeline.limit_range_by_noise = max_range_m == 0.0;
+  if (max_range_m == 0.0) {
+    const double by_noise_m =
+        range_of(options.pipeline.noise, volume.resolution_m * volume.largest_truncation_vox());
+    max_range_m = std::min({by_noise_m, TsdfVolume::longest_range_m(volume), kReachOfCamera_m});
+  }
+  options.source.max_range_m = max_range_m;
+  volume.max_range_m = max_range_m;
+  options.pipeline.integrator.max_depth_m = max_range_m;
+  options.pipeline.raycaster.max_depth_m = max_range_m * kRaysBeyondRange;
+}
+
 /// Checks the flags and sets what follows from them.
 void complete(Options& options) {
-  auto& volume = options.pipeline.volume;
-  if (options.resolution_m == 0.0) {
-    options.resolution_m = volume.volume_size_m / kDefaultVoxelsPerSide;
-  }
-  volume.resolution_m = options.resolution_m;
+  complete_volume(options);
   options.source.lcm_url = options.lcm_url;
   if (options.lock_exposure_s >= 0.0) {
     options.source.lock_exposure_after_s = options.lock_exposure_s;

@@ -59,6 +59,7 @@ void run(Options& options) {
     for (const double resolution_m : options.resolutions_m) {
       options.run.threads = threads;
       options.run.pipeline.volume.resolution_m = resolution_m;
+      options.run.pipeline.volume.region = RegionShape::kCube;
       options.run.pipeline.volume.volume_size_m = kVoxelsPerSide * resolution_m;
       runs.push_back(run_frames(options.run));
     }

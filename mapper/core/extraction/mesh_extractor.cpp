@@ -32,6 +32,11 @@ std::array<std::uint8_t, 3> blend(VoxelColor from, VoxelColor to, double share) 
   return color;
 }
 
+bool borders_on_volume(const DetachedBlocks& detached, const BlockCoord& coord) {
+  return std::binary_search(detached.bordering_coords.begin(), detached.bordering_coords.end(),
+                            coord);
+}
+
 }  // namespace
 
 /// The vertices on the lines from a block's voxels to the next voxel along an axis; index
@@ -198,10 +203,10 @@ class MeshExtractor::Pass {
             blend(block.colors->colors[from.voxel], next.colors->colors[to.voxel], share)};
   }
 
-  /// Keeps the vertices of a block that touches the volume, because later slices share them.
+  /// Keeps the vertices of a block that borders on the volume, because later slices share them.
   void keep_border(std::size_t i) {
     const BlockCoord& coord = blocks_[i].coord;
-    if (edges_[i] && detached_.remaining.touches(coord)) {
+    if (edges_[i] && borders_on_volume(detached_, coord)) {
       mesh_.borders_[coord] = std::move(edges_[i]);
     }
     edges_[i].reset();
@@ -227,9 +232,8 @@ MeshExtractor::~MeshExtractor() = default;
 
 MeshPiece MeshExtractor::extract(const DetachedBlocks& detached) {
   MeshPiece piece = Pass(*this, detached).run();
-  std::erase_if(borders_, [&](const auto& border) {
-    return !detached.remaining.touches(border.first) || detached.remaining.contains(border.first);
-  });
+  std::erase_if(borders_,
+                [&](const auto& border) { return !borders_on_volume(detached, border.first); });
   return piece;
 }
 

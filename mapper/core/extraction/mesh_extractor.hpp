@@ -37,7 +37,7 @@ struct MeshPiece {
 /// its neighbour had left. When the volume returns to a place and maps it again, the new surface
 /// overlaps the old one and is not connected to it.
 ///
-/// Memory: the current piece, and 6 KB for each block with surface that left and still touches the
+/// Memory: the current piece, and 6 KB for each block with surface that left and borders on the
 /// volume (for the current piece: two layers of blocks).
 class MeshExtractor {
  public:
@@ -62,7 +62,7 @@ class MeshExtractor {
 
   Config config_;
   std::uint32_t num_vertices_ = 0;
-  /// Vertices of the blocks that left and touch the volume.
+  /// Vertices of DetachedBlocks::bordering_coords.
   std::map<BlockCoord, std::unique_ptr<BlockEdges>> borders_;
 };
 

@@ -19,6 +19,11 @@ void lower_priority_of_thread() {
 #endif
 }
 
+/// With those around it, which are copies where they stay in the volume.
+std::size_t num_blocks_held(const DetachedBlocks& blocks) {
+  return blocks.coords.size() + blocks.apron_coords.size();
+}
+
 }  // namespace
 
 void SliceWorker::Config::validate() const {
@@ -44,7 +49,7 @@ SliceWorker::~SliceWorker() {
 
 void SliceWorker::submit(DetachedBlocks blocks, std::int64_t utime, const Pose& X_WC) {
   std::unique_lock lock(mutex_);
-  const std::size_t num_blocks = blocks.coords.size();
+  const std::size_t num_blocks = num_blocks_held(blocks);
   done_.wait(lock, [&] {
     return failure_ || queue_.empty() || queued_blocks_ + num_blocks <= config_.max_queued_blocks;
   });
@@ -101,7 +106,7 @@ void SliceWorker::run() {
     busy_ms_ += elapsed_ms;
     failure_ = failure;
     if (!failure_) finished_.push_back(std::move(job.slice));
-    queued_blocks_ -= job.blocks.coords.size();
+    queued_blocks_ -= num_blocks_held(job.blocks);
     queue_.pop_front();
     done_.notify_all();
     if (failure_) return;

@@ -28,9 +28,9 @@ class SliceWorker {
  public:
   struct Config {
     SurfaceExtractor::Config extractor;
-    /// Largest number of blocks in the queue; a slice larger than this waits for an empty queue.
-    /// 65,536 blocks are 256 MB, about fifty slices of a room.
-    std::size_t max_queued_blocks = 65'536;
+    /// Largest number of blocks in the queue, with those around the slices; a slice larger than this
+    /// waits for an empty queue. 16,384 blocks are 64 MB, about six slices of a room.
+    std::size_t max_queued_blocks = 16'384;
     /// Called with each piece of the mesh, in order, on the worker's thread; if empty, no mesh is
     /// made. Exceptions from it are treated like those from extraction.
     std::function<void(const MeshPiece&)> on_mesh;

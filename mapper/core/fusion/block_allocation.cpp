@@ -86,7 +86,8 @@ void allocate_seen_blocks(const cv::Mat_<float>& depth_m, const PinholeCamera& c
   arguments.max_depth_m = max_depth_m;
   for (const std::uint32_t block :
        find_missing_blocks(volume.kernel_access(), arguments, kernels)) {
-    volume.allocate(unpack(block, volume.min_block()));
+    const BlockCoord coord = unpack(block, volume.min_block());
+    if (volume.contains(coord)) volume.allocate(coord);
   }
 }
 

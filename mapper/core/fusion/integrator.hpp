@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "lcmtypes/geometry.hpp"
+#include "mapper/core/frame/depth_noise.hpp"
 #include "mapper/core/frame/rgbd_frame.hpp"
 #include "mapper/core/kernels/instruction_set.hpp"
 #include "mapper/core/volume/tsdf_volume.hpp"
@@ -26,14 +27,17 @@ class Integrator {
 
   explicit Integrator(const Config& config);
 
-  /// Allocates the blocks of the cube that rays meet within the truncation distance of their
-  /// measured depth, then updates every block in view. Pixels whose depth is NaN, infinite or
-  /// outside [min_depth_m, max_depth_m] change nothing. Colour is fused within the truncation
-  /// distance; a frame without colour leaves colours as they are. The result does not depend on the
-  /// number of threads.
+  /// Allocates the blocks of the volume that rays meet within its smallest truncation distance of
+  /// their measured depth, then updates every block in view. Pixels whose depth is NaN, infinite or
+  /// outside [min_depth_m, max_depth_m] change nothing. The truncation distance grows with the
+  /// depth's noise, see truncation_by_depth(). Of a ball, blocks
+  /// that turn out to be free space are discarded. Colour is fused within the truncation distance;
+  /// a frame without colour leaves colours as they are. The result does not depend on the number of
+  /// threads.
   /// @throws std::invalid_argument where images and intrinsics disagree in size, the focal length
   /// is not positive, there is lens distortion or X_WC is not finite; the volume is unchanged then
-  void integrate(const RgbdFrame& frame, const Pose& X_WC, TsdfVolume& volume) const;
+  void integrate(const RgbdFrame& frame, const Pose& X_WC, TsdfVolume& volume,
+                 const DepthNoise& noise = {}) const;
 
  private:
   Config config_;

@@ -3,9 +3,20 @@
 
 #include <cstdint>
 
+#include "mapper/core/kernels/depth_variance.hpp"
 #include "mapper/core/kernels/pinhole_camera.hpp"
 
 namespace kintsugi::mapper {
+
+/// The truncation distance of a measurement of depth d, as a share of the largest:
+/// sigmas_per_m sigma(d) within [min_share, 1].
+struct TruncationByDepth {
+  float max_m = 0.0F;  ///< stored distances are fractions of this
+  float inverse_max = 0.0F;
+  float min_share = 1.0F;
+  float sigmas_per_m = 0.0F;
+  DepthVariance variance;
+};
 
 /// What is the same for all blocks of a frame. Images have no padding between rows.
 struct IntegrationFrame {
@@ -15,8 +26,7 @@ struct IntegrationFrame {
   float step_C[3][3] = {};  ///< [axis of W]: metres in C from one voxel to the next
   float min_depth_m = 0.0F;
   float max_depth_m = 0.0F;
-  float truncation_m = 0.0F;
-  float inverse_truncation = 0.0F;  ///< 1 / truncation_m
+  TruncationByDepth truncation = {};
   float max_weight = 0.0F;
   float max_color_weight = 0.0F;
 };

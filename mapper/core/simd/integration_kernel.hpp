@@ -3,6 +3,7 @@
 
 #include "mapper/core/kernels/block_layout.hpp"
 #include "mapper/core/kernels/integration.hpp"
+#include "mapper/core/simd/depth_sigma.hpp"
 
 namespace kintsugi::mapper {
 
@@ -61,25 +62,32 @@ class BlockIntegration {
     const Int pixel = to_int(v) * Int(frame_.camera.width) + to_int(u);
     const Float depth = gather(frame_.depth_m, pixel, in_view);
     const Float sdf_m = depth - z;
+    const Float share = truncation_share(depth);
+    const Float truncation_m = share * Float(frame_.truncation.max_m);
     const Mask is_measured = in_view & (depth >= Float(frame_.min_depth_m)) &
-                             (depth <= Float(frame_.max_depth_m)) &
-                             (sdf_m >= Float(-frame_.truncation_m));
+                             (depth <= Float(frame_.max_depth_m)) & (sdf_m >= zero - truncation_m);
     if (none(is_measured)) return;
-    fuse_distances(sdf_m, voxels).store(voxels, is_measured);
+    fuse_distances(sdf_m, share, voxels).store(voxels, is_measured);
 
     if (frame_.color_rgbx == nullptr) return;
-    const Mask is_near = is_measured & (sdf_m < Float(frame_.truncation_m));
+    const Mask is_near = is_measured & (sdf_m < truncation_m);
     if (none(is_near)) return;
     fuse_colors(gather(frame_.color_rgbx, pixel, is_near), colors).store(colors, is_near);
   }
 
+  Float truncation_share(const Float& depth) const {
+    const TruncationByDepth& in = frame_.truncation;
+    const Float share = Float(in.sigmas_per_m) * depth_sigma_m(in.variance, depth);
+    return min(max(share, Float(in.min_share)), Float(1.0F));
+  }
+
   /// The running means of the voxels' distances with one more measurement.
-  Int fuse_distances(const Float& sdf_m, const std::uint32_t* voxels) const {
+  Int fuse_distances(const Float& sdf_m, const Float& share, const std::uint32_t* voxels) const {
     const Int voxel = Int::load(voxels);
     const Float mean = to_float(shift_right_signed<16>(shift_left<16>(voxel)));
     const Float weight = to_float(shift_right<16>(voxel));
     const Float raised = weight + Float(1.0F);
-    const Float measured = min(sdf_m * Float(frame_.inverse_truncation), Float(1.0F)) *
+    const Float measured = min(sdf_m * Float(frame_.truncation.inverse_max), share) *
                            Float(BlockLayout::kDistanceScale);
     const Float fused = (mean * weight + measured) * (Float(1.0F) / raised);
     const Float half = select(fused < Float(0.0F), Float(-0.5F), Float(0.5F));

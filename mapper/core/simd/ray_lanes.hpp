@@ -124,7 +124,7 @@ class RayMarch {
     in_free_space_ = is_free | is_retried;
 
     const Float one(1.0F);
-    const Float most_vox = select(steps_singly_, one, truncation_vox_);
+    const Float most_vox = select(steps_singly_, one, volume_.max_step_vox());
     const Float share_vox = max(min(distance * Float(kStepShare), most_vox), one);
     const Float step_vox = select(is_free, share_vox, one);
     const Float from_m = select(is_retried, before_m_, depth_m_);

@@ -27,12 +27,13 @@ class VolumeLanes {
   };
   struct Sample {
     Mask is_known;
-    Float distance;  ///< as a fraction of the truncation distance
+    Float distance;  ///< as a fraction of truncation_vox()
   };
 
   explicit VolumeLanes(const VolumeAccess& volume) : volume_(volume) {}
 
   Float truncation_vox() const { return Float(volume_.truncation_vox); }
+  Float max_step_vox() const { return Float(volume_.max_step_vox); }
 
   static Float distance_of(const Int& voxel) {
     return to_float(shift_right_signed<16>(shift_left<16>(voxel))) *
@@ -44,7 +45,7 @@ class VolumeLanes {
   Mask is_missing(const Int& x, const Int& y, const Int& z, const Mask& mask) const {
     const Mask is_inside = mask & is_in_cube(x, y, z, x, y, z);
     const Int place = table_index<0>(x) + table_index<1>(y) + table_index<2>(z);
-    return is_inside & (gather(volume_.slots, place, is_inside) < Int(0));
+    return is_inside & (gather(volume_.entries, place, is_inside) == Int(0));
   }
 
   /// The voxels in which the points lie.
@@ -53,7 +54,7 @@ class VolumeLanes {
     const Coordinate y = locate<1>(to_int(floor(point.y)));
     const Coordinate z = locate<2>(to_int(floor(point.z)));
     const Mask is_inside = mask & is_in_cube(x.block, y.block, z.block, x.block, y.block, z.block);
-    const Int slot = gather(volume_.slots, x.table + y.table + z.table, is_inside);
+    const Int slot = slot_at(x.table + y.table + z.table, is_inside);
     const Mask has_block = is_inside & (slot > Int(-1));
     const Int index = shift_left<BlockLayout::kVoxelBits>(slot) + (x.voxel + y.voxel + z.voxel);
     return {has_block, gather(volume_.voxels, index, has_block)};
@@ -67,8 +68,7 @@ class VolumeLanes {
     Mask is_known = mask & is_in_cube(x.at[0].block, y.at[0].block, z.at[0].block, x.at[1].block,
                                       y.at[1].block, z.at[1].block);
 
-    const Int first_slot =
-        gather(volume_.slots, x.at[0].table + y.at[0].table + z.at[0].table, is_known);
+    const Int first_slot = slot_at(x.at[0].table + y.at[0].table + z.at[0].table, is_known);
     is_known = is_known & (first_slot > Int(-1));
     Float corners[8];
     for (int i = 0; i < 8; ++i) {
@@ -81,7 +81,7 @@ class VolumeLanes {
           is_known & (((cx.block != x.at[0].block) | (cy.block != y.at[0].block)) |
                       (cz.block != z.at[0].block));
       if (any(is_elsewhere)) {
-        const Int other = gather(volume_.slots, cx.table + cy.table + cz.table, is_elsewhere);
+        const Int other = slot_at(cx.table + cy.table + cz.table, is_elsewhere);
         slot = select(is_elsewhere, other, slot);
         is_known = is_known & (slot > Int(-1));
       }
@@ -112,13 +112,20 @@ class VolumeLanes {
     Float fraction;
   };
 
+  /// The slots of the blocks at places of the table; -1 where there is none.
+  Int slot_at(const Int& place, const Mask& mask) const {
+    return gather(volume_.entries, place, mask) - Int(1);
+  }
+
   template <int kAxis>
   Int table_index(const Int& block) const {
-    const int pitch = kAxis == 0   ? 1
-                      : kAxis == 1 ? volume_.table_side
-                                   : volume_.table_side * volume_.table_side;
-    const Int wrapped = (block + Int(volume_.min_block[kAxis])) & Int(volume_.table_side - 1);
-    return wrapped * Int(pitch);
+    constexpr int kSide = VolumeAccess::kBrickSide;
+    const int bricks = volume_.table_side / kSide;
+    const int pitch = kSide * kSide * (kAxis == 0 ? 1 : kAxis == 1 ? bricks : bricks * bricks);
+    const Int place = block + Int(volume_.min_block[kAxis]);
+    const Int in_brick = place & Int(kSide - 1);
+    const Int brick = place & Int(volume_.table_side - kSide);  // times kSide
+    return shift_left<kAxis * VolumeAccess::kBrickSideBits>(in_brick) + brick * Int(pitch);
   }
 
   template <int kAxis>

@@ -8,30 +8,12 @@
 
 namespace kintsugi::mapper {
 
-/// A box of blocks: min .. min + side - 1 along each axis.
-struct BlockCube {
-  BlockCoord min;
-  int side = 0;
-
-  bool contains(const BlockCoord& coord) const {
-    const auto length = static_cast<unsigned>(side);
-    return static_cast<unsigned>(coord.x - min.x) < length &&
-           static_cast<unsigned>(coord.y - min.y) < length &&
-           static_cast<unsigned>(coord.z - min.z) < length;
-  }
-  /// Whether a block is in the cube or shares a face, an edge or a corner with it.
-  bool touches(const BlockCoord& coord) const {
-    return side > 0 &&
-           BlockCube{make_block_coord(min.x - 1, min.y - 1, min.z - 1), side + 2}.contains(coord);
-  }
-};
-
-/// Blocks that left the volume in one shift, with all that is needed to extract their surface
+/// Blocks that left the volume together, with all that is needed to extract their surface
 /// without the volume, so that another thread can do it.
 struct DetachedBlocks {
   SliceKind kind = SliceKind::kFinal;
   float resolution_m = 0.0F;
-  float truncation_m = 0.0F;
+  float truncation_m = 0.0F;  ///< stored distances are fractions of this
 
   /// Ascending; `voxels` and `colors` are in the same order.
   std::vector<BlockCoord> coords;
@@ -45,8 +27,8 @@ struct DetachedBlocks {
   std::vector<const VoxelBlock*> apron_voxels;
   std::vector<const ColorBlock*> apron_colors;  ///< null: the block stays in the volume
 
-  /// The cube of the volume after the shift.
-  BlockCube remaining;
+  /// The blocks that left, now or before, and may be in the apron of a later slice; ascending.
+  std::vector<BlockCoord> bordering_coords;
 
   /// Keeps the pointed-to blocks alive; they do not change.
   std::shared_ptr<const void> storage;

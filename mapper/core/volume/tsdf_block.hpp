@@ -30,8 +30,8 @@ inline constexpr int voxel_index(int x, int y, int z) {
 }
 
 /// One voxel in one word: the low 16 bits are the signed distance along the camera's z, as a
-/// fraction of the truncation distance times kDistanceScale, positive in free space; the high 16
-/// bits are the weight, the number of observations. Weight zero: never observed.
+/// fraction of the largest truncation distance times kDistanceScale, positive in free space; the
+/// high 16 bits are the weight, the number of observations. Weight zero: never observed.
 using Voxel = std::uint32_t;
 
 inline constexpr float kDistanceScale = 32767.0F;
@@ -40,7 +40,7 @@ inline constexpr int voxel_weight(Voxel voxel) { return static_cast<int>(voxel >
 inline constexpr int voxel_distance_raw(Voxel voxel) {
   return static_cast<std::int16_t>(voxel & 0xFFFFU);
 }
-/// In [-1, 1]: 1 is the truncation distance.
+/// In [-1, 1]: 1 is the largest truncation distance.
 inline constexpr float voxel_distance(Voxel voxel) {
   return static_cast<float>(voxel_distance_raw(voxel)) * (1.0F / kDistanceScale);
 }

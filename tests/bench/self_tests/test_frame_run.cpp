@@ -69,7 +69,8 @@ TEST(FrameRun, TimesEachFrameAfterTheWarmUp) {
   config.frames = 4;
   config.warm_up_frames = 3;
   config.device_rests = true;
-  config.pipeline.volume = {.volume_size_m = 8.0, .resolution_m = 0.02};  // the whole room
+  config.pipeline.volume = {
+      .region = RegionShape::kCube, .volume_size_m = 8.0, .resolution_m = 0.02};  // the whole room
   const FrameRun run = run_frames(config);
   ASSERT_EQ(run.samples.size(), 4U);
   EXPECT_EQ(run.frames_lost, 0);

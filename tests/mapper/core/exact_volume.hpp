@@ -31,7 +31,7 @@ void allocate_around_surface(TsdfVolume& volume, Function signed_distance_m) {
                                               min.z + block / side / side);
     const Eigen::Vector3d middle_W = voxel_center_W(volume, coord, Eigen::Vector3d::Constant(4.0));
     if (std::abs(signed_distance_m(middle_W)) > 12 * volume.config().resolution_m) continue;
-    volume.allocate(coord);
+    if (volume.contains(coord)) volume.allocate(coord);
   }
 }
 
@@ -42,7 +42,8 @@ void set_exact_distances(TsdfVolume& volume, int weight, Function signed_distanc
     if (!volume.in_use(slot)) continue;
     for (int i = 0; i < kBlockVoxels; ++i) {
       const Eigen::Vector3d p_W = voxel_center_W(volume, volume.coord(slot), voxel_of_index(i));
-      const double fraction = std::clamp(signed_distance_m(p_W) / volume.truncation_m(), -1.0, 1.0);
+      const double fraction =
+          std::clamp(signed_distance_m(p_W) / volume.max_truncation_m(), -1.0, 1.0);
       const auto raw = static_cast<std::int16_t>(std::lround(fraction * kDistanceScale));
       volume.voxels(slot).voxels[i] =
           static_cast<Voxel>(weight) << 16 | static_cast<std::uint16_t>(raw);
@@ -54,7 +55,8 @@ void set_exact_distances(TsdfVolume& volume, int weight, Function signed_distanc
 template <typename Function>
 TsdfVolume exact_volume(double size_m, double resolution_m, int weight,
                         Function signed_distance_m) {
-  TsdfVolume volume({.volume_size_m = size_m, .resolution_m = resolution_m});
+  TsdfVolume volume(
+      {.region = RegionShape::kCube, .volume_size_m = size_m, .resolution_m = resolution_m});
   allocate_around_surface(volume, signed_distance_m);
   set_exact_distances(volume, weight, signed_distance_m);
   return volume;

@@ -9,11 +9,17 @@
 
 namespace kintsugi::mapper::testing {
 
-inline Voxel fuse_distance(Voxel voxel, float sdf_m, const IntegrationFrame& frame) {
+inline float truncation_share(float depth_m, const TruncationByDepth& truncation) {
+  const float share = truncation.base_share + depth_m * depth_m * truncation.growth_share_per_m2;
+  const float raised = share > truncation.min_share ? share : truncation.min_share;
+  return raised < 1.0F ? raised : 1.0F;
+}
+
+inline Voxel fuse_distance(Voxel voxel, float sdf_m, float share, const IntegrationFrame& frame) {
   const auto mean = static_cast<float>(voxel_distance_raw(voxel));
   const auto weight = static_cast<float>(voxel_weight(voxel));
-  const float fraction = sdf_m * frame.inverse_truncation;
-  const float measured = (fraction < 1.0F ? fraction : 1.0F) * kDistanceScale;
+  const float fraction = sdf_m * frame.truncation.inverse_max;
+  const float measured = (fraction < share ? fraction : share) * kDistanceScale;
   const float raised = weight + 1.0F;
   const float fused = (mean * weight + measured) * (1.0F / raised);
   const auto rounded = static_cast<std::int32_t>(fused + (fused < 0.0F ? -0.5F : 0.5F));
@@ -51,9 +57,11 @@ inline void fuse_voxel(const IntegrationFrame& frame, const float point_C[3], Vo
   const float depth = frame.depth_m[pixel];
   if (!(depth >= frame.min_depth_m && depth <= frame.max_depth_m)) return;
   const float sdf_m = depth - z;
-  if (!(sdf_m >= -frame.truncation_m)) return;
-  voxel = fuse_distance(voxel, sdf_m, frame);
-  if (frame.color_rgbx == nullptr || !(sdf_m < frame.truncation_m)) return;
+  const float share = truncation_share(depth, frame.truncation);
+  const float truncation_m = share * frame.truncation.max_m;
+  if (!(sdf_m >= -truncation_m)) return;
+  voxel = fuse_distance(voxel, sdf_m, share, frame);
+  if (frame.color_rgbx == nullptr || !(sdf_m < truncation_m)) return;
   color = fuse_color(color, frame.color_rgbx[pixel], frame);
 }
 

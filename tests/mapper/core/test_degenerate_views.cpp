@@ -20,6 +20,7 @@ constexpr std::int64_t kFrame_us = 33333;
 
 MapperPipeline::Config small_config() {
   MapperPipeline::Config config;
+  config.volume.region = RegionShape::kCube;
   config.volume.volume_size_m = 4.0;
   config.volume.resolution_m = 0.015;
   return config;

@@ -16,6 +16,7 @@ using testing::SyntheticRun;
 /// Coarse enough for 320x240 images and a fast test; shifts early, so that there are slices.
 MapperPipeline::Config small_config() {
   MapperPipeline::Config config;
+  config.volume.region = RegionShape::kCube;
   config.volume.volume_size_m = 4.0;
   config.volume.resolution_m = 0.015;
   config.volume.shift_vox = 8;

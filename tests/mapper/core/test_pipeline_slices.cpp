@@ -29,7 +29,8 @@ Map map_walk(std::size_t threads) {
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
   Map map;
   MapperPipeline::Config config;
-  config.volume = {.volume_size_m = 3.2, .resolution_m = 0.015, .shift_vox = 8};
+  config.volume = {
+      .region = RegionShape::kCube, .volume_size_m = 3.2, .resolution_m = 0.015, .shift_vox = 8};
   config.slices.extractor.weight_threshold = 1;
   config.slices.on_mesh = [&map](const MeshPiece& piece) { map.mesh.push_back(piece); };
   config.given_path = walk().true_path;

@@ -49,8 +49,9 @@ class TemporaryFile {
 
 TEST(Options, DefaultsAreTheDesigns) {
   const Options options = options_of({});
+  EXPECT_EQ(options.pipeline.volume.region, RegionShape::kBall);
   EXPECT_DOUBLE_EQ(options.pipeline.volume.volume_size_m, 4.5);
-  EXPECT_DOUBLE_EQ(options.pipeline.volume.resolution_m, 4.5 / 512);
+  EXPECT_EQ(options.pipeline.volume.resolution_m, 4.5 / 512);
   EXPECT_EQ(options.pipeline.volume.shift_vox, 14);
   EXPECT_EQ(options.pipeline.slices.extractor.weight_threshold, 8);
   EXPECT_EQ(options.session, 0) << "by the clock, or of the log that is resumed";
@@ -91,7 +92,7 @@ TEST(Options, TakesEveryFlag) {
   EXPECT_TRUE(options.source.replay);
   EXPECT_EQ(options.source.lcm_url, "memq://");
   EXPECT_DOUBLE_EQ(options.pipeline.volume.volume_size_m, 6.0);
-  EXPECT_DOUBLE_EQ(options.pipeline.volume.resolution_m, 6.0 / 512);  // follows the size
+  EXPECT_EQ(options.pipeline.volume.resolution_m, 4.5 / 512) << "does not follow the size";
   EXPECT_EQ(options.pipeline.volume.shift_vox, 20);
   EXPECT_EQ(options.pipeline.slices.extractor.weight_threshold, 4);
   EXPECT_EQ(options.output_path_file, "out.txt");
@@ -138,7 +139,36 @@ TEST(Options, WhatIsPrintedCanBeReadBack) {
   const TemporaryFile file(::testing::internal::GetCapturedStdout());
   const Options options = options_of({"--config", file.path().c_str()});
   EXPECT_DOUBLE_EQ(options.pipeline.volume.volume_size_m, 3.5);
-  EXPECT_DOUBLE_EQ(options.pipeline.volume.resolution_m, 3.5 / 512);
+  EXPECT_EQ(options.pipeline.volume.resolution_m, 4.5 / 512);
+}
+
+TEST(Options, ChooseTheVolume) {
+  const Options cube = options_of({"--volume", "cube"});
+  EXPECT_EQ(cube.pipeline.volume.region, RegionShape::kCube);
+  EXPECT_DOUBLE_EQ(cube.pipeline.volume.volume_size_m, 4.5);
+  EXPECT_DOUBLE_EQ(cube.source.max_range_m, 6.5);
+  EXPECT_EQ(options_of({"--volume-size", "3"}).pipeline.volume.region, RegionShape::kCube);
+  EXPECT_THAT(error_of({"--volume", "range", "--volume-size", "3"}),
+              HasSubstr("--volume-size is for --volume cube, --volume is 'range'"));
+  EXPECT_THAT(error_of({"--volume", "ball"}),
+              HasSubstr("--volume is 'ball', must be range or cube"));
+}
+
+TEST(Options, TheVolumeReachesAsFarAsDepthIsUsed) {
+  const Options options = options_of({"--max-range", "4"});
+  EXPECT_DOUBLE_EQ(options.source.max_range_m, 4.0);
+  EXPECT_DOUBLE_EQ(options.pipeline.volume.max_range_m, 4.0);
+  EXPECT_DOUBLE_EQ(options.pipeline.integrator.max_depth_m, 4.0);
+  EXPECT_GE(options.pipeline.raycaster.max_depth_m, 4.0);
+  EXPECT_THAT(error_of({"--max-range", "9"}), HasSubstr("max_range_m is 9"));
+}
+
+TEST(Options, TheRangeEndsWhereDepthIsTooNoisyOrTheVolumeEnds) {
+  const double resolution_m = 4.5 / 512;
+  const double range_m = options_of({}).source.max_range_m;
+  EXPECT_NEAR(3.0 * DepthNoise().sigma_m(range_m), 16 * resolution_m, 1e-9);
+  EXPECT_LT(options_of({"--resolution", "0.003"}).source.max_range_m, 3.2);
+  EXPECT_DOUBLE_EQ(options_of({"--resolution", "0.02"}).source.max_range_m, 6.5);
 }
 
 TEST(Options, NamesWhatIsWrong) {

@@ -171,7 +171,8 @@ TEST(MeshExtractor, ClosesAnExactSphere) {
 
 TEST(MeshExtractor, ClosesAFusedSphere) {
   const auto scene = synthetic::make_scene("sphere");
-  TsdfVolume volume({.volume_size_m = 1.6, .resolution_m = kResolution_m});
+  TsdfVolume volume(
+      {.region = RegionShape::kCube, .volume_size_m = 1.6, .resolution_m = kResolution_m});
   fuse(testing::views_around(scene, 1.3, {-0.9, -0.3, 0.3, 0.9}, 12), volume);
   const MeshPiece mesh = mesh_of(volume.snapshot());
   ASSERT_GT(mesh.triangles.size(), 40000U);
@@ -186,7 +187,8 @@ TEST(MeshExtractor, ClosesAFusedSphere) {
 
 TEST(MeshExtractor, JoinsSlicesToTheMeshOfTheWhole) {
   const auto scene = synthetic::make_scene("sphere");
-  TsdfVolume volume({.volume_size_m = 1.6, .resolution_m = kResolution_m});
+  TsdfVolume volume(
+      {.region = RegionShape::kCube, .volume_size_m = 1.6, .resolution_m = kResolution_m});
   fuse(testing::views_around(scene, 1.3, {-0.9, -0.3, 0.3, 0.9}, 6), volume);
   const MeshPiece whole = mesh_of(volume.snapshot());
   int num_slices = 0;
@@ -211,6 +213,32 @@ TEST(MeshExtractor, JoinsSlicesToTheMeshOfTheWhole) {
     return triangles;
   };
   EXPECT_TRUE(sorted_positions(joined) == sorted_positions(whole));
+}
+
+TEST(MeshExtractor, ClosesASphereThatLeavesAFullBallInPieces) {
+  constexpr double kRadius_m = 0.4;
+  TsdfVolume volume({.max_range_m = 0.6, .resolution_m = kResolution_m, .max_memory_mb = 2.0});
+  const auto sphere = [](const Eigen::Vector3d& p_W) { return p_W.norm() - kRadius_m; };
+  testing::allocate_around_surface(volume, sphere);
+  testing::set_exact_distances(volume, 10, sphere);
+  MeshExtractor extractor({.weight_threshold = 0});
+  MeshPiece mesh;
+  int num_slices = 0;
+  for (int lowest = -8; lowest <= 16; ++lowest) {
+    for (const DetachedBlocks& slice : volume.shift_to(Eigen::Vector3d::Zero())) {
+      append(mesh, extractor.extract(slice));
+      ++num_slices;
+    }
+    for (BlockSlot slot = 0; slot < volume.slots_end(); ++slot) {
+      const BlockCoord& coord = volume.coord(slot);
+      if (volume.in_use(slot) && coord.x + coord.y >= lowest) volume.mark_seen(slot);
+    }
+  }
+  ASSERT_GE(num_slices, 3);
+  append(mesh, extractor.extract(volume.detach_all()));
+  expect_closed_manifold(mesh);
+  expect_each_vertex_once_and_used(mesh);
+  EXPECT_EQ(euler_characteristic(mesh), 2);
 }
 
 TEST(MeshExtractor, StaysClosedWhereBlocksChangeAfterTheirNeighboursLeft) {
@@ -268,7 +296,8 @@ TEST(MeshExtractor, TakesTheColorThatWasSeen) {
   testing::View view =
       testing::make_view(scene, synthetic::look_at({0.0, -0.3, 0.8}, {0.0, 0.0, 0.0}));
   view.frame.color_rgb.setTo(cv::Scalar(200, 100, 7));
-  TsdfVolume volume({.volume_size_m = 2.4, .resolution_m = kResolution_m});
+  TsdfVolume volume(
+      {.region = RegionShape::kCube, .volume_size_m = 2.4, .resolution_m = kResolution_m});
   fuse({view, view, view}, volume);
   const MeshPiece mesh = mesh_of(volume.snapshot());
   ASSERT_FALSE(mesh.vertices.empty());

@@ -28,7 +28,7 @@ using Cloud = std::vector<CloudPoint>;
 constexpr double kResolution_m = 0.01;
 
 TsdfVolume::Config volume_of(double size_m) {
-  return {.volume_size_m = size_m, .resolution_m = kResolution_m};
+  return {.region = RegionShape::kCube, .volume_size_m = size_m, .resolution_m = kResolution_m};
 }
 
 Cloud extract(const DetachedBlocks& blocks, int weight_threshold = 0) {
@@ -206,6 +206,43 @@ TEST(SurfaceExtractor, GivesTheSameSurfaceInSlicesAsInOnePiece) {
   const Cloud pieces = extract_in_slices(volume, 6, &num_slices);
   ASSERT_GT(num_slices, 6);
   ASSERT_GT(whole.size(), 20000U);
+  EXPECT_EQ(pieces.size(), whole.size());
+  EXPECT_TRUE(sorted_bytes(pieces) == sorted_bytes(whole));
+}
+
+TEST(SurfaceExtractor, GivesTheSameSurfaceWhenABallMovesOn) {
+  const auto scene = synthetic::make_scene("sphere");
+  TsdfVolume volume({.max_range_m = 0.8, .resolution_m = kResolution_m});
+  fuse(testing::views_around(scene, 1.3, {-0.9, 0.3}, 5), volume);
+  const Cloud whole = extract(volume.snapshot());
+  int num_slices = 0;
+  const Cloud pieces = extract_in_slices(volume, 15, &num_slices);
+  ASSERT_GT(num_slices, 6);
+  ASSERT_GT(whole.size(), 20000U);
+  EXPECT_EQ(pieces.size(), whole.size());
+  EXPECT_TRUE(sorted_bytes(pieces) == sorted_bytes(whole));
+}
+
+TEST(SurfaceExtractor, GivesTheSameSurfaceWhenABallIsTooFull) {
+  const auto scene = synthetic::make_scene("sphere");
+  TsdfVolume volume({.max_range_m = 0.8, .resolution_m = kResolution_m, .max_memory_mb = 2.0});
+  fuse(testing::views_around(scene, 1.3, {-0.9, 0.3}, 5), volume);
+  const Cloud whole = extract(volume.snapshot());
+  Cloud pieces;
+  const auto append = [&pieces](const DetachedBlocks& blocks) {
+    const Cloud part = extract(blocks);
+    pieces.insert(pieces.end(), part.begin(), part.end());
+  };
+  for (int lowest = -8; lowest <= 16; ++lowest) {  // a diagonal cut wanders through the sphere
+    for (const DetachedBlocks& slice : volume.shift_to(Eigen::Vector3d::Zero())) append(slice);
+    for (BlockSlot slot = 0; slot < volume.slots_end(); ++slot) {
+      const BlockCoord& coord = volume.coord(slot);
+      if (volume.in_use(slot) && coord.x + coord.y >= lowest) volume.mark_seen(slot);
+    }
+  }
+  EXPECT_LT(pieces.size(), whole.size());
+  EXPECT_GT(pieces.size(), whole.size() / 4);
+  append(volume.detach_all());
   EXPECT_EQ(pieces.size(), whole.size());
   EXPECT_TRUE(sorted_bytes(pieces) == sorted_bytes(whole));
 }

@@ -35,7 +35,7 @@ View torn_view() {
 
 /// Before the camera; some of what it sees is inside.
 TsdfVolume cube_in(const View& view) {
-  return TsdfVolume({.volume_size_m = 2.5, .resolution_m = 0.01},
+  return TsdfVolume({.region = RegionShape::kCube, .volume_size_m = 2.5, .resolution_m = 0.01},
                     view.X_WC * Eigen::Vector3d(0.5, 0.0, 2.0));
 }
 

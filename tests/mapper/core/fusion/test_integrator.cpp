@@ -24,7 +24,7 @@ constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr double kResolution_m = 0.01;
 
 TsdfVolume::Config volume_of(double size_m) {
-  return {.volume_size_m = size_m, .resolution_m = kResolution_m};
+  return {.region = RegionShape::kCube, .volume_size_m = size_m, .resolution_m = kResolution_m};
 }
 
 bool same_bytes(const DetachedBlocks& a, const DetachedBlocks& b) {

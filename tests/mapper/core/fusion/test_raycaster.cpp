@@ -25,7 +25,7 @@ using testing::View;
 constexpr double kResolution_m = 0.01;
 
 TsdfVolume::Config volume_of(double size_m) {
-  return {.volume_size_m = size_m, .resolution_m = kResolution_m};
+  return {.region = RegionShape::kCube, .volume_size_m = size_m, .resolution_m = kResolution_m};
 }
 
 bool same_bytes(const cv::Mat& a, const cv::Mat& b) {

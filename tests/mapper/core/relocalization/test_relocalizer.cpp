@@ -23,6 +23,7 @@ TrackingInput input_from(const RgbdFrame& frame, bool with_color = true) {
 
 TsdfVolume::Config volume_config() {
   TsdfVolume::Config config;
+  config.region = RegionShape::kCube;
   config.resolution_m = 0.015;
   return config;
 }

@@ -17,7 +17,8 @@ RayMarcher::RayMarcher(const TsdfVolume& volume, const Ray& ray, TsdfSampler& sa
       sampler_(sampler),
       m_per_vox_(ray.direction_vox_per_m.cwiseInverse()),
       voxel_m_(1.0F / ray.direction_vox_per_m.norm()),
-      truncation_vox_(static_cast<float>(volume.config().truncation_vox)) {}
+      truncation_vox_(static_cast<float>(volume.config().largest_truncation_vox())),
+      max_step_vox_(static_cast<float>(volume.config().truncation_vox)) {}
 
 std::optional<float> RayMarcher::find_surface(float from_m, float to_m) {
   const std::optional<Bracket> bracket = march(from_m, to_m);
@@ -27,7 +28,7 @@ std::optional<float> RayMarcher::find_surface(float from_m, float to_m) {
 std::optional<RayMarcher::Bracket> RayMarcher::march(float from_m, float to_m) {
   Bracket bracket;
   bool in_free_space = false;
-  float max_step_vox = truncation_vox_;
+  float max_step_vox = max_step_vox_;
   float depth_m = from_m;
   while (depth_m < to_m) {
     const std::optional<Voxel> voxel = sampler_.nearest(ray_.at(depth_m));

@@ -41,6 +41,7 @@ class RayMarcher {
   Eigen::Vector3f m_per_vox_;  ///< along each axis; infinite along an axis the ray does not move
   float voxel_m_ = 0.0F;       ///< depth in which the ray advances by one voxel
   float truncation_vox_ = 0.0F;
+  float max_step_vox_ = 0.0F;
 };
 
 }  // namespace kintsugi::mapper::testing

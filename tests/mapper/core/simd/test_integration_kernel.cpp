@@ -52,8 +52,7 @@ IntegrationFrame make_frame(const Images& images, float angle_rad) {
   std::copy(&steps[0][0], &steps[0][0] + 9, &frame.step_C[0][0]);
   frame.min_depth_m = 0.1F;
   frame.max_depth_m = 5.0F;
-  frame.truncation_m = 4 * kVoxel_m;
-  frame.inverse_truncation = 1.0F / frame.truncation_m;
+  frame.truncation = {.max_m = 4 * kVoxel_m, .inverse_max = 0.25F / kVoxel_m};
   frame.max_weight = 20.0F;
   frame.max_color_weight = 15.0F;
   return frame;
@@ -122,6 +121,30 @@ TEST(IntegrationKernel, KeepsColorsWhereAFrameHasNone) {
                           [](VoxelColor color) { return color == 0x01020304; }));
 }
 
+TEST(IntegrationKernel, TruncatesAtMoreWhereDepthIsFarther) {
+  Images images{std::vector<float>(kNumPixels), std::vector<std::uint32_t>(kNumPixels)};
+  IntegrationFrame frame = make_frame(images, 0.0F);
+  // 20 mm at depths below 0.79 m, 40 mm at 1.5 m, 160 mm beyond 3.15 m.
+  frame.truncation = {.max_m = 0.16F,
+                      .inverse_max = 6.25F,
+                      .min_share = 0.125F,
+                      .base_share = 0.05F,
+                      .growth_share_per_m2 = 0.2F / 2.25F};
+  const auto fuse = [&](float depth_m, float z) {
+    Block block;
+    std::fill(images.depth_m.begin(), images.depth_m.end(), depth_m);
+    kPortableKernels.integrate_block(frame, block.at(0.0F, 0.0F, z));
+    return block.voxels.voxels[0];
+  };
+  constexpr float kTolerance = 3.0F / kDistanceScale;
+  EXPECT_NEAR(voxel_distance(fuse(0.7F, 0.4F)), 0.125F, kTolerance);
+  EXPECT_NEAR(voxel_distance(fuse(1.5F, 1.0F)), 0.25F, kTolerance);
+  EXPECT_NEAR(voxel_distance(fuse(4.0F, 1.0F)), 1.0F, kTolerance);
+  EXPECT_NEAR(voxel_distance(fuse(4.0F, 4.1F)), -0.1F / 0.16F, kTolerance);
+  EXPECT_EQ(voxel_weight(fuse(1.5F, 1.541F)), 0);
+  EXPECT_EQ(voxel_weight(fuse(1.5F, 1.539F)), 1);
+}
+
 /// The same random frames and blocks for every instruction set.
 class IntegrationKernels : public ::testing::TestWithParam<InstructionSet> {};
 
@@ -138,6 +161,10 @@ TEST_P(IntegrationKernels, WriteTheBytesOfAVoxelAtATime) {
     const Images images = random_images(random);
     IntegrationFrame frame = make_frame(images, 0.01F * static_cast<float>(round));
     if (round % 5 == 0) frame.color_rgbx = nullptr;
+    if (round % 2 == 0) {
+      frame.truncation.min_share = 0.25F;
+      frame.truncation.growth_share_per_m2 = 0.6F;
+    }
     const float origin[3] = {lateral(random), lateral(random),
                              round % 2 == 0 ? any_depth(random) : surface_depth(random)};
     Block expected;

@@ -79,10 +79,12 @@ class RaycastKernels : public ::testing::TestWithParam<InstructionSet> {
  protected:
   static void SetUpTestSuite() {
     const auto room = synthetic::make_scene_with_path("box-room");
-    volume_ =
-        new TsdfVolume({.volume_size_m = 4.8, .resolution_m = kResolution_m}, {0.0, 0.0, 1.25});
+    volume_ = new TsdfVolume(
+        {.region = RegionShape::kCube, .volume_size_m = 4.8, .resolution_m = kResolution_m},
+        {0.0, 0.0, 1.25});
     fuse(testing::views_along_path(room, 30), *volume_);
-    empty_ = new TsdfVolume({.volume_size_m = 1.6, .resolution_m = kResolution_m});
+    empty_ = new TsdfVolume(
+        {.region = RegionShape::kCube, .volume_size_m = 1.6, .resolution_m = kResolution_m});
     scenarios_ = new std::vector<Scenario>(scenarios(room));
   }
   static void TearDownTestSuite() {

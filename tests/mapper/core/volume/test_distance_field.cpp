@@ -39,7 +39,8 @@ TEST(DistanceField, OfAPlaneSeenStraightOnIsTheHeightAboveIt) {
   view.frame.depth_m = cv::Mat_<float>(240, 320, static_cast<float>(kHeight_m));
   view.X_WC.linear() = Eigen::Vector3d(1.0, -1.0, -1.0).asDiagonal();  // looks down
   view.X_WC.translation() << 0.0, 0.0, kHeight_m;
-  TsdfVolume volume({.volume_size_m = 3.0, .resolution_m = kResolution_m});
+  TsdfVolume volume(
+      {.region = RegionShape::kCube, .volume_size_m = 3.0, .resolution_m = kResolution_m});
   testing::fuse({view, view}, volume);
   // Depth and positions are single precision at 1 m.
   constexpr double kSingle = 3e-7 / (4 * kResolution_m);
@@ -57,7 +58,8 @@ TEST(DistanceField, OfASphereIsThatAlongTheDepthAxis) {
   const auto scene = synthetic::make_scene("sphere");
   const testing::View view =
       testing::make_view(scene, synthetic::look_at({kDistance_m, 0.0, 0.0}, {0.0, 0.0, 0.0}));
-  TsdfVolume volume({.volume_size_m = 1.6, .resolution_m = kResolution_m});
+  TsdfVolume volume(
+      {.region = RegionShape::kCube, .volume_size_m = 1.6, .resolution_m = kResolution_m});
   testing::fuse({view, view}, volume);
   const Pose X_CW = view.X_WC.inverse();
   const Eigen::Vector3d center_C = X_CW.translation();

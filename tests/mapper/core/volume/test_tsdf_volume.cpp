@@ -21,7 +21,8 @@ constexpr double kBlock_m = 0.08;
 
 /// 10 blocks a side: not a power of two, so that the table is larger than the cube.
 TsdfVolume::Config ten_blocks() {
-  return {.volume_size_m = 0.8, .resolution_m = 0.01, .shift_vox = 14};
+  return {
+      .region = RegionShape::kCube, .volume_size_m = 0.8, .resolution_m = 0.01, .shift_vox = 14};
 }
 
 /// What the volume ought to be: blocks by coordinate, each with its own mark.
@@ -251,7 +252,7 @@ TEST(TsdfVolume, TellsWhichNeighboursStay) {
   TsdfVolume volume(ten_blocks());
   allocate_corridor(volume);
   const DetachedBlocks first = volume.shift_to({0.16, 0.0, 0.0}).at(0);
-  EXPECT_EQ(first.remaining.min, volume.min_block());
+  EXPECT_EQ(first.bordering_coords.size(), 20U) << "the outer of two layers is out of reach";
   EXPECT_EQ(first.apron_coords.size(), 20U);
   for (const ColorBlock* colors : first.apron_colors) EXPECT_EQ(colors, nullptr);
   const DetachedBlocks second = volume.shift_to({0.32, 0.0, 0.0}).at(0);
@@ -260,7 +261,7 @@ TEST(TsdfVolume, TellsWhichNeighboursStay) {
     EXPECT_EQ(second.apron_colors[i] == nullptr, volume.contains(second.apron_coords[i]));
   }
   const DetachedBlocks last = volume.detach_all();
-  EXPECT_EQ(last.remaining.side, 0);
+  EXPECT_TRUE(last.bordering_coords.empty());
   for (const ColorBlock* colors : last.apron_colors) EXPECT_NE(colors, nullptr);
 }
 
@@ -280,9 +281,14 @@ TEST(TsdfVolume, EndsWithAFinalSliceOfEverything) {
 }
 
 TEST(TsdfVolume, RoundsTheCubeUpToWholeBlocks) {
-  EXPECT_EQ(TsdfVolume({}).side_blocks(), 64);
-  EXPECT_EQ(TsdfVolume({.volume_size_m = 4.5, .resolution_m = 0.01}).side_blocks(), 57);
-  EXPECT_EQ(TsdfVolume({.volume_size_m = 6.0, .resolution_m = 6.0 / 512}).side_blocks(), 64);
+  EXPECT_EQ(TsdfVolume({.region = RegionShape::kCube}).side_blocks(), 64);
+  EXPECT_EQ(TsdfVolume({.region = RegionShape::kCube, .volume_size_m = 4.5, .resolution_m = 0.01})
+                .side_blocks(),
+            57);
+  EXPECT_EQ(
+      TsdfVolume({.region = RegionShape::kCube, .volume_size_m = 6.0, .resolution_m = 6.0 / 512})
+          .side_blocks(),
+      64);
 }
 
 TEST(TsdfVolume, RefusesAConfigurationThatCannotWork) {
@@ -292,11 +298,11 @@ TEST(TsdfVolume, RefusesAConfigurationThatCannotWork) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THAT(refusal({.resolution_m = 0.0}),
               ThrowsMessage<std::invalid_argument>(HasSubstr("resolution_m is 0")));
-  EXPECT_THAT(refusal({.volume_size_m = kNan}),
+  EXPECT_THAT(refusal({.region = RegionShape::kCube, .volume_size_m = kNan}),
               ThrowsMessage<std::invalid_argument>(HasSubstr("volume_size_m is nan")));
-  EXPECT_THAT(refusal({.volume_size_m = -1.0}),
+  EXPECT_THAT(refusal({.region = RegionShape::kCube, .volume_size_m = -1.0}),
               ThrowsMessage<std::invalid_argument>(HasSubstr("volume_size_m is -1")));
-  EXPECT_THAT(refusal({.volume_size_m = 90.0, .resolution_m = 0.001}),
+  EXPECT_THAT(refusal({.region = RegionShape::kCube, .volume_size_m = 90.0, .resolution_m = 0.001}),
               ThrowsMessage<std::invalid_argument>(HasSubstr("side in blocks")));
   EXPECT_THAT(refusal({.truncation_vox = 1.0}),
               ThrowsMessage<std::invalid_argument>(HasSubstr("truncation_vox is 1")));
@@ -304,9 +310,9 @@ TEST(TsdfVolume, RefusesAConfigurationThatCannotWork) {
               ThrowsMessage<std::invalid_argument>(HasSubstr("max_weight is 0")));
   EXPECT_THAT(refusal({.max_weight = 65536}),
               ThrowsMessage<std::invalid_argument>(HasSubstr("within [1, 65535]")));
-  EXPECT_THAT(refusal({.shift_vox = 7}),
+  EXPECT_THAT(refusal({.region = RegionShape::kCube, .shift_vox = 7}),
               ThrowsMessage<std::invalid_argument>(HasSubstr("shift_vox is 7")));
-  EXPECT_THAT(refusal({.shift_vox = 256}),
+  EXPECT_THAT(refusal({.region = RegionShape::kCube, .shift_vox = 256}),
               ThrowsMessage<std::invalid_argument>(HasSubstr("shift_vox is 256")));
 }
 
