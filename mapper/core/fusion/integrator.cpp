@@ -11,6 +11,7 @@
 #include "mapper/core/frame/camera.hpp"
 #include "mapper/core/fusion/block_allocation.hpp"
 #include "mapper/core/fusion/farthest_depths.hpp"
+#include "mapper/core/fusion/free_space.hpp"
 #include "mapper/core/fusion/truncation.hpp"
 #include "mapper/core/kernels/kernels.hpp"
 #include "mapper/core/volume/block_visibility.hpp"
@@ -51,25 +52,31 @@ IntegrationBlock make_integration_block(const VisibleBlock& block, const Eigen::
           .origin_C = {origin_C.x(), origin_C.y(), origin_C.z()}};
 }
 
-/// Whether a block was observed often enough, and each of its observed voxels is at least the
-/// smallest truncation distance before a surface. Noisy depth allocates many such blocks: they tell
-/// no more than that nothing is there, as blocks that do not exist do.
-bool is_free_space(const VoxelBlock& block, int least_distance_raw) {
-  constexpr int kEnough = 8;  // observations
-  bool is_near_surface = false;
-  int most_observations = 0;
-  for (const Voxel voxel : block.voxels) {  // no branches, so that the compiler can vectorise it
-    const bool is_observed = voxel_weight(voxel) > 0;
-    is_near_surface |= is_observed & (voxel_distance_raw(voxel) < least_distance_raw);
-    most_observations = std::max(most_observations, voxel_weight(voxel));
+/// Fuses the frame into the blocks that it can reach.
+void fuse(const IntegrationFrame& frame, const std::vector<VisibleBlock>& visible,
+          const FarthestDepths& farthest, const Eigen::Matrix3f& R_WC, const Kernels& kernels,
+          TsdfVolume& volume) {
+  enum class Outcome : std::uint8_t { kHidden, kFused, kFreeSpace };
+  std::vector<Outcome> outcomes(visible.size(), Outcome::kHidden);
+  const float radius_m = block_radius_m(volume);
+  const FreeSpace free_space(volume);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, visible.size(), 32), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i < range.end(); ++i) {
+      const BlockSlot slot = visible[i].slot;
+      const Eigen::Vector3f& center_C = visible[i].center_C;
+      const float farthest_m = farthest.within(center_C, radius_m);
+      const float reach_m = farthest_m + truncation_at(farthest_m, frame.truncation);
+      if (center_C.z() - radius_m > reach_m) continue;
+      kernels.integrate_block(frame, make_integration_block(visible[i], R_WC, volume));
+      const bool is_empty =
+          free_space.is_due(volume.coord(slot)) && free_space.is_all_of(volume.voxels(slot));
+      outcomes[i] = is_empty ? Outcome::kFreeSpace : Outcome::kFused;
+    }
+  });
+  for (std::size_t i = 0; i < visible.size(); ++i) {
+    if (outcomes[i] == Outcome::kFused) volume.mark_seen(visible[i].slot);
+    if (outcomes[i] == Outcome::kFreeSpace) volume.discard(visible[i].slot);
   }
-  return !is_near_surface && most_observations >= kEnough;
-}
-
-/// Whether it is a block's turn to be looked at: once in 16 frames.
-bool is_due(const BlockCoord& coord, std::uint32_t frame) {
-  const auto sum = static_cast<std::uint32_t>(coord.x + coord.y + coord.z);
-  return (sum + frame) % 16 == 0;
 }
 
 }  // namespace
@@ -110,29 +117,8 @@ void Integrator::integrate(const RgbdFrame& frame, const Pose& X_WC, TsdfVolume&
   integration_frame.depth_m = depth_m[0];
   if (has_color) integration_frame.color_rgbx = color_rgbx.ptr<std::uint32_t>();
 
-  const bool keeps_free_space = volume.config().region == RegionShape::kCube;
-  const int least_distance_raw =
-      static_cast<int>(kDistanceScale * volume.truncation_m() / volume.max_truncation_m());
-  const FarthestDepths farthest(depth_m, camera, max_depth_m);
-  const float radius_m = block_radius_m(volume);
-  const TruncationByDepth truncation = integration_frame.truncation;
-  enum class Outcome : std::uint8_t { kHidden, kFused, kFreeSpace };
-  std::vector<Outcome> outcomes(visible.size(), Outcome::kHidden);
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, visible.size(), 32), [&](const auto& range) {
-    for (std::size_t i = range.begin(); i < range.end(); ++i) {
-      const auto& [slot, center_C] = visible[i];
-      const float farthest_m = farthest.within(center_C, radius_m);
-      if (center_C.z() - radius_m > farthest_m + truncation_at(farthest_m, truncation)) continue;
-      kernels.integrate_block(integration_frame, make_integration_block(visible[i], R_WC, volume));
-      outcomes[i] = Outcome::kFused;
-      if (keeps_free_space || !is_due(volume.coord(slot), volume.num_moves())) continue;
-      if (is_free_space(volume.voxels(slot), least_distance_raw)) outcomes[i] = Outcome::kFreeSpace;
-    }
-  });
-  for (std::size_t i = 0; i < visible.size(); ++i) {
-    if (outcomes[i] == Outcome::kFused) volume.mark_seen(visible[i].slot);
-    if (outcomes[i] == Outcome::kFreeSpace) volume.discard(visible[i].slot);
-  }
+  fuse(integration_frame, visible, FarthestDepths(depth_m, camera, max_depth_m), R_WC, kernels,
+       volume);
 }
 
 }  // namespace kintsugi::mapper
