@@ -1,8 +1,6 @@
 #include "mapper/core/mapper_pipeline.hpp"
 
 #include <algorithm>
-#include <cstdio>
-#include <cstdlib>
 #include <iterator>
 #include <limits>
 #include <utility>
@@ -10,6 +8,7 @@
 #include "lcmtypes/base/argument_check.hpp"
 #include "mapper/core/frame/camera.hpp"
 #include "mapper/core/frame/covered_share.hpp"
+#include "mapper/core/frame/sensors.hpp"
 #include "mapper/core/fusion/truncation.hpp"
 
 namespace kintsugi::mapper {
@@ -41,7 +40,7 @@ MapperPipeline::MapperPipeline(const Config& config)
       integrator_(config.integrator),
       raycaster_(config.raycaster),
       tracker_(config.tracker),
-      noise_(std::getenv("NOISE0") ? DepthNoise{atof(std::getenv("NOISE0")),atof(std::getenv("NOISE1")),atof(std::getenv("NOISE2"))} : config.noise),
+      noise_(config.noise.value_or(DepthNoise())),
       relocalizer_(config.relocalizer),
       slice_worker_(config.slices) {}
 
@@ -79,6 +78,8 @@ std::vector<CloudSlice> MapperPipeline::finish() {
 
 RgbdFrame MapperPipeline::cleaned(const RgbdFrame& frame) {
   check_image_size("depth_m", frame.depth_m.size(), frame.intrinsics);
+  if (!has_frames_ && !config_.noise) noise_ = NoiseEstimator(typical_noise(frame.intrinsics));
+  has_frames_ = true;
   local_noise_.add(frame.depth_m);
   RgbdFrame clean = frame;
   clean.depth_m = without_mixed_pixels(frame.depth_m, frame.intrinsics, local_noise_.noise());
@@ -131,10 +132,9 @@ TrackingResult MapperPipeline::start(const TrackingInput& input) {
 }
 
 void MapperPipeline::learn_noise(const TrackingInput& input, const Pose& X_WC) {
-  if (!config_.learn_noise || getenv("NOLEARN")) return;
+  if (!config_.learn_noise) return;
   const std::size_t level = std::min<std::size_t>(1, input.surface_C.size() - 1);
   noise_.add(input.surface_C[level], model_->surface_V[level], model_->X_WV.inverse() * X_WC);
-  if (std::getenv("DBG")) std::fprintf(stderr, "LOCAL %.5f %.5f %.5f\n", local_noise_.noise().base_m, local_noise_.noise().share, local_noise_.noise().growth_per_m), std::fprintf(stderr, "NOISE %lld %.5f %.5f %.5f\n", (long long)input.utime, noise_.noise().base_m, noise_.noise().share, noise_.noise().growth_per_m);
 }
 
 std::optional<TrackingResult> MapperPipeline::find_again(const TrackingInput& input) {

@@ -55,8 +55,8 @@ class MapperPipeline {
     Tracker::Config tracker;
     Relocalizer::Config relocalizer;
     SliceWorker::Config slices;
-    DepthNoise noise;         ///< of the camera's depth
-    bool learn_noise = true;  ///< `noise` is only where the estimate starts
+    std::optional<DepthNoise> noise;  ///< of the camera's depth; none: typical_noise()
+    bool learn_noise = true;          ///< `noise` is only where the estimate starts
     /// Depth farther than where the noise asks for the largest truncation distance is not used.
     bool limit_range_by_noise = false;
     int finest_tracking_width_px = 320;  ///< images are halved while at least this remains
@@ -112,6 +112,7 @@ class MapperPipeline {
   SliceWorker slice_worker_;
   std::optional<Model> model_;    ///< none before the first fused frame
   Pose X_WC_ = Pose::Identity();  ///< of the last fused frame
+  bool has_frames_ = false;
   std::int64_t utime_ = 0;        ///< of the last frame
 };
 

@@ -18,7 +18,7 @@ std::string header() {
   for (const Stage& stage : kStages) line += std::string(",") + stage.name;
   return line +
          ",extract_ms,publish_ms,covered_share,overlap_share,inlier_share,behind_share,"
-         "in_front_share,rms_m,sigma_m,rms_sigmas,first,iterations,undetermined,slices,memory_mb\n";
+         "in_front_share,rms_m,sigma_m,rms_sigmas,iterations,undetermined,slices,memory_mb\n";
 }
 
 std::string line_of(const RgbdFrame& frame, int part, const TrackingResult& tracking,
@@ -41,7 +41,6 @@ std::string line_of(const RgbdFrame& frame, int part, const TrackingResult& trac
   for (const double metres : {quality.rms_m, quality.sigma_m, quality.rms_sigmas}) {
     line += fmt::format(",{:.6f}", metres);
   }
-  line += fmt::format(",{}", tracking.first_loss_reason ? to_string(*tracking.first_loss_reason) : "");
   const double memory_mb = 1e-6 * static_cast<double>(process_memory().resident_bytes);
   return line + fmt::format(",{},{},{},{:.1f}\n", tracking.iterations, quality.undetermined,
                             num_slices, memory_mb);

@@ -96,7 +96,7 @@ void complete_volume(Options& options) {
   options.pipeline.limit_range_by_noise = max_range_m == 0.0;
   if (max_range_m == 0.0) {
     const double by_noise_m =
-        range_of(options.pipeline.noise, volume.resolution_m * volume.largest_truncation_vox());
+        range_of(options.pipeline.noise.value_or(DepthNoise()), volume.resolution_m * volume.largest_truncation_vox());
     max_range_m = std::min({by_noise_m, TsdfVolume::longest_range_m(volume), kReachOfCamera_m});
   }
   options.source.max_range_m = max_range_m;

@@ -20,7 +20,7 @@ TruncationByDepth truncation_by_depth(const TsdfVolume& volume, const DepthNoise
 
 double range_of(const DepthNoise& noise, double max_truncation_m) {
   // sigma(z)^2 = sigma_m^2 is a quadratic equation of z^2.
-  const double sigma_m = max_truncation_m / kTruncationSigmas;
+  const double sigma_m = max_truncation_m / kRangeSigmas;
   const double a = noise.growth_per_m * noise.growth_per_m;
   const double b = noise.share * noise.share;
   const double c = std::max(sigma_m * sigma_m - noise.base_m * noise.base_m, 0.0);

@@ -25,8 +25,11 @@ inline float truncation_at(float depth_m, const TruncationByDepth& truncation) {
   return std::clamp(share, truncation.min_share, 1.0F) * truncation.max_m;
 }
 
-/// The depth at which the noise asks for the largest truncation distance: measurements from beyond
-/// are too noisy for one surface. Infinite for a camera without noise.
+/// Depth is used as far as the largest truncation distance is this many of its deviations: of the
+/// measurements of a surface 95 % still reach the voxels on both sides of it.
+inline constexpr double kRangeSigmas = 2.0;
+
+/// The depth up to which kRangeSigmas holds. Infinite for a camera without noise.
 double range_of(const DepthNoise& noise, double max_truncation_m);
 
 }  // namespace kintsugi::mapper
