@@ -29,8 +29,8 @@ class SliceWorker {
   struct Config {
     SurfaceExtractor::Config extractor;
     /// Largest number of blocks in the queue, with those around the slices; a slice larger than this
-    /// waits for an empty queue. 16,384 blocks are 64 MB, about six slices of a room.
-    std::size_t max_queued_blocks = 16'384;
+    /// waits for an empty queue. 8,192 blocks are 32 MB, about three slices of a room.
+    std::size_t max_queued_blocks = 8'192;
     /// Called with each piece of the mesh, in order, on the worker's thread; if empty, no mesh is
     /// made. Exceptions from it are treated like those from extraction.
     std::function<void(const MeshPiece&)> on_mesh;

@@ -42,7 +42,7 @@ class TsdfVolume {
     /// The region moves when the camera is farther than this from its centre along an axis.
     int shift_vox = 14;
     /// Of the ball's blocks, 1e6 bytes; more only while more are in view.
-    double max_memory_mb = 200.0;
+    double max_memory_mb = 180.0;
 
     double largest_truncation_vox() const {
       return region == RegionShape::kCube ? truncation_vox : max_truncation_vox;
