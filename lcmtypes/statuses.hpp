@@ -64,6 +64,9 @@ struct MapperStatus {
   std::int64_t memory_bytes = 0;
   std::int64_t volume_bytes = 0;
   std::int64_t queue_bytes = 0;
+  double noise_base_m = 0.0;
+  double noise_share = 0.0;
+  double noise_growth_per_m = 0.0;
   double frame_rate_hz = 0.0;
   double frame_p50_ms = 0.0;
   double frame_p99_ms = 0.0;
@@ -115,6 +118,9 @@ struct MapperStatus {
     visit("memory_bytes", s.memory_bytes...);
     visit("volume_bytes", s.volume_bytes...);
     visit("queue_bytes", s.queue_bytes...);
+    visit("noise_base_m", s.noise_base_m...);
+    visit("noise_share", s.noise_share...);
+    visit("noise_growth_per_m", s.noise_growth_per_m...);
     visit("frame_rate_hz", s.frame_rate_hz...);
     visit("frame_p50_ms", s.frame_p50_ms...);
     visit("frame_p99_ms", s.frame_p99_ms...);

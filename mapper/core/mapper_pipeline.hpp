@@ -113,7 +113,7 @@ class MapperPipeline {
   std::optional<Model> model_;    ///< none before the first fused frame
   Pose X_WC_ = Pose::Identity();  ///< of the last fused frame
   bool has_frames_ = false;
-  std::int64_t utime_ = 0;        ///< of the last frame
+  std::int64_t utime_ = 0;  ///< of the last frame
 };
 
 }  // namespace kintsugi::mapper

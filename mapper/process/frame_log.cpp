@@ -14,7 +14,8 @@ namespace kintsugi::mapper {
 namespace {
 
 std::string header() {
-  std::string line = "frame_index,utime_us,part,state,reason,frame_ms,cpu_ms,read_ms,convert_ms";
+  std::string line =
+      "frame_index,utime_us,part,state,reason,first_reason,frame_ms,cpu_ms,read_ms,convert_ms";
   for (const Stage& stage : kStages) line += std::string(",") + stage.name;
   return line +
          ",extract_ms,publish_ms,covered_share,overlap_share,inlier_share,behind_share,"
@@ -23,8 +24,9 @@ std::string header() {
 
 std::string line_of(const RgbdFrame& frame, int part, const TrackingResult& tracking,
                     std::size_t num_slices, const FrameTimings& timings) {
-  std::string line = fmt::format("{},{},{},{},{}", frame.frame_index, frame.utime, part,
-                                 to_string(tracking.state), reason_text(tracking));
+  std::string line =
+      fmt::format("{},{},{},{},{},{}", frame.frame_index, frame.utime, part,
+                  to_string(tracking.state), reason_text(tracking), first_reason_text(tracking));
   const auto add_ms = [&line](double ms) { line += fmt::format(",{:.3f}", ms); };
   add_ms(timings.frame_ms);
   add_ms(timings.cpu_ms);

@@ -221,6 +221,10 @@ void MapperProcess::publish_status() {
   status.frames_total = source.frames_total;
   status.frames_dropped = source.counts.frames_dropped;
   status.keyframes = pipeline_->num_keyframes();
+  const DepthNoise& noise = pipeline_->noise();
+  status.noise_base_m = noise.base_m;
+  status.noise_share = noise.share;
+  status.noise_growth_per_m = noise.growth_per_m;
   status.blocks = pipeline_->num_blocks();
   status.volume_bytes = pipeline_->volume_bytes();
   publisher_.publish_status(std::move(status));
@@ -251,11 +255,14 @@ void MapperProcess::log_change_of_state(const FrameResult& result, const RgbdFra
   last_state_ = tracking.state;
   if (tracking.state == TrackingState::kLost) {
     const RegistrationQuality& quality = tracking.quality;
+    const std::string_view first = first_reason_text(tracking);
     spdlog::warn(
-        "frame {}: lost, {} (overlap {:.2f}, inliers {:.2f}, behind {:.2f}, in front {:.2f}, "
+        "frame {}: lost, {}{} (overlap {:.2f}, inliers {:.2f}, behind {:.2f}, in front {:.2f}, "
         "rms {:.1f} mm, sigma {:.1f} mm)",
-        frame.frame_index, reason_text(tracking), quality.overlap_share, quality.inlier_share,
-        quality.behind_share, quality.in_front_share, 1e3 * quality.rms_m, 1e3 * quality.sigma_m);
+        frame.frame_index, reason_text(tracking),
+        first.empty() ? "" : fmt::format("; at first: {}", first), quality.overlap_share,
+        quality.inlier_share, quality.behind_share, quality.in_front_share, 1e3 * quality.rms_m,
+        1e3 * quality.sigma_m);
   } else {
     spdlog::info("frame {}: {}", frame.frame_index, to_string(tracking.state));
   }

@@ -69,6 +69,12 @@ OptionGroup mapping_group(Options& o) {
             "MB"},
            {"--resolution", &o.resolution_m, kMustMatch,
             "side of a voxel; 0: 8.79 mm (4.5 m / 512)", "m"},
+           {"--sensor", &o.sensor, kMustMatch,
+            "noise of depth from which the mapper starts to learn it: structured-light, stereo or "
+            "phone-lidar; empty: by the size of the image"},
+           {"--depth-noise", &o.depth_noise, kMustMatch,
+            "noise of depth, not learned: BASE,SHARE,GROWTH for a standard deviation of "
+            "sqrt(BASE^2 + (SHARE z)^2 + (GROWTH z^2)^2) at depth z, metres"},
            {"--shift", &volume.shift_vox, kMustMatch,
             "the volume moves when the camera is further than this from its centre", "voxels"},
            {"--min-weight", &o.pipeline.slices.extractor.weight_threshold, kMustMatch,

@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <iostream>
+#include <sstream>
 #include <stdexcept>
+#include <string>
 #include <type_traits>
 
 #include <CLI/CLI.hpp>
 
 #include "lcmtypes/codec/codec.hpp"
+#include "mapper/core/frame/sensors.hpp"
 #include "mapper/core/fusion/truncation.hpp"
 #include "mapper/source/openni2/device_listing.hpp"
 
@@ -95,8 +98,8 @@ void complete_volume(Options& options) {
   }
   options.pipeline.limit_range_by_noise = max_range_m == 0.0;
   if (max_range_m == 0.0) {
-    const double by_noise_m =
-        range_of(options.pipeline.noise.value_or(DepthNoise()), volume.resolution_m * volume.largest_truncation_vox());
+    const double by_noise_m = range_of(options.pipeline.noise.value_or(DepthNoise()),
+                                       volume.resolution_m * volume.largest_truncation_vox());
     max_range_m = std::min({by_noise_m, TsdfVolume::longest_range_m(volume), kReachOfCamera_m});
   }
   options.source.max_range_m = max_range_m;
@@ -105,8 +108,46 @@ void complete_volume(Options& options) {
   options.pipeline.raycaster.max_depth_m = max_range_m * kRaysBeyondRange;
 }
 
+/// The noise that --depth-noise gives.
+/// @throws std::invalid_argument naming the flag, its value and what was expected
+DepthNoise parse_depth_noise(const std::string& text) {
+  DepthNoise noise;
+  std::istringstream in(text);
+  char comma_1 = 0;
+  char comma_2 = 0;
+  in >> noise.base_m >> comma_1 >> noise.share >> comma_2 >> noise.growth_per_m;
+  const bool is_complete = in && comma_1 == ',' && comma_2 == ',' && (in >> std::ws).eof();
+  const bool is_noise = noise.base_m > 0.0 && noise.base_m <= 1.0 && noise.share >= 0.0 &&
+                        noise.share <= 1.0 && noise.growth_per_m >= 0.0 &&
+                        noise.growth_per_m <= 1.0;
+  if (!is_complete || !is_noise) {
+    throw std::invalid_argument("--depth-noise is '" + text +
+                                "', expected BASE,SHARE,GROWTH with BASE in (0, 1] and the others "
+                                "in [0, 1], such as 0.0012,0,0.00165");
+  }
+  return noise;
+}
+
+/// What is known of the noise of depth.
+void complete_noise(Options& options) {
+  if (!options.sensor.empty() && !options.depth_noise.empty()) {
+    throw std::invalid_argument("--sensor and --depth-noise exclude each other");
+  }
+  if (!options.depth_noise.empty()) {
+    options.pipeline.noise = parse_depth_noise(options.depth_noise);
+    options.pipeline.learn_noise = false;
+  } else if (!options.sensor.empty()) {
+    options.pipeline.noise = noise_of_sensor(options.sensor);
+    if (!options.pipeline.noise) {
+      throw std::invalid_argument("--sensor is '" + options.sensor + "', must be " +
+                                  std::string(kSensorNames));
+    }
+  }
+}
+
 /// Checks the flags and sets what follows from them.
 void complete(Options& options) {
+  complete_noise(options);
   complete_volume(options);
   options.source.lcm_url = options.lcm_url;
   if (options.lock_exposure_s >= 0.0) {

@@ -8,4 +8,8 @@ std::string_view reason_text(const TrackingResult& tracking) {
   return tracking.loss_reason ? to_string(*tracking.loss_reason) : "no given pose within 20 ms";
 }
 
+std::string_view first_reason_text(const TrackingResult& tracking) {
+  return tracking.first_loss_reason ? to_string(*tracking.first_loss_reason) : "";
+}
+
 }  // namespace kintsugi::mapper

@@ -28,8 +28,8 @@ class SliceWorker {
  public:
   struct Config {
     SurfaceExtractor::Config extractor;
-    /// Largest number of blocks in the queue, with those around the slices; a slice larger than this
-    /// waits for an empty queue. 8,192 blocks are 32 MB, about three slices of a room.
+    /// Largest number of blocks in the queue, with those around the slices; a slice larger than
+    /// this waits for an empty queue. 8,192 blocks are 32 MB, about three slices of a room.
     std::size_t max_queued_blocks = 8'192;
     /// Called with each piece of the mesh, in order, on the worker's thread; if empty, no mesh is
     /// made. Exceptions from it are treated like those from extraction.

@@ -93,7 +93,8 @@ DepthNoise DeviationByDepth::fit(const DepthNoise& start, double weight_of_start
     const double z_m = kNearest_m * std::pow(kDepthRatio, bin + 0.5);
     const double seen = std::accumulate(counts_[bin].begin(), counts_[bin].end(), 0.0);
     const double start_m = start.sigma_m(z_m);
-    const double counted_m = seen > 0.0 ? quantile_m(counts_[bin], seen) / deviations_of_quantile_ : 0.0;
+    const double counted_m =
+        seen > 0.0 ? quantile_m(counts_[bin], seen) / deviations_of_quantile_ : 0.0;
     const double variance_m2 =
         (weight_of_start * start_m * start_m + seen * counted_m * counted_m) /
         (weight_of_start + seen);

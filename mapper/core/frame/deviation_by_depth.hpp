@@ -9,8 +9,8 @@ namespace kintsugi::mapper {
 
 /// Counts errors by depth and fits DepthNoise to them.
 ///
-/// Each depth's deviation follows from a quantile of the errors' amounts, which gross errors beyond it
-/// cannot carry away. The three terms of DepthNoise are fitted to these deviations by least
+/// Each depth's deviation follows from a quantile of the errors' amounts, which gross errors beyond
+/// it cannot carry away. The three terms of DepthNoise are fitted to these deviations by least
 /// squares, none of them negative.
 class DeviationByDepth {
  public:

@@ -15,7 +15,8 @@ inline constexpr std::string_view kSensorNames = "structured-light, stereo or ph
 /// Nothing if the name is unknown.
 std::optional<DepthNoise> noise_of_sensor(std::string_view name);
 
-/// By the size of the image alone: phones have 256x192 pixels; all others count as structured light.
+/// By the size of the image alone: phones have 256x192 pixels; all others count as structured
+/// light.
 DepthNoise typical_noise(const Intrinsics& intrinsics);
 
 }  // namespace kintsugi::mapper

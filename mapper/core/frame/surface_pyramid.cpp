@@ -49,9 +49,8 @@ SurfaceMap surface_of(cv::Mat_<float> depth_m, const Intrinsics& intrinsics,
   const cv::Mat_<float> depth_of_normals_m =
       smooth_normals ? smoothed(surface.depth_m, tolerance, kernels) : surface.depth_m;
   const MutableSurfacePlanes planes = planes_of(surface);
-  for_each_row(surface.depth_m.size(), [&](int v) {
-    kernels.normals_row(depth_of_normals_m[0], tolerance, v, planes);
-  });
+  for_each_row(surface.depth_m.size(),
+               [&](int v) { kernels.normals_row(depth_of_normals_m[0], tolerance, v, planes); });
   return surface;
 }
 
@@ -62,7 +61,8 @@ SurfaceMap half_size_surface(const SurfaceMap& fine, const Kernels& kernels) {
   const DepthTolerance tolerance = depth_tolerance(fine.local_noise, fine.intrinsics);
   const SurfacePlanes from = planes_of(fine);
   const MutableSurfacePlanes to = planes_of(half);
-  for_each_row(half.depth_m.size(), [&](int v) { kernels.halve_surface_row(from, tolerance, v, to); });
+  for_each_row(half.depth_m.size(),
+               [&](int v) { kernels.halve_surface_row(from, tolerance, v, to); });
   return half;
 }
 

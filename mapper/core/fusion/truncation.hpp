@@ -20,8 +20,7 @@ TruncationByDepth truncation_by_depth(const TsdfVolume& volume, const DepthNoise
 inline float truncation_at(float depth_m, const TruncationByDepth& truncation) {
   const float squared = depth_m * depth_m;
   const float* c = truncation.variance.c;
-  const float share =
-      truncation.sigmas_per_m * std::sqrt(c[0] + squared * (c[1] + squared * c[2]));
+  const float share = truncation.sigmas_per_m * std::sqrt(c[0] + squared * (c[1] + squared * c[2]));
   return std::clamp(share, truncation.min_share, 1.0F) * truncation.max_m;
 }
 

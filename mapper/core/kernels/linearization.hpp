@@ -12,7 +12,8 @@ struct LinearizationInput {
   SurfacePlanes frame_C;
   SurfacePlanes model_V;
   RigidMotion X_VC;
-  // The two points of a pair are at most sqrt(max_squared_distance_m2 + (max_distance_sigmas sigma)^2) apart.
+  // The two points of a pair are at most sqrt(max_squared_distance_m2 + (max_distance_sigmas
+  // sigma)^2) apart.
   float max_squared_distance_m2 = 0.0F;
   float max_distance_sigmas = 0.0F;
   float min_normal_cosine = 0.0F;

@@ -12,14 +12,13 @@ namespace {
 
 using EdgeLines = std::vector<std::vector<EdgePixel>>;
 
-constexpr int kLinesAround = 2;        ///< on each side, over which an outline must go on
-constexpr float kMaxGapShare = 0.1F;   ///< of the image: widest gap between the two surfaces
+constexpr int kLinesAround = 2;       ///< on each side, over which an outline must go on
+constexpr float kMaxGapShare = 0.1F;  ///< of the image: widest gap between the two surfaces
 
 class Tolerance {
  public:
   explicit Tolerance(const SurfaceMap& surface)
-      : noise_(surface.noise),
-        slope_(depth_tolerance(surface.noise, surface.intrinsics).slope) {}
+      : noise_(surface.noise), slope_(depth_tolerance(surface.noise, surface.intrinsics).slope) {}
 
   float at(float depth_m, int steps) const {
     return DepthTolerance::kSigmas * std::numbers::sqrt2_v<float> *

@@ -7,8 +7,8 @@
 
 namespace kintsugi::mapper {
 
-/// Where a line of pixels (a row or a column) crosses an outline: the last pixel of a surface before
-/// another one that is farther away.
+/// Where a line of pixels (a row or a column) crosses an outline: the last pixel of a surface
+/// before another one that is farther away.
 struct EdgePixel {
   float position_px = 0.0F;  ///< along the line, on the border of the near pixel
   float slope = 0.0F;        ///< change of the position from one line to the next
@@ -23,8 +23,8 @@ struct DepthEdges {
 };
 
 /// Finds the outlines. Invalid pixels between the two surfaces, such as the shadow of a projector,
-/// are skipped. Two depths are different surfaces where DepthTolerance says so. An outline that does
-/// not go on over the two lines on both sides is noise and is left out.
+/// are skipped. Two depths are different surfaces where DepthTolerance says so. An outline that
+/// does not go on over the two lines on both sides is noise and is left out.
 DepthEdges find_depth_edges(const SurfaceMap& surface);
 
 }  // namespace kintsugi::mapper

@@ -31,12 +31,13 @@ class EdgePairs {
   }
 
  private:
-  void add_edge(const EdgePixel& edge, float line, const std::vector<std::vector<EdgePixel>>& lines_V,
-                int axis) {
+  void add_edge(const EdgePixel& edge, float line,
+                const std::vector<std::vector<EdgePixel>>& lines_V, int axis) {
     const float u = axis == 0 ? edge.position_px : line;
     const float v = axis == 0 ? line : edge.position_px;
-    const Eigen::Vector3f point_C = edge.depth_m * Eigen::Vector3f((u - camera_C_.cx) * camera_C_.inverse_fx,
-                                                                   (v - camera_C_.cy) * camera_C_.inverse_fy, 1.0F);
+    const Eigen::Vector3f point_C =
+        edge.depth_m * Eigen::Vector3f((u - camera_C_.cx) * camera_C_.inverse_fx,
+                                       (v - camera_C_.cy) * camera_C_.inverse_fy, 1.0F);
     const Eigen::Vector3f p = X_VC_ * point_C;
     if (!(p.z() > 0.0F)) return;
     const Eigen::Vector2f seen(camera_V_.fx * p.x() / p.z() + camera_V_.cx,
@@ -50,7 +51,8 @@ class EdgePairs {
     float residual = static_cast<float>(config_.max_distance_px);
     const float depth_step_m = max_depth_step_m(p.z());
     for (const EdgePixel& candidate : lines_V[nearest_line]) {
-      if (candidate.ends != edge.ends || !(std::abs(candidate.depth_m - p.z()) < depth_step_m)) continue;
+      if (candidate.ends != edge.ends || !(std::abs(candidate.depth_m - p.z()) < depth_step_m))
+        continue;
       const float distance = candidate.position_px + candidate.slope * off_line - along;
       if (std::abs(distance) >= std::abs(residual)) continue;
       best = &candidate;
@@ -60,7 +62,8 @@ class EdgePairs {
     add_pair(p, residual, best->slope, edge.slope, axis);
   }
 
-  void add_pair(const Eigen::Vector3f& p, float residual, float slope, float frame_slope, int axis) {
+  void add_pair(const Eigen::Vector3f& p, float residual, float slope, float frame_slope,
+                int axis) {
     const auto sigma = static_cast<float>(config_.sigma_px);
     const auto huber = static_cast<float>(config_.huber_sigmas) * sigma;
     const float weight =

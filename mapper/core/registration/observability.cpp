@@ -24,8 +24,7 @@ class NormalPairs {
         R_VC_(X_VC.linear().cast<float>()),
         p_VC_(X_VC.translation().cast<float>()),
         max_squared_distance_(static_cast<float>(gates.max_distance_m * gates.max_distance_m)),
-        squared_sigmas_(
-            static_cast<float>(gates.max_distance_sigmas * gates.max_distance_sigmas)),
+        squared_sigmas_(static_cast<float>(gates.max_distance_sigmas * gates.max_distance_sigmas)),
         min_cosine_(static_cast<float>(gates.min_normal_cosine)) {}
 
   InformationSum sum_rows(int first, int last) const {
@@ -53,8 +52,7 @@ class NormalPairs {
     const float max_squared = max_squared_distance_ + squared_sigmas_ * variance_m2;
     if (!((model_.point(row, col) - p).squaredNorm() < max_squared)) return;
     if (!(frame_normal.dot(model_normal) > min_cosine_)) return;
-    sum.add(increment_row(model_normal, p), increment_row(frame_normal, p),
-            1.0F / variance_m2);
+    sum.add(increment_row(model_normal, p), increment_row(frame_normal, p), 1.0F / variance_m2);
   }
 
   const SurfaceMap& frame_;

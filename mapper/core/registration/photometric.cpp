@@ -86,8 +86,8 @@ class PixelPairs {
     if (!(x < depth_m.cols - 2.0F && y < depth_m.rows - 2.0F)) return std::nullopt;
     const float seen_m =
         depth_m(static_cast<int>(std::lround(y)), static_cast<int>(std::lround(x)));
-    const double allowed_m =
-        std::max(config_.min_depth_step_m, config_.depth_sigmas * frame_.surface.noise.sigma_m(point_K.z()));
+    const double allowed_m = std::max(
+        config_.min_depth_step_m, config_.depth_sigmas * frame_.surface.noise.sigma_m(point_K.z()));
     if (!(std::abs(seen_m - point_K.z()) < allowed_m)) return std::nullopt;  // false for a NaN
     return Eigen::Vector2f(x, y);
   }

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-
 namespace kintsugi::mapper {
 namespace {
 
@@ -57,17 +56,18 @@ void StepSolver::add_open_part(const NormalEquations& geometric, int level, cons
 
   const Matrix6d& W = pure_.weighting;
   const Matrix6d H = sum.H + W.transpose() * geometric.A * W;
-  const Vector6d g = sum.g - sum.H * step.xi +
-                     (W * W).transpose() * (geometric.b - geometric.A * step.xi);
+  const Vector6d g =
+      sum.g - sum.H * step.xi + (W * W).transpose() * (geometric.b - geometric.A * step.xi);
   step.xi += solve_in(split.determined, H, g);
 }
 
 ObservabilityConfig StepSolver::weak_observability(const NormalEquations& geometric) const {
   ObservabilityConfig weak = config_.observability;
   // The typical noise of the inliers' depths.
-  const double noise_m = geometric.weighted_squares > 0.0
-                             ? std::sqrt(geometric.squared_residuals_m2 / geometric.weighted_squares)
-                             : 0.0;
+  const double noise_m =
+      geometric.weighted_squares > 0.0
+          ? std::sqrt(geometric.squared_residuals_m2 / geometric.weighted_squares)
+          : 0.0;
   const double priors = std::max(weak.max_weak_priors, noise_m / weak.prior_m);
   weak.min_reliability = 1.0 / (1.0 + priors * priors);
   return weak;

@@ -36,9 +36,10 @@ struct Step {
 /// increment is x = V_o y_o + V_d y_d:
 ///   (V_o' A V_o) y_o = V_o' b                       of the point-to-plane system A, b alone,
 ///   (V_d' H V_d) y_d = V_d' (g - H V_o y_o)
-/// where H, g is the sum of the systems of the outlines, of the intensities and, as far as it is not
-/// noise, of the surfaces. y_d is zero in the directions of V_d that this sum does not determine:
-/// there the predicted pose stays. Where the surfaces determine all directions, nothing else is used.
+/// where H, g is the sum of the systems of the outlines, of the intensities and, as far as it is
+/// not noise, of the surfaces. y_d is zero in the directions of V_d that this sum does not
+/// determine: there the predicted pose stays. Where the surfaces determine all directions, nothing
+/// else is used.
 class StepSolver {
  public:
   struct Config {
@@ -88,7 +89,7 @@ class StepSolver {
   PhotometricPair colors_;
   Config config_;
   ObservableSplit geometry_;
-  PureInformation pure_;  ///< of the surfaces in geometry_.open
+  PureInformation pure_;                            ///< of the surfaces in geometry_.open
   std::vector<std::optional<EdgesOfLevel>> edges_;  ///< of the levels that needed them
   std::optional<Exposure> exposure_;                ///< as of the step before
 };

@@ -9,8 +9,8 @@ namespace kintsugi::mapper {
 template <typename Pack>
 class SurfaceRows {
  public:
-  static void smooth_depth(const float* padded_m, int width, int v,
-                           const DepthTolerance& tolerance, float* smooth_m) {
+  static void smooth_depth(const float* padded_m, int width, int v, const DepthTolerance& tolerance,
+                           float* smooth_m) {
     constexpr int kReach = kSmoothingReach_px;
     const int pitch = width + 2 * kReach;
     const float* upper_left = padded_m + v * pitch;
@@ -220,9 +220,9 @@ class SurfaceRows {
     const Float center = Float::load(here, count);
     const Float reach = same_surface_m(tolerance, center, 2);
     // A NaN among the neighbours makes these comparisons false.
-    const Mask is_surface =
-        (column > Float(0.0F)) & (column < Float(static_cast<float>(camera.width - 1))) &
-        (center > Float(0.0F)) & (abs(du.z) < reach) & (abs(dv.z) < reach);
+    const Mask is_surface = (column > Float(0.0F)) &
+                            (column < Float(static_cast<float>(camera.width - 1))) &
+                            (center > Float(0.0F)) & (abs(du.z) < reach) & (abs(dv.z) < reach);
     const Float nan(kNaN);
     return {select(is_surface, normal.x, nan), select(is_surface, normal.y, nan),
             select(is_surface, normal.z, nan)};

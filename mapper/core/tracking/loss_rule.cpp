@@ -28,8 +28,8 @@ std::optional<LossReason> find_fault(const RegistrationQuality& quality, const E
     return LossReason::kLargeResidual;
   }
   if (quality.undetermined > 0) return LossReason::kUndetermined;
-  if (quality.sigma_m > std::max(needed.max_sigma_vox * quality.voxel_m,
-                                 needed.max_sigma_noises * quality.noise_m)) {
+  if (quality.sigma_m >
+      std::max(needed.max_sigma_vox * quality.voxel_m, needed.max_sigma_noises * quality.noise_m)) {
     return LossReason::kUncertain;
   }
   return std::nullopt;

@@ -74,8 +74,8 @@ class LossRule {
                         .max_rms_sigmas = 2.0,
                         .max_sigma_vox = 1.15,
                         .max_sigma_noises = 0.5};
-    double usual_decay = 0.98;       ///< of what the usual shares were, per accepted frame
-    double max_usual_share = 0.2;    ///< the usual shares count up to this
+    double usual_decay = 0.98;     ///< of what the usual shares were, per accepted frame
+    double max_usual_share = 0.2;  ///< the usual shares count up to this
     int grace_frames = 10;  ///< accepted frames before min_inlier_share applies, because the model
                             ///< is noisy at the start
 
@@ -97,8 +97,8 @@ class LossRule {
 
  private:
   bool is_cut_off(const RegistrationQuality& quality) const;
-  /// Some cameras often measure a depth that is grossly wrong, even if the pose is right: the shares
-  /// of points behind and in front of surfaces may exceed the limits by what is usual.
+  /// Some cameras often measure a depth that is grossly wrong, even if the pose is right: the
+  /// shares of points behind and in front of surfaces may exceed the limits by what is usual.
   Evidence allow_usual(Evidence needed) const;
 
   Config config_;

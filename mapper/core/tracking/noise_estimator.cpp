@@ -28,14 +28,16 @@ void NoiseEstimator::add(const SurfaceMap& frame_C, const SurfaceMap& model_V, c
   for (int v = 0; v < frame_C.depth_m.rows; ++v) {
     for (int u = 0; u < frame_C.depth_m.cols; ++u) {
       const float depth_m = frame_C.depth_m(v, u);
-      if (!(depth_m >= static_cast<float>(DeviationByDepth::kNearest_m)) || std::isnan(frame_C.normal_z(v, u))) {
+      if (!(depth_m >= static_cast<float>(DeviationByDepth::kNearest_m)) ||
+          std::isnan(frame_C.normal_z(v, u))) {
         continue;
       }
       const Eigen::Vector3f p = X * frame_C.point(v, u);
       const float x = camera.fx * p.x() / p.z() + camera.cx + 0.5F;
       const float y = camera.fy * p.y() / p.z() + camera.cy + 0.5F;
       if (!(p.z() > 0.0F && x >= 0.0F && y >= 0.0F)) continue;
-      if (!(x < static_cast<float>(camera.width) && y < static_cast<float>(camera.height))) continue;
+      if (!(x < static_cast<float>(camera.width) && y < static_cast<float>(camera.height)))
+        continue;
       const int col = static_cast<int>(x);
       const int row = static_cast<int>(y);
       const Eigen::Vector3f normal = model_V.normal(row, col);

@@ -10,10 +10,10 @@ namespace kintsugi::mapper {
 
 /// Estimates DepthNoise from how far the points of registered frames are from the model.
 ///
-/// The residuals, along the camera's z, are counted by depth (see DeviationByDepth). The start value
-/// counts like a few images, and it is the least value: the residuals of a camera that is more precise
-/// are those of the model, which the same weights suit. Older frames count less and less, so that the
-/// estimate follows a camera that warms up.
+/// The residuals, along the camera's z, are counted by depth (see DeviationByDepth). The start
+/// value counts like a few images, and it is the least value: the residuals of a camera that is
+/// more precise are those of the model, which the same weights suit. Older frames count less and
+/// less, so that the estimate follows a camera that warms up.
 class NoiseEstimator {
  public:
   explicit NoiseEstimator(const DepthNoise& start) : start_(start), noise_(start) {}

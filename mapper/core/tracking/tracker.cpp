@@ -11,8 +11,8 @@
 namespace kintsugi::mapper {
 namespace {
 
-/// The errors of a pose and of the prediction from the two before it are smaller than this, in units
-/// of the pose's uncertainty...
+/// The errors of a pose and of the prediction from the two before it are smaller than this, in
+/// units of the pose's uncertainty...
 constexpr double kPoseNoise_sigmas = 4.0;
 /// ...or than this, metres (and radians): shaking hands.
 constexpr double kPoseNoise_m = 0.02;

@@ -82,8 +82,8 @@ class Tracker {
 
   Config config_;
   LossRule loss_rule_;
-  Pose X_WC_ = Pose::Identity();            ///< last good
-  std::int64_t utime_ = 0;                  ///< of the last good pose
+  Pose X_WC_ = Pose::Identity();  ///< last good
+  std::int64_t utime_ = 0;        ///< of the last good pose
   /// From which predict() goes on: the last good pose or, after it, one that was determined but for
   /// some directions, in which it is predicted.
   Pose X_WC_followed_ = Pose::Identity();

@@ -18,8 +18,8 @@ struct TrackingResult {
   std::optional<LossReason> loss_reason;        ///< set when state is kLost
   std::optional<LossReason> first_loss_reason;  ///< why the pose that continues the motion was
                                                 ///< rejected, if it was
-  TwistBasis open_to_depth_C;             ///< directions of motion that depth does not determine
-  TwistBasis undetermined_C;  ///< of these, the ones that colour leaves open; any: state is kLost
+  TwistBasis open_to_depth_C;  ///< directions of motion that depth does not determine
+  TwistBasis undetermined_C;   ///< of these, the ones that colour leaves open; any: state is kLost
 };
 
 }  // namespace kintsugi::mapper
