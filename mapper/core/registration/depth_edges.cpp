@@ -10,8 +10,6 @@
 namespace kintsugi::mapper {
 namespace {
 
-using EdgeLines = std::vector<std::vector<EdgePixel>>;
-
 constexpr int kLinesAround = 2;       ///< on each side, over which an outline must go on
 constexpr float kMaxGapShare = 0.1F;  ///< of the image: widest gap between the two surfaces
 

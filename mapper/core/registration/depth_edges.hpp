@@ -16,10 +16,13 @@ struct EdgePixel {
   bool ends = false;         ///< the near surface is on the side of lower positions
 };
 
+/// The edges of each row or column of an image.
+using EdgeLines = std::vector<std::vector<EdgePixel>>;
+
 /// Outlines that are less than 45 degrees from vertical are in the rows, the others in the columns.
 struct DepthEdges {
-  std::vector<std::vector<EdgePixel>> rows;
-  std::vector<std::vector<EdgePixel>> columns;
+  EdgeLines rows;
+  EdgeLines columns;
 };
 
 /// Finds the outlines. Invalid pixels between the two surfaces, such as the shadow of a projector,

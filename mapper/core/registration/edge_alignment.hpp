@@ -10,7 +10,9 @@
 namespace kintsugi::mapper {
 
 struct EdgeAlignmentConfig {
-  double sigma_px = 1.0;          ///< deviation of an outline's position
+  /// The deviation of an outline's position is that of the residuals, but not below this: an
+  /// outline is found between two pixels.
+  double min_sigma_px = 0.3;
   double max_distance_px = 8.0;   ///< between the outlines of a pair
   double huber_sigmas = 1.345;    ///< larger residuals are weighted down
   double depth_sigmas = 4.0;      ///< the depths of a pair differ by at most this...

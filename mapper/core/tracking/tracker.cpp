@@ -99,6 +99,11 @@ TrackingResult Tracker::track(const TrackingInput& frame, const Model& model) {
   if (!loss) update_reference(registration, std::move(pyramid));
   TrackingResult result = loss ? lose(registration, *loss) : accept(registration, frame);
   result.first_loss_reason = first_loss;
+  if (loss && utime_followed_ < frame.utime) follow_last_frame(frame);
+  last_frame_.reset();
+  if (utime_followed_ == frame.utime) {
+    last_frame_ = Model{frame.surface_C, X_WC_followed_, model.voxel_m};
+  }
   return result;
 }
 
@@ -161,6 +166,14 @@ void Tracker::follow_partly(const Registration& registration, std::int64_t utime
   velocity_C_ = velocity_between(X_WC_followed_, registration.X_WC, seconds);
   X_WC_followed_ = registration.X_WC;
   utime_followed_ = utime;
+}
+
+void Tracker::follow_last_frame(const TrackingInput& frame) {
+  if (!last_frame_ || !motion_continues(frame.utime)) return;
+  const Registration registration =
+      register_frame(frame, *last_frame_, {}, predict(frame.utime), config_.registration);
+  const auto loss = loss_rule_.judge(registration.quality);
+  if (!loss || *loss == LossReason::kUndetermined) follow_partly(registration, frame.utime);
 }
 
 TrackingResult Tracker::lose(const Registration& registration, LossReason reason) {

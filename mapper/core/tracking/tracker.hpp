@@ -30,8 +30,9 @@ class Tracker {
     /// For so long a lost camera is still expected to go on with its velocity: what a hand does in
     /// a third of a second, before it reverses.
     std::int64_t coast_us = 300'000;
-    /// The same where only some directions of the motion are not determined, since the last good
-    /// pose.
+    /// A lost camera whose motion is followed, from one frame to the next or in some directions, is
+    /// expected there for so long after the last good pose: until then the error of what is not
+    /// measured stays within reach of a registration.
     std::int64_t coast_partly_us = 1'500'000;
     /// m/s^2 (and rad/s^2), of a hand-held camera: a pose farther from the prediction than this
     /// explains is judged as one found anew.
@@ -78,6 +79,7 @@ class Tracker {
   bool follows_motion(const Registration& registration, std::int64_t utime) const;
   TrackingResult accept(const Registration& registration, const TrackingInput& frame);
   void follow_partly(const Registration& registration, std::int64_t utime);
+  void follow_last_frame(const TrackingInput& frame);
   TrackingResult lose(const Registration& registration, LossReason reason);
 
   Config config_;
@@ -92,6 +94,7 @@ class Tracker {
   bool motion_known_ = false;               ///< velocity_C_ was measured
   bool lost_ = false;
   std::optional<PhotometricReference> reference_;  ///< none without colour
+  std::optional<Model> last_frame_;                ///< its own surface, if it was followed
 };
 
 }  // namespace kintsugi::mapper
