@@ -25,8 +25,8 @@ OptionGroup source_options(Options& o) {
        {"--replay", &o.source.replay, kMayDiffer,
         "map every frame of a recording, as fast as possible"},
        {"--max-range", &o.max_range_m, kMustMatch,
-        "depth beyond this is not used; 0: by the noise of depth, 5.5 m with voxels of 8.79 mm; "
-        "with --volume cube 6.5 m",
+        "depth beyond this is not used; 0: 6.5 m, with --volume range less where depth is too noisy "
+        "for the voxels",
         "m"},
        // It becomes a part of the address of the device.
        {"--ground-truth", &o.ground_truth_dir, kMustMatch,
