@@ -15,28 +15,28 @@ namespace {
 using enum OnResume;
 
 OptionGroup source_options(Options& o) {
-  return {
-      "Where frames come from",
-      {{"--device", &o.source.device, kMustMatch,
-        "a .oni file, folder://PATH, synthetic://NAME, lcm://CHANNEL or the URI of a camera; "
-        "empty: the first camera"},
-       {"--calibration", &o.source.calibration_file, kMustMatch,
-        "camera.txt: fx fy cx cy width height depth_scale [k1 k2 p1 p2 k3]"},
-       {"--replay", &o.source.replay, kMayDiffer,
-        "map every frame of a recording, as fast as possible"},
-       {"--max-range", &o.max_range_m, kMustMatch,
-        "depth beyond this is not used; 0: by the noise of depth, 5.5 m with voxels of 8.79 mm; "
-        "with --volume cube 6.5 m",
-        "m"},
-       // It becomes a part of the address of the device.
-       {"--ground-truth", &o.ground_truth_dir, kMustMatch,
-        "folder into which a synthetic:// device writes its ground truth"},
-       {"--max-frames",
-        &o.max_frames,
-        kMayDiffer,
-        "stop after this number of frames; 0: at the end",
-        "",
-        {0, 1e9}}}};
+  return {"Where frames come from",
+          {{"--device", &o.source.device, kMustMatch,
+            "a .oni file, folder://PATH, synthetic://NAME, lcm://CHANNEL or the URI of a camera; "
+            "empty: the first camera"},
+           {"--calibration", &o.source.calibration_file, kMustMatch,
+            "camera.txt: fx fy cx cy width height depth_scale [k1 k2 p1 p2 k3]"},
+           {"--replay", &o.source.replay, kMayDiffer,
+            "map every frame of a recording, as fast as possible"},
+           {"--max-range", &o.max_range_m, kMustMatch,
+            "depth beyond this is not used; 0: 6.5 m, with --volume range less where depth is too "
+            "noisy "
+            "for the voxels",
+            "m"},
+           // It becomes a part of the address of the device.
+           {"--ground-truth", &o.ground_truth_dir, kMustMatch,
+            "folder into which a synthetic:// device writes its ground truth"},
+           {"--max-frames",
+            &o.max_frames,
+            kMayDiffer,
+            "stop after this number of frames; 0: at the end",
+            "",
+            {0, 1e9}}}};
 }
 
 OptionGroup camera_options(Options& o) {

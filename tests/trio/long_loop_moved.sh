@@ -6,7 +6,7 @@ source "$(dirname "${BASH_SOURCE[0]}")/lib.sh"
 if [[ -n "${KINTSUGI_LOOP_LOG:-}" ]]; then # a run.lcm of scripts/trio --device synthetic://loop
   cp "$KINTSUGI_LOOP_LOG" run.lcm
 else
-  run_trio --private --device synthetic://loop --replay --out live
+  run_trio --private --device synthetic://loop --replay --volume cube --out live
   mv live/run.lcm run.lcm
 fi
 "$KINTSUGI_TEST_BIN/trio_revise_slices" run.lcm revised.lcm

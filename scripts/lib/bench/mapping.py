@@ -4,7 +4,7 @@ import re
 from collections import Counter
 
 from .accuracy import error, trajectory_errors
-from .run import room
+from .run import PAPER_VOLUME, room
 from .tables import first_table, fixed, markdown, number, quantile, read_csv
 
 VOXEL_M = 4.5 / 512  # the mapper's default
@@ -139,7 +139,7 @@ def live(run):
     rows = []
     for source in run.recordings:
         name = f"live_{source.name}"
-        printed = run.trio(name, source, "--no-log")
+        printed = run.trio(name, source, "--no-log", *PAPER_VOLUME)
         log = (run.folder / name / "mapper.log").read_text()
         frames, dropped = (int(re.findall(rf"(\d+) {what}", log)[-1]) for what in ("frames in", "dropped"))
         cpu = re.findall(r"(?m)^ *CPU: .*", printed)[-1]
@@ -155,7 +155,7 @@ def pictures(run):
     lines = []
     for source in run.inputs("office"):
         name = f"picture_{source.name}"
-        run.trio(name, source, "--replay")
+        run.trio(name, source, "--replay", "--volume", "range")
         for yaw, pitch in ((30, 40), (-30, 65)):
             out = run.folder / name / f"from_{yaw}"
             run.kintsugi("viewer", "--log", run.folder / name / "run.lcm", "--out", out, "--size", "1600x1200",

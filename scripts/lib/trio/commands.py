@@ -18,6 +18,8 @@ LINGER_S = 60  # without a viewer, which knows when all is drawn: until there ha
 UNTIL_TOLD = -1
 READY_TIMEOUT_S = 20
 INTERRUPTED = 130  # exit code, as shells have it
+# Of the mapper: they choose the volume, or may do so.
+VOLUME_FLAGS = {"--volume", "--volume-size", "--config"}
 # What the mapper published. Messages of the recorded segmenter would contradict those of the one that listens now.
 REPLAYED_CHANNELS = "^(CLOUD_SLICE|CAMERA_POSE|MAPPER_STATUS)$"
 
@@ -98,11 +100,18 @@ def linger_s(choice):
     return UNTIL_TOLD if "viewer" in choice.only else LINGER_S
 
 
+def chosen_volume(words):
+    """The volume for a mapper with these options. By default a mapper keeps a whole room in its volume, so that the
+    segmenter and the viewer would have nothing to do before the end."""
+    return [] if any(word.partition("=")[0] in VOLUME_FLAGS for word in words) else ["--volume=cube"]
+
+
 def mapper_process(choice, folder):
     def command(resume):
         log_option = "--resume" if resume and folder.has("mapper.lcm") else "--store"
         return [program("mapper"), "--output-trajectory=" + folder.file("trajectory.txt"),
-                f"--linger={linger_s(choice)}", f"{log_option}={folder.file('mapper.lcm')}", *choice.mapper]
+                f"--linger={linger_s(choice)}", f"{log_option}={folder.file('mapper.lcm')}",
+                *chosen_volume(choice.mapper), *choice.mapper]
 
     # A mapper that gets SIGTERM finishes its session, and answers requests until it gets another one. When this
     # supervisor is killed the session must remain unfinished, so that --resume can continue it.

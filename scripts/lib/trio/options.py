@@ -15,8 +15,8 @@ STORE = "store"  # for the command itself
 # Flag, metavar (None: a switch), what is done with it, for which process or with which default, help.
 TRIO_OPTIONS = (
     ("--device", "URI", PASS_ON, "mapper",
-     "where frames come from: FILE.oni, folder://PATH, synthetic://office|loop|two-floors, or a camera's URI; "
-     "empty or not given: the first camera"),
+     "where frames come from: FILE.oni, folder://PATH, synthetic://NAME (a scene in mapper/README.md), or a camera's "
+     "URI; empty or not given: the first camera"),
     ("--out", "DIR", STORE, "out/trio",
      "folder of the run (default %(default)s); files of an earlier run in it are moved to DIR/earlier"),
     ("--resume", None, STORE, False,
@@ -24,7 +24,10 @@ TRIO_OPTIONS = (
     ("--mode", "MODE", PASS_ON, "segmenter", "segmentation mode (default: the segmenter's own)"),
     ("--preset", "NAME", PASS_ON, "segmenter", "parameters of the segmenter: objects (default) or paper"),
     ("--resolution", "M", PASS_ON, "mapper", "side of a voxel in metres"),
-    ("--volume-size", "M", PASS_ON, "mapper", "side of the moving volume in metres"),
+    ("--volume", "NAME", PASS_ON, "mapper",
+     "what the mapper keeps around the camera. cube (the default here): 4.5 m, what lies outside is sent during the "
+     "run; range: all that the camera sees, most of it is sent at the end"),
+    ("--volume-size", "M", PASS_ON, "mapper", "side of the cube in metres"),
     ("--calibration", "FILE", PASS_ON, "mapper", "camera.txt of the camera"),
     ("--replay", None, PASS_ON, "mapper",
      "map every frame, as fast as processing allows (recordings and synthetic rooms)"),

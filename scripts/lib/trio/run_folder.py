@@ -15,7 +15,8 @@ LOCK_TIMEOUT_S = 3.0  # the processes of a supervisor that was killed end soon
 RUN_FILES = (
     "mapper.lcm", "mapper.*.lcm", "segmenter.map", "run.lcm", "run.lcm.partial", "segments*.ply", "segments*.json",
     "segments*.csv", "final.png", "map_final*.png", "segments_final*.png", "final_*.png", "snapshot_*.png", "run.mp4",
-    "trajectory.txt", "trajectory.part*.txt", "status.csv", "mapper.log", "segmenter.log", "viewer.log", "logger.log", "trio.options")
+    "trajectory.txt", "trajectory.part*.txt", "status.csv", "mapper.log", "segmenter.log", "viewer.log", "logger.log",
+    "trio.options")
 PROCESSES_WITH_PID_FILE = ("mapper", "segmenter", "viewer", "logger", "player")
 
 
