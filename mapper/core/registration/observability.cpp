@@ -71,7 +71,7 @@ void ObservabilityConfig::validate() const {
   check_range("min_reliability", min_reliability, 1e-3, 1.0);
   check_range("prior_m", prior_m, 1e-6, 1e3);
   check_range("prior_rad", prior_rad, 1e-6, 1e3);
-  check_range("max_weak_priors", max_weak_priors, 1e-3, 1e3);
+  check_range("sufficient_priors", sufficient_priors, 0.0, 1e3);
   check_range("min_purity", min_purity, 1e-3, 1.0);
 }
 

@@ -36,10 +36,10 @@ struct ObservabilityConfig {
   double min_reliability = 0.125;
   double prior_m = 0.003;    ///< standard deviation of the predicted position,
   double prior_rad = 0.003;  ///< and of the predicted orientation
-  /// Directions that are measured less certainly than predicted count as determined all the same if
-  /// their deviation is at most this, in units of the prior's, or at most the noise of single
-  /// depths: enough for the map.
-  double max_weak_priors = 7.0;
+  /// Directions that depth alone does not determine may be less certain than the prediction: their
+  /// deviation is at most this, in units of the prior's. The surfaces of both frames then still lie
+  /// within half of the truncation distance of each other.
+  double sufficient_priors = 5.0;
   /// Least share of depth's information on a direction, not determined by depth alone, that is no
   /// noise of the normals. The noise of an image scatters rho by far less.
   double min_purity = 0.2;

@@ -50,7 +50,7 @@ void StepSolver::add_open_part(const NormalEquations& geometric, int level, cons
   sum.information.C += pure_.information;
 
   const ObservableSplit split =
-      split_observable(sum.information, geometry_.open, weak_observability(geometric));
+      split_observable(sum.information, geometry_.open, sufficient(geometric));
   step.undetermined = split.open;
   step.photometric_reliability = split.least_determined;
 
@@ -61,16 +61,14 @@ void StepSolver::add_open_part(const NormalEquations& geometric, int level, cons
   step.xi += solve_in(split.determined, H, g);
 }
 
-ObservabilityConfig StepSolver::weak_observability(const NormalEquations& geometric) const {
-  ObservabilityConfig weak = config_.observability;
-  // The typical noise of the inliers' depths.
-  const double noise_m =
-      geometric.weighted_squares > 0.0
-          ? std::sqrt(geometric.squared_residuals_m2 / geometric.weighted_squares)
-          : 0.0;
-  const double priors = std::max(weak.max_weak_priors, noise_m / weak.prior_m);
-  weak.min_reliability = 1.0 / (1.0 + priors * priors);
-  return weak;
+ObservabilityConfig StepSolver::sufficient(const NormalEquations& geometric) const {
+  ObservabilityConfig config = config_.observability;
+  if (!(geometric.weighted_squares > 0.0)) return config;
+  const double noise_m = std::sqrt(geometric.squared_residuals_m2 / geometric.weighted_squares);
+  // A deviation d has rho = P / (P + D) with P and D the variances of the prior and of d.
+  const double ratio = std::max(config.sufficient_priors, noise_m / config.prior_m);
+  config.min_reliability = std::min(config.min_reliability, 1.0 / (1.0 + ratio * ratio));
+  return config;
 }
 
 void StepSolver::add_edges(int level, const Pose& X_VC, FurtherEquations& sum) {

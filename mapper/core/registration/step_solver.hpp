@@ -79,8 +79,10 @@ class StepSolver {
   };
 
   void add_open_part(const NormalEquations& geometric, int level, const Pose& X_VC, Step& step);
-  /// Which certainty is enough for directions that depth alone does not determine.
-  ObservabilityConfig weak_observability(const NormalEquations& geometric) const;
+  /// Which certainty is enough for directions that depth alone does not determine: see
+  /// sufficient_priors, or a deviation like the typical noise of the inliers' depths, which the map
+  /// averages over many frames.
+  ObservabilityConfig sufficient(const NormalEquations& geometric) const;
   void add_edges(int level, const Pose& X_VC, FurtherEquations& sum);
   void add_intensities(int level, const Pose& X_VC, FurtherEquations& sum, Step& step);
 
