@@ -10,7 +10,10 @@ RegistrationQuality good() {
   quality.covered_share = 0.9;
   quality.overlap_share = 0.85;
   quality.inlier_share = 0.8;
+  quality.voxel_m = 4.5 / 512;
+  quality.noise_m = 0.004;
   quality.rms_m = 0.004;
+  quality.rms_sigmas = 1.0;
   quality.sigma_m = 0.003;
   quality.solved = true;
   return quality;
@@ -19,7 +22,7 @@ RegistrationQuality good() {
 /// Past its grace period, used to a view that is nearly all valid.
 LossRule settled() {
   LossRule rule({});
-  for (int i = 0; i < 20; ++i) rule.remember(0.9, true);
+  for (int i = 0; i < 20; ++i) rule.remember(good(), true);
   return rule;
 }
 
@@ -50,6 +53,7 @@ TEST(LossRule, NamesWhatIsWrong) {
   EXPECT_EQ(rule.judge(quality), LossReason::kBeforeSurface);
   quality = good();
   quality.rms_m = 0.0141;
+  quality.rms_sigmas = 2.3;
   EXPECT_EQ(rule.judge(quality), LossReason::kLargeResidual);
   quality = good();
   quality.sigma_m = 0.021;
@@ -90,7 +94,7 @@ TEST(LossRule, ForgivesFewInliersWhileTheModelIsThin) {
   quality.inlier_share = 0.2;
   for (int i = 0; i < LossRule::Config{}.grace_frames; ++i) {
     EXPECT_EQ(rule.judge(quality), std::nullopt) << i;
-    rule.remember(quality.covered_share, true);
+    rule.remember(quality, true);
   }
   EXPECT_EQ(rule.judge(quality), LossReason::kTooFewInliers);
 }
@@ -101,7 +105,7 @@ TEST(LossRule, GetsUsedToAViewThatStaysSmall) {
   quality.covered_share = 0.25;
   int frames = 0;
   while (rule.judge(quality) && frames < 100) {
-    rule.remember(quality.covered_share, false);
+    rule.remember(quality, false);
     ++frames;
   }
   // 0.25 >= 0.6 * 0.9 * 0.9^n from n = 8 on.
