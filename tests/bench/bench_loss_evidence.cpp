@@ -44,7 +44,7 @@ Tracker::Config credulous() {
   Tracker::Config config;
   config.loss.min_covered_share = 0.0;
   config.loss.max_covered_drop = 1.0;
-  config.loss.following = {.max_sigma_m = 1e6};
+  config.loss.following = {.max_sigma_vox = 1e6};
   return config;
 }
 
@@ -138,6 +138,7 @@ void print(const std::vector<Trial>& trials) {
       {"behind / overlap", [](const RegistrationQuality& q) { return q.behind_share; }},
       {"in front / overlap", [](const RegistrationQuality& q) { return q.in_front_share; }},
       {"rms, mm", [](const RegistrationQuality& q) { return 1e3 * q.rms_m; }},
+      {"rms, sigmas", [](const RegistrationQuality& q) { return q.rms_sigmas; }},
       {"sigma, mm", [](const RegistrationQuality& q) { return 1e3 * q.sigma_m; }},
   };
   std::cout << std::fixed << std::setprecision(3)
@@ -164,13 +165,14 @@ void print(const std::vector<Trial>& trials) {
 void write_csv(const std::vector<Trial>& trials, const std::string& file) {
   std::ofstream csv(file);
   csv << "from_there,damage,start_error_m,error_m,solved,covered,overlap,inliers,behind,in_front,"
-         "rms_m,sigma_m\n";
+         "rms_m,rms_sigmas,sigma_m,noise_m\n";
   for (const Trial& trial : trials) {
     const RegistrationQuality& q = trial.quality;
     csv << trial.from_there << ',' << static_cast<int>(trial.damage) << ',' << trial.start_error_m
         << ',' << trial.error_m << ',' << q.solved << ',' << q.covered_share << ','
         << q.overlap_share << ',' << q.inlier_share << ',' << q.behind_share << ','
-        << q.in_front_share << ',' << q.rms_m << ',' << q.sigma_m << '\n';
+        << q.in_front_share << ',' << q.rms_m << ',' << q.rms_sigmas << ',' << q.sigma_m << ','
+        << q.noise_m << '\n';
   }
 }
 

@@ -2,6 +2,7 @@
 // Fusion of a frame into a block, one voxel at a time: the operations of the kernels in their
 // order, written without lanes.
 
+#include <cmath>
 #include <cstdint>
 
 #include "mapper/core/kernels/integration.hpp"
@@ -10,7 +11,9 @@
 namespace kintsugi::mapper::testing {
 
 inline float truncation_share(float depth_m, const TruncationByDepth& truncation) {
-  const float share = truncation.base_share + depth_m * depth_m * truncation.growth_share_per_m2;
+  const float squared = depth_m * depth_m;
+  const float* c = truncation.variance.c;
+  const float share = truncation.sigmas_per_m * std::sqrt(c[0] + squared * (c[1] + squared * c[2]));
   const float raised = share > truncation.min_share ? share : truncation.min_share;
   return raised < 1.0F ? raised : 1.0F;
 }

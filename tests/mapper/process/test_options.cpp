@@ -1,51 +1,17 @@
-#include <cstdio>
-#include <filesystem>
-#include <fstream>
-#include <stdexcept>
-#include <vector>
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include "mapper/process/options.hpp"
+#include "mapper/core/fusion/truncation.hpp"
+#include "tests/mapper/process/parsed_options.hpp"
 
 namespace kintsugi::mapper {
 namespace {
 
+using testing::error_of;
 using ::testing::HasSubstr;
-
-std::variant<Options, int> parse(std::vector<const char*> flags) {
-  flags.insert(flags.begin(), "kintsugi-mapper");
-  return parse_options(static_cast<int>(flags.size()), flags.data());
-}
-
-Options options_of(const std::vector<const char*>& flags) {
-  return std::get<Options>(parse(flags));
-}
-
-std::string error_of(const std::vector<const char*>& flags) {
-  try {
-    parse(flags);
-  } catch (const std::exception& error) {
-    return error.what();
-  }
-  return "no error";
-}
-
-class TemporaryFile {
- public:
-  explicit TemporaryFile(const std::string& text)
-      : path_(std::filesystem::temp_directory_path() /
-              ("kintsugi_options_" + std::to_string(::getpid()) + ".txt")) {
-    std::ofstream(path_) << text;
-  }
-  ~TemporaryFile() { std::filesystem::remove(path_); }
-  std::string path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
+using testing::options_of;
+using testing::parse;
+using testing::TemporaryFile;
 
 TEST(Options, DefaultsAreTheDesigns) {
   const Options options = options_of({});
@@ -164,10 +130,14 @@ TEST(Options, TheVolumeReachesAsFarAsDepthIsUsed) {
 }
 
 TEST(Options, TheRangeEndsWhereDepthIsTooNoisyOrTheVolumeEnds) {
-  const double resolution_m = 4.5 / 512;
-  const double range_m = options_of({}).source.max_range_m;
-  EXPECT_NEAR(3.0 * DepthNoise().sigma_m(range_m), 16 * resolution_m, 1e-9);
-  EXPECT_LT(options_of({"--resolution", "0.003"}).source.max_range_m, 3.2);
+  // As far as the largest truncation distance, 16 voxels, is two deviations of the depth.
+  const double range_m = options_of({"--resolution", "0.006"}).source.max_range_m;
+  EXPECT_NEAR(kRangeSigmas * DepthNoise().sigma_m(range_m), 16 * 0.006, 1e-9);
+  const double noisy_m = options_of({"--depth-noise", "0.002,0.01,0.003"}).source.max_range_m;
+  const DepthNoise noisy{.base_m = 0.002, .share = 0.01, .growth_per_m = 0.003};
+  EXPECT_NEAR(kRangeSigmas * noisy.sigma_m(noisy_m), 16 * 4.5 / 512, 1e-9);
+  EXPECT_LT(options_of({"--resolution", "0.003"}).source.max_range_m, 3.2) << "the volume ends";
+  EXPECT_DOUBLE_EQ(options_of({}).source.max_range_m, 6.5) << "the reach of 16 bits of 0.1 mm";
   EXPECT_DOUBLE_EQ(options_of({"--resolution", "0.02"}).source.max_range_m, 6.5);
 }
 

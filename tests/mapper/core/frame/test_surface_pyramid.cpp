@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "mapper/core/frame/covered_share.hpp"
+#include "mapper/core/frame/kernel_arguments.hpp"
 #include "mapper/core/frame/surface_pyramid.hpp"
 #include "mapper/core/kernels/instruction_set.hpp"
 #include "tests/mapper/core/box_room.hpp"
@@ -12,6 +13,16 @@ namespace kintsugi::mapper {
 namespace {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+
+/// A part of the image of test_camera(): its pixels are as wide.
+Intrinsics cut_out(int width, int height) {
+  Intrinsics camera = testing::test_camera();
+  camera.cx = 0.5 * width - 0.5;
+  camera.cy = 0.5 * height - 0.5;
+  camera.width = width;
+  camera.height = height;
+  return camera;
+}
 
 TEST(HalfSizeCamera, SeesTheMiddleOfFourPixelsAsOne) {
   const Intrinsics full{500, 480, 320.25, 239.5, 641, 480, {}};
@@ -27,7 +38,8 @@ TEST(HalfSizeDepth, AveragesOneSurfaceAndKeepsTheNearerOfTwo) {
   cv::Mat_<float> depth(2, 8);
   depth << 1.00F, 1.02F, 1.0F, 3.0F, kNaN, 2.0F, kNaN, kNaN,  //
       1.00F, 1.02F, 3.0F, 3.0F, 2.02F, kNaN, kNaN, kNaN;
-  const cv::Mat_<float> half = half_size(depth);
+  const cv::Mat_<float> half =
+      half_size(depth, depth_tolerance(DepthNoise(), testing::test_camera()));
   ASSERT_EQ(half.size(), cv::Size(4, 1));
   EXPECT_FLOAT_EQ(half(0, 0), 1.01F);
   EXPECT_FLOAT_EQ(half(0, 1), 1.0F);   // not 2.5: there is nothing there
@@ -55,7 +67,7 @@ TEST(SurfaceFromDepth, GivesThePointsAndNormalsOfAnExactRoom) {
 }
 
 TEST(SurfaceFromDepth, HasNoNormalBesideAHoleOrAStep) {
-  const Intrinsics camera = testing::test_camera(16, 12);
+  const Intrinsics camera = cut_out(16, 12);
   cv::Mat_<float> depth(12, 16, 2.0F);
   depth(5, 5) = kNaN;
   depth.colRange(10, 16).setTo(2.5F);
@@ -88,7 +100,7 @@ TEST(PyramidFromDepth, StartsAfterTheSkippedSizesAndCutsFarDepth) {
 }
 
 TEST(PyramidFromSurface, AveragesWhatLiesWithTheNearest) {
-  SurfaceMap fine(testing::test_camera(4, 2));
+  SurfaceMap fine(cut_out(4, 2));
   fine.depth_m << 2.0F, 2.02F, kNaN, kNaN,  //
       3.0F, 2.04F, kNaN, kNaN;
   for (int i = 0; i < 8; ++i) fine.set_normal(i / 4, i % 4, {0, 0, -1});
@@ -111,7 +123,7 @@ TEST(Pyramids, GiveTheSameBytesWithEveryInstructionSet) {
   cv::Mat_<float> depth = testing::render_depth(testing::looking_at_the_crate(), camera);
   depth(cv::Rect(20, 30, 37, 11)).setTo(kNaN);
   const auto pyramids = [&](InstructionSet set) {
-    SurfacePyramid all = pyramid_from_depth(depth, camera, 1, 3, 3.0F, kernels_for(set));
+    SurfacePyramid all = pyramid_from_depth(depth, camera, 1, 3, 3.0F, {}, kernels_for(set));
     for (const SurfaceMap& level : pyramid_from_surface(all.front(), 3, kernels_for(set))) {
       all.push_back(level);
     }

@@ -6,7 +6,6 @@
 #include <tbb/global_control.h>
 
 #include "mapper/core/kernels/instruction_set.hpp"
-#include "mapper/core/registration/depth_noise.hpp"
 #include "mapper/core/registration/icp.hpp"
 #include "tests/mapper/core/box_room.hpp"
 
@@ -28,6 +27,8 @@ struct Pair {
   SurfaceMap model;
 };
 
+const DepthNoise kNoise;  ///< of the frames below
+
 /// Points with depths `frame_z` and `model_z` on the ray (x, y, 1), with the same normal.
 Pair one_pair(float frame_z, float model_z, const Eigen::Vector3f& normal, double x = 0.0,
               double y = 0.0) {
@@ -40,15 +41,10 @@ Pair one_pair(float frame_z, float model_z, const Eigen::Vector3f& normal, doubl
   return pair;
 }
 
-TEST(DepthSigma, FollowsNguyensModel) {
-  EXPECT_DOUBLE_EQ(depth_sigma_m(0.4), 0.0012);
-  EXPECT_DOUBLE_EQ(depth_sigma_m(2.4), 0.0012 + 0.0019 * 4.0);
-}
-
 TEST(Linearize, WeighsAPairByTheInverseVarianceOfItsDepth) {
   const Pair pair = one_pair(2.0F, 2.01F, {0, 0, -1});
   const NormalEquations equations = linearize(pair.frame, pair.model, Pose::Identity(), {});
-  const double weight = 1.0 / (depth_sigma_m(2.0) * depth_sigma_m(2.0));
+  const double weight = 1.0 / kNoise.variance_m2(2.0);
   const double r = static_cast<double>(2.01F) - 2.0;  // n . (m - p) = -r
   ASSERT_EQ(equations.inliers, 1);
   // One float rounding of the difference: relative 1e-7 of 2 m against 1 cm is 2e-5.
@@ -75,14 +71,14 @@ TEST(Linearize, JacobianIsTheNumericDerivativeOfTheResidual) {
     const Vector6d xi = kStep * Vector6d::Unit(k);
     jacobian(k) = -(residual(xi) - residual(-xi)) / (2.0 * kStep);
   }
-  const double weight = 1.0 / std::pow(depth_sigma_m(1.5F), 2);
+  const double weight = 1.0 / kNoise.variance_m2(1.5);
   // The code computes the moment from floats: 1e-6 of entries of the order of 1.
   EXPECT_LT((equations.A / weight - jacobian * jacobian.transpose()).norm(), 1e-5);
   EXPECT_LT((equations.b / weight - jacobian * residual(Vector6d::Zero())).norm(), 1e-6);
 }
 
 TEST(Linearize, RejectsPairsOutsideTheGates) {
-  const IcpGates gates{0.1, 0.8};
+  const IcpGates gates{.max_distance_m = 0.1, .max_distance_sigmas = 0.0, .min_normal_cosine = 0.8};
   const Pair near = one_pair(2.0F, 2.09F, {0, 0, -1});
   EXPECT_EQ(linearize(near.frame, near.model, Pose::Identity(), gates).inliers, 1);
   const Pair far_apart = one_pair(2.0F, 2.11F, {0, 0, -1});
@@ -90,6 +86,16 @@ TEST(Linearize, RejectsPairsOutsideTheGates) {
   Pair tilted = one_pair(2.0F, 2.0F, {0, 0, -1});
   tilted.frame.set_normal(0, 0, {0.0F, 0.66F, -0.75F});  // cosine 0.75
   EXPECT_EQ(linearize(tilted.frame, tilted.model, Pose::Identity(), gates).inliers, 0);
+}
+
+TEST(Linearize, LetsNoisyPointsBeFartherApart) {
+  // Three deviations of 40 mm allow for 12 cm, the motion for 5 cm: 13 cm together.
+  const IcpGates gates{.max_distance_m = 0.05, .max_distance_sigmas = 3.0};
+  for (const auto& [distance_m, inliers] : {std::pair{0.129F, 1}, {0.131F, 0}}) {
+    Pair pair = one_pair(2.0F, 2.0F + distance_m, {0, 0, -1});
+    pair.frame.noise = {.base_m = 0.04, .share = 0.0, .growth_per_m = 0.0};
+    EXPECT_EQ(linearize(pair.frame, pair.model, Pose::Identity(), gates).inliers, inliers);
+  }
 }
 
 TEST(Linearize, InvalidPixelsTakeNoPart) {
@@ -121,7 +127,7 @@ TEST(Linearize, CountsPointsBehindAndInFrontOfTheModel) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   EXPECT_EQ(agreement(nan, 1.0F).overlap, 0);
   EXPECT_EQ(agreement(1.0F, nan).overlap, 0);
-  // At 1 m three sigma are 6 mm, so 2 cm decide; at 3 m they are 42 mm.
+  // At 1 m three sigma are 6 mm, so 2 cm decide; at 3 m they are 44.7 mm.
   const auto expect = [&](float frame_z, float model_z, int behind, int in_front) {
     const SurfaceAgreement counts = agreement(frame_z, model_z);
     EXPECT_EQ(counts.overlap, 1);
@@ -132,8 +138,8 @@ TEST(Linearize, CountsPointsBehindAndInFrontOfTheModel) {
   expect(1.021F, 1.0F, 1, 0);
   expect(0.979F, 1.0F, 0, 1);
   expect(3.0F, 2.96F, 0, 0);
-  expect(3.0F, 2.957F, 1, 0);
-  expect(3.0F, 3.043F, 0, 1);
+  expect(3.0F, 2.955F, 1, 0);
+  expect(3.0F, 3.045F, 0, 1);
 }
 
 TEST(Linearize, IteratingFindsAKnownMotionInAnExactRoom) {
@@ -174,14 +180,16 @@ NormalEquations slow_linearize(const SurfaceMap& frame_C, const SurfaceMap& mode
       const int col = static_cast<int>(model_u);
       const Eigen::Vector3d m = model_V.point(row, col).cast<double>();
       if (std::isnan(m.z())) continue;
-      const double sigma = depth_sigma_m(frame_C.depth_m(v, u));
+      const double sigma = frame_C.noise.sigma_m(frame_C.depth_m(v, u));
       const double tolerance = std::max(0.02, 3.0 * sigma);
       sums.agreement.overlap += 1;
       sums.agreement.behind += p.z() > m.z() + tolerance ? 1 : 0;
       sums.agreement.in_front += p.z() < m.z() - tolerance ? 1 : 0;
       const Eigen::Vector3d n = model_V.normal(row, col).cast<double>();
       const Eigen::Vector3d frame_normal = X_VC.linear() * frame_C.normal(v, u).cast<double>();
-      if (!((m - p).norm() < gates.max_distance_m)) continue;
+      if (!((m - p).norm() < std::hypot(gates.max_distance_m, gates.max_distance_sigmas * sigma))) {
+        continue;
+      }
       if (!(frame_normal.dot(n) > gates.min_normal_cosine)) continue;
       Vector6d jacobian;
       jacobian << n, p.cross(n);

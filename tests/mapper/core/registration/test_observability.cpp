@@ -44,6 +44,7 @@ class Pairs {
   ObservableSplit split() const {
     return split_observable(information_, Matrix6d::Identity(), ObservabilityConfig());
   }
+  const Information& information() const { return information_; }
 
  private:
   Vector3d scattered(const Vector3d& normal) {
@@ -143,6 +144,98 @@ TEST(ObservableSplit, StaysInTheSpaceItIsGiven) {
   EXPECT_LT(distance_from(split.determined, space.col(1)), 1e-12);
   const ObservableSplit none = split_observable(information, TwistBasis(6, 0), {});
   EXPECT_EQ(none.open.cols() + none.determined.cols(), 0);
+}
+
+/// Three walls of different size, so that some directions are known better than others.
+Information of_a_corner(double scatter_rad) {
+  Pairs pairs(scatter_rad);
+  pairs.add_plane({-0.9, 0, 2}, {0, 2, 0}, {0, 0, 2});
+  pairs.add_plane({0, 1, 2}, {0, 0, 0.5}, {0.5, 0, 0});
+  pairs.add_plane({0, 0, 3}, {1.8, 0, 0}, {0, 2, 0});
+  return pairs.information();
+}
+
+TEST(PureInformation, OfCleanNormalsIsAllOfIt) {
+  const Information information = of_a_corner(0.0);
+  const PureInformation pure = pure_information(information, Matrix6d::Identity(), {});
+  EXPECT_LT((pure.information - information.A).norm(), 1e-9 * information.A.norm());
+  EXPECT_LT((pure.weighting - Matrix6d::Identity()).norm(), 1e-6);
+}
+
+TEST(PureInformation, IsWhatTheWeightingLeavesOfTheInformation) {
+  for (const double scatter_rad : {0.0, 0.1, 0.3}) {
+    const Information information = of_a_corner(scatter_rad);
+    TwistBasis some(6, 2);
+    some << twist({1, 0, 0.5}, {0, 0, 0}), twist({0, 0, 0}, {0, 1, 0});
+    for (const TwistBasis& space : {TwistBasis(Matrix6d::Identity()), some}) {
+      const PureInformation pure = pure_information(information, space, {});
+      const Matrix6d& W = pure.weighting;
+      const Eigen::MatrixXd left = space.transpose() * W.transpose() * information.A * W * space;
+      const Eigen::MatrixXd expected = space.transpose() * pure.information * space;
+      EXPECT_LT((left - expected).norm(), 1e-9 * expected.norm()) << scatter_rad;
+    }
+  }
+}
+
+TEST(PureInformation, IsTheUnbiasedPartInTheDirectionsThatItKeeps) {
+  // Both sides of a pair scatter by 0.3 rad: a part of A is noise, none of C.
+  const Information information = of_a_corner(0.3);
+  const PureInformation pure = pure_information(information, Matrix6d::Identity(), {});
+  EXPECT_LT((pure.information - information.C).norm(), 1e-9 * information.C.norm());
+  EXPECT_LT(pure.information.trace(), 0.99 * information.A.trace());
+}
+
+TEST(PureInformation, OfNoiseIsZero) {
+  Pairs plane(0.14);
+  plane.add_plane({0.2, -0.1, 1.5}, {1.6, 0, 0}, {0, 1.2, 0});
+  const TwistBasis open = plane.split().open;
+  ASSERT_EQ(open.cols(), 3);
+  const PureInformation pure = pure_information(plane.information(), open, {});
+  EXPECT_EQ(pure.information.norm(), 0.0);
+  EXPECT_EQ(pure.weighting.norm(), 0.0);
+  const PureInformation nowhere = pure_information(plane.information(), TwistBasis(6, 0), {});
+  EXPECT_EQ(nowhere.information.norm(), 0.0);
+}
+
+TEST(PureInformation, KeepsAWeakCleanDirectionBesideNoise) {
+  // A bare wall, and a narrow strip that faces sideways.
+  Pairs pairs(0.14);
+  pairs.add_plane({0, 0, 3}, {2, 0, 0}, {0, 2, 0});
+  for (int i = 0; i < 60; ++i) pairs.add({0.5, -1.0 + i / 30.0, 2.8}, Vector3d::UnitX());
+  TwistBasis sideways(6, 2);
+  sideways << twist({1, 0, 0}, {0, 0, 0}), twist({0, 1, 0}, {0, 0, 0});
+  const PureInformation pure = pure_information(pairs.information(), sideways, {});
+  const double strip = 60.0 / (kSigma_m * kSigma_m);
+  EXPECT_NEAR(pure.information(0, 0), strip, 0.15 * strip);
+  EXPECT_LT(pure.information(1, 1), 0.05 * strip);
+}
+
+// The sums over a wall are not exactly zero along it, and may be negative.
+TEST(PureInformation, IsFiniteInFrontOfExactWallsInAnyDirection) {
+  const Intrinsics camera = testing::test_camera(80, 60);
+  std::mt19937 random(2);
+  std::uniform_real_distribution<double> tilt(-0.6, 0.6);
+  for (int i = 0; i < 200; ++i) {
+    const Vector3d normal = Vector3d(tilt(random), tilt(random), -1.0).normalized();
+    SurfaceMap wall(camera);
+    for (int v = 0; v < camera.height; ++v) {
+      for (int u = 0; u < camera.width; ++u) {
+        const Vector3d ray((u - camera.cx) / camera.fx, (v - camera.cy) / camera.fy, 1.0);
+        wall.depth_m(v, u) = static_cast<float>(-1.5 / normal.dot(ray));
+        wall.set_normal(v, u, normal.cast<float>());
+      }
+    }
+    const Information information =
+        independent(geometric_information(wall, wall, Pose::Identity(), {}), wall.depth_m.total());
+    const ObservableSplit split = split_observable(information, Matrix6d::Identity(), {});
+    ASSERT_EQ(split.open.cols(), 3) << normal.transpose();
+    const PureInformation pure = pure_information(information, split.open, {});
+    ASSERT_TRUE(pure.information.allFinite()) << normal.transpose();
+    ASSERT_TRUE(pure.weighting.allFinite()) << normal.transpose();
+    const Eigen::MatrixXd along_wall = split.open.transpose() * pure.information * split.open;
+    // split.open is scaled to the prior's information: 1e-3 of that is nothing.
+    EXPECT_LT(along_wall.norm(), 1e-3) << normal.transpose();
+  }
 }
 
 TEST(GeometricInformation, OfTheSamePicturesIsThatOfThePointToPlaneSystem) {

@@ -52,7 +52,7 @@ IntegrationFrame make_frame(const Images& images, float angle_rad) {
   std::copy(&steps[0][0], &steps[0][0] + 9, &frame.step_C[0][0]);
   frame.min_depth_m = 0.1F;
   frame.max_depth_m = 5.0F;
-  frame.truncation = {.max_m = 4 * kVoxel_m, .inverse_max = 0.25F / kVoxel_m};
+  frame.truncation = {.max_m = 4 * kVoxel_m, .inverse_max = 0.25F / kVoxel_m, .variance = {}};
   frame.max_weight = 20.0F;
   frame.max_color_weight = 15.0F;
   return frame;
@@ -124,12 +124,13 @@ TEST(IntegrationKernel, KeepsColorsWhereAFrameHasNone) {
 TEST(IntegrationKernel, TruncatesAtMoreWhereDepthIsFarther) {
   Images images{std::vector<float>(kNumPixels), std::vector<std::uint32_t>(kNumPixels)};
   IntegrationFrame frame = make_frame(images, 0.0F);
-  // 20 mm at depths below 0.79 m, 40 mm at 1.5 m, 160 mm beyond 3.15 m.
+  // 20 mm at depths below 1.06 m, 40 mm at 1.5 m, 160 mm beyond 3 m.
+  constexpr float kGrowth = 0.25F / (1.5F * 1.5F);
   frame.truncation = {.max_m = 0.16F,
                       .inverse_max = 6.25F,
                       .min_share = 0.125F,
-                      .base_share = 0.05F,
-                      .growth_share_per_m2 = 0.2F / 2.25F};
+                      .sigmas_per_m = 1.0F,
+                      .variance = {{0.0F, 0.0F, kGrowth * kGrowth}}};
   const auto fuse = [&](float depth_m, float z) {
     Block block;
     std::fill(images.depth_m.begin(), images.depth_m.end(), depth_m);
@@ -163,7 +164,8 @@ TEST_P(IntegrationKernels, WriteTheBytesOfAVoxelAtATime) {
     if (round % 5 == 0) frame.color_rgbx = nullptr;
     if (round % 2 == 0) {
       frame.truncation.min_share = 0.25F;
-      frame.truncation.growth_share_per_m2 = 0.6F;
+      frame.truncation.sigmas_per_m = 2.0F;
+      frame.truncation.variance = {{0.01F, 0.02F, 0.06F}};  // a share of 0.4 to 0.7
     }
     const float origin[3] = {lateral(random), lateral(random),
                              round % 2 == 0 ? any_depth(random) : surface_depth(random)};
