@@ -12,7 +12,8 @@ constexpr std::int64_t kPeriod_us = 100'000;
 /// How many further frames like this one it takes until a part is to begin; `limit`: more.
 int frames_until_due(RestartRule& rule, std::int64_t& utime, TrackingState state, int limit) {
   for (int i = 0; i < limit; ++i) {
-    if (rule.is_due(utime += kPeriod_us, state)) return i;
+    utime += kPeriod_us;
+    if (rule.is_due(utime, state)) return i;
   }
   return limit;
 }

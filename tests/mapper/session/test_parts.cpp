@@ -92,7 +92,7 @@ TEST_F(Parts, ACameraThatStaysLostBeginsAnotherSession) {
   ASSERT_TRUE(Listener::wait_until([&] { return listener.heard_the_end(); }));
 
   const auto poses = listener.poses();
-  const auto last_of_part0 = static_cast<std::size_t>(kFramesInEachRoom + kNumLost);
+  constexpr std::size_t last_of_part0 = kFramesInEachRoom + kNumLost;
   ASSERT_EQ(poses.size(), kNumFrames + 1U) << "the frame between is in both parts";
   for (std::size_t i = 0; i < poses.size(); ++i) {
     EXPECT_EQ(poses[i].session, i <= last_of_part0 ? 7 : 8);
