@@ -9,6 +9,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "lcmtypes/base/argument_check.hpp"
 #include "lcmtypes/codec/codec.hpp"
 #include "mapper/core/frame/sensors.hpp"
 #include "mapper/core/fusion/truncation.hpp"
@@ -80,6 +81,8 @@ void complete_volume(Options& options) {
   auto& volume = options.pipeline.volume;
   if (options.resolution_m == 0.0) options.resolution_m = volume.resolution_m;
   volume.resolution_m = options.resolution_m;
+  // What follows from it would have the wrong value and be named instead.
+  require(volume.resolution_m > 0.0, "--resolution", volume.resolution_m, "greater than 0");
   if (options.volume.empty()) options.volume = options.volume_size_m == 0.0 ? "range" : "cube";
   if (options.volume == "range" && options.volume_size_m != 0.0) {
     throw std::invalid_argument("--volume-size is for --volume cube, --volume is 'range'");
