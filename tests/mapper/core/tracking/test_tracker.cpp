@@ -188,6 +188,41 @@ TEST(Tracker, GoesOnWithItsMotionAfterALostFrame) {
   }
 }
 
+/// A part of space that the map does not have.
+Model nothing_at(const Pose& X_WV) {
+  SurfaceMap nothing(testing::test_camera());
+  for (cv::Mat* plane :
+       {&nothing.depth_m, &nothing.normal_x, &nothing.normal_y, &nothing.normal_z}) {
+    plane->setTo(std::nanf(""));
+  }
+  return {pyramid_from_surface(nothing, 3), X_WV};
+}
+
+TEST(Tracker, FollowsFromFrameToFrameWhereTheMapIsMissing) {
+  Motion motion;
+  const Pose X_W_last = motion.X_WC(Motion::kSeen);
+  const Vector6d other_step = twist(-0.005, 0.0, 0.01, 0.01, 0.0, -0.005);
+  // Twice as long as it would coast, and with another velocity.
+  for (int i = 1; i <= 20; ++i) {
+    const std::int64_t utime = (Motion::kSeen + i) * kFrame_us;
+    const Pose X_WC = X_W_last * se3_retract(i * other_step);
+    const TrackingResult result =
+        motion.tracker.track(frame_at(X_WC, utime), nothing_at(motion.tracker.predict(utime)));
+    EXPECT_EQ(result.state, TrackingState::kLost);
+    EXPECT_EQ(result.first_loss_reason, LossReason::kNotSolved);
+    EXPECT_LT(distance_m(result.X_WC, X_W_last), kExactData_m) << "the last good pose stays";
+    EXPECT_TRUE(motion.tracker.is_coasting(utime)) << i;
+    EXPECT_LT(distance_m(motion.tracker.predict(utime), X_WC), 2.0 * kCoasted_m) << i;
+  }
+  // The map again, from where the camera is now.
+  const std::int64_t utime = (Motion::kSeen + 21) * kFrame_us;
+  const Pose X_WC = X_W_last * se3_retract(21 * other_step);
+  const TrackingResult result =
+      motion.tracker.track(frame_at(X_WC, utime), model_at(motion.tracker.predict(utime)));
+  EXPECT_EQ(result.state, TrackingState::kTracking);
+  EXPECT_LT(distance_m(result.X_WC, X_WC), kExactData_m);
+}
+
 TEST(Tracker, TellsWhyThePoseThatContinuesTheMotionWasRejected) {
   Motion motion;
   const int i = Motion::kSeen + 1;
