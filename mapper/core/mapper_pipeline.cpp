@@ -53,9 +53,6 @@ FrameResult MapperPipeline::process(const RgbdFrame& measured) {
   clock.end_of(&StageTimes::prepare_ms);
   result.tracking = locate(input);
   clock.end_of(&StageTimes::track_ms);
-  if (result.tracking.state == TrackingState::kLost && tracker_.is_coasting(frame.utime)) {
-    model_ = model_from(tracker_.predict(frame.utime), input.surface_C.front().intrinsics, {});
-  }
   if (is_located(result.tracking.state)) {
     X_WC_ = result.tracking.X_WC;
     result.slices_left = shift(frame, X_WC_);
@@ -63,6 +60,9 @@ FrameResult MapperPipeline::process(const RgbdFrame& measured) {
     integrator_.integrate(frame, X_WC_, volume_, noise_.noise());
     clock.end_of(&StageTimes::integrate_ms);
     update_model(frame, input);
+    clock.end_of(&StageTimes::raycast_ms);
+  } else if (model_) {
+    look_where_expected(input);
     clock.end_of(&StageTimes::raycast_ms);
   }
   result.times = clock.wall();
@@ -157,6 +157,12 @@ void MapperPipeline::update_model(const RgbdFrame& frame, const TrackingInput& i
   if (!config_.given_path.empty()) return;  // the model is only for tracking
   model_ = model_from(X_WC_, input.surface_C.front().intrinsics, frame.depth_m);
   relocalizer_.remember(input, *model_);
+}
+
+void MapperPipeline::look_where_expected(const TrackingInput& input) {
+  const Pose X_WV = tracker_.predict(input.utime);
+  if (X_WV.matrix() == model_->X_WV.matrix()) return;
+  model_ = model_from(X_WV, input.surface_C.front().intrinsics, {});
 }
 
 Model MapperPipeline::model_from(const Pose& X_WV, const Intrinsics& camera,

@@ -96,6 +96,9 @@ class MapperPipeline {
   int shift(const RgbdFrame& frame, const Pose& X_WC);
   std::optional<TrackingResult> find_again(const TrackingInput& input);
   void update_model(const RgbdFrame& frame, const TrackingInput& input);
+  /// After a lost frame: the model for the next one is the map as seen from where the camera should
+  /// be.
+  void look_where_expected(const TrackingInput& input);
   /// The map's surface as seen from a pose; the guide is that of Raycaster::raycast().
   Model model_from(const Pose& X_WV, const Intrinsics& camera,
                    const cv::Mat_<float>& guide_depth_m) const;

@@ -66,8 +66,9 @@ double deviations_of(double quantile) {
 /// The bin of a value on a logarithmic scale.
 int bin_of(double value, double smallest, double ratio, int num_bins) {
   if (!(value > smallest)) return 0;
-  const double bin = std::log(value / smallest) / std::log(ratio);
-  return bin < num_bins ? static_cast<int>(bin) : num_bins - 1;
+  const float bin =
+      std::log(static_cast<float>(value / smallest)) / std::log(static_cast<float>(ratio));
+  return bin < static_cast<float>(num_bins) ? static_cast<int>(bin) : num_bins - 1;
 }
 
 }  // namespace
