@@ -1,5 +1,3 @@
-#include "mapper/core/frame/deviation_by_depth.hpp"
-
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
@@ -7,6 +5,8 @@
 #include <numbers>
 #include <numeric>
 #include <vector>
+
+#include "mapper/core/frame/deviation_by_depth.hpp"
 
 namespace kintsugi::mapper {
 namespace {
@@ -21,18 +21,23 @@ struct Deviation {
   double weight = 0.0;
 };
 
-/// Squares of the coefficients of DepthNoise for which
-///   sum_i w_i (sigma(z_i)^2 / s_i^2 - 1)^2
-/// is smallest among those with none negative: the best of the solutions with some of them zero.
-Eigen::Vector3d fit_squares(const std::vector<Deviation>& deviations) {
+/// sigma(z)^2 = row . squares of the coefficients of DepthNoise.
+Eigen::Vector3d row_at(double depth_m) {
+  const double z2 = depth_m * depth_m;
+  return {1.0, z2, z2 * z2};
+}
+
+/// Squares of the coefficients for which sum_i w_i ((sigma(z_i)^2 - s_i^2) / scale_i)^2 is smallest
+/// among those with none negative: the best of the solutions with some of them zero.
+Eigen::Vector3d fit_squares(const std::vector<Deviation>& deviations,
+                            const std::vector<double>& scales_m2) {
   Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
   Eigen::Vector3d b = Eigen::Vector3d::Zero();
-  for (const Deviation& deviation : deviations) {
-    const double z2 = deviation.depth_m * deviation.depth_m;
-    const Eigen::Vector3d row =
-        Eigen::Vector3d(1.0, z2, z2 * z2) / (deviation.sigma_m * deviation.sigma_m);
+  for (std::size_t i = 0; i < deviations.size(); ++i) {
+    const Deviation& deviation = deviations[i];
+    const Eigen::Vector3d row = row_at(deviation.depth_m) / scales_m2[i];
     A += deviation.weight * row * row.transpose();
-    b += deviation.weight * row;
+    b += deviation.weight * deviation.sigma_m * deviation.sigma_m / scales_m2[i] * row;
   }
   Eigen::Vector3d best = Eigen::Vector3d::Zero();
   double least = std::numeric_limits<double>::infinity();
@@ -51,6 +56,31 @@ Eigen::Vector3d fit_squares(const std::vector<Deviation>& deviations) {
     best(terms) = squares;
   }
   return best;
+}
+
+/// Squares of the coefficients for which sum_i w_i log(sigma(z_i)^2 / s_i^2)^2 is smallest, by
+/// iteratively reweighted least squares. Of the ratio itself the smallest deviations, even those of
+/// depths at which nothing was counted, would outweigh all others.
+Eigen::Vector3d fit_ratios(const std::vector<Deviation>& deviations) {
+  constexpr int kSteps = 15;
+  constexpr double kEqual = 1e-3;  // log x = x - 1 nearly
+  std::vector<double> scales_m2;
+  for (const Deviation& deviation : deviations) {
+    scales_m2.push_back(deviation.sigma_m * deviation.sigma_m);
+  }
+  Eigen::Vector3d squares = Eigen::Vector3d::Zero();
+  for (int step = 0; step < kSteps; ++step) {
+    squares = fit_squares(deviations, scales_m2);
+    for (std::size_t i = 0; i < deviations.size(); ++i) {
+      const double counted_m2 = deviations[i].sigma_m * deviations[i].sigma_m;
+      const double fitted_m2 = std::max(squares.dot(row_at(deviations[i].depth_m)), 1e-12);
+      const double ratio = std::log(fitted_m2 / counted_m2);
+      const double chord_m2 =
+          std::abs(ratio) < kEqual ? counted_m2 : (fitted_m2 - counted_m2) / ratio;
+      scales_m2[i] = std::sqrt(fitted_m2 * chord_m2);
+    }
+  }
+  return squares;
 }
 
 /// The x with P(|X| < x) = quantile for X of the standard normal distribution.
@@ -103,7 +133,7 @@ DepthNoise DeviationByDepth::fit(const DepthNoise& start, double weight_of_start
                           .sigma_m = std::max(least * start_m, std::sqrt(variance_m2)),
                           .weight = kLeastWeight + seen / weight_of_start});
   }
-  const Eigen::Vector3d squares = fit_squares(deviations);
+  const Eigen::Vector3d squares = fit_ratios(deviations);
   return {.base_m = std::sqrt(squares(0)),
           .share = std::sqrt(squares(1)),
           .growth_per_m = std::sqrt(squares(2))};
