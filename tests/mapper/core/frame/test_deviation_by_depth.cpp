@@ -114,6 +114,25 @@ TEST(DeviationByDepth, LeavesTheStartBehindAtTheDepthsThatWereCounted) {
   }
 }
 
+// The depths that a camera sees in a room; the start is a third to a seventh of the truth there.
+TEST(DeviationByDepth, IsNotHeldBackByDepthsThatWereNotCounted) {
+  const DepthNoise truth{.base_m = 0.0, .share = 0.02, .growth_per_m = 0.0};
+  DeviationByDepth deviations(kMedian);
+  std::mt19937 random(5);
+  std::normal_distribution<double> gauss;
+  int number = 0;
+  for (double z_m = 1.0; z_m < 3.0; z_m *= 1.02) {
+    for (int i = 0; i < kErrorsPerDepth; ++i, ++number) {
+      deviations.count(z_m, std::abs(truth.sigma_m(z_m) * gauss(random)));
+    }
+  }
+  const double per_bin = number / 5.0;
+  const DepthNoise noise = deviations.fit(kStart, per_bin / 30.0, 0.0);
+  for (const double z_m : {1.2, 2.0, 2.8}) {
+    EXPECT_NEAR(noise.sigma_m(z_m), truth.sigma_m(z_m), 0.1 * truth.sigma_m(z_m)) << z_m << " m";
+  }
+}
+
 TEST(DeviationByDepth, WeighsTheStartByItsErrors) {
   // As many errors as the start counts for: the mean of the variances.
   const DepthNoise start{.base_m = 0.01, .share = 0.0, .growth_per_m = 0.0};

@@ -30,6 +30,36 @@ cv::Mat_<float> standard_normal(const cv::Size& size, cv::RNG& random) {
   return noise;
 }
 
+TEST(LocalNoise, OfIndependentErrorsIsTheirDeviation) {
+  const cv::Mat_<float> wall_m = slanted_wall(testing::test_camera(), 1.0F, 4.0F);
+  for (const DepthNoise& truth :
+       {DepthNoise{.base_m = 0.01, .share = 0.0, .growth_per_m = 0.0},
+        DepthNoise{.base_m = 0.001, .share = 0.0, .growth_per_m = 0.004}}) {
+    LocalNoiseEstimator estimator;
+    cv::RNG random(1);
+    for (int i = 0; i < kImages; ++i) {
+      cv::Mat_<float> depth_m = standard_normal(wall_m.size(), random);
+      for (int v = 0; v < wall_m.rows; ++v) {
+        for (int u = 0; u < wall_m.cols; ++u) {
+          depth_m(v, u) *= static_cast<float>(truth.sigma_m(wall_m(v, u)));
+        }
+      }
+      estimator.add(depth_m + wall_m);
+    }
+    for (const double z_m : {1.2, 2.0, 3.5}) {
+      const double sigma_m = truth.sigma_m(z_m);
+      EXPECT_NEAR(estimator.noise().sigma_m(z_m), sigma_m, 0.1 * sigma_m) << z_m << " m";
+    }
+  }
+}
+
+TEST(LocalNoise, LearnsFromTheFirstImage) {
+  cv::RNG random(1);
+  LocalNoiseEstimator estimator;
+  estimator.add(2.0F + 0.03F * standard_normal({320, 240}, random));
+  EXPECT_NEAR(estimator.noise().sigma_m(2.0), 0.03, 0.1 * 0.03);
+}
+
 TEST(LocalNoise, OfErrorsThatManyPixelsShareIsLittle) {
   cv::RNG random(1);
   LocalNoiseEstimator estimator;

@@ -68,6 +68,16 @@ void expect_deviation(const DepthNoise& noise, const DepthNoise& truth, double t
 // The start counts like three images, at every depth.
 constexpr double kFit = 0.1;
 
+TEST(NoiseEstimator, LearnsALargerNoiseThanTheStart) {
+  for (const DepthNoise& truth : {DepthNoise{.base_m = 0.002, .share = 0.0, .growth_per_m = 0.0045},
+                                  DepthNoise{.base_m = 0.0, .share = 0.015, .growth_per_m = 0.0}}) {
+    Camera camera;
+    NoiseEstimator estimator{DepthNoise()};
+    for (int i = 0; i < kFrames; ++i) camera.show(camera.frame(truth), estimator);
+    expect_deviation(estimator.noise(), truth, kFit);
+  }
+}
+
 TEST(NoiseEstimator, IsTheStartBeforeTheFirstFrame) {
   const DepthNoise start{.base_m = 0.005, .share = 0.015, .growth_per_m = 0.0};
   expect_deviation(NoiseEstimator(start).noise(), start, 1e-9);
@@ -99,6 +109,32 @@ TEST(NoiseEstimator, TakesNoNoticeOfPairsOfDifferentSurfaces) {
   // Of errors that are spread over two metres few are small enough to count: 1 to 2 % of all.
   expect_deviation(learned(0.2), learned(0.0), 0.05);
   expect_deviation(learned(0.0), truth, kFit);
+}
+
+TEST(NoiseEstimator, TakesNoNoticeOfInvalidPixels) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const DepthNoise truth{.base_m = 0.0, .share = 0.01, .growth_per_m = 0.0};
+  Camera camera;
+  NoiseEstimator estimator{DepthNoise()};
+  for (int i = 0; i < kFrames; ++i) {
+    SurfaceMap frame_C = camera.frame(truth);
+    frame_C.depth_m.rowRange(0, 20).setTo(nan);
+    frame_C.depth_m.rowRange(20, 40).setTo(0.0F);
+    camera.show(frame_C, estimator);
+  }
+  expect_deviation(estimator.noise(), truth, kFit);
+}
+
+TEST(NoiseEstimator, FollowsACameraThatBecomesNoisier) {
+  const DepthNoise before{.base_m = 0.0, .share = 0.006, .growth_per_m = 0.0};
+  const DepthNoise after{.base_m = 0.0, .share = 0.012, .growth_per_m = 0.0};
+  Camera camera;
+  NoiseEstimator estimator{DepthNoise()};
+  for (int i = 0; i < kFrames; ++i) camera.show(camera.frame(before), estimator);
+  const double before_m = estimator.noise().sigma_m(2.5);
+  for (int i = 0; i < 3 * kFrames; ++i) camera.show(camera.frame(after), estimator);
+  EXPECT_GT(estimator.noise().sigma_m(2.5), before_m);
+  expect_deviation(estimator.noise(), after, 0.15);
 }
 
 }  // namespace
