@@ -94,7 +94,7 @@ class Trio(CommandTest):
 
     def test_a_volume_that_is_given_replaces_the_cube(self):
         for number, options in enumerate((["--volume", "range"], ["--volume-size", "3"], ["--mapper", "--volume range"],
-                                          ["--mapper", "--config=mapper.toml"])):
+                                          ["--mapper", "--config=mapper.toml"], ["--replay"])):
             self.expect(0, "trio", "--out", f"run{number}", "--no-log", *options)
             self.assertNotIn("--volume=cube", self.call("kintsugi-mapper"))
         self.expect(0, "trio", "--out", "last", "--no-log", "--mapper", "--volume-memory=100")

@@ -18,8 +18,8 @@ LINGER_S = 60  # without a viewer, which knows when all is drawn: until there ha
 UNTIL_TOLD = -1
 READY_TIMEOUT_S = 20
 INTERRUPTED = 130  # exit code, as shells have it
-# Of the mapper: they choose the volume, or may do so.
-VOLUME_FLAGS = {"--volume", "--volume-size", "--config"}
+# Of the mapper: with these it chooses the volume itself.
+VOLUME_FLAGS = {"--volume", "--volume-size", "--config", "--replay"}
 # What the mapper published. Messages of the recorded segmenter would contradict those of the one that listens now.
 REPLAYED_CHANNELS = "^(CLOUD_SLICE|CAMERA_POSE|MAPPER_STATUS)$"
 
@@ -101,8 +101,8 @@ def linger_s(choice):
 
 
 def chosen_volume(words):
-    """The volume for a mapper with these options. By default a mapper keeps a whole room in its volume, so that the
-    segmenter and the viewer would have nothing to do before the end."""
+    """The volume for a mapper with these options. By default a mapper keeps a whole room in its volume, so that during
+    a live run the segmenter and the viewer would have nothing to show."""
     return [] if any(word.partition("=")[0] in VOLUME_FLAGS for word in words) else ["--volume=cube"]
 
 

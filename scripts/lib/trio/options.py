@@ -25,8 +25,8 @@ TRIO_OPTIONS = (
     ("--preset", "NAME", PASS_ON, "segmenter", "parameters of the segmenter: objects (default) or paper"),
     ("--resolution", "M", PASS_ON, "mapper", "side of a voxel in metres"),
     ("--volume", "NAME", PASS_ON, "mapper",
-     "what the mapper keeps around the camera. cube (the default here): 4.5 m, what lies outside is sent during the "
-     "run; range: all that the camera sees, most of it is sent at the end"),
+     "what the mapper keeps around the camera. range (default with --replay): all that the camera sees, most of it is "
+     "sent at the end; cube (default without): 4.5 m, what lies outside is sent during the run"),
     ("--volume-size", "M", PASS_ON, "mapper", "side of the cube in metres"),
     ("--calibration", "FILE", PASS_ON, "mapper", "camera.txt of the camera"),
     ("--replay", None, PASS_ON, "mapper",
