@@ -1,6 +1,8 @@
 #pragma once
 // The kernels of surface.hpp over any pack: sixteen pixels at a time.
 
+#include <cstddef>
+
 #include "mapper/core/kernels/surface.hpp"
 #include "mapper/core/simd/depth_sigma.hpp"
 
@@ -12,7 +14,7 @@ class SurfaceRows {
   static void smooth_depth(const float* padded_m, int width, int v, const DepthTolerance& tolerance,
                            float* smooth_m) {
     constexpr int kReach = kSmoothingReach_px;
-    const int pitch = width + 2 * kReach;
+    const std::ptrdiff_t pitch = width + 2 * kReach;
     const float* upper_left = padded_m + v * pitch;
     for (int u = 0; u < width; u += Pack::kNumLanes) {
       const int count = lanes_until(width - u);
@@ -198,7 +200,7 @@ class SurfaceRows {
   /// The normals of `count` pixels from column `u` on; row `v` is not at the image's border.
   static Vector normal_at(const float* depth_m, const DepthTolerance& tolerance,
                           const PinholeCamera& camera, int v, int u, int count) {
-    const float* here = depth_m + v * camera.width + u;
+    const float* here = depth_m + static_cast<std::ptrdiff_t>(v) * camera.width + u;
     const auto ray_y = [&](int row) {
       return Float((static_cast<float>(row) - camera.cy) * camera.inverse_fy);
     };

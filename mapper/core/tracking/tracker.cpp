@@ -44,6 +44,8 @@ TrackingResult result_of(const Registration& registration) {
 void Tracker::Config::validate() const {
   registration.validate();
   check_range<std::int64_t>("max_prediction_us", max_prediction_us, 0, 60'000'000);
+  check_range<std::int64_t>("coast_us", coast_us, 0, 60'000'000);
+  check_range<std::int64_t>("coast_partly_us", coast_partly_us, 0, 60'000'000);
   check_range("max_acceleration", max_acceleration, 0.0, 1e6);
   check_range("min_reference_overlap", min_reference_overlap, 0.0, 1.0);
   check_range("min_reference_reliability", min_reference_reliability, 0.0, 1.0);
@@ -120,7 +122,7 @@ TrackingResult Tracker::register_anew(const TrackingInput& frame, const Model& m
 bool Tracker::follows_motion(const Registration& registration, std::int64_t utime) const {
   if (!motion_continues(utime)) return false;
   if (!motion_known_) return true;
-  const double seconds = 1e-6 * static_cast<double>(utime - utime_);
+  const double seconds = 1e-6 * static_cast<double>(utime - utime_followed_);
   const Pose X_PC = predict(utime).inverse() * registration.X_WC;  // P: the predicted camera
   const double noise_m = std::max(kPoseNoise_m, kPoseNoise_sigmas * registration.quality.sigma_m);
   const double difference_m = std::max(X_PC.translation().norm(), rotation_angle_rad(X_PC));
