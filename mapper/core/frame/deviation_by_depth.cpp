@@ -1,3 +1,5 @@
+#include "mapper/core/frame/deviation_by_depth.hpp"
+
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
@@ -5,8 +7,6 @@
 #include <numbers>
 #include <numeric>
 #include <vector>
-
-#include "mapper/core/frame/deviation_by_depth.hpp"
 
 namespace kintsugi::mapper {
 namespace {
