@@ -24,6 +24,9 @@ class Tolerance {
   Tolerance(const DepthNoise& noise, const Intrinsics& intrinsics)
       : tolerance_(depth_tolerance(noise, intrinsics)) {}
 
+  /// Less than at(), at a tenth of its time.
+  float at_least(float depth_m) const { return tolerance_.slope * depth_m; }
+
   float at(float depth_m) const {
     const float z2 = depth_m * depth_m;
     const float* c = tolerance_.variance.c;
@@ -69,9 +72,11 @@ cv::Mat_<float> without_mixed_pixels(const cv::Mat_<float>& depth_m, const Intri
     const float* below = depth_m[v + 1];
     for (int u = 1; u + 1 < depth_m.cols; ++u) {
       const float here_m = row[u];
-      const float step_m = tolerance.at(here_m);
-      if (is_between(row[u - 1], here_m, row[u + 1], step_m) ||
-          is_between(above[u], here_m, below[u], step_m)) {
+      const auto is_mixed = [&](float step_m) {
+        return is_between(row[u - 1], here_m, row[u + 1], step_m) ||
+               is_between(above[u], here_m, below[u], step_m);
+      };
+      if (is_mixed(tolerance.at_least(here_m)) && is_mixed(tolerance.at(here_m))) {
         clean(v, u) = std::numeric_limits<float>::quiet_NaN();
       }
     }
