@@ -65,6 +65,7 @@ Eigen::Vector3d fit_ratios(const std::vector<Deviation>& deviations) {
   constexpr int kSteps = 15;
   constexpr double kEqual = 1e-3;  // log x = x - 1 nearly
   std::vector<double> scales_m2;
+  scales_m2.reserve(deviations.size());
   for (const Deviation& deviation : deviations) {
     scales_m2.push_back(deviation.sigma_m * deviation.sigma_m);
   }
