@@ -2,11 +2,11 @@
 
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include <tbb/parallel_for.h>
 
 #include "mapper/core/frame/kernel_arguments.hpp"
+#include "mapper/core/frame/same_surface.hpp"
 
 namespace kintsugi::mapper {
 namespace {
@@ -17,27 +17,6 @@ constexpr double kDecay = 0.99;
 /// The start value counts like this share of an image: the first one already outweighs it.
 constexpr double kImagesOfStart = 0.1;
 constexpr double kLeastShare = 0.1;  ///< of the start value: rounding to millimetres
-
-/// The largest step between neighbours on the same surface.
-class Tolerance {
- public:
-  Tolerance(const DepthNoise& noise, const Intrinsics& intrinsics)
-      : tolerance_(depth_tolerance(noise, intrinsics)) {}
-
-  /// Less than at(), at a tenth of its time.
-  float at_least(float depth_m) const { return tolerance_.slope * depth_m; }
-
-  float at(float depth_m) const {
-    const float z2 = depth_m * depth_m;
-    const float* c = tolerance_.variance.c;
-    return DepthTolerance::kSigmas * std::numbers::sqrt2_v<float> *
-               std::sqrt(c[0] + z2 * (c[1] + z2 * c[2])) +
-           tolerance_.slope * depth_m;
-  }
-
- private:
-  DepthTolerance tolerance_;
-};
 
 bool is_between(float before_m, float here_m, float after_m, float step_m) {
   const float from = here_m - before_m;
@@ -64,7 +43,7 @@ void LocalNoiseEstimator::add(const cv::Mat_<float>& depth_m) {
 
 cv::Mat_<float> without_mixed_pixels(const cv::Mat_<float>& depth_m, const Intrinsics& intrinsics,
                                      const DepthNoise& local_noise) {
-  const Tolerance tolerance(local_noise, intrinsics);
+  const DepthTolerance tolerance = depth_tolerance(local_noise, intrinsics);
   cv::Mat_<float> clean = depth_m.clone();
   tbb::parallel_for(1, depth_m.rows - 1, [&](int v) {
     const float* above = depth_m[v - 1];
@@ -76,7 +55,8 @@ cv::Mat_<float> without_mixed_pixels(const cv::Mat_<float>& depth_m, const Intri
         return is_between(row[u - 1], here_m, row[u + 1], step_m) ||
                is_between(above[u], here_m, below[u], step_m);
       };
-      if (is_mixed(tolerance.at_least(here_m)) && is_mixed(tolerance.at(here_m))) {
+      // The part without noise first: it is cheap, and few pixels pass it.
+      if (is_mixed(tolerance.slope * here_m) && is_mixed(same_surface_m(tolerance, here_m, 1))) {
         clean(v, u) = std::numeric_limits<float>::quiet_NaN();
       }
     }

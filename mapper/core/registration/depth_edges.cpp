@@ -1,11 +1,12 @@
 #include "mapper/core/registration/depth_edges.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <numbers>
 #include <optional>
 
 #include "mapper/core/frame/kernel_arguments.hpp"
+#include "mapper/core/frame/same_surface.hpp"
 
 namespace kintsugi::mapper {
 namespace {
@@ -13,23 +14,8 @@ namespace {
 constexpr int kLinesAround = 2;       ///< on each side, over which an outline must go on
 constexpr float kMaxGapShare = 0.1F;  ///< of the image: widest gap between the two surfaces
 
-class Tolerance {
- public:
-  explicit Tolerance(const SurfaceMap& surface)
-      : noise_(surface.noise), slope_(depth_tolerance(surface.noise, surface.intrinsics).slope) {}
-
-  float at(float depth_m, int steps) const {
-    return DepthTolerance::kSigmas * std::numbers::sqrt2_v<float> *
-               static_cast<float>(noise_.sigma_m(depth_m)) +
-           slope_ * static_cast<float>(steps) * depth_m;
-  }
-
- private:
-  DepthNoise noise_;
-  float slope_;
-};
-
-std::vector<EdgePixel> edges_of_line(const float* depth_m, int length, const Tolerance& tolerance) {
+std::vector<EdgePixel> edges_of_line(const float* depth_m, int length,
+                                     const DepthTolerance& tolerance) {
   std::vector<EdgePixel> edges;
   const int max_gap = static_cast<int>(kMaxGapShare * static_cast<float>(length));
   int last = -1;
@@ -40,7 +26,7 @@ std::vector<EdgePixel> edges_of_line(const float* depth_m, int length, const Tol
     if (before < 0 || i - before > max_gap) continue;
     const float step_m = depth_m[i] - depth_m[before];
     const float near_m = std::min(depth_m[i], depth_m[before]);
-    if (std::abs(step_m) <= tolerance.at(near_m, i - before)) continue;
+    if (std::abs(step_m) <= same_surface_m(tolerance, near_m, i - before)) continue;
     const bool ends = step_m > 0.0F;
     const float border = ends ? static_cast<float>(before) + 0.5F : static_cast<float>(i) - 0.5F;
     edges.push_back({.position_px = border, .depth_m = near_m, .ends = ends});
@@ -50,18 +36,18 @@ std::vector<EdgePixel> edges_of_line(const float* depth_m, int length, const Tol
 
 /// Where the outline of `edge` crosses another line, `distance` lines away.
 std::optional<float> continuation(const EdgePixel& edge, const std::vector<EdgePixel>& line,
-                                  int distance, const Tolerance& tolerance) {
+                                  int distance, const DepthTolerance& tolerance) {
   for (const EdgePixel& other : line) {
     const bool is_same =
         other.ends == edge.ends &&
         std::abs(other.position_px - edge.position_px) <= static_cast<float>(distance) + 0.5F &&
-        std::abs(other.depth_m - edge.depth_m) <= tolerance.at(edge.depth_m, distance);
+        std::abs(other.depth_m - edge.depth_m) <= same_surface_m(tolerance, edge.depth_m, distance);
     if (is_same) return other.position_px;
   }
   return std::nullopt;
 }
 
-EdgeLines edges_in_rows(const cv::Mat_<float>& depth_m, const Tolerance& tolerance) {
+EdgeLines edges_in_rows(const cv::Mat_<float>& depth_m, const DepthTolerance& tolerance) {
   EdgeLines all(depth_m.rows);
   for (int row = 0; row < depth_m.rows; ++row) {
     all[row] = edges_of_line(depth_m[row], depth_m.cols, tolerance);
@@ -82,7 +68,9 @@ EdgeLines edges_in_rows(const cv::Mat_<float>& depth_m, const Tolerance& toleran
 }  // namespace
 
 DepthEdges find_depth_edges(const SurfaceMap& surface) {
-  const Tolerance tolerance(surface);
+  // Of the noise of the whole: an outline that noise or a camera's interpolation may have made is
+  // none.
+  const DepthTolerance tolerance = depth_tolerance(surface.noise, surface.intrinsics);
   const cv::Mat_<float> transposed = surface.depth_m.t();
   return {edges_in_rows(surface.depth_m, tolerance), edges_in_rows(transposed, tolerance)};
 }
