@@ -113,6 +113,9 @@ Header read_header(RecordReader& file) {
     file.fail(std::to_string(file.left()) + " bytes follow, expected " + std::to_string(expected) +
               " for what the header tells: the file is cut off or damaged");
   }
+  if (header.part_follows > 1) {
+    file.fail("part_follows " + std::to_string(header.part_follows) + ", expected 0 or 1");
+  }
   return header;
 }
 

@@ -226,6 +226,9 @@ TEST_F(SavedMapFile, ReasonsSayWhatWasExpected) {
   std::string damaged = bytes_;
   damaged[200] ^= 1;
   EXPECT_THAT(reason(damaged), HasSubstr("checksum"));
+  std::string neither_yes_nor_no = bytes_;
+  neither_yes_nor_no[92] = 2;  // part_follows
+  EXPECT_THAT(reason(neither_yes_nor_no), HasSubstr("part_follows 2, expected 0 or 1"));
   std::filesystem::remove(path_);
   EXPECT_THAT([&] { load_map(path_); }, ThrowsMessage<std::runtime_error>(HasSubstr("No such")));
   EXPECT_THAT([&] { load_map(folder_.path()); },
