@@ -36,7 +36,8 @@ struct CloudPoint {
 };
 static_assert(sizeof(CloudPoint) == 32, "another layout: raise kCloudPointVersion");
 
-/// Why a slice left the volume: the direction in which the volume moved, or the end of the run.
+/// Why a slice was sent: the direction in which the volume moved when it left, a change of its
+/// tile of space, or the end of the run.
 enum class SliceKind : std::int8_t {
   kFinal = 0,  ///< what was still in the volume at the end; the last slice of a session
   kShiftPlusX = 1,
@@ -45,14 +46,19 @@ enum class SliceKind : std::int8_t {
   kShiftMinusY = 4,
   kShiftPlusZ = 5,
   kShiftMinusZ = 6,
+  kPatch = 7,  ///< the surface in one tile of space, as it is at this moment
 };
 
-/// A piece of the map: the surface that left the moving volume at one moment.
+/// A piece of the map: the surface that left the moving volume at one moment, or a patch.
 ///
 /// Slices of a session are numbered from 0 without gaps; kFinal is the last. A slice that is sent
-/// again with a higher revision replaces the earlier one. A slice may have no points.
+/// again with a higher revision replaces the earlier one; not every revision is sent. A slice may
+/// have no points.
+///
+/// A patch is sent while its surface is in the volume, and again when that has changed. Patches
+/// that are sent together are a batch: they have the same `utime`, and the last one ends it.
 struct CloudSlice {
-  std::int64_t utime = 0;    ///< device time of the frame at which it left, microseconds
+  std::int64_t utime = 0;    ///< device time of the frame at which it left or was so, microseconds
   std::int64_t session = 0;  ///< one part of one run of a mapper; > 0
   std::string map_name;      ///< distinguishes mappers on one bus
   /// Sequence number of its first chunk, and how many chunks it has. Set by the receiver, not by
@@ -62,6 +68,10 @@ struct CloudSlice {
   std::int32_t id = 0;  ///< >= 0
   std::int32_t revision = 0;
   SliceKind kind = SliceKind::kFinal;
+  bool in_volume = false;   ///< of a patch: it may still change
+  bool ends_batch = false;  ///< of a patch: the last one of its batch
+  /// Of the final slice: the sum of the newest revisions of all slices of the session.
+  std::int64_t revision_sum = 0;
   /// A run whose camera stays lost goes on in another part: a map of its own, in a frame W of its
   /// own, in the session with the next number. So session - part is the session of part 0.
   std::int32_t part = 0;      ///< from 0, < session
@@ -92,6 +102,25 @@ struct RgbdFrameMessage {
   std::vector<std::uint8_t> color_jpeg;  ///< 8-bit three-channel JPEG or PNG, empty: no colour
 
   bool operator==(const RgbdFrameMessage&) const = default;
+};
+
+/// What the camera sees, at a small size: for those who look at the map beside it.
+struct CameraView {
+  std::int64_t utime = 0;    ///< of the frame, device time, microseconds
+  std::int64_t session = 0;  ///< of the mapper
+  std::string map_name;      ///< of the mapper
+  std::int64_t frame_index = 0;
+  TrackingState state = TrackingState::kStarting;
+  Pose X_WC = Pose::Identity();  ///< when lost, the last known pose
+  Intrinsics intrinsics;         ///< of the camera's depth image, without distortion
+  /// `depth_mm` has every depth_step-th pixel of the depth image along u and v: (i, j) is the pixel
+  /// u = i * depth_step + depth_step / 2, v = j * depth_step + depth_step / 2, in integers.
+  std::int32_t depth_step = 1;
+  std::vector<std::uint16_t> depth_mm;   ///< along C's z, row after row; 0: not measured
+  std::vector<std::uint8_t> color_jpeg;  ///< of the same view, of any size; empty: no colour
+
+  std::int32_t depth_width() const { return intrinsics.width / depth_step; }    ///< pixels
+  std::int32_t depth_height() const { return intrinsics.height / depth_step; }  ///< pixels
 };
 
 /// A picture that the viewer has drawn.

@@ -127,6 +127,9 @@ enum class QueryPlace : std::int8_t {
   kRay = 2,    ///< the segment that a camera at point_W sees along direction_W
   kBox = 3,    ///< the segments with a point in the box or on its faces
   kIds = 4,    ///< the segments with these ids; ids that do not exist are ignored
+  /// The segment of what the camera measures at pixel_px in the newest CameraView of the map: never
+  /// a surface behind it.
+  kPixel = 5,
 };
 
 /// Asks a segmenter for the segments at a place that pass every filter, ordered by their number of
@@ -143,7 +146,9 @@ struct SegmentQuery {
   double direction_W[3] = {};  ///< kRay: unit
   double box_min_W[3] = {};    ///< kBox: metres
   double box_max_W[3] = {};    ///< kBox: metres, at least box_min_W
-  double radius_m = 0.0;       ///< kPoint, kRay: largest distance of the map point; 0: two voxels
+  double pixel_px[2] = {};     ///< kPixel: u, v in the camera's depth image
+  /// kPoint, kRay, kPixel: largest distance of the map point; 0: two voxels
+  double radius_m = 0.0;
   std::vector<std::uint32_t> segment_ids;  ///< kIds
   bool only_planar = false;                ///< only segments that are planar
   std::int64_t changed_since = 0;  ///< only segments that changed after this device time; 0: all
@@ -163,7 +168,7 @@ struct DescribedSegment {
   float plane_offset_m = 0.0F;           ///< points p on the plane have plane_normal_W * p = this
   float plane_rms_m = 0.0F;              ///< of the distances of its points from the plane
   float plane_share = 0.0F;              ///< of its points within one voxel of the plane, 0 to 1
-  float distance_m = 0.0F;               ///< kPoint: from the point; kRay: along the ray; else 0
+  float distance_m = 0.0F;               ///< kPoint: from the point; kRay, kPixel: along the ray
   std::uint32_t is_planar = 0;           ///< 0 or 1
 
   bool operator==(const DescribedSegment&) const = default;
@@ -194,8 +199,12 @@ struct SegmentAnswer {
   std::int64_t map_points = 0;
   std::int64_t map_segments = 0;
   std::int64_t num_matching = 0;  ///< segments that match; `segments` has at most max_segments
-  bool has_hit = false;           ///< kPoint, kRay: a map point was found
+  bool has_hit = false;           ///< kPoint, kRay, kPixel: a map point was found
   float hit_W[3] = {};            ///< that point, metres
+  std::int64_t view_utime = 0;    ///< kPixel: device time of the CameraView that was used; 0: none
+  /// kPixel: distance from the camera to what it measures at the pixel; 0: it measures nothing.
+  /// With a distance and without a hit, that surface is not in the segment map yet.
+  float surface_distance_m = 0.0F;
   std::vector<DescribedSegment> segments;  ///< the largest first
   std::vector<SegmentContact> contacts;    ///< of each of `segments`, by ascending ids
 

@@ -53,6 +53,10 @@ class Check {
   const char* type_;
 };
 
+inline void check_state(const Check& check, TrackingState state) {
+  check.range("state", static_cast<int>(state), 0, static_cast<int>(TrackingState::kGiven));
+}
+
 /// Converts a pose to the rows of [R | t], and back.
 void pose_to_wire(const Pose& X, double (&rows)[12]);
 Pose pose_from_wire(const double (&rows)[12]);

@@ -12,6 +12,7 @@ static_assert(cloud_slice_t::KIND_SHIFT_PLUS_Y == static_cast<int>(SliceKind::kS
 static_assert(cloud_slice_t::KIND_SHIFT_MINUS_Y == static_cast<int>(SliceKind::kShiftMinusY));
 static_assert(cloud_slice_t::KIND_SHIFT_PLUS_Z == static_cast<int>(SliceKind::kShiftPlusZ));
 static_assert(cloud_slice_t::KIND_SHIFT_MINUS_Z == static_cast<int>(SliceKind::kShiftMinusZ));
+static_assert(cloud_slice_t::KIND_PATCH == static_cast<int>(SliceKind::kPatch));
 
 template <>
 struct Bulk<CloudSlice> {
@@ -26,6 +27,9 @@ struct Bulk<CloudSlice> {
     to.session = from.session;
     to.revision = from.revision;
     to.kind = static_cast<decltype(to.kind)>(from.kind);
+    to.in_volume = from.in_volume != 0;
+    to.ends_batch = from.ends_batch != 0;
+    to.revision_sum = from.revision_sum;
     to.part = from.part;
     to.part_follows = from.part_follows != 0;
     to.resolution_m = from.resolution_m;
@@ -65,7 +69,8 @@ struct Bulk<CloudSlice> {
     check.positive("session", slice.session);
     check.not_negative("slice_id", slice.id);
     check.not_negative("revision", slice.revision);
-    check.range("kind", static_cast<int>(slice.kind), 0, static_cast<int>(SliceKind::kShiftMinusZ));
+    check.range("kind", static_cast<int>(slice.kind), 0, static_cast<int>(SliceKind::kPatch));
+    check.not_negative("revision_sum", slice.revision_sum);
     check.range<std::int64_t>("part", slice.part, 0, slice.session - 1);
     check.range("resolution_m", slice.resolution_m, kMinResolution_m, kMaxResolution_m);
     check.pose("X_WC", slice.X_WC);

@@ -41,7 +41,7 @@ concept SmallMessage = std::same_as<T, CameraPose> || std::same_as<T, MapperStat
 template <class T>
 concept BulkMessage = std::same_as<T, CloudSlice> || std::same_as<T, SegmentUpdate> ||
     std::same_as<T, SegmentAnswer> || std::same_as<T, RgbdFrameMessage> ||
-    std::same_as<T, Snapshot>;
+    std::same_as<T, CameraView> || std::same_as<T, Snapshot>;
 
 // Bounds of the contract. A message outside of them is neither sent nor accepted.
 inline constexpr std::int64_t kMaxPayloadBytes = std::int64_t{1} << 30;  ///< of a bulk message

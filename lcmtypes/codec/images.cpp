@@ -1,5 +1,8 @@
 // The messages that carry compressed images.
 
+#include <algorithm>
+
+#include <kintsugi/camera_view_t.hpp>
 #include <kintsugi/rgbd_frame_t.hpp>
 #include <kintsugi/snapshot_t.hpp>
 
@@ -7,6 +10,34 @@
 
 namespace kintsugi {
 namespace codec {
+
+namespace {
+
+template <class From, class To>
+void copy_intrinsics(const From& from, To& to) {
+  to.fx = from.fx;
+  to.fy = from.fy;
+  to.cx = from.cx;
+  to.cy = from.cy;
+  to.width = from.width;
+  to.height = from.height;
+}
+
+void check_intrinsics(const Check& check, const Intrinsics& intrinsics) {
+  constexpr double kMax_px = kMaxImageSide_px;
+  check.range("width", intrinsics.width, 1, kMaxImageSide_px);
+  check.range("height", intrinsics.height, 1, kMaxImageSide_px);
+  // No camera has a focal length below a pixel, or a principal point far outside the image.
+  check.range("fx", intrinsics.fx, 1.0, 10.0 * kMax_px);
+  check.range("fy", intrinsics.fy, 1.0, 10.0 * kMax_px);
+  check.range("cx", intrinsics.cx, -kMax_px, 2.0 * kMax_px);
+  check.range("cy", intrinsics.cy, -kMax_px, 2.0 * kMax_px);
+  for (const double coefficient : intrinsics.distortion) {
+    check.range("distortion", coefficient, -1e3, 1e3);
+  }
+}
+
+}  // namespace
 
 /// Other people's drivers publish frames, too.
 template <>
@@ -24,23 +55,15 @@ struct Bulk<RgbdFrameMessage> : PlacedByByte<rgbd_frame_t> {
     to.frame_index = from.frame_index;
     to.depth_units_per_m = from.depth_units_per_m;
   }
-  template <class From, class To>
-  static void copy_intrinsics(const From& from, To& to) {
-    to.fx = from.fx;
-    to.fy = from.fy;
-    to.cx = from.cx;
-    to.cy = from.cy;
-    to.width = from.width;
-    to.height = from.height;
-    for (std::size_t i = 0; i < 5; ++i) to.distortion[i] = from.distortion[i];
-  }
   static void header_to_wire(const RgbdFrameMessage& frame, rgbd_frame_t& wire) {
     copy(frame, wire);
     copy_intrinsics(frame.intrinsics, wire);
+    std::ranges::copy(frame.intrinsics.distortion, wire.distortion);
   }
   static void header_from_wire(const rgbd_frame_t& wire, RgbdFrameMessage& frame) {
     copy(wire, frame);
     copy_intrinsics(wire, frame.intrinsics);
+    std::ranges::copy(wire.distortion, frame.intrinsics.distortion.begin());
   }
   static void set_counts(rgbd_frame_t& wire, const Counts& counts) {
     wire.depth_bytes = counts[0];
@@ -68,20 +91,68 @@ struct Bulk<RgbdFrameMessage> : PlacedByByte<rgbd_frame_t> {
     function(frame.depth_png);
     function(frame.color_jpeg);
   }
+};
 
- private:
-  static void check_intrinsics(const Check& check, const Intrinsics& intrinsics) {
-    constexpr double kMax_px = kMaxImageSide_px;
-    check.range("width", intrinsics.width, 1, kMaxImageSide_px);
-    check.range("height", intrinsics.height, 1, kMaxImageSide_px);
-    // No camera has a focal length below a pixel, or a principal point far outside the image.
-    check.range("fx", intrinsics.fx, 1.0, 10.0 * kMax_px);
-    check.range("fy", intrinsics.fy, 1.0, 10.0 * kMax_px);
-    check.range("cx", intrinsics.cx, -kMax_px, 2.0 * kMax_px);
-    check.range("cy", intrinsics.cy, -kMax_px, 2.0 * kMax_px);
-    for (const double coefficient : intrinsics.distortion) {
-      check.range("distortion", coefficient, -1e3, 1e3);
+static_assert(camera_view_t::STATE_STARTING == static_cast<int>(TrackingState::kStarting));
+static_assert(camera_view_t::STATE_TRACKING == static_cast<int>(TrackingState::kTracking));
+static_assert(camera_view_t::STATE_LOST == static_cast<int>(TrackingState::kLost));
+static_assert(camera_view_t::STATE_GIVEN == static_cast<int>(TrackingState::kGiven));
+
+template <>
+struct Bulk<CameraView> : PlacedByByte<camera_view_t> {
+  static constexpr int kNumStrings = 1;
+
+  template <class From, class To>
+  static void copy(const From& from, To& to) {
+    to.utime = from.utime;
+    to.session = from.session;
+    to.map_name = from.map_name;
+    to.frame_index = from.frame_index;
+    to.state = static_cast<decltype(to.state)>(from.state);
+    to.depth_step = from.depth_step;
+  }
+  static void header_to_wire(const CameraView& view, camera_view_t& wire) {
+    copy(view, wire);
+    copy_intrinsics(view.intrinsics, wire);
+    pose_to_wire(view.X_WC, wire.X_WC);
+  }
+  static void header_from_wire(const camera_view_t& wire, CameraView& view) {
+    copy(wire, view);
+    copy_intrinsics(wire, view.intrinsics);
+    view.X_WC = pose_from_wire(wire.X_WC);
+  }
+  static void set_counts(camera_view_t& wire, const Counts& counts) {
+    wire.num_depths = counts[0];
+    wire.color_bytes = counts[1];
+  }
+  static Counts counts(const camera_view_t& wire) {
+    return {wire.num_depths, wire.color_bytes, 0, 0};
+  }
+
+  static void check_header(const Check& check, const CameraView& view, const Counts& counts) {
+    check.not_negative("utime", view.utime);
+    check.positive("session", view.session);
+    check.text("map_name", view.map_name);
+    check.not_negative("frame_index", view.frame_index);
+    check_state(check, view.state);
+    check.pose("X_WC", view.X_WC);
+    check_intrinsics(check, view.intrinsics);
+    check.range("depth_step", view.depth_step, 1,
+                std::min(view.intrinsics.width, view.intrinsics.height));
+    const int num_depths = view.depth_width() * view.depth_height();
+    check.range("num_depths", counts[0], num_depths, num_depths);
+  }
+  /// The colour image is checked where it is decompressed.
+  static void check_records(const Check& check, const CameraView& view) {
+    for (const double coefficient : view.intrinsics.distortion) {
+      check.range("distortion", coefficient, 0.0, 0.0);
     }
+  }
+
+  template <class View, class Function>
+  static void for_each_vector(View& view, const Function& function) {
+    function(view.depth_mm);
+    function(view.color_jpeg);
   }
 };
 
@@ -125,6 +196,12 @@ template std::int32_t num_chunks(const RgbdFrameMessage&, std::size_t);
 template Bytes encode_chunk(const RgbdFrameMessage&, std::int64_t, std::int32_t, std::size_t);
 template Chunk<RgbdFrameMessage> decode_chunk(ByteView);
 template RgbdFrameMessage join(const std::vector<Chunk<RgbdFrameMessage>>&);
+
+template std::int64_t payload_bytes(const CameraView&);
+template std::int32_t num_chunks(const CameraView&, std::size_t);
+template Bytes encode_chunk(const CameraView&, std::int64_t, std::int32_t, std::size_t);
+template Chunk<CameraView> decode_chunk(ByteView);
+template CameraView join(const std::vector<Chunk<CameraView>>&);
 
 template std::int64_t payload_bytes(const Snapshot&);
 template std::int32_t num_chunks(const Snapshot&, std::size_t);

@@ -34,6 +34,7 @@ static_assert(segment_query_t::PLACE_POINT == static_cast<int>(QueryPlace::kPoin
 static_assert(segment_query_t::PLACE_RAY == static_cast<int>(QueryPlace::kRay));
 static_assert(segment_query_t::PLACE_BOX == static_cast<int>(QueryPlace::kBox));
 static_assert(segment_query_t::PLACE_IDS == static_cast<int>(QueryPlace::kIds));
+static_assert(segment_query_t::PLACE_PIXEL == static_cast<int>(QueryPlace::kPixel));
 
 template <>
 struct Small<SegmentQuery> : Shape<segment_query_t> {
@@ -54,6 +55,7 @@ struct Small<SegmentQuery> : Shape<segment_query_t> {
       to.box_min_W[axis] = from.box_min_W[axis];
       to.box_max_W[axis] = from.box_max_W[axis];
     }
+    for (std::size_t i = 0; i < 2; ++i) to.pixel_px[i] = from.pixel_px[i];
     to.radius_m = from.radius_m;
     to.only_planar = from.only_planar != 0;
     to.changed_since = from.changed_since;
@@ -74,7 +76,7 @@ struct Small<SegmentQuery> : Shape<segment_query_t> {
     check.not_negative("number", m.number);
     check.not_negative("map_session", m.map_session);
     check.text("map_name", m.map_name);
-    check.range("place", static_cast<int>(m.place), 0, static_cast<int>(QueryPlace::kIds));
+    check.range("place", static_cast<int>(m.place), 0, static_cast<int>(QueryPlace::kPixel));
     check_place(check, m);
     check.range("radius_m", m.radius_m, 0.0, kMaxQueryRadius_m);
     check.not_negative("changed_since", m.changed_since);
@@ -94,6 +96,9 @@ struct Small<SegmentQuery> : Shape<segment_query_t> {
       }
     }
     if (m.place == QueryPlace::kRay) check_unit(check, "direction_W", m.direction_W);
+    for (const double coordinate : m.pixel_px) {
+      check.range("pixel_px", coordinate, 0.0, static_cast<double>(kMaxImageSide_px));
+    }
   }
 };
 
@@ -116,6 +121,8 @@ struct Bulk<SegmentAnswer> : PlacedByByte<segment_answer_t> {
     to.num_matching = from.num_matching;
     to.has_hit = from.has_hit != 0;
     for (std::size_t axis = 0; axis < 3; ++axis) to.hit_W[axis] = from.hit_W[axis];
+    to.view_utime = from.view_utime;
+    to.surface_distance_m = from.surface_distance_m;
   }
   static void header_to_wire(const SegmentAnswer& answer, segment_answer_t& wire) {
     copy(answer, wire);
@@ -144,6 +151,9 @@ struct Bulk<SegmentAnswer> : PlacedByByte<segment_answer_t> {
     check.not_negative("map_segments", answer.map_segments);
     check.range<std::int64_t>("num_matching", answer.num_matching, counts[0], answer.map_segments);
     for (const float coordinate : answer.hit_W) check.finite("hit_W", coordinate);
+    check.not_negative("view_utime", answer.view_utime);
+    check.range("surface_distance_m", answer.surface_distance_m, 0.0F,
+                std::numeric_limits<float>::max());
   }
   static void check_records(const Check& check, const SegmentAnswer& answer) {
     check.text("problem", answer.problem);

@@ -29,10 +29,6 @@ struct Copied : Shape<Wire> {
   static void from_wire(const Wire& wire, Message& message) { Small<Message>::copy(wire, message); }
 };
 
-inline void check_state(const Check& check, TrackingState state) {
-  check.range("state", static_cast<int>(state), 0, static_cast<int>(TrackingState::kGiven));
-}
-
 }  // namespace kintsugi::codec
 
 namespace kintsugi {

@@ -232,6 +232,7 @@ template class StreamSubscriber<CloudSlice>;
 template class StreamSubscriber<SegmentUpdate>;
 template class StreamSubscriber<SegmentAnswer>;
 template class StreamSubscriber<RgbdFrameMessage>;
+template class StreamSubscriber<CameraView>;
 template class StreamSubscriber<Snapshot>;
 
 }  // namespace kintsugi

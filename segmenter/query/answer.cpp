@@ -71,6 +71,9 @@ std::vector<std::size_t> find_segments(const MapSnapshot& map, const SegmentQuer
                        segments_in_box(cloud, {vector(query.box_min_W), vector(query.box_max_W)}));
     case QueryPlace::kIds:
       return places_of(map, query.segment_ids);
+    case QueryPlace::kPixel:
+      answer.problem = "there is no view of the camera";
+      return {};
     case QueryPlace::kAnywhere:
       break;
   }

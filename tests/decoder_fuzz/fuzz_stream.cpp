@@ -48,6 +48,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   receive<SegmentUpdate>(channels::kSegmentUpdate, events);
   receive<SegmentAnswer>(channels::kSegmentAnswer, events);
   receive<RgbdFrameMessage>(channels::kRgbdFrame, events);
+  receive<CameraView>(channels::kCameraView, events);
   receive<Snapshot>(channels::kSnapshot, events);
   return 0;
 }

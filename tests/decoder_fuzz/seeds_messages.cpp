@@ -45,6 +45,7 @@ Seeds message_seeds() {
           {"segment_query", encode(example_query())},
           {"segment_answer", encode_chunk(example_answer(3), 0, 0, kDefaultMaxChunkBytes)},
           {"rgbd_frame", encode_chunk(example_frame(40, 30), 0, 0, kDefaultMaxChunkBytes)},
+          {"view", encode_chunk(example_view(50), 0, 0, kDefaultMaxChunkBytes)},
           {"snapshot", encode_chunk(example_snapshot(50), 0, 0, kDefaultMaxChunkBytes)}};
 }
 
@@ -55,6 +56,7 @@ Seeds log_seeds() {
       {"updates", log_of(channels::kSegmentUpdate, example_update(200, 0), example_update(9, 1))},
       {"answers", log_of(channels::kSegmentAnswer, example_answer(20), example_answer(0))},
       {"frames", log_of(channels::kRgbdFrame, example_frame(1'500, 900), example_frame(40, 0))},
+      {"views", log_of(channels::kCameraView, example_view(3'000), example_view(0))},
       {"pictures", log_of(channels::kSnapshot, example_snapshot(3'000), example_snapshot(50))}};
 }
 

@@ -28,6 +28,9 @@ inline CloudSlice example_slice(int num_points, std::int32_t id = 7) {
   slice.id = id;
   slice.revision = 1;
   slice.kind = SliceKind::kShiftMinusZ;
+  slice.in_volume = true;
+  slice.ends_batch = true;
+  slice.revision_sum = 12;
   slice.part = 2;
   slice.part_follows = true;
   slice.resolution_m = 0.01F;
@@ -116,6 +119,23 @@ inline RgbdFrameMessage example_frame(int depth_bytes, int color_bytes) {
   return frame;
 }
 
+inline CameraView example_view(int color_bytes) {
+  CameraView view;
+  view.utime = 5'500'000;
+  view.session = 42;
+  view.map_name = "office";
+  view.frame_index = 165;
+  view.state = TrackingState::kTracking;
+  view.X_WC = example_pose();
+  view.intrinsics = {52.5, 52.6, 31.9, 23.9, 66, 50, {}};
+  view.depth_step = 8;
+  for (int i = 0; i < view.depth_width() * view.depth_height(); ++i) {
+    view.depth_mm.push_back(static_cast<std::uint16_t>(1000 + 7 * i));
+  }
+  view.color_jpeg = example_bytes(color_bytes);
+  return view;
+}
+
 inline Snapshot example_snapshot(int image_bytes) {
   return {6'000'000, 45, "12.5 s, 100 000 points", 1280, 720, example_bytes(image_bytes)};
 }
@@ -134,6 +154,8 @@ inline SegmentQuery example_query() {
     query.box_max_W[axis] = 2.0 + axis;
   }
   query.direction_W[1] = 1.0;
+  query.pixel_px[0] = 320.5;
+  query.pixel_px[1] = 240.0;
   query.radius_m = 0.25;
   query.segment_ids = {7, 0xFFFFFFFFU, 12};
   query.only_planar = true;
@@ -176,6 +198,8 @@ inline SegmentAnswer example_answer(int num_segments) {
   answer.has_hit = true;
   answer.hit_W[0] = 1.5F;
   answer.hit_W[2] = -0.5F;
+  answer.view_utime = 8'050'000;
+  answer.surface_distance_m = 1.625F;
   for (int i = 0; i < num_segments; ++i) {
     const auto id = static_cast<std::uint32_t>(i + 1);
     answer.segments.push_back(example_described_segment(id));

@@ -10,10 +10,11 @@ namespace kintsugi {
 inline bool equal(const Pose& a, const Pose& b) { return a.matrix() == b.matrix(); }
 
 inline bool operator==(const CloudSlice& a, const CloudSlice& b) {
-  const auto& [utime, session, map_name, sequence, num_chunks, id, revision, kind, part,
-               part_follows, resolution_m, X_WC, points_W] = a;
+  const auto& [utime, session, map_name, sequence, num_chunks, id, revision, kind, in_volume,
+               ends_batch, revision_sum, part, part_follows, resolution_m, X_WC, points_W] = a;
   return utime == b.utime && session == b.session && map_name == b.map_name && id == b.id &&
-         revision == b.revision && kind == b.kind && part == b.part &&
+         revision == b.revision && kind == b.kind && in_volume == b.in_volume &&
+         ends_batch == b.ends_batch && revision_sum == b.revision_sum && part == b.part &&
          part_follows == b.part_follows && resolution_m == b.resolution_m && equal(X_WC, b.X_WC) &&
          points_W == b.points_W;
 }
@@ -26,6 +27,15 @@ inline bool operator==(const SegmentUpdate& a, const SegmentUpdate& b) {
          is_final == b.is_final && num_slices == b.num_slices && num_points == b.num_points &&
          num_segments == b.num_segments && labels == b.labels && runs == b.runs &&
          events == b.events && statistics == b.statistics;
+}
+
+inline bool operator==(const CameraView& a, const CameraView& b) {
+  const auto& [utime, session, map_name, frame_index, state, X_WC, intrinsics, depth_step, depth_mm,
+               color_jpeg] = a;
+  return utime == b.utime && session == b.session && map_name == b.map_name &&
+         frame_index == b.frame_index && state == b.state && equal(X_WC, b.X_WC) &&
+         intrinsics == b.intrinsics && depth_step == b.depth_step && depth_mm == b.depth_mm &&
+         color_jpeg == b.color_jpeg;
 }
 
 inline bool operator==(const CameraPose& a, const CameraPose& b) {

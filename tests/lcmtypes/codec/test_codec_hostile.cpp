@@ -52,6 +52,7 @@ std::vector<Subject> subjects() {
           bulk("segment_update", example_update(12)),
           bulk("segment_answer", example_answer(4)),
           bulk("rgbd_frame", example_frame(40, 30)),
+          bulk("view", example_view(50)),
           bulk("snapshot", example_snapshot(50))};
 }
 
@@ -194,8 +195,16 @@ TEST(CodecBounds, ErrorsNameTypeFieldValueAndBound) {
   EXPECT_THAT(refusal(example_slice(1), [](CloudSlice& s) { s.session = 0; }),
               HasSubstr("cloud_slice_t.session is 0, expected > 0"));
   EXPECT_THAT(refusal(example_slice(1), [](CloudSlice& s) { s.id = -1; }), HasSubstr("slice_id"));
-  EXPECT_THAT(refusal(example_slice(1), [](CloudSlice& s) { s.kind = SliceKind{7}; }),
-              HasSubstr("kind is 7"));
+  EXPECT_THAT(refusal(example_slice(1), [](CloudSlice& s) { s.kind = SliceKind{8}; }),
+              HasSubstr("kind is 8"));
+  EXPECT_THAT(refusal(example_slice(1), [](CloudSlice& s) { s.revision_sum = -1; }),
+              HasSubstr("revision_sum is -1"));
+  EXPECT_THAT(refusal(example_view(1), [](CameraView& v) { v.depth_step = 0; }),
+              HasSubstr("camera_view_t.depth_step is 0, expected 1 .. 50"));
+  EXPECT_THAT(refusal(example_view(1), [](CameraView& v) { v.depth_mm.pop_back(); }),
+              HasSubstr("num_depths is 47, expected 48 .. 48"));
+  EXPECT_THAT(refusal(example_view(1), [](CameraView& v) { v.intrinsics.distortion[0] = 0.1; }),
+              HasSubstr("distortion is 0.1"));
   EXPECT_THAT(refusal(example_slice(1), [](CloudSlice& s) { s.part = -1; }), HasSubstr("part"));
   EXPECT_THAT(refusal(example_slice(1), [](CloudSlice& s) { s.part = 42; }),  // of session 42
               HasSubstr("part"));
@@ -228,8 +237,10 @@ TEST(CodecBounds, ErrorsNameTypeFieldValueAndBound) {
   EXPECT_THAT(refusal(example_update(1),
                       [&](SegmentUpdate& u) { u.statistics[0].area_m2 = std::nanf(""); }),
               HasSubstr("statistics area is nan"));
-  EXPECT_THAT(refusal(example_query(), [](SegmentQuery& q) { q.place = QueryPlace{5}; }),
-              HasSubstr("segment_query_t.place is 5, expected 0 .. 4"));
+  EXPECT_THAT(refusal(example_query(), [](SegmentQuery& q) { q.place = QueryPlace{6}; }),
+              HasSubstr("segment_query_t.place is 6, expected 0 .. 5"));
+  EXPECT_THAT(refusal(example_query(), [](SegmentQuery& q) { q.pixel_px[1] = -1.0; }),
+              HasSubstr("pixel_px is -1"));
   EXPECT_THAT(refusal(example_query(), [](SegmentQuery& q) { q.client = 0; }),
               HasSubstr("client is 0, expected > 0"));
   EXPECT_THAT(refusal(example_query(), [](SegmentQuery& q) { q.direction_W[0] = 0.01; }),

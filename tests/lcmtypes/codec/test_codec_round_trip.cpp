@@ -62,6 +62,8 @@ TEST(CodecRoundTrip, BulkMessagesKeepEveryFieldWhateverTheChunkSize) {
   expect_round_trip(example_answer(901));
   expect_round_trip(example_frame(10'001, 0));
   expect_round_trip(example_frame(1, 70'003));
+  expect_round_trip(example_view(0));
+  expect_round_trip(example_view(123'457));
   expect_round_trip(example_snapshot(123'457));
 }
 
