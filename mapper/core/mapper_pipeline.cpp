@@ -14,6 +14,8 @@
 namespace kintsugi::mapper {
 namespace {
 
+constexpr double kRaysBeyondRange = 1.2;  // the camera may have moved back from what it mapped
+
 Eigen::AlignedBox3d region_of(const TsdfVolume& volume) {
   // The ball holds all that is measured within the range.
   if (volume.config().region == RegionShape::kBall) return Model().region_W;
@@ -23,6 +25,18 @@ Eigen::AlignedBox3d region_of(const TsdfVolume& volume) {
 }
 
 }  // namespace
+
+void MapperPipeline::Config::set_max_range(double max_range_m) {
+  limit_range_by_noise = max_range_m == 0.0;
+  if (limit_range_by_noise) {
+    const double by_noise_m = range_of(noise.value_or(DepthNoise()),
+                                       volume.resolution_m * volume.largest_truncation_vox());
+    max_range_m = std::min({by_noise_m, TsdfVolume::longest_range_m(volume), kLongestDepth_m});
+  }
+  volume.max_range_m = max_range_m;
+  integrator.max_depth_m = max_range_m;
+  raycaster.max_depth_m = max_range_m * kRaysBeyondRange;
+}
 
 void MapperPipeline::Config::validate() const {
   volume.validate();

@@ -62,6 +62,10 @@ class MapperPipeline {
     int finest_tracking_width_px = 320;  ///< images are halved while at least this remains
     Trajectory given_path;  ///< if not empty, replaces tracking; a frame without a pose is lost
 
+    /// Makes volume, fusion and raycast as large as depth up to `max_range_m` asks for; 0: as the
+    /// noise allows, within what the volume and images of 16 bits can hold. For a ball.
+    void set_max_range(double max_range_m);
+
     /// @throws std::invalid_argument naming field, value and bound
     void validate() const;
   };

@@ -1,6 +1,5 @@
 #include "mapper/process/options.hpp"
 
-#include <algorithm>
 #include <iostream>
 #include <sstream>
 #include <stdexcept>
@@ -12,14 +11,11 @@
 #include "lcmtypes/base/argument_check.hpp"
 #include "lcmtypes/codec/codec.hpp"
 #include "mapper/core/frame/sensors.hpp"
-#include "mapper/core/fusion/truncation.hpp"
 #include "mapper/source/openni2/device_listing.hpp"
 
 namespace kintsugi::mapper {
 namespace {
 
-constexpr double kReachOfCamera_m = 6.5;  // 16 bits in units of 0.1 mm
-constexpr double kRaysBeyondRange = 1.2;  // the camera may have moved back from what it mapped
 constexpr std::string_view kSyntheticScheme = "synthetic://";
 
 void add_flag(CLI::App& app, const MapperOption& option) {
@@ -89,26 +85,16 @@ void complete_volume(Options& options) {
   }
   if (options.volume_size_m == 0.0) options.volume_size_m = volume.volume_size_m;
   volume.volume_size_m = options.volume_size_m;
-  double& max_range_m = options.max_range_m;
   if (options.volume == "cube") {
     volume.region = RegionShape::kCube;
-    if (max_range_m == 0.0) max_range_m = kReachOfCamera_m;
-    options.source.max_range_m = max_range_m;
-    return;
-  }
-  if (options.volume != "range") {
+    if (options.max_range_m == 0.0) options.max_range_m = kLongestDepth_m;
+  } else if (options.volume == "range") {
+    options.pipeline.set_max_range(options.max_range_m);
+    options.max_range_m = volume.max_range_m;
+  } else {
     throw std::invalid_argument("--volume is '" + options.volume + "', must be range or cube");
   }
-  options.pipeline.limit_range_by_noise = max_range_m == 0.0;
-  if (max_range_m == 0.0) {
-    const double by_noise_m = range_of(options.pipeline.noise.value_or(DepthNoise()),
-                                       volume.resolution_m * volume.largest_truncation_vox());
-    max_range_m = std::min({by_noise_m, TsdfVolume::longest_range_m(volume), kReachOfCamera_m});
-  }
-  options.source.max_range_m = max_range_m;
-  volume.max_range_m = max_range_m;
-  options.pipeline.integrator.max_depth_m = max_range_m;
-  options.pipeline.raycaster.max_depth_m = max_range_m * kRaysBeyondRange;
+  options.source.max_range_m = options.max_range_m;
 }
 
 /// The noise that --depth-noise gives.

@@ -52,13 +52,18 @@ Options parse_command_line(int argc, char** argv) {
   app.add_option("--threads", options.threads, "of the parallel stages; 0: one per core");
   app.add_option("--resolution", options.pipeline.volume.resolution_m, "voxel size, m")
       ->capture_default_str();
-  app.add_option("--volume-size", options.pipeline.volume.volume_size_m, "side of the volume, m")
-      ->capture_default_str();
+  auto* volume_size = app.add_option("--volume-size", options.pipeline.volume.volume_size_m,
+                                     "a cube of this side, m, not the mapper's default volume");
   app.add_option("--csv", options.csv, "write a line for each frame of each run");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     std::exit(app.exit(error));
+  }
+  if (volume_size->count() > 0) {
+    options.pipeline.volume.region = RegionShape::kCube;
+  } else {
+    options.pipeline.set_max_range(0.0);
   }
   return options;
 }

@@ -8,6 +8,9 @@
 
 namespace kintsugi::mapper {
 
+/// The longest depth that images of 16 bits can hold in units of 0.1 mm, as OpenNI2's finest are.
+inline constexpr double kLongestDepth_m = 6.5;
+
 /// One frame: undistorted, depth in metres, colour registered to depth.
 struct RgbdFrame {
   std::int64_t utime = 0;         ///< device time of the depth image, microseconds
