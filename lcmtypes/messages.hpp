@@ -70,6 +70,9 @@ struct CloudSlice {
   SliceKind kind = SliceKind::kFinal;
   bool in_volume = false;   ///< of a patch: it may still change
   bool ends_batch = false;  ///< of a patch: the last one of its batch
+  /// Of a patch: a newer revision followed while this one waited to be sent, so that its points
+  /// were left out. Receivers ignore it.
+  bool superseded = false;
   /// Of the final slice: the sum of the newest revisions of all slices of the session.
   std::int64_t revision_sum = 0;
   /// A run whose camera stays lost goes on in another part: a map of its own, in a frame W of its

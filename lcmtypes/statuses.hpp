@@ -55,6 +55,7 @@ struct MapperStatus {
   std::int64_t slices_published = 0;
   std::int64_t points_published = 0;
   std::int64_t chunks_published = 0;
+  std::int64_t patches_superseded = 0;
   std::int64_t chunks_resent = 0;
   std::int64_t requests_received = 0;
   std::int64_t store_bytes = 0;
@@ -109,6 +110,7 @@ struct MapperStatus {
     visit("slices_published", s.slices_published...);
     visit("points_published", s.points_published...);
     visit("chunks_published", s.chunks_published...);
+    visit("patches_superseded", s.patches_superseded...);
     visit("chunks_resent", s.chunks_resent...);
     visit("requests_received", s.requests_received...);
     visit("store_bytes", s.store_bytes...);

@@ -29,6 +29,7 @@ struct Bulk<CloudSlice> {
     to.kind = static_cast<decltype(to.kind)>(from.kind);
     to.in_volume = from.in_volume != 0;
     to.ends_batch = from.ends_batch != 0;
+    to.superseded = from.superseded != 0;
     to.revision_sum = from.revision_sum;
     to.part = from.part;
     to.part_follows = from.part_follows != 0;
@@ -64,13 +65,14 @@ struct Bulk<CloudSlice> {
     return std::int64_t{wire.first_point} * static_cast<std::int64_t>(kAlignment);
   }
 
-  static void check_header(const Check& check, const CloudSlice& slice, const Counts& /*counts*/) {
+  static void check_header(const Check& check, const CloudSlice& slice, const Counts& counts) {
     check.not_negative("utime", slice.utime);
     check.positive("session", slice.session);
     check.not_negative("slice_id", slice.id);
     check.not_negative("revision", slice.revision);
     check.range("kind", static_cast<int>(slice.kind), 0, static_cast<int>(SliceKind::kPatch));
     check.not_negative("revision_sum", slice.revision_sum);
+    if (slice.superseded && counts[0] > 0) check.fail("total_points", counts[0], "0, superseded");
     check.range<std::int64_t>("part", slice.part, 0, slice.session - 1);
     check.range("resolution_m", slice.resolution_m, kMinResolution_m, kMaxResolution_m);
     check.pose("X_WC", slice.X_WC);

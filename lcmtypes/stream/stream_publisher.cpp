@@ -41,19 +41,18 @@ StreamPublisher::~StreamPublisher() {
 }
 
 template <BulkMessage Message>
-StreamSender::Job StreamPublisher::job_of(Message message) const {
-  if (message.session != session_) {
+StreamSender::Job StreamPublisher::job_of(std::shared_ptr<const Message> message) const {
+  if (message->session != session_) {
     throw std::invalid_argument("StreamPublisher: the message's session is " +
-                                std::to_string(message.session) + ", expected " +
+                                std::to_string(message->session) + ", expected " +
                                 std::to_string(session_));
   }
   StreamSender::Job job;
-  job.num_chunks = num_chunks(message, max_chunk_bytes_);
-  job.bytes = static_cast<std::size_t>(payload_bytes(message));
-  job.encode = [limit = max_chunk_bytes_,
-                shared = std::make_shared<const Message>(std::move(message))](std::int64_t sequence,
-                                                                              std::int32_t index) {
-    return encode_chunk(*shared, sequence, index, limit);
+  job.num_chunks = num_chunks(*message, max_chunk_bytes_);
+  job.bytes = static_cast<std::size_t>(payload_bytes(*message));
+  job.encode = [limit = max_chunk_bytes_, message = std::move(message)](std::int64_t sequence,
+                                                                        std::int32_t index) {
+    return encode_chunk(*message, sequence, index, limit);
   };
   return job;
 }
@@ -61,7 +60,22 @@ StreamSender::Job StreamPublisher::job_of(Message message) const {
 template <BulkMessage Message>
 void StreamPublisher::publish(Message message) {
   std::vector<StreamSender::Job> jobs;
-  jobs.push_back(job_of(std::move(message)));
+  jobs.push_back(job_of(std::make_shared<const Message>(std::move(message))));
+  enqueue(std::move(jobs));
+}
+
+void StreamPublisher::publish_patch(CloudSlice patch, bool supersede) {
+  std::vector<CloudPoint> points_W = std::exchange(patch.points_W, {});
+  CloudSlice header = patch;
+  header.superseded = true;
+  patch.points_W = std::move(points_W);
+  std::vector<StreamSender::Job> jobs;
+  StreamSender::Job& job =
+      jobs.emplace_back(job_of(std::make_shared<const CloudSlice>(std::move(patch))));
+  if (supersede) job.key = header.id;
+  job.encode_superseded = [limit = max_chunk_bytes_, header](std::int64_t sequence) {
+    return encode_chunk(header, sequence, 0, limit);
+  };
   enqueue(std::move(jobs));
 }
 
@@ -69,7 +83,9 @@ template <BulkMessage Message>
 void StreamPublisher::publish_state(std::vector<Message> messages) {
   std::vector<StreamSender::Job> jobs;
   jobs.reserve(messages.size());
-  for (Message& message : messages) jobs.push_back(job_of(std::move(message)));
+  for (Message& message : messages) {
+    jobs.push_back(job_of(std::make_shared<const Message>(std::move(message))));
+  }
   if (jobs.empty())
     throw std::invalid_argument("StreamPublisher: a full state needs at least one message");
   jobs.front().starts_state = true;

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <exception>
+#include <memory>
 #include <mutex>
 #include <string>
 #include <thread>
@@ -51,6 +52,10 @@ class StreamPublisher {
   template <BulkMessage Message>
   void publish(Message message);
 
+  /// The same for a patch. With `supersede`, the points of earlier revisions that still wait to be
+  /// sent are left out.
+  void publish_patch(CloudSlice patch, bool supersede);
+
   /// Queues a full state: messages after which a receiver needs none that were sent before them.
   /// `messages` is not empty. @throws as publish()
   template <BulkMessage Message>
@@ -75,7 +80,7 @@ class StreamPublisher {
 
  private:
   template <BulkMessage Message>
-  StreamSender::Job job_of(Message message) const;
+  StreamSender::Job job_of(std::shared_ptr<const Message> message) const;
   void enqueue(std::vector<StreamSender::Job> jobs);
   void run();
   // With the lock held:

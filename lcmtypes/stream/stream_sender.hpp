@@ -39,8 +39,9 @@ struct StreamPublisherCounts {
   std::int64_t chunks_compared = 0;  ///< of a resumed session: equal to the store, not sent again
   std::int64_t chunks_resent = 0;    ///< on request
   std::int64_t bytes_resent = 0;
-  std::int64_t requests_received = 0;  ///< for this session and channel
-  std::int64_t requests_bad = 0;       ///< not decoded
+  std::int64_t messages_superseded = 0;  ///< while they waited to be sent
+  std::int64_t requests_received = 0;    ///< for this session and channel
+  std::int64_t requests_bad = 0;         ///< not decoded
 };
 
 /// Sends the chunks of queued messages in order, resends requested chunks, and sends heartbeats
@@ -57,6 +58,10 @@ class StreamSender {
     std::size_t bytes = 0;
     bool starts_state = false;  ///< a full state starts here: no earlier chunk is needed
     std::function<Bytes(std::int64_t sequence, std::int32_t index)> encode;
+    /// What the message is about: while it waits, a later one with this key supersedes it.
+    std::optional<std::int64_t> key;
+    /// The chunk that is sent in its place when it is superseded.
+    std::function<Bytes(std::int64_t sequence)> encode_superseded;
   };
 
   /// @param store may be null: then nothing can be resent
@@ -92,6 +97,7 @@ class StreamSender {
 
   std::int64_t first_sequence() const;
   Bytes encode_next() const;
+  void supersede(std::int64_t key);
   void compare_with_store();
   void prepare();
   void send_prepared(double now_s);

@@ -24,6 +24,17 @@ Eigen::AlignedBox3d region_of(const TsdfVolume& volume) {
   return {volume.center_W() - reach, volume.center_W() + reach};
 }
 
+CrossingRule crossing_rule(const SurfaceExtractor::Config& config, const TsdfVolume& volume) {
+  return {config.weight_threshold, config.max_step_vox, volume.resolution_m(),
+          volume.max_truncation_m()};
+}
+
+SliceWorker::Config worker_config(const MapperPipeline::Config& config, const TileGrid& tiles) {
+  SliceWorker::Config worker = config.slices;
+  if (config.patch_side_m > 0.0) worker.tiles = tiles;
+  return worker;
+}
+
 }  // namespace
 
 void MapperPipeline::Config::set_max_range(double max_range_m) {
@@ -45,6 +56,8 @@ void MapperPipeline::Config::validate() const {
   tracker.validate();
   relocalizer.validate();
   slices.validate();
+  check_range("patch_side_m", patch_side_m, 0.0, 100.0);
+  patch_schedule.validate();
   check_range("finest_tracking_width_px", finest_tracking_width_px, 16, 16384);
 }
 
@@ -56,7 +69,13 @@ MapperPipeline::MapperPipeline(const Config& config)
       tracker_(config.tracker),
       noise_(config.noise.value_or(DepthNoise())),
       relocalizer_(config.relocalizer),
-      slice_worker_(config.slices) {}
+      tiles_(config.patch_side_m, config.volume.resolution_m),
+      slice_worker_(worker_config(config, tiles_)) {
+  if (config.patch_side_m > 0.0) {
+    patch_schedule_.emplace(config.patch_schedule, tiles_,
+                            crossing_rule(config.slices.extractor, volume_));
+  }
+}
 
 FrameResult MapperPipeline::process(const RgbdFrame& measured) {
   FrameResult result;
@@ -78,6 +97,10 @@ FrameResult MapperPipeline::process(const RgbdFrame& measured) {
   } else if (model_) {
     look_where_expected(input);
     clock.end_of(&StageTimes::raycast_ms);
+  }
+  if (patch_schedule_) {
+    submit_patches(frame);
+    clock.end_of(&StageTimes::patches_ms);
   }
   result.times = clock.wall();
   result.cpu_times = clock.cpu();
@@ -163,8 +186,25 @@ std::optional<TrackingResult> MapperPipeline::find_again(const TrackingInput& in
 
 int MapperPipeline::shift(const RgbdFrame& frame, const Pose& X_WC) {
   std::vector<DetachedBlocks> left = volume_.shift_to(X_WC.translation());
-  for (DetachedBlocks& blocks : left) slice_worker_.submit(std::move(blocks), frame.utime, X_WC);
+  for (DetachedBlocks& blocks : left) {
+    if (patch_schedule_) patch_schedule_->note_left(blocks.coords, volume_);
+    slice_worker_.submit(std::move(blocks), frame.utime, X_WC);
+  }
   return static_cast<int>(left.size());
+}
+
+void MapperPipeline::submit_patches(const RgbdFrame& frame) {
+  std::optional<PatchBatch> batch = patch_schedule_->next(volume_, frame.utime);
+  if (!batch) return;
+  std::vector<BlockSlot> slots;
+  for (const PatchBatch::Patch& patch : batch->patches) {
+    if (!patch.in_volume) continue;
+    tiles_.for_each_block(patch.tile, [&](const BlockCoord& coord) {
+      const BlockSlot slot = volume_.find(coord);
+      if (slot != kNoBlock) slots.push_back(slot);
+    });
+  }
+  slice_worker_.submit(*std::move(batch), volume_.snapshot(std::move(slots)), frame.utime, X_WC_);
 }
 
 void MapperPipeline::update_model(const RgbdFrame& frame, const TrackingInput& input) {

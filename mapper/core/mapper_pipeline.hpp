@@ -9,12 +9,14 @@
 
 #include "lcmtypes/messages.hpp"
 #include "lcmtypes/trajectory.hpp"
-#include "mapper/core/extraction/slice_worker.hpp"
 #include "mapper/core/frame/local_noise.hpp"
 #include "mapper/core/frame/rgbd_frame.hpp"
 #include "mapper/core/fusion/integrator.hpp"
 #include "mapper/core/fusion/raycaster.hpp"
 #include "mapper/core/relocalization/relocalizer.hpp"
+#include "mapper/core/slices/patch_schedule.hpp"
+#include "mapper/core/slices/slice_worker.hpp"
+#include "mapper/core/slices/tile.hpp"
 #include "mapper/core/stage_times.hpp"
 #include "mapper/core/tracking/noise_estimator.hpp"
 #include "mapper/core/tracking/tracker.hpp"
@@ -54,7 +56,11 @@ class MapperPipeline {
     Raycaster::Config raycaster;
     Tracker::Config tracker;
     Relocalizer::Config relocalizer;
-    SliceWorker::Config slices;
+    SliceWorker::Config slices;  ///< its `tiles` follow from what is below
+    /// The map comes in patches of about this size, m, while its surface is in the volume; 0: in
+    /// slices, when it leaves the volume.
+    double patch_side_m = 0.0;
+    PatchSchedule::Config patch_schedule;
     std::optional<DepthNoise> noise;  ///< of the camera's depth; none: typical_noise()
     bool learn_noise = true;          ///< `noise` is only where the estimate starts
     /// Depth farther than where the noise asks for the largest truncation distance is not used.
@@ -98,6 +104,7 @@ class MapperPipeline {
   TrackingResult start(const TrackingInput& input);
   void learn_noise(const TrackingInput& input, const Pose& X_WC);
   int shift(const RgbdFrame& frame, const Pose& X_WC);
+  void submit_patches(const RgbdFrame& frame);
   std::optional<TrackingResult> find_again(const TrackingInput& input);
   void update_model(const RgbdFrame& frame, const TrackingInput& input);
   /// After a lost frame: the model for the next one is the map as seen from where the camera should
@@ -116,6 +123,8 @@ class MapperPipeline {
   NoiseEstimator noise_;
   LocalNoiseEstimator local_noise_;
   Relocalizer relocalizer_;
+  const TileGrid tiles_;
+  std::optional<PatchSchedule> patch_schedule_;  ///< none: slices
   SliceWorker slice_worker_;
   std::optional<Model> model_;    ///< none before the first fused frame
   Pose X_WC_ = Pose::Identity();  ///< of the last fused frame

@@ -42,10 +42,11 @@ void MapFiles::Output<Writer>::note_failure(const std::exception& error) {
 MapFiles::MapFiles(const std::string& cloud, const std::string& mesh)
     : cloud_(cloud), mesh_(mesh) {}
 
-void MapFiles::add(const std::vector<CloudSlice>& slices) {
-  cloud_.attempt([&slices](CloudWriter& writer) {
-    for (const CloudSlice& slice : slices) writer.append(slice.points_W);
-  });
+std::function<void(const std::vector<CloudPoint>&)> MapFiles::points_sink() {
+  if (!cloud_.writer) return {};
+  return [this](const std::vector<CloudPoint>& points_W) {
+    cloud_.attempt([&points_W](CloudWriter& writer) { writer.append(points_W); });
+  };
 }
 
 std::function<void(const MeshPiece&)> MapFiles::mesh_sink() {

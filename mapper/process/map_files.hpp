@@ -22,10 +22,10 @@ class MapFiles {
   /// @throws std::system_error when a file cannot be written
   MapFiles(const std::string& cloud, const std::string& mesh);
 
-  void add(const std::vector<CloudSlice>& slices);
-
-  /// Takes pieces of the mesh of this part; empty when there is no mesh file. To be called from one
-  /// thread, which may differ from that of add().
+  /// Takes the points of this part that have left the volume; empty when there is no cloud file. To
+  /// be called from one thread, which need not be that of the others.
+  std::function<void(const std::vector<CloudPoint>&)> points_sink();
+  /// The same with pieces of the mesh.
   std::function<void(const MeshPiece&)> mesh_sink();
 
   /// Completes the files; nothing can be added until begin_part().

@@ -68,6 +68,8 @@ void MapPublisher::begin_part(int part, std::int64_t session) {
   part_ = part;
   session_ = session;
   slice_stream_ = &slice_stream(session, config_.map_name);
+  view_stream_ = std::make_unique<StreamPublisher>(bus_, channels::kCameraView, session,
+                                                   stream_config(config_.map_name));
 }
 
 MapPublisher::Published MapPublisher::published() const {
@@ -92,13 +94,24 @@ void MapPublisher::publish_slices(std::vector<CloudSlice> slices, bool part_foll
     slice.part_follows = part_follows && slice.kind == SliceKind::kFinal;
     this_part_.points += static_cast<std::int64_t>(slice.points_W.size());
     ++this_part_.slices;
-    slice_stream_->publish(std::move(slice));
+    if (slice.kind == SliceKind::kPatch) {
+      slice_stream_->publish_patch(std::move(slice), config_.supersede_patches);
+    } else {
+      slice_stream_->publish(std::move(slice));
+    }
   }
 }
 
 void MapPublisher::publish_pose(CameraPose pose) {
   pose.session = session_;
   publish(channels::kCameraPose, pose);
+}
+
+void MapPublisher::publish_view(CameraView view) {
+  if (view_stream_->queued_bytes() > 0) return;
+  view.session = session_;
+  view.map_name = config_.map_name;
+  view_stream_->publish(std::move(view));
 }
 
 void MapPublisher::publish_status(MapperStatus status) {
@@ -114,6 +127,7 @@ void MapPublisher::publish_status(MapperStatus status) {
     const StreamPublisherCounts counts = stream->counts();
     status.chunks_resent += counts.chunks_resent;
     status.requests_received += counts.requests_received;
+    status.patches_superseded += counts.messages_superseded;
   }
   const BufferedLog::Report report = store_.report();
   status.store_bytes = report.size_bytes;
@@ -162,6 +176,7 @@ MapPublisher::Config publisher_config(const Options& options, std::int64_t sessi
   config.map_name = options.map_name;
   config.session = session;
   config.publish_frames = options.publish_frames;
+  config.supersede_patches = !options.source.replay;
   config.stream.rate_bytes_per_s = 1e6 * options.rate_mb_s;
   return config;
 }

@@ -19,8 +19,9 @@
 namespace kintsugi::mapper {
 
 /// Publishes the messages of the mapper on the bus, after storing them in its log, and answers
-/// requests for lost chunks. Slices and frames are sent at a limited rate and never dropped: the
-/// caller waits while has_room() is false.
+/// requests for lost chunks. Slices and frames are sent at a limited rate and never dropped, except
+/// views and revisions of patches that a newer one supersedes: the caller waits while has_room() is
+/// false.
 ///
 /// In a resumed session all slices must be published again from the first one: those in the log are
 /// compared with it and not sent. Requests for the other sessions in the log are answered, too.
@@ -37,6 +38,9 @@ class MapPublisher {
     std::string map_name;
     std::int64_t session = 0;  ///< of part 0
     bool publish_frames = false;
+    /// A patch that waits is not sent when a newer revision follows; what is sent then depends on
+    /// the time that sending takes.
+    bool supersede_patches = false;
     int jpeg_quality = 90;  ///< of published frames
     StreamPublisher::Config
         stream;                ///< its chunk size is replaced by the largest that the bus takes
@@ -53,6 +57,8 @@ class MapPublisher {
   /// @param part_follows another part will begin, so that the final slice is not the end of the run
   void publish_slices(std::vector<CloudSlice> slices, bool part_follows = false);
   void publish_pose(CameraPose pose);
+  /// Left out when the view before still waits.
+  void publish_view(CameraView view);
   void publish_status(MapperStatus status);
   /// Does nothing unless frames are to be published.
   void publish_frame(const RgbdFrame& frame);
@@ -94,6 +100,7 @@ class MapPublisher {
   std::map<std::int64_t, Stream> slice_streams_;  ///< by session: of this run, and in the log
   StreamPublisher* slice_stream_ = nullptr;       ///< of this part; the others only resend
   Stream frame_stream_;                           ///< null: frames are not published
+  Stream view_stream_;                            ///< of this part
   int part_ = 0;
   std::int64_t session_ = 0;  ///< of this part
   Published this_part_;       ///< without chunks

@@ -50,6 +50,7 @@ std::unique_ptr<FrameSource> session_source(std::unique_ptr<FrameSource> source,
 
 MapperPipeline::Config pipeline_config(const Options& options, MapFiles& map_files) {
   MapperPipeline::Config config = options.pipeline;
+  config.slices.on_points = map_files.points_sink();
   config.slices.on_mesh = map_files.mesh_sink();
   return config;
 }
@@ -69,6 +70,7 @@ MapperProcess::MapperProcess(const Options& options, SessionStore& store, Resump
       map_files_(options.cloud_file, options.mesh_file),
       pipeline_(pipeline_config(options, map_files_)),
       publisher_(publisher_config(options, resumption.session()), store),
+      views_(options.view_rate_hz),
       restart_rule_(restart_after_s(options)) {
   if (!options.timings_file.empty()) frame_log_.emplace(options.timings_file);
   if (options.store_frames) {
@@ -143,7 +145,7 @@ std::size_t MapperProcess::restart(const RgbdFrame& frame, FrameResult lost) {
   std::vector<CloudSlice> rest = pipeline_->finish();
   const std::size_t num_slices = lost.slices.size() + rest.size();
   publish_result(frame, lost);
-  publish_slices(std::move(rest), true);
+  publisher_.publish_slices(std::move(rest), true);
   map_files_.commit();
   begin_part();
   return num_slices;
@@ -168,12 +170,8 @@ void MapperProcess::publish_result(const RgbdFrame& frame, FrameResult& result) 
   if (!resumption_.has_pose(statistics_.part(), frame.utime)) {
     publisher_.publish_pose({frame.utime, 0, frame.frame_index, tracking.state, tracking.X_WC});
   }
-  publish_slices(std::move(result.slices));
-}
-
-void MapperProcess::publish_slices(std::vector<CloudSlice> slices, bool part_follows) {
-  map_files_.add(slices);
-  publisher_.publish_slices(std::move(slices), part_follows);
+  if (auto view = views_.next(frame, tracking)) publisher_.publish_view(*std::move(view));
+  publisher_.publish_slices(std::move(result.slices));
 }
 
 /// Fills in the times of the other threads.
@@ -189,7 +187,7 @@ void MapperProcess::measure(const TimedFrame& read, FrameTimings& timings) {
 void MapperProcess::publish_rest() {
   finished_ = resumption_.has_caught_up(last_utime_);
   if (finished_) {
-    publish_slices(pipeline_->finish());
+    publisher_.publish_slices(pipeline_->finish());
   } else {
     spdlog::warn(
         "stopped before all frames that were mapped before are mapped again: resume once more");

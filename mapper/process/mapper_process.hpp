@@ -6,6 +6,7 @@
 #include "lcmtypes/base/stopwatch.hpp"
 #include "lcmtypes/trajectory.hpp"
 #include "mapper/core/mapper_pipeline.hpp"
+#include "mapper/process/camera_views.hpp"
 #include "mapper/process/frame_log.hpp"
 #include "mapper/process/frame_reader.hpp"
 #include "mapper/process/map_files.hpp"
@@ -41,7 +42,6 @@ class MapperProcess {
   std::size_t restart(const RgbdFrame& frame, FrameResult lost);
   void begin_part();
   void publish_result(const RgbdFrame& frame, FrameResult& result);
-  void publish_slices(std::vector<CloudSlice> slices, bool part_follows = false);
   void measure(const TimedFrame& read, FrameTimings& timings);
   void publish_rest();
   void write_paths();
@@ -59,6 +59,7 @@ class MapperProcess {
   MapFiles map_files_;                      ///< before pipeline_, whose worker writes to it
   std::optional<MapperPipeline> pipeline_;  ///< of this part; always there
   MapPublisher publisher_;
+  CameraViews views_;
   RestartRule restart_rule_;
   RunStatistics statistics_;
   std::optional<FrameLog> frame_log_;

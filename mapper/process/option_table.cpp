@@ -77,6 +77,9 @@ OptionGroup mapping_group(Options& o) {
             "sqrt(BASE^2 + (SHARE z)^2 + (GROWTH z^2)^2) at depth z, metres"},
            {"--shift", &volume.shift_vox, kMustMatch,
             "the volume moves when the camera is further than this from its centre", "voxels"},
+           {"--slices", &o.slices, kMustMatch,
+            "patch: the map comes in patches as soon as the camera sees them, and again when they "
+            "have changed; shift: each part once, when it leaves the volume"},
            {"--min-weight", &o.pipeline.slices.extractor.weight_threshold, kMustMatch,
             "surface points need more observations than this"},
            {"--trajectory", &o.given_path_file, kMustMatch,
@@ -107,6 +110,12 @@ OptionGroup output_options(Options& o) {
 OptionGroup bus_options(Options& o) {
   return {"The bus",
           {{"--publish-frames", &o.publish_frames, kMayDiffer, "publish RGBD_FRAME, too"},
+           {"--view-rate",
+            &o.view_rate_hz,
+            kMayDiffer,
+            "views of the camera for queries by pixel and for the viewer; 0: none",
+            "Hz",
+            {0, 1000}},
            {"--lcm-url", &o.lcm_url, kMayDiffer, "URL of the LCM bus; empty: LCM's default"},
            {kMapNameOption, &o.map_name, kMustMatch,
             "name of the map; distinguishes mappers on the same bus"},

@@ -18,7 +18,8 @@ struct Options {
   double max_range_m = 0.0;       ///< depth beyond it is not used; 0: as --max-range says
   double lock_exposure_s = -1.0;  ///< after the first image; < 0: never
   MapperPipeline::Config pipeline;
-  std::string volume;            ///< "range" or "cube"; empty: as --volume says
+  std::string volume;  ///< "range" or "cube"; empty: as --volume says
+  std::string slices = "patch";
   double volume_size_m = 0.0;    ///< side of the cube; 0: that of TsdfVolume::Config
   double resolution_m = 0.0;     ///< side of a voxel; 0: that of TsdfVolume::Config
   double restart_after_s = 5.0;  ///< lost for so long: another part begins; 0: never
@@ -32,6 +33,7 @@ struct Options {
   std::string ground_truth_dir;  ///< of a synthetic:// device; empty: no ground truth is written
   std::int64_t max_frames = 0;   ///< 0: no limit
   bool publish_frames = false;   ///< RGBD_FRAME, too
+  double view_rate_hz = 10.0;    ///< of CAMERA_VIEW; 0: none
   std::string lcm_url;           ///< empty: LCM's default
   std::string map_name = "map";
   std::int64_t session = 0;  ///< of part 0, > 0; 0: from the clock, or that of the resumed session

@@ -97,6 +97,15 @@ void complete_volume(Options& options) {
   options.source.max_range_m = options.max_range_m;
 }
 
+/// How the map is handed out.
+void complete_slices(Options& options) {
+  constexpr double kPatchSide_m = 0.5;  // a table top is a few patches, a wall some dozens
+  if (options.slices != "patch" && options.slices != "shift") {
+    throw std::invalid_argument("--slices is '" + options.slices + "', must be patch or shift");
+  }
+  options.pipeline.patch_side_m = options.slices == "patch" ? kPatchSide_m : 0.0;
+}
+
 /// The noise that --depth-noise gives.
 /// @throws std::invalid_argument naming the flag, its value and what was expected
 DepthNoise parse_depth_noise(const std::string& text) {
@@ -138,6 +147,7 @@ void complete_noise(Options& options) {
 void complete(Options& options) {
   complete_noise(options);
   complete_volume(options);
+  complete_slices(options);
   options.source.lcm_url = options.lcm_url;
   if (options.lock_exposure_s >= 0.0) {
     options.source.lock_exposure_after_s = options.lock_exposure_s;

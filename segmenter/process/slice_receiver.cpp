@@ -17,7 +17,10 @@ namespace kintsugi::segmenter {
 SliceReceiver::SliceReceiver(const Config& config, SliceQueue& queue)
     : queue_(queue),
       subscriber_(
-          channels::kCloudSlice, [this](CloudSlice slice) { queue_.push(std::move(slice)); },
+          channels::kCloudSlice,
+          [this](CloudSlice slice) {
+            if (!slice.superseded) queue_.push(std::move(slice));
+          },
           [this](const DecodeError& reason) { count_bad(reason); },
           [&] {
             StreamSubscriber<CloudSlice>::Config stream;

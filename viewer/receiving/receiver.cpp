@@ -36,7 +36,10 @@ Receiver::Receiver(const Config& config, OnMessage on_message, OnBad on_bad)
       on_bad_(std::move(on_bad)),
       choice_(config.map_name),
       slices_(
-          channels::kCloudSlice, [this](CloudSlice slice) { on_message_(std::move(slice)); },
+          channels::kCloudSlice,
+          [this](CloudSlice slice) {
+            if (!slice.superseded) on_message_(std::move(slice));
+          },
           [this](const DecodeError& reason) { bad(reason); },
           of_map(stream_config<CloudSlice>(config), choice_, config.map_name)),
       updates_(

@@ -128,11 +128,11 @@ Eigen::Vector3f gradient_near(const PaddedBlock& block, int index,
 
 }  // namespace
 
-CrossingRule::CrossingRule(int weight_threshold, double max_step_vox, const DetachedBlocks& blocks)
+CrossingRule::CrossingRule(int weight_threshold, double max_step_vox, double resolution_m,
+                           double truncation_m)
     : weight_threshold(weight_threshold),
-      max_step_raw(
-          static_cast<int>(std::min(2.0, max_step_vox * blocks.resolution_m / blocks.truncation_m) *
-                           kDistanceScale)) {}
+      max_step_raw(static_cast<int>(std::min(2.0, max_step_vox * resolution_m / truncation_m) *
+                                    kDistanceScale)) {}
 
 BlockPoints::BlockPoints(const PaddedBlock& block, const CrossingRule& rule) {
   const BlockBits bits(block, rule.weight_threshold);

@@ -20,7 +20,8 @@ struct CrossingRule {
   int weight_threshold = 0;  ///< both voxels have more observations than this
   int max_step_raw = 0;      ///< and their distances differ by no more than this
 
-  CrossingRule(int weight_threshold, double max_step_vox, const DetachedBlocks& blocks);
+  /// For blocks whose distances are fractions of `truncation_m`.
+  CrossingRule(int weight_threshold, double max_step_vox, double resolution_m, double truncation_m);
 };
 
 /// The surface points of a block, at most one in each voxel, in the order of the voxels.

@@ -53,7 +53,8 @@ class MeshExtractor::Pass {
   Pass(MeshExtractor& mesh, const DetachedBlocks& detached)
       : mesh_(mesh),
         detached_(detached),
-        rule_(mesh.config_.weight_threshold, mesh.config_.max_step_vox, detached),
+        rule_(mesh.config_.weight_threshold, mesh.config_.max_step_vox, detached.resolution_m,
+              detached.truncation_m),
         blocks_(detached),
         sides_(blocks_.size()),
         edges_(blocks_.size()) {

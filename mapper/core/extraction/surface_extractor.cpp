@@ -95,13 +95,15 @@ void SurfaceExtractor::Config::validate() const {
 
 SurfaceExtractor::SurfaceExtractor(const Config& config) : config_(config) { config_.validate(); }
 
-std::vector<CloudPoint> SurfaceExtractor::extract(const DetachedBlocks& detached) const {
+ExtractedSurface SurfaceExtractor::extract_blocks(const DetachedBlocks& detached) const {
   const auto radius_vox = static_cast<float>(config_.normal_radius_vox);
   const SliceBlocks blocks(detached);
-  PointsAhead ahead(blocks, CrossingRule(config_.weight_threshold, config_.max_step_vox, detached));
+  PointsAhead ahead(blocks, CrossingRule(config_.weight_threshold, config_.max_step_vox,
+                                         detached.resolution_m, detached.truncation_m));
   NeighborWalk walk(blocks);
   PaddedPoints padded;
-  std::vector<CloudPoint> cloud;
+  ExtractedSurface surface;
+  std::vector<CloudPoint>& cloud = surface.points_W;
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     const SliceBlocks::Block& block = blocks[i];
     if (!block.is_own) continue;
@@ -111,13 +113,17 @@ std::vector<CloudPoint> SurfaceExtractor::extract(const DetachedBlocks& detached
     const BlockNeighbors neighbors = walk.around(i);
     for (int k = 0; k < 27; ++k) around[k] = ahead.find(neighbors[k]);
     padded.assign(around);
+    const std::size_t first_point = cloud.size();
     padded.for_each_in_block(radius_vox, [&](const PaddedPoints::Point& point, int x, int y, int z,
                                              const Eigen::Vector3f& normal_W) {
       cloud.push_back(
           make_point(point, voxel_index(x, y, z), normal_W, block, detached.resolution_m));
     });
+    if (cloud.size() > first_point) {
+      surface.blocks.push_back({block.coord, first_point, cloud.size() - first_point});
+    }
   }
-  return cloud;
+  return surface;
 }
 
 }  // namespace kintsugi::mapper

@@ -1,12 +1,25 @@
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "lcmtypes/messages.hpp"
+#include "mapper/core/volume/tsdf_block.hpp"
 
 namespace kintsugi::mapper {
 
 struct DetachedBlocks;
+
+/// Points in W, in the order of blocks and voxels.
+struct ExtractedSurface {
+  struct Block {  ///< a block that has points
+    BlockCoord coord;
+    std::size_t first_point = 0;
+    std::size_t num_points = 0;
+  };
+  std::vector<CloudPoint> points_W;
+  std::vector<Block> blocks;  ///< ascending
+};
 
 /// Extracts the surface in a set of blocks as points with normals.
 ///
@@ -32,7 +45,11 @@ class SurfaceExtractor {
   /// Points in W of the detached blocks (not of the apron), in the order of blocks and voxels.
   /// Normals point into free space: the gradient of the distance by central differences, averaged
   /// once. Colour and weight are those of the point's voxel. Thread-safe, and uses no other thread.
-  std::vector<CloudPoint> extract(const DetachedBlocks& detached) const;
+  ExtractedSurface extract_blocks(const DetachedBlocks& detached) const;
+  /// The points alone.
+  std::vector<CloudPoint> extract(const DetachedBlocks& detached) const {
+    return extract_blocks(detached).points_W;
+  }
 
  private:
   Config config_;

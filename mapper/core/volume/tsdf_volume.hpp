@@ -87,6 +87,10 @@ class TsdfVolume {
   BlockSlot allocate(const BlockCoord& coord);
   /// Says that a block is in view, so that it is among the last to leave a ball that is too full.
   void mark_seen(BlockSlot slot) { last_seen_[slot] = num_moves_; }
+  /// Whether a block was in view after so many calls of shift_to().
+  bool seen_since(BlockSlot slot, std::uint32_t num_moves) const {
+    return last_seen_[slot] > num_moves;
+  }
 
   /// Frees a block without surface: it is in no slice.
   void discard(BlockSlot slot);
@@ -123,6 +127,8 @@ class TsdfVolume {
 
   /// A copy of all blocks, as a final slice; the volume is unchanged.
   DetachedBlocks snapshot() const;
+  /// A copy of these blocks, in any order, as a patch; the volume is unchanged.
+  DetachedBlocks snapshot(std::vector<BlockSlot> slots) const;
   /// All blocks, as a final slice; the volume is empty afterwards.
   DetachedBlocks detach_all();
 
@@ -143,6 +149,7 @@ class TsdfVolume {
   /// ascending.
   std::vector<BlockSlot> slots_around(const std::vector<BlockSlot>& leaving) const;
   SliceKind kind_of(const std::vector<BlockSlot>& leaving, const BlockRegion& region) const;
+  DetachedBlocks copy(const std::vector<BlockSlot>& slots, SliceKind kind) const;
   template <typename Keep>
   DetachedBlocks describe(const std::vector<BlockSlot>& leaving, SliceKind kind, Keep keep) const;
   DetachedBlocks detach(const std::vector<BlockSlot>& leaving, SliceKind kind,

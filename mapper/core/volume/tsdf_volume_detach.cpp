@@ -30,15 +30,21 @@ void for_each_around(const BlockCoord& coord, Visit visit) {
 
 }  // namespace
 
-DetachedBlocks TsdfVolume::snapshot() const {
+DetachedBlocks TsdfVolume::snapshot() const { return copy(slots_outside({}), SliceKind::kFinal); }
+
+DetachedBlocks TsdfVolume::snapshot(std::vector<BlockSlot> slots) const {
+  sort_by_coord(slots);
+  return copy(slots, SliceKind::kPatch);
+}
+
+DetachedBlocks TsdfVolume::copy(const std::vector<BlockSlot>& slots, SliceKind kind) const {
   auto copies = std::make_shared<TsdfBlockPool>();
-  DetachedBlocks blocks = describe(slots_outside({}), SliceKind::kFinal,
-                                   [&](BlockSlot slot, bool /*stays*/) -> KeptBlock {
-                                     const BlockSlot copy = copies->take(coord(slot));
-                                     copies->voxels(copy) = voxels(slot);
-                                     copies->colors(copy) = colors(slot);
-                                     return {&copies->voxels(copy), &copies->colors(copy)};
-                                   });
+  DetachedBlocks blocks = describe(slots, kind, [&](BlockSlot slot, bool stays) -> KeptBlock {
+    const BlockSlot copy = copies->take(coord(slot));
+    copies->voxels(copy) = voxels(slot);
+    if (!stays) copies->colors(copy) = colors(slot);
+    return {&copies->voxels(copy), &copies->colors(copy)};
+  });
   blocks.storage = std::move(copies);
   return blocks;
 }

@@ -42,8 +42,25 @@ struct Sending {
     return bytes;
   }
   void push(int num_chunks, bool starts_state = false, std::uint8_t text = 0) {
-    sender.push({num_chunks, kChunkBytes * static_cast<std::size_t>(num_chunks), starts_state,
-                 [text](std::int64_t sequence, std::int32_t) { return chunk(sequence, text); }});
+    sender.push(job(num_chunks, text, starts_state));
+  }
+  /// A message of three chunks that supersedes waiting ones with its key.
+  void push_newest(std::int64_t key, std::uint8_t text) {
+    StreamSender::Job newest = job(3, text);
+    newest.key = key;
+    newest.encode_superseded = [text](std::int64_t sequence) { return stub(sequence, text); };
+    sender.push(std::move(newest));
+  }
+  static StreamSender::Job job(int num_chunks, std::uint8_t text, bool starts_state = false) {
+    StreamSender::Job job;
+    job.num_chunks = num_chunks;
+    job.bytes = kChunkBytes * static_cast<std::size_t>(num_chunks);
+    job.starts_state = starts_state;
+    job.encode = [text](std::int64_t sequence, std::int32_t) { return chunk(sequence, text); };
+    return job;
+  }
+  static Bytes stub(std::int64_t sequence, std::uint8_t text) {
+    return {static_cast<std::uint8_t>(sequence), text};
   }
   void note(const std::string& channel, ByteView bytes) {
     if (channel == channels::kHeartbeat) {
@@ -176,6 +193,43 @@ TEST(StreamSender, DetectsAResumedSessionThatDiffers) {
     EXPECT_THAT(error.what(), HasSubstr("CLOUD_SLICE, sequence 2: differs from what was sent"));
     EXPECT_THAT(error.what(), HasSubstr("same device and options"));
   }
+}
+
+TEST(StreamSender, ALaterMessageSupersedesOneThatWaitsAndKeepsItsPlace) {
+  RecentChunks store(1'000'000);
+  Sending sending(&store);
+  sending.push_newest(7, 1);
+  sending.sender.step(0.0);  // the heartbeat
+  sending.sender.step(0.0);  // chunk 0 of the first message, which has begun
+  sending.push_newest(8, 2);
+  sending.push_newest(7, 3);
+  sending.push_newest(8, 4);
+  EXPECT_EQ(sending.sender.counts().messages_superseded, 1);
+  EXPECT_EQ(sending.sender.queued_bytes(), 9 * kChunkBytes);
+  sending.run_until(1.0);
+  EXPECT_EQ(store.find(2)->at(1), 1) << "the first message is sent whole";
+  EXPECT_EQ(*store.find(3), Sending::stub(3, 2)) << "of the second one its place is left";
+  EXPECT_EQ(store.find(4)->at(1), 3);
+  EXPECT_EQ(store.find(9)->at(1), 4);
+  EXPECT_EQ(store.next_sequence(), 10);
+}
+
+TEST(StreamSender, AResumedSessionFindsSupersededMessagesInTheirPlaces) {
+  RecentChunks store(1'000'000);
+  {
+    Sending sending(&store);
+    sending.push_newest(7, 1);
+    sending.push_newest(7, 2);
+    sending.run_until(1.0);
+    ASSERT_EQ(sending.sender.next_sequence(), 4);
+  }
+  Sending again(&store);
+  again.push_newest(7, 1);  // is superseded in the store, and not now
+  again.push_newest(7, 2);
+  again.push_newest(7, 3);
+  again.run_until(1.0);
+  EXPECT_EQ(again.sender.counts().chunks_compared, 4);
+  EXPECT_THAT(again.sequences, ElementsAre(4, 5, 6));
 }
 
 TEST(StreamSender, AFullStateReplacesWhatWasSentBefore) {

@@ -15,10 +15,8 @@ namespace {
 
 using kintsugi::testing::TemporaryFolder;
 
-CloudSlice slice_of(std::size_t num_points) {
-  CloudSlice slice;
-  slice.points_W.resize(num_points);
-  return slice;
+std::vector<CloudPoint> points(int count) {
+  return std::vector<CloudPoint>(static_cast<std::size_t>(count));
 }
 
 MeshPiece one_triangle() {
@@ -40,9 +38,9 @@ std::string header_line(const std::filesystem::path& file, const std::string& te
 TEST(MapFiles, HoldWhatWasAdded) {
   const TemporaryFolder folder;
   MapFiles files(folder / "cloud.ply", folder / "mesh.ply");
-  files.add({slice_of(3), slice_of(0), slice_of(4)});
+  for (const int num_points : {3, 0, 4}) files.points_sink()(points(num_points));
   files.mesh_sink()(one_triangle());
-  files.add({slice_of(2)});
+  files.points_sink()(points(2));
   EXPECT_FALSE(std::filesystem::exists(folder / "cloud.ply"));
   files.commit();
   EXPECT_EQ(header_line(folder / "cloud.ply", "element vertex"), "element vertex 9");
@@ -54,7 +52,7 @@ TEST(MapFiles, AreThoseThatWereAskedFor) {
   const TemporaryFolder folder;
   MapFiles files("", "");
   EXPECT_FALSE(files.mesh_sink());
-  files.add({slice_of(3)});
+  EXPECT_FALSE(files.points_sink());
   files.commit();
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
   EXPECT_FALSE(files.failed());
@@ -71,7 +69,8 @@ void add_more_than_fits(const TemporaryFolder& folder) {
   const rlimit limit{100'000, RLIM_INFINITY};
   setrlimit(RLIMIT_FSIZE, &limit);
   MapFiles files(folder / "cloud.ply", folder / "mesh.ply");
-  for (int i = 0; i < 10; ++i) files.add({slice_of(2'000)});
+  const auto sink = files.points_sink();
+  for (int i = 0; i < 10; ++i) sink(points(2'000));
   files.mesh_sink()(one_triangle());
   files.commit();
   std::exit(files.failed() ? 0 : 1);

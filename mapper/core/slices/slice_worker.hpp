@@ -7,32 +7,40 @@
 #include <exception>
 #include <functional>
 #include <mutex>
+#include <optional>
 #include <thread>
 #include <vector>
 
 #include "lcmtypes/messages.hpp"
 #include "mapper/core/extraction/mesh_extractor.hpp"
 #include "mapper/core/extraction/surface_extractor.hpp"
+#include "mapper/core/slices/patch_batch.hpp"
+#include "mapper/core/slices/patch_maker.hpp"
+#include "mapper/core/slices/tile.hpp"
 #include "mapper/core/volume/detached_blocks.hpp"
 
 namespace kintsugi::mapper {
 
-/// Extracts numbered slices from blocks that left the volume, on a thread of its own, so that
+/// Extracts the surface of blocks and makes numbered slices of it, on a thread of its own, so that
 /// tracking does not wait. With one thread and one queue, slices are finished in the order of
 /// submission.
 ///
-/// The thread has a low priority; it needs about a hundredth of a processor. submit() blocks only
-/// while max_queued_blocks are waiting: memory stays bounded and no part of the map is lost, but a
-/// live camera's frames are dropped meanwhile.
+/// The thread has a low priority. Submitting blocks only while max_queued_blocks are waiting:
+/// memory stays bounded and no part of the map is lost, but a live camera's frames are dropped
+/// meanwhile.
 class SliceWorker {
  public:
   struct Config {
     SurfaceExtractor::Config extractor;
+    /// The slices are patches, one for each tile, and not one for what left at one time.
+    std::optional<TileGrid> tiles;
     /// Largest number of blocks in the queue, with those around the slices; a slice larger than
     /// this waits for an empty queue. 8,192 blocks are 32 MB, about three slices of a room.
     std::size_t max_queued_blocks = 8'192;
-    /// Called with each piece of the mesh, in order, on the worker's thread; if empty, no mesh is
-    /// made. Exceptions from it are treated like those from extraction.
+    /// Called with the points that have left the volume, in order, on the worker's thread; may be
+    /// empty. Exceptions from it are treated like those from extraction.
+    std::function<void(const std::vector<CloudPoint>&)> on_points;
+    /// The same with each piece of the mesh; if empty, no mesh is made.
     std::function<void(const MeshPiece&)> on_mesh;
 
     /// @throws std::invalid_argument naming field, value and bound
@@ -45,9 +53,13 @@ class SliceWorker {
   SliceWorker(const SliceWorker&) = delete;
   SliceWorker& operator=(const SliceWorker&) = delete;
 
-  /// Queues blocks that left at `utime` when the camera was at `X_WC`. The slice gets the next id.
+  /// Queues blocks that left at `utime` when the camera was at `X_WC`. Final blocks end the run.
   /// @throws what extraction of an earlier slice threw
   void submit(DetachedBlocks blocks, std::int64_t utime, const Pose& X_WC);
+
+  /// Queues patches; `in_volume` are copies of those blocks of their tiles that are in the volume.
+  /// @throws as above
+  void submit(PatchBatch batch, DetachedBlocks in_volume, std::int64_t utime, const Pose& X_WC);
 
   /// Slices finished since the last call, without waiting.
   /// @throws what extraction of a slice threw
@@ -62,17 +74,22 @@ class SliceWorker {
  private:
   struct Job {
     DetachedBlocks blocks;
-    CloudSlice slice;  ///< its points are not extracted yet
+    std::optional<PatchBatch> batch;  ///< none: the blocks have left
+    CloudSlice header;                ///< of its slices
   };
 
+  void enqueue(Job job);
   void run();
-  void work_on(Job& job);
+  std::vector<CloudSlice> work_on(Job& job);
+  std::vector<CloudSlice> slices_of_left(const Job& job, ExtractedSurface surface);
   std::vector<CloudSlice> take(std::unique_lock<std::mutex>& lock);
 
   const Config config_;
   const SurfaceExtractor extractor_;
-  MeshExtractor mesh_extractor_;  ///< used by thread_ only
-  std::int32_t next_id_ = 0;
+  // Used by thread_ only:
+  MeshExtractor mesh_extractor_;
+  std::optional<PatchMaker> patches_;
+  std::int32_t next_id_ = 0;  ///< of slices that are no patches
 
   mutable std::mutex mutex_;
   std::condition_variable work_;  ///< signals that a job was queued, or stop_

@@ -1,5 +1,7 @@
-#include "mapper/core/extraction/slice_worker.hpp"
+#include "mapper/core/slices/slice_worker.hpp"
 
+#include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include <sys/resource.h>
@@ -24,6 +26,15 @@ std::size_t num_blocks_held(const DetachedBlocks& blocks) {
   return blocks.coords.size() + blocks.apron_coords.size();
 }
 
+CloudSlice header_of(const DetachedBlocks& blocks, std::int64_t utime, const Pose& X_WC) {
+  CloudSlice header;
+  header.utime = utime;
+  header.kind = blocks.kind;
+  header.resolution_m = blocks.resolution_m;
+  header.X_WC = X_WC;
+  return header;
+}
+
 }  // namespace
 
 void SliceWorker::Config::validate() const {
@@ -36,6 +47,7 @@ SliceWorker::SliceWorker(const Config& config)
       extractor_(config.extractor),
       mesh_extractor_({.weight_threshold = config.extractor.weight_threshold,
                        .max_step_vox = config.extractor.max_step_vox}),
+      patches_(config.tiles ? std::optional<PatchMaker>(*config.tiles) : std::nullopt),
       thread_([this] { run(); }) {}
 
 SliceWorker::~SliceWorker() {
@@ -48,20 +60,25 @@ SliceWorker::~SliceWorker() {
 }
 
 void SliceWorker::submit(DetachedBlocks blocks, std::int64_t utime, const Pose& X_WC) {
+  CloudSlice header = header_of(blocks, utime, X_WC);
+  enqueue({std::move(blocks), std::nullopt, std::move(header)});
+}
+
+void SliceWorker::submit(PatchBatch batch, DetachedBlocks in_volume, std::int64_t utime,
+                         const Pose& X_WC) {
+  CloudSlice header = header_of(in_volume, utime, X_WC);
+  enqueue({std::move(in_volume), std::move(batch), std::move(header)});
+}
+
+void SliceWorker::enqueue(Job job) {
   std::unique_lock lock(mutex_);
-  const std::size_t num_blocks = num_blocks_held(blocks);
+  const std::size_t num_blocks = num_blocks_held(job.blocks);
   done_.wait(lock, [&] {
     return failure_ || queue_.empty() || queued_blocks_ + num_blocks <= config_.max_queued_blocks;
   });
   if (failure_) std::rethrow_exception(failure_);
   queued_blocks_ += num_blocks;
-  CloudSlice slice;
-  slice.utime = utime;
-  slice.id = next_id_++;
-  slice.kind = blocks.kind;
-  slice.resolution_m = blocks.resolution_m;
-  slice.X_WC = X_WC;
-  queue_.push_back({std::move(blocks), std::move(slice)});
+  queue_.push_back(std::move(job));
   work_.notify_one();
 }
 
@@ -96,8 +113,9 @@ void SliceWorker::run() {
     lock.unlock();
     const Stopwatch stopwatch;
     std::exception_ptr failure;
+    std::vector<CloudSlice> slices;
     try {
-      work_on(job);
+      slices = work_on(job);
     } catch (...) {
       failure = std::current_exception();
     }
@@ -105,7 +123,7 @@ void SliceWorker::run() {
     lock.lock();
     busy_ms_ += elapsed_ms;
     failure_ = failure;
-    if (!failure_) finished_.push_back(std::move(job.slice));
+    std::ranges::move(slices, std::back_inserter(finished_));
     queued_blocks_ -= num_blocks_held(job.blocks);
     queue_.pop_front();
     done_.notify_all();
@@ -113,9 +131,24 @@ void SliceWorker::run() {
   }
 }
 
-void SliceWorker::work_on(Job& job) {
-  job.slice.points_W = extractor_.extract(job.blocks);
+std::vector<CloudSlice> SliceWorker::work_on(Job& job) {
+  ExtractedSurface surface = extractor_.extract_blocks(job.blocks);
+  if (job.batch) return patches_.value().make(*job.batch, surface, job.header);
+  if (config_.on_points) config_.on_points(surface.points_W);
   if (config_.on_mesh) config_.on_mesh(mesh_extractor_.extract(job.blocks));
+  return slices_of_left(job, std::move(surface));
+}
+
+std::vector<CloudSlice> SliceWorker::slices_of_left(const Job& job, ExtractedSurface surface) {
+  if (patches_) {
+    patches_->keep(surface);
+    return job.header.kind == SliceKind::kFinal ? patches_->finish(job.header)
+                                                : std::vector<CloudSlice>();
+  }
+  CloudSlice slice = job.header;
+  slice.id = next_id_++;
+  slice.points_W = std::move(surface.points_W);
+  return {std::move(slice)};
 }
 
 }  // namespace kintsugi::mapper

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "mapper/core/extraction/slice_worker.hpp"
+#include "mapper/core/slices/slice_worker.hpp"
 
 namespace kintsugi::mapper {
 namespace {

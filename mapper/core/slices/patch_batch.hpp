@@ -1,0 +1,19 @@
+#pragma once
+
+#include <vector>
+
+#include "mapper/core/slices/tile.hpp"
+
+namespace kintsugi::mapper {
+
+/// Patches that are sent together.
+struct PatchBatch {
+  struct Patch {
+    TileCoord tile;
+    bool in_volume = true;  ///< false: its surface has left the volume for good
+  };
+  /// Ascending. A tile that the volume has left and come back to is there twice.
+  std::vector<Patch> patches;
+};
+
+}  // namespace kintsugi::mapper

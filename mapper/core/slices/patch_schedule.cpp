@@ -1,0 +1,115 @@
+#include "mapper/core/slices/patch_schedule.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "lcmtypes/base/argument_check.hpp"
+
+namespace kintsugi::mapper {
+
+void PatchSchedule::Config::validate() const {
+  check_range("period_s", period_s, 0.0, 60.0);
+  check_range("new_surface_s", new_surface_s, 1e-3, 1e3);
+  check_range("better_surface_s", better_surface_s, 1e-3, 1e3);
+}
+
+PatchSchedule::PatchSchedule(const Config& config, const TileGrid& grid, const CrossingRule& rule)
+    : config_((config.validate(), config)), grid_(grid), rule_(rule) {}
+
+void PatchSchedule::note_left(const std::vector<BlockCoord>& left, const TsdfVolume& volume) {
+  std::set<TileCoord> touched;
+  for (const BlockCoord& coord : left) {
+    const TileCoord tile = grid_.tile_of(coord);
+    touched.insert(tile);
+    const auto found = tiles_.find(tile);
+    if (found != tiles_.end()) found->second.blocks.erase(coord);
+  }
+  for (const TileCoord& tile : touched) {
+    if (is_in_volume(tile, volume)) continue;
+    tiles_.erase(tile);
+    departed_.insert(tile);
+  }
+}
+
+std::optional<PatchBatch> PatchSchedule::next(const TsdfVolume& volume, std::int64_t utime) {
+  if (!last_utime_) last_utime_ = utime;
+  const double waited_s = 1e-6 * static_cast<double>(utime - *last_utime_);
+  if (waited_s < config_.period_s) return std::nullopt;
+  last_utime_ = utime;
+  look_at(volume);
+
+  PatchBatch batch;
+  for (const TileCoord& tile : std::exchange(departed_, {})) {
+    batch.patches.push_back({tile, false});
+  }
+  for (auto& [coord, tile] : tiles_) {
+    tile.debt += cost_of_waiting(tile, waited_s);
+    if (tile.debt < 1.0) continue;
+    tile.debt = 0.0;
+    for (auto& [block_coord, block] : tile.blocks) {
+      block.sent = block.now;
+      block.change = {.num_in_all = block.now.num_voxels()};
+    }
+    std::erase_if(tile.blocks, [](const auto& entry) { return entry.second.sent.num_voxels() == 0; });
+    batch.patches.push_back({coord, true});
+  }
+  if (batch.patches.empty()) return std::nullopt;
+  std::ranges::stable_sort(batch.patches, {}, &PatchBatch::Patch::tile);  // departed ones first
+  return batch;
+}
+
+/// Compares the blocks that were seen since the last time with what was sent of them.
+void PatchSchedule::look_at(const TsdfVolume& volume) {
+  std::set<TileCoord> seen;
+  for (BlockSlot slot = 0; slot < volume.slots_end(); ++slot) {
+    if (!volume.in_use(slot) || !volume.seen_since(slot, num_moves_)) continue;
+    const BlockCoord& coord = volume.coord(slot);
+    const BlockSurface now(volume, slot, rule_);
+    const TileCoord tile_coord = grid_.tile_of(coord);
+    if (seen.empty() || *seen.rbegin() != tile_coord) seen.insert(tile_coord);
+    const auto tile = tiles_.find(tile_coord);
+    if (now.num_voxels() == 0 && (tile == tiles_.end() || !tile->second.blocks.contains(coord))) continue;
+    Block& block = tiles_[tile_coord].blocks[coord];
+    block.now = now;
+    block.change = change_between(block.sent, now);
+  }
+  num_moves_ = volume.num_moves();
+  forget_discarded(seen, volume);
+}
+
+/// A block that turned out to be free space is no longer in the volume.
+void PatchSchedule::forget_discarded(const std::set<TileCoord>& seen, const TsdfVolume& volume) {
+  for (const TileCoord& coord : seen) {
+    const auto tile = tiles_.find(coord);
+    if (tile == tiles_.end()) continue;
+    for (auto& [block_coord, block] : tile->second.blocks) {
+      if (volume.find(block_coord) != kNoBlock) continue;
+      block.now = BlockSurface();
+      block.change = change_between(block.sent, block.now);
+    }
+  }
+}
+
+double PatchSchedule::cost_of_waiting(const Tile& tile, double waited_s) const {
+  int num_new = 0;
+  int num_better = 0;
+  int num_in_all = 0;
+  for (const auto& [coord, block] : tile.blocks) {
+    num_new += block.change.num_new;
+    num_better += block.change.num_better;
+    num_in_all += block.change.num_in_all;
+  }
+  if (num_in_all == 0) return 0.0;
+  return waited_s / num_in_all *
+         (num_new / config_.new_surface_s + num_better / config_.better_surface_s);
+}
+
+bool PatchSchedule::is_in_volume(const TileCoord& tile, const TsdfVolume& volume) const {
+  bool found = false;
+  grid_.for_each_block(tile, [&](const BlockCoord& coord) {
+    found = found || volume.find(coord) != kNoBlock;
+  });
+  return found;
+}
+
+}  // namespace kintsugi::mapper

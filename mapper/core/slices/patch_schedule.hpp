@@ -1,0 +1,72 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <vector>
+
+#include "mapper/core/slices/block_surface.hpp"
+#include "mapper/core/slices/patch_batch.hpp"
+#include "mapper/core/slices/tile.hpp"
+#include "mapper/core/volume/tsdf_volume.hpp"
+
+namespace kintsugi::mapper {
+
+/// Decides which patches are sent at which frame: those whose surface is no longer what was sent.
+///
+/// A patch is sent when waiting has cost more than sending costs. The cost of waiting grows with
+/// the time and with the share of the patch that is new: one that is all new goes out after
+/// new_surface_s, one of which a fifth is new after five times as long. Surface that was sent and has
+/// become better since, observed four times as often or moved by a quarter of a voxel, can wait
+/// longer: better_surface_s. So a patch that does not change is never sent, one that changes a little
+/// is sent rarely, and the number of times does not depend on how often the camera looks.
+///
+/// The result depends on the frames alone.
+class PatchSchedule {
+ public:
+  struct Config {
+    /// Of device time between two batches. They follow each other quickly enough that new surface
+    /// waits for hardly more than it takes to segment it.
+    double period_s = 0.2;
+    double new_surface_s = 0.2;
+    double better_surface_s = 5.0;
+
+    /// @throws std::invalid_argument naming field, value and bound
+    void validate() const;
+  };
+
+  PatchSchedule(const Config& config, const TileGrid& grid, const CrossingRule& rule);
+
+  /// To be called when blocks have left the volume, with their coordinates.
+  void note_left(const std::vector<BlockCoord>& left, const TsdfVolume& volume);
+
+  /// The batch of this frame, to be called after it was fused; nothing: none is due.
+  std::optional<PatchBatch> next(const TsdfVolume& volume, std::int64_t utime);
+
+ private:
+  struct Block {
+    BlockSurface sent;
+    BlockSurface now;
+    BlockChange change;
+  };
+  struct Tile {
+    std::map<BlockCoord, Block> blocks;  ///< those that have surface, or had when they were sent
+    double debt = 0.0;                   ///< cost of waiting over the cost of sending
+  };
+
+  void look_at(const TsdfVolume& volume);
+  void forget_discarded(const std::set<TileCoord>& seen, const TsdfVolume& volume);
+  double cost_of_waiting(const Tile& tile, double waited_s) const;
+  bool is_in_volume(const TileCoord& tile, const TsdfVolume& volume) const;
+
+  const Config config_;
+  const TileGrid grid_;
+  const CrossingRule rule_;
+  std::map<TileCoord, Tile> tiles_;
+  std::set<TileCoord> departed_;  ///< tiles without blocks in the volume, since the last batch
+  std::optional<std::int64_t> last_utime_;  ///< of the last batch that was due
+  std::uint32_t num_moves_ = 0;             ///< of the volume at that time
+};
+
+}  // namespace kintsugi::mapper
