@@ -35,6 +35,7 @@ struct Options {
   std::size_t num_batches = 60;
   std::size_t num_patches = 20;
   std::uint64_t seed = 1;
+  EngineConfig engine;  ///< for its explore_share
 };
 
 constexpr double kResolution_m = 0.01;
@@ -51,6 +52,8 @@ Options parse_command_line(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--batches", options.num_batches, "how many")->capture_default_str();
   app.add_option("--patches", options.num_patches, "in a batch")->capture_default_str();
+  app.add_option("--explore-share", options.engine.explore_share, "of the engine")
+      ->capture_default_str();
   app.add_option("--seed", options.seed, "of the revisions")->capture_default_str();
   try {
     app.parse(argc, argv);
@@ -114,6 +117,7 @@ int run(const Options& options) {
   std::vector<CloudSlice> patches = cut_into_patches(generate_map(options.map), options.tile_m);
   SegmentMapConfig config;
   config.engine = preset(options.preset);
+  config.engine.explore_share = options.engine.explore_share;
   SegmentMap map(config, 1, patches[0]);
   const Stopwatch all;
   map.add(patches);
