@@ -97,7 +97,7 @@ class ScenarioWriter {
 
   void write_event() {
     if (live_.empty() || random_.chance(0.3)) return add_slice();
-    switch (random_.below(19)) {
+    switch (random_.below(18)) {
       case 0:
         return remove_all({random_.pick(live_)});
       case 1:
@@ -125,7 +125,6 @@ class ScenarioWriter {
         return random_.chance(0.5) ? replace_slice() : take_places_again();
       case 16:
       case 17:
-      case 18:
         return revise_patches();
       default:
         if (random_.chance(0.2)) return remove_all(live_);

@@ -51,7 +51,7 @@ TEST(VoxelPairs, AreNoPointsFarApart) {
 
 TEST(VoxelPairs, TakeEachPointOnceAndDoNotDependOnTheOrder) {
   std::mt19937 random(4);
-  const auto coordinate = [&] { return static_cast<double>(random() % 120) / 20.0; };
+  const auto coordinate = [&] { return (static_cast<double>(random() % 120) + 0.5) / 20.0; };
   for (int round = 0; round < 200; ++round) {
     Points before;
     Points after;
