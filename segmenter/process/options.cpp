@@ -106,10 +106,11 @@ void add_file_flags(CLI::App& app, Options& options) {
 
 void add_slice_flags(CLI::App& app, Options& options) {
   SessionMaps::Config& maps = options.process.segmentation.maps;
-  app.add_flag("--coalesce", maps.each_map.coalesce,
-               "mode batch: segment all waiting slices in one run: catches up sooner and gives the "
-               "same partition, but segment ids may differ from one run to the next; in all modes: "
-               "do so with the batches of patches of a --log, as without it on the bus");
+  app.add_flag(
+      "--coalesce", maps.each_map.coalesce,
+      "mode batch: segment all waiting slices in one run: catches up sooner and gives the "
+      "same partition, but segment ids may differ from one run to the next; with --log, in "
+      "all modes: segment all waiting batches of patches in one run, as on the bus");
   app.add_option("--gap-timeout", options.gap_timeout_s,
                  "seconds to wait for a missing slice that nobody resends before the map "
                  "continues without it, > 0")
