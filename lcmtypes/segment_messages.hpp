@@ -10,7 +10,7 @@ namespace kintsugi {
 
 /// Version of the packed records below. Raise it with every change of their layout: the order, type
 /// or meaning of a field. A receiver refuses records of another version.
-inline constexpr std::int16_t kSegmentRecordsVersion = 1;
+inline constexpr std::int16_t kSegmentRecordsVersion = 2;
 
 /// Segment id of a point that belongs to no segment, because it was rejected when its slice was
 /// added. Ids of segments start at 1.
@@ -63,10 +63,11 @@ struct SegmentStatistics {
   float centroid_W[3] = {};
   float mean_normal_W[3] = {};  ///< unit, or zero when the normals cancel out
   std::uint8_t mean_color[3] = {};
-  std::uint8_t reserved = 0;     ///< zero; in no list
-  float area_m2 = 0.0F;          ///< num_points * resolution^2
-  std::int32_t first_slice = 0;  ///< the lowest slice_id of its points
-  std::int32_t last_slice = 0;   ///< the highest
+  std::uint8_t reserved = 0;           ///< zero; in no list
+  float area_m2 = 0.0F;                ///< num_points * resolution^2
+  std::int32_t first_slice = 0;        ///< the lowest slice_id of its points
+  std::int32_t last_slice = 0;         ///< the highest
+  std::uint32_t points_in_volume = 0;  ///< of patches that may still change
 
   bool operator==(const SegmentStatistics&) const = default;
 
@@ -84,9 +85,10 @@ struct SegmentStatistics {
     visit(StatisticsField{"area", "m^2"}, s.area_m2...);
     visit(StatisticsField{"first_slice", ""}, s.first_slice...);
     visit(StatisticsField{"last_slice", ""}, s.last_slice...);
+    visit(StatisticsField{"points_in_volume", ""}, s.points_in_volume...);
   }
 };
-static_assert(sizeof(SegmentStatistics) == 72, "another layout: raise kSegmentRecordsVersion");
+static_assert(sizeof(SegmentStatistics) == 76, "another layout: raise kSegmentRecordsVersion");
 
 /// Bytes of the listed fields of SegmentStatistics.
 consteval std::size_t listed_statistics_bytes() {
@@ -160,6 +162,7 @@ struct SegmentQuery {
 /// A segment in the answer to a query.
 struct DescribedSegment {
   SegmentStatistics statistics;
+  std::uint32_t is_planar = 0;           ///< 0 or 1; here, so that there is no padding
   std::int64_t last_change_utime = 0;    ///< device time of the slice that changed it last
   float oriented_box_center_W[3] = {};   ///< metres
   float oriented_box_axes_W[3][3] = {};  ///< three unit vectors
@@ -169,11 +172,10 @@ struct DescribedSegment {
   float plane_rms_m = 0.0F;              ///< of the distances of its points from the plane
   float plane_share = 0.0F;              ///< of its points within one voxel of the plane, 0 to 1
   float distance_m = 0.0F;               ///< kPoint: from the point; kRay, kPixel: along the ray
-  std::uint32_t is_planar = 0;           ///< 0 or 1
 
   bool operator==(const DescribedSegment&) const = default;
 };
-static_assert(sizeof(DescribedSegment) == sizeof(SegmentStatistics) + 104,
+static_assert(sizeof(DescribedSegment) == sizeof(SegmentStatistics) + 100,
               "another layout: raise kSegmentRecordsVersion");
 
 /// Two segments that touch.

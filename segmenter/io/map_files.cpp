@@ -140,7 +140,7 @@ void write_map_ply(const MapSnapshot& map, const std::filesystem::path& path) {
                             "map_session " + std::to_string(state.map_session)});
   for (const SliceRecord& slice : state.slices) {
     for (PointIndex i = slice.first; i < slice.first + slice.count; ++i) {
-      writer.append(state.points_W[i], state.segment_ids[i], slice.slice_id);
+      writer.append(state.points_W[i], state.segment_ids[i], slice.slice_id, slice.is_in_volume());
     }
   }
   writer.commit();

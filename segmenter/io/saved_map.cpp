@@ -18,7 +18,7 @@ namespace {
 // segment ids (uint32); the last change of each segment (LastChange); thetas (double); the chunks
 // that are in the map (SequenceRange); the checksum. A change of any of this is a new version.
 constexpr std::array<char, 8> kMagic = {'K', 'S', 'E', 'G', 'M', 'A', 'P', '\n'};
-constexpr std::uint32_t kVersion = 4;
+constexpr std::uint32_t kVersion = 5;
 static_assert(kMapParameters.size() == 7, "other parameters are a new version of the file");
 
 struct Start {
@@ -30,6 +30,7 @@ struct Start {
 struct Header {
   std::int64_t session = 0;
   std::int64_t map_session = 0;
+  std::int64_t final_revision_sum = 0;
   std::array<double, kMapParameters.size()> parameters{};
   std::int32_t part = 0;
   std::uint32_t part_follows = 0;
@@ -50,14 +51,16 @@ struct SliceHeader {
   std::int32_t revision = 0;
   std::int32_t num_points = 0;
   std::uint32_t num_rejected = 0;
+  std::uint32_t patch = 0;  ///< PatchState
 };
-static_assert(sizeof(Start) == 16 && sizeof(Header) == 120 && sizeof(SliceHeader) == 16,
+static_assert(sizeof(Start) == 16 && sizeof(Header) == 128 && sizeof(SliceHeader) == 20,
               "no padding, which would be written with whatever is in it");
 
 Header header_of(const SegmentMapState& state) {
   Header header;
   header.session = state.session;
   header.map_session = state.map_session;
+  header.final_revision_sum = state.final_revision_sum;
   for (std::size_t i = 0; i < kMapParameters.size(); ++i) {
     header.parameters[i] = state.config.engine.*kMapParameters[i].value;
   }
@@ -146,8 +149,13 @@ void read_slice(RecordReader& file, SegmentMapState& state) {
               std::to_string(header.num_points) + " points, " +
               std::to_string(header.num_rejected) + " of them rejected: expected no more");
   }
+  if (header.patch > static_cast<std::uint32_t>(PatchState::kLeft)) {
+    file.fail("slice " + std::to_string(header.slice_id) + " has the patch state " +
+              std::to_string(header.patch) + ", expected 0 to 2");
+  }
   SliceRecord slice;
   slice.slice_id = header.slice_id;
+  slice.patch = static_cast<PatchState>(header.patch);
   slice.revision = header.revision;
   slice.num_points = header.num_points;
   slice.first = static_cast<PointIndex>(state.points_W.size());
@@ -171,7 +179,8 @@ void write_map_state(const SegmentMapState& state, const std::filesystem::path& 
   out.write_all(std::span<const char>(state.map_name));
   for (const SliceRecord& slice : state.slices) {
     out.write(SliceHeader{slice.slice_id, slice.revision, slice.num_points,
-                          static_cast<std::uint32_t>(slice.rejected.size())});
+                          static_cast<std::uint32_t>(slice.rejected.size()),
+                          static_cast<std::uint32_t>(slice.patch)});
     out.write_all(std::span(slice.rejected));
     out.write_all(std::span(state.points_W).subspan(slice.first, slice.count));
     out.write_all(std::span(state.segment_ids).subspan(slice.first, slice.count));
@@ -192,6 +201,7 @@ SegmentMapState read_map_state(const std::filesystem::path& path) {
   state.config = config_of(start, header);
   state.session = header.session;
   state.map_session = header.map_session;
+  state.final_revision_sum = header.final_revision_sum;
   state.part = header.part;
   state.part_follows = header.part_follows != 0;
   state.final_slice_id = header.final_slice_id;

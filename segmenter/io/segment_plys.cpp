@@ -12,6 +12,7 @@ namespace {
 struct PlacedPoint {
   PointIndex point;
   std::int32_t slice_id;
+  bool is_in_volume;
 };
 
 void write_segment(const MapSnapshot& map, std::uint32_t segment_id,
@@ -20,7 +21,8 @@ void write_segment(const MapSnapshot& map, std::uint32_t segment_id,
       path, std::ssize(points),
       {"kintsugi segment " + std::to_string(segment_id) + ", frame W, metres"});
   for (const PlacedPoint& placed : points) {
-    writer.append(map.state.points_W[placed.point], segment_id, placed.slice_id);
+    writer.append(map.state.points_W[placed.point], segment_id, placed.slice_id,
+                  placed.is_in_volume);
   }
   writer.commit();
 }
@@ -34,7 +36,9 @@ void write_segment_plys(const MapSnapshot& map, std::span<const std::uint32_t> s
   for (const SliceRecord& slice : map.state.slices) {
     for (PointIndex i = slice.first; i < slice.first + slice.count; ++i) {
       const auto points = points_of.find(map.state.segment_ids[i]);
-      if (points != points_of.end()) points->second.push_back({i, slice.slice_id});
+      if (points != points_of.end()) {
+        points->second.push_back({i, slice.slice_id, slice.is_in_volume()});
+      }
     }
   }
   for (const std::uint32_t id : segment_ids) {

@@ -15,10 +15,13 @@ namespace {
 
 bool is_complete(const SegmentMapState& state) {
   std::set<std::int32_t> ids;
+  std::int64_t revision_sum = 0;
   for (const SliceRecord& slice : state.slices) {
+    revision_sum += slice.revision;
     if (slice.slice_id <= state.final_slice_id) ids.insert(slice.slice_id);
   }
-  return state.final_slice_id >= 0 && std::ssize(ids) == std::int64_t{state.final_slice_id} + 1;
+  return state.final_slice_id >= 0 && std::ssize(ids) == std::int64_t{state.final_slice_id} + 1 &&
+         revision_sum >= state.final_revision_sum;
 }
 
 std::vector<SegmentStatistics> statistics_of(const SegmentMapState& state) {
@@ -31,7 +34,7 @@ std::vector<SegmentStatistics> statistics_of(const SegmentMapState& state) {
         throw std::invalid_argument("point " + std::to_string(i) + ": " + std::string(*reason));
       }
       SegmentSums& segment = sums[state.segment_ids[i]];
-      segment.add(point, 1);
+      segment.add(point, slice.is_in_volume(), 1);
       segment.extent.include(point, slice.slice_id);
     }
   }

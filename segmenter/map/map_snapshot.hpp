@@ -11,7 +11,7 @@ namespace kintsugi::segmenter {
 /// Everything that files hold of a map. It is a copy, so that another thread can write it.
 struct MapSnapshot {
   SegmentMapState state;
-  bool is_complete = false;                 ///< it has the final slice and every earlier one
+  bool is_complete = false;                 ///< as SegmentMap::is_complete()
   std::vector<SegmentStatistics> segments;  ///< by ascending id
 };
 

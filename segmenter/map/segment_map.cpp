@@ -25,6 +25,7 @@ SegmentMap::SegmentMap(const SegmentMapConfig& config, std::int64_t session,
       map_session_(first.session),
       map_name_(first.map_name),
       part_(first.part),
+      cloud_(config_.engine.resolution_m),
       engine_(make_engine(config_.mode, cloud_, config_.engine)),
       statistics_(first.resolution_m) {}
 
@@ -65,14 +66,18 @@ std::vector<SegmentUpdate> SegmentMap::add(std::span<const CloudSlice> slices) {
 }
 
 void SegmentMap::store(const CloudSlice& slice) {
-  if (cloud_.find_slice(slice.id) == nullptr) {
-    cloud_.add_slice(slice.id, slice.points_W, slice.revision);
+  const PatchState patch = patch_state_of(slice);
+  revision_sum_ += slice.revision;
+  if (const SliceRecord* const before = cloud_.find_slice(slice.id); before == nullptr) {
+    cloud_.add_slice(slice.id, slice.points_W, slice.revision, patch);
     slice_ids_.insert(slice.id);
   } else {
-    cloud_.replace_slice(slice.id, slice.points_W, slice.revision);
+    revision_sum_ -= before->revision;
+    cloud_.replace_slice(slice.id, slice.points_W, slice.revision, patch);
   }
   if (slice.kind == SliceKind::kFinal) {
     final_slice_id_ = slice.id;
+    final_revision_sum_ = slice.revision_sum;
     part_follows_ = slice.part_follows;
   }
   if (slice.num_chunks > 0) {
@@ -103,7 +108,7 @@ std::vector<SegmentUpdate> SegmentMap::describe() const {
 }
 
 bool SegmentMap::is_complete() const {
-  return has_final_slice() &&
+  return has_final_slice() && revision_sum_ >= final_revision_sum_ &&
          std::distance(slice_ids_.begin(), slice_ids_.upper_bound(final_slice_id_)) ==
              std::int64_t{final_slice_id_} + 1;
 }

@@ -44,6 +44,12 @@ class SegmentMap {
   ///   resolution, is in the map with this or a higher revision, or comes twice
   std::vector<SegmentUpdate> add(std::span<const CloudSlice> slices);
 
+  /// Chunks of revisions that are older than those in the map, and were never added to it: they
+  /// need not be sent again.
+  void skip_chunks(std::span<const SequenceRange> superseded) {
+    for (const SequenceRange& range : superseded) chunks_.insert(range);
+  }
+
   /// A hint, given before an add(): the add() after that one will probably bring `slice`.
   void look_ahead(const CloudSlice& slice) { engine_->look_ahead(slice.points_W); }
 
@@ -65,7 +71,8 @@ class SegmentMap {
   /// True when the final slice is in the map.
   [[nodiscard]] bool has_final_slice() const { return final_slice_id_ >= 0; }
 
-  /// True when the final slice and every earlier one are in the map.
+  /// True when the final slice and every earlier one are in the map, in their newest revisions as
+  /// far as the final slice tells them.
   [[nodiscard]] bool is_complete() const;
 
   /// True when the final slice said that the mapper goes on with another part.
@@ -89,7 +96,7 @@ class SegmentMap {
   [[nodiscard]] std::int64_t first_session() const { return map_session_ - part_; }
   /// A number that changes with every add().
   [[nodiscard]] std::int64_t version() const { return version_; }
-  /// The chunks of the slice stream that are in the map.
+  /// The chunks of the slice stream that are in the map, or older than what is in it.
   [[nodiscard]] const SequenceSet& chunks() const { return chunks_; }
 
  private:
@@ -109,9 +116,11 @@ class SegmentMap {
   SegmentIds ids_;
   SegmentStatisticsTable statistics_;
   std::set<std::int32_t> slice_ids_;
-  std::int32_t final_slice_id_ = -1;  // -1: not seen
+  std::int64_t revision_sum_ = 0;        // of all slices in the map
+  std::int32_t final_slice_id_ = -1;     // -1: not seen
+  std::int64_t final_revision_sum_ = 0;  // what it said
   std::int64_t version_ = 0;
-  SequenceSet chunks_;  // of the slice stream that are in the map
+  SequenceSet chunks_;  // of the slice stream that need not be sent again
 };
 
 }  // namespace kintsugi::segmenter

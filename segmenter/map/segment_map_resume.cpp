@@ -58,6 +58,10 @@ void check_counts(const SegmentMapState& state) {
   if (state.part < 0) {
     throw std::invalid_argument("part is " + std::to_string(state.part) + ", expected >= 0");
   }
+  if (state.final_revision_sum < 0) {
+    throw std::invalid_argument("final_revision_sum is " +
+                                std::to_string(state.final_revision_sum) + ", expected >= 0");
+  }
   std::uint64_t num_points = 0;
   for (const SliceRecord& slice : state.slices) {
     const bool is_ascending = std::adjacent_find(slice.rejected.begin(), slice.rejected.end(),
@@ -94,8 +98,8 @@ void check_last_changes(const SegmentMapState& state, const std::set<std::int32_
 void restore_cloud(const SegmentMapState& state, PointCloud& cloud) {
   for (const SliceRecord& slice : state.slices) {
     const auto accepted_W = std::span(state.points_W).subspan(slice.first, slice.count);
-    const SliceRecord& stored =
-        cloud.add_slice(slice.slice_id, as_received(slice, accepted_W), slice.revision);
+    const SliceRecord& stored = cloud.add_slice(slice.slice_id, as_received(slice, accepted_W),
+                                                slice.revision, slice.patch);
     if (stored.rejected != slice.rejected) {
       throw std::invalid_argument(name_of(slice) + " has an accepted point that is inadmissible");
     }
@@ -139,13 +143,18 @@ SegmentMap::SegmentMap(const SegmentMapState& state)
       map_name_(state.map_name),
       part_(state.part),
       part_follows_(state.part_follows),
+      cloud_(config_.engine.resolution_m),
       engine_(make_engine(config_.mode, cloud_, config_.engine)),
       statistics_(static_cast<float>(config_.engine.resolution_m)),
       final_slice_id_(state.final_slice_id),
+      final_revision_sum_(state.final_revision_sum),
       chunks_(set_of(state.chunks)) {
   check_counts(state);
   restore_cloud(state, cloud_);
-  for (const SliceRecord& slice : state.slices) slice_ids_.insert(slice.slice_id);
+  for (const SliceRecord& slice : state.slices) {
+    slice_ids_.insert(slice.slice_id);
+    revision_sum_ += slice.revision;
+  }
   if (has_final_slice() && !slice_ids_.contains(final_slice_id_)) {
     throw std::invalid_argument("the final slice " + std::to_string(final_slice_id_) +
                                 " is not in the map");
@@ -180,6 +189,7 @@ void SegmentMap::copy_state(SegmentMapState& state) const {
   state.part = part_;
   state.part_follows = part_follows_;
   state.final_slice_id = final_slice_id_;
+  state.final_revision_sum = final_revision_sum_;
   state.next_id = ids_.next_id();
   state.chunks = chunks_.ranges();
   state.last_changes = statistics_.last_changes();

@@ -31,9 +31,12 @@ struct SegmentMapState {
   std::int32_t part = 0;             ///< of the run of the mapper
   bool part_follows = false;         ///< the final slice said so
   std::int32_t final_slice_id = -1;  ///< -1: not seen
-  std::uint32_t next_id = 1;         ///< the next new segment id
+  /// The final slice said so: the sum of the newest revisions of all slices; >= 0.
+  std::int64_t final_revision_sum = 0;
+  std::uint32_t next_id = 1;  ///< the next new segment id
 
-  /// Chunks of the slice stream that are in the map and need not be sent again; ascending.
+  /// Chunks of the slice stream that are in the map, or are of revisions older than those in it,
+  /// and need not be sent again; ascending.
   std::vector<SequenceRange> chunks;
 
   std::vector<SliceRecord> slices;   ///< in order of arrival; `first` is an index into points_W

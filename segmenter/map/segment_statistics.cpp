@@ -51,16 +51,17 @@ std::vector<SegmentStatisticsTable::Touched> SegmentStatisticsTable::add_up(
   SliceFinder slice_of(cloud);
   for (const IdChange& change : changes) {
     const CloudPoint& point = cloud[change.point];
-    const std::int32_t slice_id = slice_of(change.point).slice_id;
+    const SliceRecord& slice = slice_of(change.point);
+    const std::int32_t slice_id = slice.slice_id;
     if (change.old_id != kNoSegment) {
       Sums& old = sums_of(change.old_id);
-      old.add(point, -1);
+      old.add(point, slice.is_in_volume(), -1);
       old.extent_is_stale = old.extent_is_stale || old.extent.touches(point, slice_id);
       touch(change.old_id, change.point);
     }
     if (change.new_id != kNoSegment) {
       Sums& heir = sums_of(change.new_id);
-      heir.add(point, 1);
+      heir.add(point, slice.is_in_volume(), 1);
       heir.extent.include(point, slice_id);
       touch(change.new_id, change.point);
     }

@@ -13,8 +13,9 @@ std::int64_t to_units(float value) { return std::llround(static_cast<double>(val
 
 }  // namespace
 
-void SegmentSums::add(const CloudPoint& point, std::int64_t sign) {
+void SegmentSums::add(const CloudPoint& point, bool is_in_volume, std::int64_t sign) {
   num_points += sign;
+  if (is_in_volume) num_in_volume += sign;
   const std::array<float, 3> normal_W{point.nx, point.ny, point.nz};
   const std::array<std::int64_t, 3> rgb{point.red, point.green, point.blue};
   const std::array<float, 3> p_W{point.x, point.y, point.z};
@@ -55,6 +56,7 @@ SegmentStatistics SegmentSums::statistics(std::uint32_t segment_id, float resolu
   result.area_m2 = static_cast<float>(count * resolution_m * resolution_m);
   result.first_slice = extent.first_slice;
   result.last_slice = extent.last_slice;
+  result.points_in_volume = static_cast<std::uint32_t>(num_in_volume);
   return result;
 }
 

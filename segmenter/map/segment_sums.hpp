@@ -15,13 +15,14 @@ struct SegmentSums {
   __extension__ using WideInteger = __int128;  // 2^60 for each coordinate, and room for 2^67 points
 
   std::int64_t num_points = 0;
+  std::int64_t num_in_volume = 0;  ///< of them, points of patches that may still change
   std::array<WideInteger, 3> position{};
   std::array<WideInteger, 3> normal{};
   std::array<std::int64_t, 3> color{};
   Extent extent;
 
   /// Adds `point`, or subtracts it when `sign` is -1. The extent stays as it is.
-  void add(const CloudPoint& point, std::int64_t sign);
+  void add(const CloudPoint& point, bool is_in_volume, std::int64_t sign);
 
   /// The statistics of at least one point, each of which stands for resolution_m^2 of surface.
   [[nodiscard]] SegmentStatistics statistics(std::uint32_t segment_id, float resolution_m) const;

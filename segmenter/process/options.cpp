@@ -87,7 +87,8 @@ void add_file_flags(CLI::App& app, Options& options) {
                  "SIGUSR1, and as --write-every says")
       ->capture_default_str();
   app.add_option("--write-every", each_map.write_every,
-                 "also write the map files after every N slices; 0: do not")
+                 "also write the map files after every N slices, of which a batch of patches is "
+                 "one; 0: do not")
       ->capture_default_str();
   app.add_option("--save", segmentation.files.save_file,
                  "also save the map in this file, for --resume, whenever the map files are "
@@ -105,9 +106,11 @@ void add_file_flags(CLI::App& app, Options& options) {
 
 void add_slice_flags(CLI::App& app, Options& options) {
   SessionMaps::Config& maps = options.process.segmentation.maps;
-  app.add_flag("--coalesce", maps.each_map.coalesce,
-               "mode batch: segment all waiting slices in one run: catches up sooner and gives the "
-               "same partition, but segment ids may differ from one run to the next");
+  app.add_flag(
+      "--coalesce", maps.each_map.coalesce,
+      "mode batch: segment all waiting slices in one run: catches up sooner and gives the "
+      "same partition, but segment ids may differ from one run to the next; with --log, in "
+      "all modes: segment all waiting batches of patches in one run, as on the bus");
   app.add_option("--gap-timeout", options.gap_timeout_s,
                  "seconds to wait for a missing slice that nobody resends before the map "
                  "continues without it, > 0")
@@ -145,6 +148,7 @@ SegmenterProcess::Config Options::config() const {
   SegmenterProcess::Config config = process;
   SessionMaps::Config& maps = config.segmentation.maps;
   maps.each_map.order.gap_timeout = std::chrono::milliseconds(std::llround(gap_timeout_s * 1000.0));
+  maps.each_map.order.is_live = config.log.empty() || maps.each_map.coalesce;
   config.max_queue_bytes = static_cast<std::size_t>(std::llround(max_queue_mb * 1e6));
   config.updates.rate_bytes_per_s = rate_mb_per_s * 1e6;
   config.updates.map_name = maps.map_name;

@@ -1,6 +1,7 @@
 #include "segmenter/session/session_map.hpp"
 
 #include <algorithm>
+#include <map>
 #include <utility>
 
 #include <fmt/format.h>
@@ -11,12 +12,30 @@
 namespace kintsugi::segmenter {
 namespace {
 
-SliceSequencer::Revisions revisions_in(const SegmentMap& map) {
-  SliceSequencer::Revisions revisions;
+SliceSequencer::Done slices_in(const SegmentMap& map) {
+  SliceSequencer::Done done;
   for (const SliceRecord& slice : map.cloud().slices()) {
-    revisions[slice.slice_id] = slice.revision;
+    done.revisions[slice.slice_id] = slice.revision;
+    done.has_patches = done.has_patches || slice.patch != PatchState::kNoPatch;
   }
-  return revisions;
+  return done;
+}
+
+bool is_patch(const CloudSlice& slice) { return slice.kind == SliceKind::kPatch; }
+
+/// How far a run brings the next save nearer. A batch comes several times a second, whatever the
+/// number of its patches.
+std::int64_t slices_to_count(const std::vector<CloudSlice>& slices) {
+  const auto num_patches = std::ranges::count_if(slices, is_patch);
+  return std::ssize(slices) - num_patches + (num_patches > 0 ? 1 : 0);
+}
+
+std::string text_of(const SliceGap& gap, std::int64_t map_session) {
+  const std::string missing = gap.num_revisions > 0
+                                  ? std::string("the newest revisions of some slices")
+                                  : fmt::format("slices {} to {}", gap.first, gap.last);
+  return fmt::format("{} of session {} are missing: the map continues without them", missing,
+                     map_session);
 }
 
 }  // namespace
@@ -30,7 +49,7 @@ void SessionMap::Config::validate() const {
 SessionMap::SessionMap(const Config& config, std::unique_ptr<SegmentMap> map)
     : config_((config.validate(), config)),
       map_(std::move(map)),
-      sequencer_(config.order, revisions_in(*map_)) {
+      sequencer_(config.order, slices_in(*map_)) {
   counts_.map_session = map_->map_session();
   counts_.map_name = map_->map_name();
   counts_.received = counts_.segmented = std::ssize(map_->cloud().slices());
@@ -57,14 +76,12 @@ StepResult SessionMap::step(Clock::time_point now, Outlook outlook) {
   if (!slices.empty()) {
     result.has_progressed = true;
     result.updates = segment(slices);
-    if (auto request = save_when_due(std::ssize(slices))) {
+    if (auto request = save_when_due(slices_to_count(slices))) {
       result.saves.push_back(*std::move(request));
     }
   } else if (const auto gap = sequencer_.give_up_gap(now, outlook)) {
     result.has_progressed = true;
-    result.warnings.push_back(
-        fmt::format("slices {} to {} of session {} are missing: the map continues without them",
-                    gap->first, gap->last, map_->map_session()));
+    result.warnings.push_back(text_of(*gap, map_->map_session()));
   }
   return result;
 }
@@ -73,17 +90,19 @@ StepResult SessionMap::step(Clock::time_point now, Outlook outlook) {
 std::vector<CloudSlice> SessionMap::take_ready(Clock::time_point now, Outlook outlook) {
   const bool all = config_.coalesce && map_->config().mode == "batch";
   std::vector<CloudSlice> slices;
+  std::map<std::int32_t, std::size_t> place_of;
   while (all || slices.empty()) {
     auto run = sequencer_.pop(now, outlook);
     if (!run) {
       break;
     }
+    map_->skip_chunks(run->superseded);
     for (CloudSlice& slice : run->slices) {
-      const auto earlier = std::ranges::find(slices, slice.id, &CloudSlice::id);
-      if (earlier == slices.end()) {
+      const auto [place, is_new] = place_of.try_emplace(slice.id, slices.size());
+      if (is_new) {
         slices.push_back(std::move(slice));
       } else {
-        *earlier = std::move(slice);
+        slices[place->second] = std::move(slice);
       }
     }
   }

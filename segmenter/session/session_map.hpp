@@ -39,11 +39,11 @@ struct StepResult {
 /// Puts the slices of one mapper session in order and segments them; one update for each slice.
 /// Belongs to one thread; knows neither bus nor files.
 ///
-/// One step segments what SliceSequencer groups: a new slice, or corrections that arrived
-/// together. The same slices therefore give the same ids, whenever they arrive. With
-/// Config::coalesce, mode `batch` segments everything that is ready in one step. The partition
-/// after it is the same, but segment ids may be numbered differently, because they depend on the
-/// history of the steps and so on timing.
+/// One step segments what SliceSequencer groups: a new slice, corrections that arrived together, or
+/// a batch of patches. The same slices therefore give the same ids, whenever they arrive, except
+/// with SliceSequencer::Config::is_live. With Config::coalesce, mode `batch` segments everything
+/// that is ready in one step. The partition after it is the same, but segment ids may be numbered
+/// differently, because they depend on the history of the steps and so on timing.
 class SessionMap {
  public:
   using Clock = SliceSequencer::Clock;
@@ -51,8 +51,9 @@ class SessionMap {
   struct Config {
     SliceSequencer::Config order;
     bool coalesce = false;  ///< mode `batch`: one run of the engine for all slices that are ready
-    int write_every = 0;  ///< SaveKind::kCurrent after so many slices, >= 0; 0: only when complete
-    int save_every = 0;   ///< SaveKind::kForResume after so many slices, >= 0; 0: never
+    /// SaveKind::kCurrent after so many slices, >= 0; 0: only when complete. A batch counts as one.
+    int write_every = 0;
+    int save_every = 0;  ///< SaveKind::kForResume in the same way; 0: never
 
     /// @throws std::invalid_argument naming field, value and bound
     void validate() const;
@@ -70,7 +71,7 @@ class SessionMap {
     std::int64_t rejected = 0;  ///< points that the map did not accept
     std::int64_t segments = 0;  ///< in the map
     std::int64_t missing = 0;   ///< slices given up that have not arrived since
-    bool complete = false;      ///< the final slice and every earlier one are segmented
+    bool complete = false;      ///< SegmentMap::is_complete()
     bool ended = false;         ///< complete, or the final slice is and the missing are given up
     double slice_ms = 0.0;      ///< of the last slice; the time of a step is shared by its slices
     double slice_mean_ms = 0.0;

@@ -116,6 +116,9 @@ Seeds saved_map_seeds() {
   for (const std::string_view mode : segmenter::engine_modes()) {
     auto slices = segmenter::testing::wavy_session(2, 20);
     slices[0].points_W[3].x = std::numeric_limits<float>::quiet_NaN();
+    slices[0].kind = SliceKind::kPatch;
+    slices[0].in_volume = true;
+    slices[1].revision_sum = 1;
     segmenter::SegmentMapConfig config;
     config.mode = mode;
     segmenter::SegmentMap map(config, 99, slices[0]);

@@ -1,7 +1,9 @@
 #include "tests/fuzz/random_scenario.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <set>
 #include <utility>
 
 #include "segmenter/core/graph/neighbour_index.hpp"
@@ -95,7 +97,7 @@ class ScenarioWriter {
 
   void write_event() {
     if (live_.empty() || random_.chance(0.3)) return add_slice();
-    switch (random_.below(16)) {
+    switch (random_.below(18)) {
       case 0:
         return remove_all({random_.pick(live_)});
       case 1:
@@ -121,6 +123,9 @@ class ScenarioWriter {
         return move_rigidly_back();
       case 14:
         return random_.chance(0.5) ? replace_slice() : take_places_again();
+      case 16:
+      case 17:
+        return revise_patches();
       default:
         if (random_.chance(0.2)) return remove_all(live_);
         if (random_.chance(0.5)) return take_places_twice();
@@ -167,18 +172,9 @@ class ScenarioWriter {
   void move(const std::vector<PoolIndex>& points) {
     const double shift_m = random_.chance(0.3) ? 0.0 : 0.002;
     const double tilt = random_.log_uniform(1e-3, 5e-2);
-    const auto jitter = [&](double value, double most) {
-      return value + random_.uniform(-most, most);
-    };
     for (const PoolIndex i : points) {
       if (!remove(i)) continue;
-      const CloudPoint p = scenario_.pool[i];
-      const double x = jitter(p.x, shift_m);
-      const double y = jitter(p.y, shift_m);
-      const double z = jitter(p.z, shift_m);
-      const double nx = jitter(p.nx, tilt);
-      const double ny = jitter(p.ny, tilt);
-      add_new(colored_as(p, make_point(x, y, z, nx, ny, jitter(p.nz, tilt))));
+      add_new(measured_again(scenario_.pool[i], shift_m, tilt));
     }
   }
 
@@ -220,6 +216,41 @@ class ScenarioWriter {
       if (!random_.chance(0.1)) replacement.push_back(add_new(motion(scenario_.pool[i])));
     }
     if (!replacement.empty()) slice = std::move(replacement);
+  }
+
+  /// A batch of patches: the points in some tiles of space are measured again. Most are somewhere
+  /// else by less than a voxel, some are the same, some are gone, and some are new.
+  void revise_patches() {
+    const double tile_m = random_.log_uniform(0.02, 0.2);
+    const auto tile_of = [&](const CloudPoint& p) {
+      const auto cell = [&](float value) { return static_cast<int>(std::floor(value / tile_m)); };
+      return std::array{cell(p.x), cell(p.y), cell(p.z)};
+    };
+    std::set<std::array<int, 3>> tiles;
+    for (std::size_t k = random_.between(1, 3); k > 0; --k) {
+      tiles.insert(tile_of(scenario_.pool[random_.pick(live_)]));
+    }
+    const double most_m = random_.log_uniform(1e-4, 0.5 * kResolution_m);
+    const double tilt = random_.log_uniform(1e-4, 2e-2);
+    const double share_gone = random_.chance(0.5) ? 0.0 : random_.uniform(0.0, 0.5);
+    for (const PoolIndex i : live_) {
+      const CloudPoint p = scenario_.pool[i];
+      if (!tiles.contains(tile_of(p)) || !remove(i) || random_.chance(share_gone)) continue;
+      add_new(random_.chance(0.1) ? p : measured_again(p, most_m, tilt));
+      if (random_.chance(0.05)) add_new(measured_again(p, kResolution_m, tilt));
+    }
+  }
+
+  CloudPoint measured_again(const CloudPoint& p, double most_m, double tilt) {
+    const auto jitter = [&](double value, double most) {
+      return value + random_.uniform(-most, most);
+    };
+    const double x = jitter(p.x, most_m);
+    const double y = jitter(p.y, most_m);
+    const double z = jitter(p.z, most_m);
+    const double nx = jitter(p.nx, tilt);
+    const double ny = jitter(p.ny, tilt);
+    return colored_as(p, make_point(x, y, z, nx, ny, jitter(p.nz, tilt)));
   }
 
   // Which points.

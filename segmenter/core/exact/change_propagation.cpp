@@ -21,6 +21,7 @@ bool ChangePropagation::run(std::span<const PointIndex> removed, std::vector<Edg
   now_ = decided_ = kStart;
   num_joins_ = num_events_ = num_explored_ = 0;
   queue_.start(std::move(new_edges));
+  for (const PointIndex x : touched_) state_.vertices[x].is_in_queue = 1;
   for (const PointIndex x : removed) state_.vertices[x].is_gone = 1;
   for (const PointIndex x : removed) remove(x);
   while (!queue_.empty()) {
@@ -37,6 +38,7 @@ bool ChangePropagation::run(std::span<const PointIndex> removed, std::vector<Edg
 
 void ChangePropagation::reset() {
   cut_search_.finish();
+  leave_queue();
   touched_.clear();
   opened_.clear();
   new_edges_.clear();
@@ -169,17 +171,21 @@ void ChangePropagation::take_back_future(PointIndex x) {
   size_changed(x);
 }
 
-/// Makes all later edges of x events.
+/// Makes all later edges of x events, except those that are events already because of the point at
+/// their other end.
 void ChangePropagation::explore(PointIndex x) {
   ++num_explored_;
+  state_.vertices[x].is_in_queue = 1;
+  explored_.push_back(x);
   state_.watches.erase_all_of(x);
   if (!state_.forest.is_absorbed_up_to(x, now_)) take_back_future(x);
-  state_.edges.for_each_linked(x, [&](TreeEdgeId edge, PointIndex) {
+  state_.edges.for_each_linked(x, [&](TreeEdgeId edge, PointIndex other) {
+    if (state_.vertices[other].is_in_queue) return;
     const EdgeKey& key = state_.edges.key(edge);
     if (now_ < key) queue_.push({key, EventKind::kTreeEdge, edge});
   });
-  edges_of_.for_each({&x, 1}, [&](PointIndex, PointIndex, const EdgeKey& key) {
-    if (now_ < key) queue_.push({.key = key});
+  edges_of_.for_each({&x, 1}, [&](PointIndex, PointIndex other, const EdgeKey& key) {
+    if (!state_.vertices[other].is_in_queue && now_ < key) queue_.push({.key = key});
   });
 }
 
@@ -237,6 +243,11 @@ void ChangePropagation::touch(PointIndex x) {
   touched_.push_back(x);
 }
 
+void ChangePropagation::leave_queue() {
+  for (const PointIndex x : touched_) state_.vertices[x].is_in_queue = 0;
+  for (const PointIndex x : std::exchange(explored_, {})) state_.vertices[x].is_in_queue = 0;
+}
+
 /// Updates the old tree and the watch heaps for the next run.
 void ChangePropagation::finish(std::span<const PointIndex> removed) {
   for (const PointIndex holder : std::exchange(opened_, {})) {
@@ -259,6 +270,7 @@ void ChangePropagation::finish(std::span<const PointIndex> removed) {
     }
   }
   cut_search_.finish();
+  leave_queue();
   for ([[maybe_unused]] const PointIndex x : removed) {
     assert(state_.vertices.is_root(x) && state_.vertices[x].history == kNone);
     assert(state_.vertices[x].half_edges == kNone && state_.vertices[x].watches == kNone);

@@ -32,6 +32,7 @@ class ChangePropagation {
  public:
   ChangePropagation(State& state, const EdgeFinder& edges_of);
 
+  /// touched() must hold the added points.
   /// @param removed points that are gone; their vertices are still in the state
   /// @param new_edges all edges of the added points; the index must hold the new cloud
   /// @return false when more than `max_explored` points had to be explored; the state then must be
@@ -63,6 +64,7 @@ class ChangePropagation {
   void queue_tree_edge_of(PointIndex x);
   void open_heap(PointIndex holder);
   void touch(PointIndex x);
+  void leave_queue();
   void finish(std::span<const PointIndex> removed);
   bool is_gone(PointIndex x) const { return state_.vertices[x].is_gone != 0; }
 
@@ -73,6 +75,7 @@ class ChangePropagation {
   EdgeKey now_;
   EdgeKey decided_;  ///< the last key at which an edge was decided
   std::vector<PointIndex> touched_;
+  std::vector<PointIndex> explored_;
   std::vector<PointIndex> opened_;     ///< holders of the watch heaps that take part in the run
   std::vector<TreeEdgeId> new_edges_;  ///< tree edges that the run added
   std::vector<TreeEdgeId> dropped_;    ///< edges of the old tree that join nothing any more

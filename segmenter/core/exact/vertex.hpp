@@ -52,6 +52,7 @@ struct alignas(64) Vertex {
   std::uint32_t is_queued : 1 = 0;     ///< its tree edge is in the event queue
   std::uint32_t is_heap_open : 1 = 0;  ///< its heap takes part in the run
   std::uint32_t is_touched : 1 = 0;    ///< its host or guests changed
+  std::uint32_t is_in_queue : 1 = 0;   ///< all its edges from now on are events
   std::uint32_t is_gone : 1 = 0;       ///< not in the cloud (any more)
 };
 static_assert(sizeof(Absorption) == 8 && sizeof(Vertex) == 64);

@@ -8,13 +8,14 @@
 #include <utility>
 
 #include "segmenter/core/points/admission.hpp"
+#include "segmenter/core/points/voxel_pairs.hpp"
 
 namespace kintsugi::segmenter {
 namespace {
 
 /// Pairs the accepted points that have the same index in the slice, by ascending index.
-void append_moved(const SliceRecord& before, const SliceRecord& after,
-                  std::vector<MovedPoint>& moved) {
+void append_moved_by_index(const SliceRecord& before, const SliceRecord& after,
+                           std::vector<MovedPoint>& moved) {
   PointIndex from = 0;
   PointIndex to = 0;
   while (from < before.count && to < after.count) {
@@ -44,7 +45,7 @@ std::int32_t SliceRecord::index_of(PointIndex k) const {
 
 const SliceRecord& PointCloud::add_slice(std::int32_t slice_id,
                                          std::span<const CloudPoint> points_W,
-                                         std::int32_t revision) {
+                                         std::int32_t revision, PatchState patch) {
   if (slice_id < 0) {
     throw std::invalid_argument("slice_id is " + std::to_string(slice_id) + ", must be >= 0");
   }
@@ -52,7 +53,7 @@ const SliceRecord& PointCloud::add_slice(std::int32_t slice_id,
     throw std::invalid_argument("slice_id " + std::to_string(slice_id) +
                                 " is in the cloud already");
   }
-  SliceRecord record = place(slice_id, revision, points_W);
+  SliceRecord record = place(slice_id, revision, patch, points_W);
   const auto position = static_cast<std::uint32_t>(slices_.size());
   slices_.emplace_back();
   position_[slice_id] = position;
@@ -62,7 +63,8 @@ const SliceRecord& PointCloud::add_slice(std::int32_t slice_id,
 
 const SliceRecord& PointCloud::replace_slice(std::int32_t slice_id,
                                              std::span<const CloudPoint> points_W,
-                                             std::optional<std::int32_t> revision) {
+                                             std::optional<std::int32_t> revision,
+                                             PatchState patch) {
   const std::uint32_t position = position_of(slice_id);
   const std::int32_t old_revision = slices_[position].revision;
   if (revision.value_or(old_revision + 1) <= old_revision) {
@@ -70,7 +72,7 @@ const SliceRecord& PointCloud::replace_slice(std::int32_t slice_id,
                                 std::to_string(*revision) + ", must be above " +
                                 std::to_string(old_revision) + ", which is in the cloud");
   }
-  SliceRecord record = place(slice_id, revision.value_or(old_revision + 1), points_W);
+  SliceRecord record = place(slice_id, revision.value_or(old_revision + 1), patch, points_W);
   retire(position);
   make_live(position, std::move(record));
   return slices_[position];
@@ -96,6 +98,19 @@ CloudChange PointCloud::take_change() {
   unreported_.clear();
   is_taken_ = true;
   return change;
+}
+
+void PointCloud::append_moved(const SliceRecord& before, const SliceRecord& after,
+                              std::vector<MovedPoint>& moved) const {
+  if (after.patch == PatchState::kNoPatch || voxel_m_ <= 0.0) {
+    return append_moved_by_index(before, after, moved);
+  }
+  const auto points_of = [this](const SliceRecord& slice) {
+    return points_W().subspan(slice.first, slice.count);
+  };
+  for (const PointPair& pair : pair_by_voxel(points_of(before), points_of(after), voxel_m_)) {
+    moved.push_back({before.first + pair.before, after.first + pair.after});
+  }
 }
 
 CloudChange PointCloud::everything() const {
@@ -148,7 +163,7 @@ void PointCloud::begin_change() {
 }
 
 /// Stores the accepted points in the first free range that holds them all, or at the end.
-SliceRecord PointCloud::place(std::int32_t slice_id, std::int32_t revision,
+SliceRecord PointCloud::place(std::int32_t slice_id, std::int32_t revision, PatchState patch,
                               std::span<const CloudPoint> points_W) {
   // LabelRun addresses a point in its slice by an int32.
   constexpr auto kMaxSlicePoints = std::numeric_limits<std::int32_t>::max();
@@ -162,6 +177,7 @@ SliceRecord PointCloud::place(std::int32_t slice_id, std::int32_t revision,
   SliceRecord slice;
   slice.slice_id = slice_id;
   slice.revision = revision;
+  slice.patch = patch;
   slice.num_points = static_cast<std::int32_t>(points_W.size());
   for (std::int32_t index = 0; index < slice.num_points; ++index) {
     if (reason_to_reject(points_W[static_cast<std::size_t>(index)])) {
@@ -205,7 +221,11 @@ void PointCloud::retire(std::uint32_t slice) {
   num_live_ -= record.count;
   num_rejected_ -= static_cast<std::int64_t>(record.rejected.size());
   if (record.count == 0) return;
-  std::erase_if(ranges_, [&](const Range& range) { return range.slice == slice; });
+  const auto range =
+      std::lower_bound(ranges_.begin(), ranges_.end(), record.first,
+                       [](const Range& other, PointIndex first) { return other.first < first; });
+  assert(range != ranges_.end() && range->slice == slice);
+  ranges_.erase(range);
   const auto after = std::upper_bound(
       retired_.begin(), retired_.end(), record.first,
       [](PointIndex first, const Retired& retired) { return first < retired.record.first; });

@@ -30,7 +30,7 @@ struct PointId {
   }
 };
 
-/// A point that has another PointIndex than before; its PointId stays the same.
+/// A point that has another PointIndex than before. Its PointId stays the same, except in a patch.
 struct MovedPoint {
   PointIndex from = 0;
   PointIndex to = 0;
@@ -43,18 +43,33 @@ struct MovedPoint {
 struct CloudChange {
   std::vector<PointIndex> added;    ///< ascending
   std::vector<PointIndex> removed;  ///< ascending; still readable until the cloud changes again
-  std::vector<MovedPoint> moved;    ///< removed and added points of one PointId, by ascending `to`
+  std::vector<MovedPoint> moved;    ///< removed and added points that are the same, by `to`
 };
+
+/// Whether a slice is a patch, and whether that may still change.
+enum class PatchState : std::uint8_t {
+  kNoPatch = 0,
+  kInVolume = 1,  ///< in the mapper's volume
+  kLeft = 2,      ///< its last revision, as far as is known
+};
+
+/// That of a slice as received.
+inline PatchState patch_state_of(const CloudSlice& slice) {
+  if (slice.kind != SliceKind::kPatch) return PatchState::kNoPatch;
+  return slice.in_volume ? PatchState::kInVolume : PatchState::kLeft;
+}
 
 /// A slice in the cloud. Its accepted points are `[first, first + count)`.
 struct SliceRecord {
   std::int32_t slice_id = 0;
   std::int32_t revision = 0;
+  PatchState patch = PatchState::kNoPatch;
   std::int32_t num_points = 0;         ///< as received
   PointIndex first = 0;                ///< of its accepted points
   PointIndex count = 0;                ///< accepted points
   std::vector<std::int32_t> rejected;  ///< indices in the slice of rejected points, ascending
 
+  bool is_in_volume() const { return patch == PatchState::kInVolume; }
   /// The index in the slice of its accepted point number `k` < count.
   std::int32_t index_of(PointIndex k) const;
 };
@@ -66,22 +81,28 @@ struct SliceRecord {
 ///
 /// A slice that is replaced gets new indices. Its old points stay readable after take_change()
 /// until the cloud changes again. Later slices then use their indices, so that corrections do not
-/// make the cloud grow without limit.
+/// make the cloud grow without limit. Which new point is which old one: in a slice that is
+/// corrected, the one with the same index in the slice; in a patch, the one in the same voxel
+/// (pair_by_voxel()), since its points come in other places of the list.
 class PointCloud {
  public:
+  /// @param voxel_m voxel size, for patches; 0: their points are paired as those of other slices
+  explicit PointCloud(double voxel_m = 0.0) : voxel_m_(voxel_m) {}
+
   /// Adds the points of a slice and returns its record, which is valid until the next change.
   /// @throws std::invalid_argument when `slice_id` is negative or already present,
   ///   std::length_error when the cloud would outgrow PointIndex; then nothing has changed
   const SliceRecord& add_slice(std::int32_t slice_id, std::span<const CloudPoint> points_W,
-                               std::int32_t revision = 0);
+                               std::int32_t revision = 0, PatchState patch = PatchState::kNoPatch);
 
-  /// Replaces the points of a slice: point k of `points_W` is the old point k, moved. There may be
-  /// fewer points, or none. `revision` is one more than before by default.
+  /// Replaces the points of a slice. There may be fewer points, or none. `revision` is one more
+  /// than before by default.
   /// @throws as add_slice(); std::invalid_argument also when there is no such slice or `revision`
   /// is
   ///   not above the old one
   const SliceRecord& replace_slice(std::int32_t slice_id, std::span<const CloudPoint> points_W,
-                                   std::optional<std::int32_t> revision = std::nullopt);
+                                   std::optional<std::int32_t> revision = std::nullopt,
+                                   PatchState patch = PatchState::kNoPatch);
 
   /// What changed since the last call.
   CloudChange take_change();
@@ -125,11 +146,14 @@ class PointCloud {
   std::uint32_t position_of(std::int32_t slice_id) const;
   const SliceRecord* find_live(PointIndex i) const;
   void begin_change();
-  SliceRecord place(std::int32_t slice_id, std::int32_t revision,
+  SliceRecord place(std::int32_t slice_id, std::int32_t revision, PatchState patch,
                     std::span<const CloudPoint> points_W);
+  void append_moved(const SliceRecord& before, const SliceRecord& after,
+                    std::vector<MovedPoint>& moved) const;
   void make_live(std::uint32_t slice, SliceRecord record);
   void retire(std::uint32_t slice);
 
+  double voxel_m_;
   GrowingArray<CloudPoint> points_W_;
   std::vector<SliceRecord> slices_;
   std::map<std::int32_t, std::uint32_t> position_;  ///< in slices_, by slice id

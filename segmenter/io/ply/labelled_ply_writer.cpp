@@ -7,7 +7,7 @@ kintsugi::PlyElement vertex_element(std::int64_t num_points) {
   return {.name = "vertex",
           .properties = {"float x", "float y", "float z", "float nx", "float ny", "float nz",
                          "uchar red", "uchar green", "uchar blue", "uint segment_id",
-                         "int slice_id", "float weight"},
+                         "int slice_id", "float weight", "uchar in_volume"},
           .count = num_points};
 }
 
@@ -18,10 +18,10 @@ LabelledPlyWriter::LabelledPlyWriter(const std::filesystem::path& path, std::int
     : writer_(path, {vertex_element(num_points)}, comments) {}
 
 void LabelledPlyWriter::append(const CloudPoint& point_W, std::uint32_t segment_id,
-                               std::int32_t slice_id) {
+                               std::int32_t slice_id, bool is_in_volume) {
   const CloudPoint& p = point_W;
   writer_.append(0, p.x, p.y, p.z, p.nx, p.ny, p.nz, p.red, p.green, p.blue, segment_id, slice_id,
-                 p.weight);
+                 p.weight, static_cast<std::uint8_t>(is_in_volume ? 1 : 0));
 }
 
 }  // namespace kintsugi::segmenter

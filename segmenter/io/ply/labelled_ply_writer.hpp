@@ -12,7 +12,8 @@
 namespace kintsugi::segmenter {
 
 /// Writes a binary little-endian PLY with the vertex properties
-///   float x y z nx ny nz, uchar red green blue, uint segment_id, int slice_id, float weight
+///   float x y z nx ny nz, uchar red green blue, uint segment_id, int slice_id, float weight,
+///   uchar in_volume (1: of a patch that may still change)
 /// in that order. Positions and normals are exactly those that were segmented, so that anyone can
 /// check the labels. The complete file appears under its name at commit().
 class LabelledPlyWriter {
@@ -23,7 +24,8 @@ class LabelledPlyWriter {
   LabelledPlyWriter(const std::filesystem::path& path, std::int64_t num_points,
                     const std::vector<std::string>& comments);
 
-  void append(const CloudPoint& point_W, std::uint32_t segment_id, std::int32_t slice_id);
+  void append(const CloudPoint& point_W, std::uint32_t segment_id, std::int32_t slice_id,
+              bool is_in_volume = false);
 
   /// @throws std::logic_error when the number of points is not what the header says
   void commit() { writer_.commit(); }

@@ -29,7 +29,8 @@ class VertexReader {
         weight_(find_one("weight", Allowed::kAny)),
         slice_id_(find_one("slice_id", Allowed::kInteger)),
         segment_id_(find_one("segment_id", Allowed::kInteger)),
-        instance_id_(find_one("instance_id", Allowed::kInteger)) {}
+        instance_id_(find_one("instance_id", Allowed::kInteger)),
+        in_volume_(find_one("in_volume", Allowed::kInteger)) {}
 
   bool has_normals() const { return normal_.has_value(); }
 
@@ -61,6 +62,9 @@ class VertexReader {
     if (instance_id_) {
       cloud.instance_ids.push_back(
           id_value<std::uint32_t>(row, "instance_id", values[*instance_id_]));
+    }
+    if (in_volume_) {
+      cloud.in_volume.push_back(id_value<std::uint8_t>(row, "in_volume", values[*in_volume_], 1));
     }
   }
 
@@ -150,11 +154,11 @@ class VertexReader {
   }
 
   template <typename Id>
-  Id id_value(std::int64_t row, const std::string& property, double value) const {
-    constexpr auto kMax = std::numeric_limits<Id>::max();
-    if (!(value >= 0.0 && value <= static_cast<double>(kMax) && value == std::floor(value))) {
+  Id id_value(std::int64_t row, const std::string& property, double value,
+              Id max = std::numeric_limits<Id>::max()) const {
+    if (!(value >= 0.0 && value <= static_cast<double>(max) && value == std::floor(value))) {
       fail_at(row, "property '" + property + "' is " + std::to_string(value) +
-                       ", expected a whole number from 0 to " + std::to_string(kMax));
+                       ", expected a whole number from 0 to " + std::to_string(max));
     }
     return static_cast<Id>(value);
   }
@@ -168,6 +172,7 @@ class VertexReader {
   std::optional<std::size_t> slice_id_;
   std::optional<std::size_t> segment_id_;
   std::optional<std::size_t> instance_id_;
+  std::optional<std::size_t> in_volume_;
 };
 
 PlyCloud read_vertices(PlyBody& body, const PlyElement& element, const std::string& name) {

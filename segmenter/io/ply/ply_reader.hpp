@@ -17,6 +17,7 @@ struct PlyCloud {
   std::vector<CloudPoint> points_W;         ///< properties the file lacks are zero
   std::vector<std::int32_t> slice_ids;      ///< order of arrival, >= 0
   std::vector<std::uint32_t> segment_ids;   ///< of a labelled cloud
+  std::vector<std::uint8_t> in_volume;      ///< of a labelled cloud: 1: of a patch that may change
   std::vector<std::uint32_t> instance_ids;  ///< true instances, of a cloud for evaluation
   bool has_normals = false;
   std::vector<std::string> comments;  ///< of the header, in its order
@@ -25,10 +26,10 @@ struct PlyCloud {
 /// Reads ascii and binary PLY of either byte order.
 ///
 /// Of element `vertex` it uses x y z (float or double; required), nx ny nz (float or double),
-/// red green blue (uchar, or float in 0..1), weight (any type), slice_id, segment_id and
-/// instance_id (any integer type). Other properties and elements are skipped, but must be complete.
-/// Positions become float32. Values that are not finite, or too large, are kept; whether a point
-/// can be segmented is decided later (admission.hpp).
+/// red green blue (uchar, or float in 0..1), weight (any type), slice_id, segment_id, instance_id
+/// and in_volume (any integer type; in_volume: 0 or 1). Other properties and elements are skipped,
+/// but must be complete. Positions become float32. Values that are not finite, or too large, are
+/// kept; whether a point can be segmented is decided later (admission.hpp).
 ///
 /// @throws std::runtime_error naming the file, the place (line, byte offset, vertex) and what was
 ///   expected: a file that cannot be read, a bad header, a count that the file cannot hold, missing

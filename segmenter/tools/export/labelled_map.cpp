@@ -21,14 +21,18 @@ bool is_ply(const std::filesystem::path& path) {
   return std::string_view(start.data(), start.size()) == "ply";
 }
 
-/// Runs of vertices with the same slice_id, in the order of the file; an id can have several.
+/// Runs of vertices with the same slice_id and in_volume, in the order of the file; an id can have
+/// several.
 std::vector<SliceRecord> slices_of(const PlyCloud& cloud) {
   std::vector<SliceRecord> slices;
   for (PointIndex i = 0; i < cloud.points_W.size(); ++i) {
     const std::int32_t id = cloud.slice_ids.empty() ? 0 : cloud.slice_ids[i];
-    if (slices.empty() || slices.back().slice_id != id) {
+    const bool is_in_volume = !cloud.in_volume.empty() && cloud.in_volume[i] != 0;
+    if (slices.empty() || slices.back().slice_id != id ||
+        slices.back().is_in_volume() != is_in_volume) {
       SliceRecord& slice = slices.emplace_back();
       slice.slice_id = id;
+      if (is_in_volume) slice.patch = PatchState::kInVolume;
       slice.first = i;
     }
     ++slices.back().count;

@@ -109,6 +109,9 @@ TEST_P(SavedMap, KeepsWhatItIs) {
   auto slices = testing::wavy_session(3, 50);
   slices[1].points_W.clear();
   slices[2].revision = 8;
+  slices[2].revision_sum = 9;  // one revision is missing
+  slices[0].kind = slices[1].kind = SliceKind::kPatch;
+  slices[1].in_volume = true;
   slices[2].part_follows = true;
   slices[0].part = 3;
   SegmentMapConfig config = config_of(GetParam());
@@ -129,6 +132,13 @@ TEST_P(SavedMap, KeepsWhatItIs) {
   EXPECT_TRUE(loaded->has_final_slice());
   ASSERT_EQ(loaded->cloud().slices().size(), 3U);
   EXPECT_EQ(loaded->cloud().slices()[2].revision, 8);
+  EXPECT_EQ(loaded->cloud().slices()[0].patch, PatchState::kLeft);
+  EXPECT_EQ(loaded->cloud().slices()[1].patch, PatchState::kInVolume);
+  EXPECT_EQ(loaded->cloud().slices()[2].patch, PatchState::kNoPatch);
+  EXPECT_FALSE(loaded->is_complete());
+  slices[0].revision = 1;
+  loaded->add({slices.data(), 1});
+  EXPECT_TRUE(loaded->is_complete());
   EXPECT_THROW(loaded->add(slices), std::invalid_argument);  // they are in it
 }
 
@@ -217,17 +227,17 @@ TEST_F(SavedMapFile, ReasonsSayWhatWasExpected) {
   EXPECT_THAT(reason("ply\nformat ascii 1.0\nand so on"),
               AllOf(HasSubstr("no saved segment map"), HasSubstr("KSEGMAP")));
   std::string newer = bytes_;
-  newer[8] = 5;
-  EXPECT_THAT(reason(newer), AllOf(HasSubstr("version 5"), HasSubstr("expected 4")));
+  newer[8] = 6;
+  EXPECT_THAT(reason(newer), AllOf(HasSubstr("version 6"), HasSubstr("expected 5")));
   std::string older = bytes_;
-  older[8] = 3;
-  EXPECT_THAT(reason(older), AllOf(HasSubstr("version 3"), HasSubstr("expected 4")));
+  older[8] = 4;
+  EXPECT_THAT(reason(older), AllOf(HasSubstr("version 4"), HasSubstr("expected 5")));
   EXPECT_THAT(reason(bytes_.substr(0, bytes_.size() - 3)), HasSubstr("cut off"));
   std::string damaged = bytes_;
   damaged[200] ^= 1;
   EXPECT_THAT(reason(damaged), HasSubstr("checksum"));
   std::string neither_yes_nor_no = bytes_;
-  neither_yes_nor_no[92] = 2;  // part_follows
+  neither_yes_nor_no[100] = 2;  // part_follows
   EXPECT_THAT(reason(neither_yes_nor_no), HasSubstr("part_follows 2, expected 0 or 1"));
   std::filesystem::remove(path_);
   EXPECT_THAT([&] { load_map(path_); }, ThrowsMessage<std::runtime_error>(HasSubstr("No such")));
@@ -236,20 +246,23 @@ TEST_F(SavedMapFile, ReasonsSayWhatWasExpected) {
 }
 
 TEST_F(SavedMapFile, ClaimsAreHeldAgainstItsSizeBeforeMemoryIsTaken) {
-  // Each count of the header, which ends at byte 128, claims two billion.
-  for (std::size_t at = 96; at < 128; at += 4) {
+  // Each count of the header, which ends at byte 144, claims two billion.
+  for (std::size_t at = 112; at < 144; at += 4) {
     std::string hostile = bytes_;
     const std::uint32_t count = 2'000'000'000;
     std::memcpy(hostile.data() + at, &count, sizeof(count));
     write(path_, hostile);
     EXPECT_LT(allocated_by([&] { EXPECT_THROW(load_map(path_), std::runtime_error); }), 100'000U);
-    write(path_, hostile.substr(0, 128));
+    write(path_, hostile.substr(0, 144));
     EXPECT_LT(allocated_by([&] { EXPECT_THROW(load_map(path_), std::runtime_error); }), 100'000U);
   }
 }
 
 TEST_F(SavedMapFile, IsRefusedWhenItIsNoStateOfAMap) {
   expect_refused([](auto& s) { s.part = -1; }, "part is -1");
+  expect_refused([](auto& s) { s.final_revision_sum = -1; }, "final_revision_sum is -1");
+  expect_refused([](auto& s) { s.slices[1].patch = static_cast<PatchState>(3); },
+                 "slice 1 has the patch state 3");
   expect_refused([](auto& s) { s.config.mode = "spectral"; }, "mode is 'spectral'");
   expect_refused([](auto& s) { s.config.engine.threshold = -1; }, "threshold is -1");
   expect_refused([](auto& s) { s.config.engine.resolution_m = NAN; }, "resolution_m");

@@ -1,5 +1,8 @@
 #include <algorithm>
+#include <map>
 #include <random>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -219,7 +222,7 @@ TEST_F(SliceSequencerTest, RunsDependOnTheOrderOfArrivalAndNotOnWhenTheyAreFetch
 }
 
 TEST_F(SliceSequencerTest, GoesOnWhereAnEarlierSegmenterStopped) {
-  sequencer_ = SliceSequencer(kConfig, {{0, 0}, {1, 2}, {3, 0}});
+  sequencer_ = SliceSequencer(kConfig, {.revisions = {{0, 0}, {1, 2}, {3, 0}}});
   EXPECT_EQ(sequencer_.num_given_up(), 1);
   EXPECT_EQ(sequencer_.num_missing(), 1);
   EXPECT_EQ(sequencer_.offer(slice(0), now_), Verdict::kDuplicate);
@@ -237,6 +240,238 @@ TEST_F(SliceSequencerTest, SurvivesTheLargestId) {
   EXPECT_EQ(sequencer_.give_up_gap(now_, Outlook::kEnded), (SliceGap{0, 2147483646}));
   EXPECT_EQ(pop_all(), Ids{2147483647});
   EXPECT_FALSE(sequencer_.give_up_gap(now_, Outlook::kEnded));
+}
+
+// Patches.
+
+class PatchBatches : public SliceSequencerTest {
+ protected:
+  /// A patch of the batch of time `utime`.
+  static CloudSlice patch(std::int64_t utime, std::int32_t id, std::int32_t revision = 0,
+                          bool ends_batch = false) {
+    CloudSlice result = slice(id, revision);
+    result.utime = utime;
+    result.kind = SliceKind::kPatch;
+    result.ends_batch = ends_batch;
+    return result;
+  }
+  static CloudSlice last_patch(std::int64_t utime, std::int32_t id, std::int32_t revision = 0) {
+    return patch(utime, id, revision, true);
+  }
+  static CloudSlice final_slice(std::int64_t utime, std::int32_t id, std::int64_t revision_sum) {
+    CloudSlice result = slice(id);
+    result.utime = utime;
+    result.revision_sum = revision_sum;
+    return result;
+  }
+  /// {id, revision} of each slice of each group.
+  using Group = std::vector<std::pair<std::int32_t, std::int32_t>>;
+  std::vector<Group> pop_groups(Outlook outlook = Outlook::kSilent) {
+    std::vector<Group> groups;
+    while (const auto group = sequencer_.pop(now_, outlook)) {
+      EXPECT_FALSE(group->is_correction);
+      groups.emplace_back();
+      for (const CloudSlice& slice : group->slices) {
+        groups.back().emplace_back(slice.id, slice.revision);
+      }
+    }
+    return groups;
+  }
+  void make_live() {
+    SliceSequencer::Config config = kConfig;
+    config.is_live = true;
+    sequencer_ = SliceSequencer(config);
+  }
+  using Groups = std::vector<Group>;
+};
+
+TEST_F(PatchBatches, AreWhatComesUpToTheEnd) {
+  EXPECT_EQ(sequencer_.offer(patch(1, 0), now_), Verdict::kTaken);
+  EXPECT_EQ(sequencer_.offer(patch(1, 2), now_), Verdict::kTaken);
+  EXPECT_EQ(pop_groups(), Groups{});
+  sequencer_.offer(last_patch(1, 1), now_);
+  EXPECT_EQ(sequencer_.upcoming(), nullptr);
+  EXPECT_EQ(pop_groups(), (Groups{{{0, 0}, {1, 0}, {2, 0}}}));
+  EXPECT_EQ(sequencer_.offer(patch(2, 1, 3), now_), Verdict::kCorrected);
+  sequencer_.offer(patch(2, 3), now_);
+  EXPECT_EQ(pop_groups(), Groups{});
+  sequencer_.offer(last_patch(2, 0, 1), now_);
+  EXPECT_EQ(pop_groups(), (Groups{{{0, 1}, {1, 3}, {3, 0}}}));
+  EXPECT_EQ(sequencer_.num_waiting(), 0);
+  EXPECT_EQ(sequencer_.num_missing(), 0);
+}
+
+TEST_F(PatchBatches, DoNotWaitForMissingIds) {
+  sequencer_.offer(last_patch(1, 5), now_);
+  EXPECT_EQ(pop_groups(), (Groups{{{5, 0}}}));
+  EXPECT_EQ(sequencer_.num_missing(), 5);
+  EXPECT_EQ(sequencer_.num_given_up(), 0);
+}
+
+TEST_F(PatchBatches, StayApartUnlessLive) {
+  const auto offer_three = [&] {
+    sequencer_.offer(last_patch(1, 0), now_);
+    sequencer_.offer(patch(2, 0, 1), now_);
+    sequencer_.offer(last_patch(2, 1), now_);
+    sequencer_.offer(last_patch(3, 0, 2), now_);
+    sequencer_.offer(patch(4, 1, 1), now_);
+  };
+  offer_three();
+  EXPECT_EQ(sequencer_.num_waiting(), 5);
+  EXPECT_EQ(pop_groups(), (Groups{{{0, 0}}, {{0, 1}, {1, 0}}, {{0, 2}}}));
+  make_live();
+  offer_three();
+  EXPECT_EQ(pop_groups(), (Groups{{{0, 2}, {1, 0}}}));
+  EXPECT_EQ(sequencer_.num_waiting(), 1);
+  EXPECT_EQ(sequencer_.waiting_bytes(), sizeof(CloudSlice));
+}
+
+TEST_F(PatchBatches, EndWithTheNextEndWhereTheirOwnWasLost) {
+  sequencer_.offer(patch(1, 0), now_);
+  sequencer_.offer(patch(1, 1), now_);
+  sequencer_.offer(patch(2, 0, 1), now_);
+  sequencer_.offer(last_patch(2, 2), now_);
+  EXPECT_EQ(pop_groups(), (Groups{{{0, 1}, {1, 0}, {2, 0}}}));
+}
+
+TEST_F(PatchBatches, EndWithAPauseWhenLiveAndWithALongOneInALog) {
+  sequencer_.offer(patch(1, 0), now_);
+  now_ += seconds(9);
+  EXPECT_EQ(pop_groups(), Groups{});
+  now_ += seconds(1);
+  EXPECT_EQ(pop_groups(), (Groups{{{0, 0}}}));
+  make_live();
+  sequencer_.offer(patch(1, 0), now_);
+  EXPECT_EQ(pop_groups(), Groups{});
+  now_ += seconds(1);
+  EXPECT_EQ(pop_groups(), (Groups{{{0, 0}}}));
+}
+
+TEST_F(PatchBatches, APatchThatComesAfterTheEndOfItsBatchWaitsForNothing) {
+  sequencer_.offer(patch(1, 0), now_);
+  sequencer_.offer(last_patch(1, 2), now_);
+  sequencer_.offer(patch(2, 3), now_);
+  sequencer_.offer(patch(1, 1), now_);  // was sent again
+  sequencer_.offer(last_patch(2, 4), now_);
+  EXPECT_EQ(pop_groups(), (Groups{{{0, 0}, {2, 0}}, {{3, 0}}, {{1, 0}}, {{4, 0}}}));
+}
+
+TEST_F(PatchBatches, TheFinalSliceEndsThemAndWaitsForEveryIdAndRevision) {
+  sequencer_.offer(last_patch(1, 0), now_);
+  sequencer_.offer(patch(2, 0, 1), now_);
+  sequencer_.offer(final_slice(3, 2, 4), now_);
+  EXPECT_EQ(pop_groups(), (Groups{{{0, 0}}, {{0, 1}}}));
+  EXPECT_EQ(sequencer_.num_waiting(), 1);
+  sequencer_.offer(patch(2, 1, 1), now_);
+  EXPECT_EQ(pop_groups(), (Groups{{{1, 1}}}));
+  EXPECT_FALSE(sequencer_.give_up_gap(now_, Outlook::kSilent));
+  sequencer_.offer(patch(2, 0, 3), now_);
+  EXPECT_EQ(pop_groups(), (Groups{{{0, 3}}, {{2, 0}}}));
+  EXPECT_EQ(sequencer_.num_given_up(), 0);
+}
+
+TEST_F(PatchBatches, MissingRevisionsAreGivenUpAsMissingSlicesAre) {
+  sequencer_.offer(last_patch(1, 1), now_);
+  sequencer_.offer(final_slice(3, 4, 7), now_);
+  EXPECT_EQ(pop_groups(), (Groups{{{1, 0}}}));
+  now_ += seconds(9);
+  EXPECT_FALSE(sequencer_.give_up_gap(now_, Outlook::kSilent));
+  now_ += seconds(1);
+  EXPECT_FALSE(sequencer_.give_up_gap(now_, Outlook::kLive));
+  EXPECT_EQ(sequencer_.give_up_gap(now_, Outlook::kSilent), (SliceGap{0, 0}));
+  EXPECT_EQ(sequencer_.give_up_gap(now_, Outlook::kSilent), (SliceGap{2, 3}));
+  EXPECT_EQ(pop_groups(), Groups{});
+  EXPECT_EQ(sequencer_.give_up_gap(now_, Outlook::kSilent)->num_revisions, 7);
+  EXPECT_EQ(pop_groups(), (Groups{{{4, 0}}}));
+  EXPECT_EQ(sequencer_.num_given_up(), 3);
+  for (const std::int32_t id : {0, 2, 3}) sequencer_.offer(patch(2, id, 2), now_);
+  EXPECT_EQ(sequencer_.num_given_up(), 1);  // some slice is not the newest
+  sequencer_.offer(patch(2, 1, 1), now_);
+  EXPECT_EQ(sequencer_.num_given_up(), 0);
+}
+
+TEST_F(PatchBatches, AResumedMapWaitsForThePatchesThatItLacks) {
+  sequencer_ = SliceSequencer(kConfig, {.revisions = {{0, 2}, {3, 0}}, .has_patches = true});
+  EXPECT_EQ(sequencer_.num_given_up(), 0);
+  sequencer_.offer(final_slice(9, 4, 3), now_);
+  EXPECT_EQ(pop_groups(), Groups{});
+  sequencer_.offer(patch(5, 1), now_);
+  sequencer_.offer(patch(5, 2, 1), now_);
+  EXPECT_EQ(pop_groups(), (Groups{{{1, 0}}, {{2, 1}}, {{4, 0}}}));
+}
+
+TEST_F(PatchBatches, TellWhichChunksNeedNotBeSentAgain) {
+  const auto chunk = [](CloudSlice slice, std::int64_t sequence) {
+    slice.sequence = sequence;
+    slice.num_chunks = 2;
+    return slice;
+  };
+  using Ranges = std::vector<SequenceRange>;
+  make_live();
+  sequencer_.offer(chunk(patch(1, 0, 1), 10), now_);
+  sequencer_.offer(chunk(patch(1, 0, 0), 4), now_);        // older than what waits
+  sequencer_.offer(chunk(last_patch(2, 0, 2), 20), now_);  // replaces it
+  sequencer_.offer(chunk(last_patch(3, 0, 3), 30), now_);  // so does the next batch
+  EXPECT_EQ(sequencer_.pop(now_, Outlook::kSilent)->superseded,
+            (Ranges{{4, 5}, {10, 11}, {20, 21}}));
+  sequencer_.offer(chunk(patch(1, 0, 1), 10), now_);
+  sequencer_.offer(chunk(last_patch(4, 1), 40), now_);
+  EXPECT_EQ(sequencer_.pop(now_, Outlook::kSilent)->superseded, (Ranges{{10, 11}}));
+}
+
+// A stream in which messages are lost and sent again, doubled and out of order: every patch comes
+// out in its newest revision, none goes back to an older one, and the final slice comes last.
+TEST_F(PatchBatches, ComeOutInTheirNewestRevisionsWhateverTheOrder) {
+  std::mt19937 random(5);
+  for (int round = 0; round < 300; ++round) {
+    constexpr std::int32_t kPatches = 12;
+    std::vector<CloudSlice> stream;
+    std::map<std::int32_t, std::int32_t> newest;
+    for (std::int64_t utime = 1; utime <= 10; ++utime) {
+      for (std::int32_t id = 0; id < kPatches; ++id) {
+        if (utime < 10 && random() % 3 != 0) continue;
+        const auto known = newest.find(id);
+        newest[id] = known == newest.end() ? 0 : known->second + 1 + static_cast<int>(random() % 2);
+        stream.push_back(patch(utime, id, newest[id]));
+      }
+      if (!stream.empty()) stream.back().ends_batch = random() % 4 != 0;
+    }
+    std::int64_t revision_sum = 0;
+    for (const auto& [id, revision] : newest) revision_sum += revision;
+    stream.push_back(final_slice(11, kPatches, revision_sum));
+    for (std::size_t i = stream.size(); i > 0; --i) {  // some again
+      if (random() % 3 == 0) stream.push_back(stream[random() % stream.size()]);
+    }
+    for (std::size_t i = 0; i < stream.size(); ++i) {  // late by a few places
+      std::swap(stream[i], stream[std::min(i + random() % 6, stream.size() - 1)]);
+    }
+    if (round % 2 == 0)
+      make_live();
+    else
+      sequencer_ = SliceSequencer(kConfig);
+    std::map<std::int32_t, std::int32_t> popped;
+    const auto pop_some = [&](Outlook outlook) {
+      while (const auto group = sequencer_.pop(now_, outlook)) {
+        EXPECT_FALSE(popped.contains(kPatches)) << "something comes after the final slice";
+        for (const CloudSlice& slice : group->slices) {
+          const auto [known, is_new] = popped.try_emplace(slice.id, slice.revision);
+          EXPECT_TRUE(is_new || slice.revision > known->second);
+          known->second = slice.revision;
+        }
+      }
+    };
+    for (const CloudSlice& slice : stream) {
+      sequencer_.offer(slice, now_);
+      if (random() % 3 == 0) pop_some(Outlook::kSilent);
+    }
+    pop_some(Outlook::kEnded);
+    newest[kPatches] = 0;
+    EXPECT_EQ(popped, newest);
+    EXPECT_EQ(sequencer_.num_waiting(), 0);
+    EXPECT_EQ(sequencer_.num_missing(), 0);
+    EXPECT_EQ(sequencer_.num_given_up(), 0);
+    EXPECT_EQ(sequencer_.waiting_bytes(), 0U);
+  }
 }
 
 TEST(SliceSequencerConfig, RefusesATimeThatIsNotPositive) {

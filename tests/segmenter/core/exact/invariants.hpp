@@ -138,6 +138,7 @@ class Invariants {
       EXPECT_EQ(v.family, 0U) << "of " << x;
       EXPECT_EQ(v.visit, 0U) << "of " << x;
       EXPECT_EQ(v.is_queued, 0U) << "of " << x;
+      EXPECT_EQ(v.is_in_queue, 0U) << "of " << x;
       EXPECT_EQ(v.is_heap_open, 0U) << "of " << x;
       EXPECT_EQ(v.is_touched, 0U) << "of " << x;
       if (!is_gone(x)) continue;
