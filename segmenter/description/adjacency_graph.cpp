@@ -53,6 +53,20 @@ std::map<SegmentPair, std::int64_t> count_pairs(const LabelledCloud& cloud,
   return sum;
 }
 
+/// Whether `point` may be a neighbour of one in the segment's box.
+bool is_near(const CloudPoint& point, const SegmentStatistics& segment, double radius_m) {
+  const std::array<float, 3> p_W{point.x, point.y, point.z};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    // Distances are rounded, so points slightly more than r apart may be neighbours.
+    const double reach_m = 1.001 * radius_m;
+    if (p_W[axis] < segment.box_min_W[axis] - reach_m ||
+        p_W[axis] > segment.box_max_W[axis] + reach_m) {
+      return false;
+    }
+  }
+  return true;
+}
+
 }  // namespace
 
 AdjacencyGraph adjacency_graph(const LabelledCloud& cloud) {
@@ -74,19 +88,6 @@ AdjacencyGraph adjacency_graph(const LabelledCloud& cloud) {
     graph.edges.push_back({first_of(pair), second_of(pair), count});
   }
   return graph;
-}
-
-bool is_near(const CloudPoint& point, const SegmentStatistics& segment, double radius_m) {
-  const std::array<float, 3> p_W{point.x, point.y, point.z};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    // Distances are rounded, so points slightly more than r apart may be neighbours.
-    const double reach_m = 1.001 * radius_m;
-    if (p_W[axis] < segment.box_min_W[axis] - reach_m ||
-        p_W[axis] > segment.box_max_W[axis] + reach_m) {
-      return false;
-    }
-  }
-  return true;
 }
 
 std::vector<SegmentNeighbour> neighbours_of(const LabelledCloud& cloud,

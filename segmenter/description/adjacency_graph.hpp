@@ -37,10 +37,6 @@ struct SegmentNeighbour {
   bool operator==(const SegmentNeighbour&) const = default;
 };
 
-/// Whether `point` may be a neighbour of one in the axis-aligned box of `segment`, for
-/// LabelledCloud::radius_m.
-bool is_near(const CloudPoint& point, const SegmentStatistics& segment, double radius_m);
-
 /// The neighbours of one segment, by ascending id. Of `segment` only the id and the axis-aligned
 /// box are used: points that are not within r of the box are skipped.
 std::vector<SegmentNeighbour> neighbours_of(const LabelledCloud& cloud,

@@ -1,8 +1,9 @@
 #include "segmenter/query/map_excerpt.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <span>
 
-#include "segmenter/description/adjacency_graph.hpp"
 #include "segmenter/map/segment_map.hpp"
 
 namespace kintsugi::segmenter {
@@ -32,20 +33,36 @@ void take_segments(const SegmentMap& map, MapExcerpt& excerpt) {
   }
 }
 
+/// The boxes of the segments, and all that is within r of them: slightly more, because distances
+/// are rounded.
+std::vector<Eigen::AlignedBox3f> boxes_around(std::span<const SegmentStatistics> segments,
+                                              float radius_m) {
+  std::vector<Eigen::AlignedBox3f> boxes_W;
+  for (const SegmentStatistics& segment : segments) {
+    const Eigen::Map<const Eigen::Vector3f> box_min_W(segment.box_min_W);
+    const Eigen::Map<const Eigen::Vector3f> box_max_W(segment.box_max_W);
+    const Eigen::Vector3f reach_m = Eigen::Vector3f::Constant(1.01F * radius_m);
+    boxes_W.emplace_back(Eigen::Vector3f(box_min_W - reach_m),
+                         Eigen::Vector3f(box_max_W + reach_m));
+  }
+  return boxes_W;
+}
+
 // Slice after slice, as in a snapshot: sums over points depend on their order.
 void take_points(const SegmentMap& map, const LabelledCloud& cloud, MapExcerpt& excerpt) {
   excerpt.points_W.clear();
   excerpt.segment_ids.clear();
-  if (excerpt.segments.empty()) return;
-  const auto is_needed = [&](const CloudPoint& point) {
-    return std::ranges::any_of(excerpt.segments, [&](const SegmentStatistics& segment) {
-      return is_near(point, segment, cloud.radius_m);
-    });
-  };
+  const auto boxes_W = boxes_around(excerpt.segments, cloud.radius_m);
   for (const SliceRecord& slice : map.cloud().slices()) {
-    for (PointIndex i = slice.first; i < slice.first + slice.count; ++i) {
-      if (i >= cloud.segment_ids.size() || !is_needed(cloud.points_W[i])) continue;
-      excerpt.points_W.push_back(cloud.points_W[i]);
+    // Points of an update that failed have no id.
+    const std::size_t end = std::min<std::size_t>(slice.first + slice.count, cloud.points_W.size());
+    for (std::size_t i = boxes_W.empty() ? end : slice.first; i < end; ++i) {
+      const CloudPoint& point = cloud.points_W[i];
+      const Eigen::Vector3f p_W(point.x, point.y, point.z);
+      if (std::ranges::none_of(boxes_W, [&](const auto& box_W) { return box_W.contains(p_W); })) {
+        continue;
+      }
+      excerpt.points_W.push_back(point);
       excerpt.segment_ids.push_back(cloud.segment_ids[i]);
     }
   }

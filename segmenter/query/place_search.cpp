@@ -25,13 +25,21 @@ std::optional<Hit> nearest_of(const LabelledCloud& cloud, const Eigen::Vector3d&
                               double radius_m, const Keep& keep) {
   std::optional<std::size_t> nearest;
   double least_m2 = radius_m * radius_m;
-  for_each_point(cloud, [&](std::size_t i, const Eigen::Vector3d& p_W) {
-    const double distance_m2 = (p_W - point_W).squaredNorm();
+  // Most points are far away, which one coordinate tells; float32 rounds by much less than this.
+  const Eigen::Vector3f center_W = point_W.cast<float>();
+  const float reach_m = static_cast<float>(1.001 * radius_m + 1e-6 * point_W.cwiseAbs().maxCoeff());
+  for (std::size_t i = 0; i < cloud.segment_ids.size(); ++i) {
+    const CloudPoint& point = cloud.points_W[i];
+    if (!(std::abs(point.x - center_W.x()) <= reach_m)) continue;
+    if (!(std::abs(point.y - center_W.y()) <= reach_m) || cloud.segment_ids[i] == kNoSegment) {
+      continue;
+    }
+    const double distance_m2 = (position(point) - point_W).squaredNorm();
     const bool is_nearer = nearest ? distance_m2 < least_m2 : distance_m2 <= least_m2;
-    if (!is_nearer || !keep(cloud.points_W[i])) return;
+    if (!is_nearer || !keep(point)) continue;
     nearest = i;
     least_m2 = distance_m2;
-  });
+  }
   if (!nearest) return std::nullopt;
   return Hit{*nearest, std::sqrt(least_m2)};
 }
