@@ -37,10 +37,16 @@ struct Options {
   double timeout_s = 60.0;
 };
 
-void subscribe_statuses(Bus& bus, Progress& progress, std::optional<StatusLog>& log) {
-  const auto keep = [&progress, &log](const auto& status) {
+/// A segmenter or viewer that has not received any map yet has no map name.
+bool is_of(const std::string& map_name, const std::string& name_in_status) {
+  return map_name.empty() || name_in_status.empty() || name_in_status == map_name;
+}
+
+void subscribe_statuses(Bus& bus, const std::string& map_name, Progress& progress,
+                        std::optional<StatusLog>& log) {
+  const auto keep = [&](const auto& status) {
     progress.update(status, wall_clock_us());
-    if (log) log->append(status);
+    if (log && is_of(map_name, status.map_name)) log->append(status);
   };
   subscribe<MapperStatus>(bus, channels::kMapperStatus, keep);
   subscribe<SegmenterStatus>(bus, channels::kSegmenterStatus, keep);
@@ -92,7 +98,7 @@ int watch(const Options& options) {
   Progress progress(options.map_name);
   std::optional<StatusLog> log;
   if (!options.log_file.empty()) log.emplace(options.log_file);
-  subscribe_statuses(bus, progress, log);
+  subscribe_statuses(bus, options.map_name, progress, log);
   LinePrinter printer;
   const std::int64_t start_us = wall_clock_us();
   std::int64_t next_line_us = start_us + kSecond_us;
@@ -128,6 +134,7 @@ int wait_until_ready(const Options& options) {
   std::vector<std::string> silent = options.until_ready;
   const auto heard = [&silent, &options](const char* name) {
     return [&silent, &options, name](const auto& status) {
+      if (!is_of(options.map_name, status.map_name)) return;
       if (!options.lingering || is_lingering(status)) std::erase(silent, name);
     };
   };

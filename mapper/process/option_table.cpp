@@ -118,7 +118,7 @@ OptionGroup bus_options(Options& o) {
             {0, 1000}},
            {"--lcm-url", &o.lcm_url, kMayDiffer, "URL of the LCM bus; empty: LCM's default"},
            {kMapNameOption, &o.map_name, kMustMatch,
-            "name of the map; distinguishes mappers on the same bus"},
+            "name of the map; of mappers on one bus each needs its own"},
            // Resumption compares it with the session in the log.
            {"--session",
             &o.session,

@@ -1,13 +1,16 @@
 #include "mapper/process/run.hpp"
 
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include <spdlog/spdlog.h>
 #include <tbb/global_control.h>
 
 #include "mapper/process/linger.hpp"
+#include "mapper/process/map_name_claim.hpp"
 #include "mapper/process/map_publisher.hpp"
 #include "mapper/process/mapper_process.hpp"
 #include "mapper/session/resumption.hpp"
@@ -52,6 +55,7 @@ void run(const Options& options) {
     thread_limit = std::make_unique<tbb::global_control>(
         tbb::global_control::max_allowed_parallelism, options.threads);
   }
+  std::optional<MapNameClaim> claim(std::in_place, options.lcm_url, options.map_name);
   SessionStore store(store_config(options));
   Resumption resumption(store, {.options = mapping_options(options),
                                 .session = options.session,
@@ -59,7 +63,9 @@ void run(const Options& options) {
   if (const StoredSession* ended = resumption.ended_session()) {
     resend_only(options, store, *ended);
   } else {
-    MapperProcess(options, store, resumption).run();
+    MapperProcess process(options, store, resumption);
+    claim.reset();  // from now on its heartbeats tell that it runs
+    process.run();
   }
   store.retry();
   if (!options.store_file.empty() || !options.resume_file.empty()) expect_complete(store);

@@ -31,13 +31,6 @@ std::vector<CloudPoint> points_of(const LabelledCloud& cloud, std::uint32_t segm
   return points_W;
 }
 
-SegmentDescription describe(const LabelledCloud& cloud, const SegmentStatistics& statistics,
-                            const LastChange& last_change) {
-  const auto points_W = points_of(cloud, statistics.segment_id);
-  return {statistics, last_change, shape_of(points_W, cloud.resolution_m),
-          neighbours_of(cloud, statistics)};
-}
-
 /// The points of every segment, in the order of the cloud.
 class PointsBySegment {
  public:
@@ -87,8 +80,8 @@ std::vector<std::vector<SegmentNeighbour>> neighbours_by_segment(
 std::optional<SegmentDescription> describe_segment(const SegmentMap& map,
                                                    std::uint32_t segment_id) {
   if (map.segment_ids().num_points_of(segment_id) == 0) return std::nullopt;
-  return describe(labelled_cloud(map), map.statistics()(segment_id),
-                  map.statistics().last_change(segment_id));
+  return describe_segment(labelled_cloud(map), map.statistics()(segment_id),
+                          map.statistics().last_change(segment_id));
 }
 
 std::optional<SegmentDescription> describe_segment(const MapSnapshot& map,
@@ -98,8 +91,15 @@ std::optional<SegmentDescription> describe_segment(const MapSnapshot& map,
     return std::nullopt;
   }
   const auto& last_changes = map.state.last_changes;
-  return describe(labelled_cloud(map), map.segments[place],
-                  last_changes.empty() ? LastChange{} : last_changes[place]);
+  return describe_segment(labelled_cloud(map), map.segments[place],
+                          last_changes.empty() ? LastChange{} : last_changes[place]);
+}
+
+SegmentDescription describe_segment(const LabelledCloud& cloud, const SegmentStatistics& statistics,
+                                    const LastChange& last_change) {
+  const auto points_W = points_of(cloud, statistics.segment_id);
+  return {statistics, last_change, shape_of(points_W, cloud.resolution_m),
+          neighbours_of(cloud, statistics)};
 }
 
 std::vector<SegmentDescription> describe_segments(const LabelledCloud& cloud,

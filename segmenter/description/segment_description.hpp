@@ -28,6 +28,11 @@ std::optional<SegmentDescription> describe_segment(const SegmentMap& map, std::u
 std::optional<SegmentDescription> describe_segment(const MapSnapshot& map,
                                                    std::uint32_t segment_id);
 
+/// The same for a segment whose statistics are known. Of the cloud, only points within r of the
+/// segment's box matter.
+SegmentDescription describe_segment(const LabelledCloud& cloud, const SegmentStatistics& statistics,
+                                    const LastChange& last_change);
+
 /// Describes all segments, by ascending id, in parallel: much faster than one after the other.
 std::vector<SegmentDescription> describe_segments(const MapSnapshot& map);
 /// The same from statistics and a graph that are already known.

@@ -50,8 +50,8 @@ SegmentAnswer refusal(const SegmentQuery& query, const std::string& problem) {
 
 }  // namespace
 
-QueryResponder::QueryResponder(Bus* bus, std::int64_t session)
-    : bus_(bus), session_(session), thread_([this] { run(); }) {}
+QueryResponder::QueryResponder(Bus* bus, std::int64_t session, std::function<void()> on_work)
+    : bus_(bus), session_(session), on_work_(std::move(on_work)), thread_([this] { run(); }) {}
 
 QueryResponder::~QueryResponder() {
   {
@@ -66,24 +66,41 @@ void QueryResponder::subscribe(Bus& bus) {
   kintsugi::subscribe<SegmentQuery>(
       bus, channels::kSegmentQuery, [this](const SegmentQuery& query) { take(query); },
       [this](const DecodeError&) { ++num_bad_; });
+  views_.subscribe(bus);
 }
 
 void QueryResponder::take(const SegmentQuery& query) {
-  const std::lock_guard lock(mutex_);
-  last_query_ = Clock::now();
-  const bool is_waiting = std::ranges::any_of(
-      waiting_, [&](const SegmentQuery& other) { return is_same(query, other); });
-  if (is_waiting || (current_ && is_same(query, *current_))) return;
-  if (waiting_.size() == kMaxWaiting) waiting_.pop_front();
-  waiting_.push_back(query);
+  {
+    const std::lock_guard lock(mutex_);
+    last_query_ = Clock::now();
+    const bool is_waiting = std::ranges::any_of(
+        waiting_, [&](const SegmentQuery& other) { return is_same(query, other); });
+    if (is_waiting || (current_ && is_same(query, *current_))) return;
+    if (waiting_.size() == kMaxWaiting) waiting_.pop_front();
+    waiting_.push_back(query);
+  }
+  has_come_.notify_all();
+  on_work_();
+}
+
+bool QueryResponder::has_work() const {
+  return !waiting_.empty() && !current_ && room_points_ == 0 && bus_ != nullptr;
+}
+
+void QueryResponder::wait_for_work(std::chrono::milliseconds timeout) {
+  std::unique_lock lock(mutex_);
+  has_come_.wait_for(lock, timeout, [this] { return has_work(); });
 }
 
 // The query stays in the queue until begin() or drop().
 std::optional<SegmentQuery> QueryResponder::next_query() {
   const std::lock_guard lock(mutex_);
-  if (current_ || room_points_ > 0 || bus_ == nullptr) return std::nullopt;
-  if (!waiting_.empty()) return waiting_.front();
-  if (copy_ && Clock::now() - copy_->last_used > kKeepCopy) copy_.reset();
+  if (has_work()) return waiting_.front();
+  const bool is_idle = !current_ && room_points_ == 0;
+  if (is_idle && Clock::now() - last_query_ > kKeepCopy) {
+    copy_.reset();
+    excerpt_ = {};
+  }
   return std::nullopt;
 }
 
@@ -111,13 +128,22 @@ void QueryResponder::serve(const SessionMaps& maps) {
   const std::vector<const SegmentMap*> all = maps.maps();
   try {
     const SegmentMap& map = *all[choose_map(identities(all), *query)];
-    if (!has_room_for(map)) return make_room(map.cloud().num_live());
-    update_copy(map);
+    if (!needs_excerpt(*query) && !has_room_for(map)) return make_room(map.cloud().num_live());
+    prepare(map, *query);
     begin(*query);
   } catch (const std::exception& error) {
     drop(*query);
     publish([&] { return refusal(*query, error.what()); });
   }
+}
+
+void QueryResponder::prepare(const SegmentMap& map, const SegmentQuery& query) {
+  if (!needs_excerpt(query)) return update_copy(map);
+  const Clock::time_point begin = Clock::now();
+  take_excerpt(map, query, views_.newest(map.map_session()).get(), excerpt_);
+  const std::chrono::duration<double, std::milli> took = Clock::now() - begin;
+  spdlog::debug("copied {} of {} points for a query in {:.1f} ms", excerpt_.points_W.size(),
+                excerpt_.map_points, took.count());
 }
 
 bool QueryResponder::has_room_for(const SegmentMap& map) const {
@@ -136,13 +162,13 @@ void QueryResponder::make_room(std::size_t num_points) {
 }
 
 void QueryResponder::update_copy(const SegmentMap& map) {
-  copy_->last_used = Clock::now();
+  const Clock::time_point begin = Clock::now();
   const bool is_same_map = copy_->map.state.map_session == map.map_session();
   if (is_same_map && copy_->version == map.version()) return;
   copy_->version = -1;  // in case this throws
   take_snapshot(map, copy_->map);
   copy_->version = map.version();
-  const std::chrono::duration<double, std::milli> took = Clock::now() - copy_->last_used;
+  const std::chrono::duration<double, std::milli> took = Clock::now() - begin;
   spdlog::debug("copied {} points for a query in {:.1f} ms", copy_->map.state.points_W.size(),
                 took.count());
 }
@@ -161,6 +187,10 @@ void QueryResponder::drop(const SegmentQuery& query) {
   std::erase_if(waiting_, [&](const SegmentQuery& other) { return is_same(query, other); });
 }
 
+SegmentAnswer QueryResponder::current_answer(const SegmentQuery& query) const {
+  return needs_excerpt(query) ? answer(excerpt_, query) : answer(copy_->map, query);
+}
+
 void QueryResponder::run() {
   setpriority(PRIO_PROCESS, 0, kNiceness);  // applies to this thread only
   oneapi::tbb::task_arena one_core(1);
@@ -172,13 +202,18 @@ void QueryResponder::run() {
     const std::size_t room_points = room_points_;
     lock.unlock();
     if (query) {
-      one_core.execute([&] { publish([&] { return answer(copy_->map, *query); }); });
+      one_core.execute([&] { publish([&] { return current_answer(*query); }); });
     } else {
       touch_memory(copy_->map.state, room_points);
     }
     lock.lock();
     current_.reset();
     room_points_ = 0;
+    if (!has_work()) continue;
+    lock.unlock();
+    has_come_.notify_all();
+    on_work_();
+    lock.lock();
   }
 }
 

@@ -6,6 +6,7 @@
 #include <condition_variable>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -14,16 +15,20 @@
 #include "lcmtypes/bus/bus.hpp"
 #include "lcmtypes/stream/stream_publisher.hpp"
 #include "segmenter/map/map_snapshot.hpp"
+#include "segmenter/process/camera_views.hpp"
+#include "segmenter/query/map_excerpt.hpp"
 #include "segmenter/session/session_maps.hpp"
 
 namespace kintsugi::segmenter {
 
 /// Takes segment queries from the bus and answers them one after the other.
 ///
-/// The segmenting thread only copies the map, between two slices, and only when it has changed
-/// since the copy for the previous query. Everything else happens in a thread of its own, on one
-/// core and with low priority: allocating memory for the copy (which takes longer than the
-/// copying), searching, describing segments, sending. The memory is kept for a few seconds.
+/// The segmenting thread only copies, between two runs of the engine: for a query about a point, a
+/// pixel or few segments what describes these (MapExcerpt), for another query the whole map, and
+/// that only when it has changed since the copy for the previous one. Everything else happens in a
+/// thread of its own, on one core and with low priority: allocating memory for a whole copy (which
+/// takes longer than the copying), searching it, describing segments, sending. The memory is kept
+/// for a few seconds.
 ///
 /// Few queries are queued, and each only once, however often it is repeated; a client that gets no
 /// answer repeats its query.
@@ -33,13 +38,14 @@ class QueryResponder {
 
   /// @param bus must outlive this; null: answers nothing
   /// @param session of this segmenter
-  QueryResponder(Bus* bus, std::int64_t session);
+  /// @param on_work called from any thread when serve() should be called soon
+  QueryResponder(Bus* bus, std::int64_t session, std::function<void()> on_work);
   /// Waits until the current answer is sent.
   ~QueryResponder();
   QueryResponder(const QueryResponder&) = delete;
   QueryResponder& operator=(const QueryResponder&) = delete;
 
-  /// From now on bus.handle() receives queries; this must outlive that.
+  /// From now on bus.handle() receives queries and views; this must outlive that.
   void subscribe(Bus& bus);
 
   /// Begins to answer the next query unless one is being answered. To be called between two changes
@@ -47,7 +53,9 @@ class QueryResponder {
   void serve(const SessionMaps& maps);
 
   // From any thread:
-  std::int64_t messages_bad() const { return num_bad_; }
+  std::int64_t messages_bad() const { return num_bad_ + views_.messages_bad(); }
+  /// Waits until serve() has something to do, at most so long.
+  void wait_for_work(std::chrono::milliseconds timeout);
   /// Since the last query, or since the start.
   double time_since_query_s() const;
 
@@ -55,15 +63,17 @@ class QueryResponder {
   struct Copy {
     MapSnapshot map;
     std::int64_t version = -1;  ///< of the map when it was copied
-    Clock::time_point last_used;
   };
 
   void take(const SegmentQuery& query);
   std::optional<SegmentQuery> next_query();
+  bool has_work() const;  // with the lock held
   bool has_room_for(const SegmentMap& map) const;
   void make_room(std::size_t num_points);
   void update_copy(const SegmentMap& map);
+  void prepare(const SegmentMap& map, const SegmentQuery& query);
   void begin(const SegmentQuery& query);
+  SegmentAnswer current_answer(const SegmentQuery& query) const;
   void drop(const SegmentQuery& query);
   void run();
   template <class MakeAnswer>
@@ -71,12 +81,17 @@ class QueryResponder {
 
   Bus* bus_;
   std::int64_t session_;
-  std::unique_ptr<Copy> copy_;               // used by the thread while it is busy, else by serve()
+  std::function<void()> on_work_;
+  CameraViews views_;
+  // The next two are used by the thread while it is busy, else by serve():
+  std::unique_ptr<Copy> copy_;
+  MapExcerpt excerpt_;
   std::unique_ptr<StreamPublisher> stream_;  // used by the thread; made for the first answer
   std::atomic<std::int64_t> num_bad_{0};
 
-  mutable std::mutex mutex_;  // guards what follows
-  std::condition_variable changed_;
+  mutable std::mutex mutex_;          // guards what follows
+  std::condition_variable changed_;   // for the thread
+  std::condition_variable has_come_;  // for wait_for_work()
   std::deque<SegmentQuery> waiting_;
   std::optional<SegmentQuery> current_;  // being answered: the thread is busy
   std::size_t room_points_ = 0;          // > 0: the thread is busy allocating memory for so many

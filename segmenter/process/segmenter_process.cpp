@@ -30,8 +30,8 @@ SegmenterProcess::SegmenterProcess(const Config& config)
       session_(new_session()),
       bus_(config.log.empty() || config.publish ? std::make_unique<Bus>(config.lcm_url) : nullptr),
       updates_(config.publish ? bus_.get() : nullptr, session_, config.updates),
-      queries_(config.publish ? bus_.get() : nullptr, session_),
       queue_(config.max_queue_bytes),
+      queries_(config.publish ? bus_.get() : nullptr, session_, [this] { queue_.wake(); }),
       receiver_({session_, config.segmentation.maps.map_name, config.max_queue_bytes}, queue_),
       loop_(config.segmentation, session_, {queue_, receiver_, updates_, queries_, clock_}) {}
 
@@ -116,7 +116,7 @@ void SegmenterProcess::linger() {
     }
     loop_.serve();
     publish_status_when_due();
-    std::this_thread::sleep_for(kPollPeriod);
+    queries_.wait_for_work(kPollPeriod);
   }
   loop_.wait_for_files();
 }

@@ -80,8 +80,8 @@ class SegmenterProcess {
   PatientClock clock_;
   std::unique_ptr<Bus> bus_;  // null: nothing is received from it or published
   UpdatePublisher updates_;
-  QueryResponder queries_;
   SliceQueue queue_;
+  QueryResponder queries_;
   SliceReceiver receiver_;
   SegmentationLoop loop_;
 

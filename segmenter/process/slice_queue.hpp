@@ -40,11 +40,22 @@ class SliceQueue {
     changed_.notify_all();
   }
 
-  /// Takes all slices; when there are none, waits up to `timeout` or until the queue is closed.
+  /// Ends the wait of take(), or its next one.
+  void wake() {
+    {
+      const std::lock_guard lock(mutex_);
+      is_woken_ = true;
+    }
+    changed_.notify_all();
+  }
+
+  /// Takes all slices; when there are none, waits up to `timeout` or until the queue is closed or
+  /// wake() is called.
   /// What is taken counts as waiting to be segmented from now on.
   std::vector<CloudSlice> take(std::chrono::milliseconds timeout) {
     std::unique_lock lock(mutex_);
-    changed_.wait_for(lock, timeout, [this] { return closed_ || !slices_.empty(); });
+    changed_.wait_for(lock, timeout, [this] { return closed_ || is_woken_ || !slices_.empty(); });
+    is_woken_ = false;
     waiting_bytes_ += std::exchange(queued_bytes_, 0);
     return std::exchange(slices_, {});
   }
@@ -104,6 +115,7 @@ class SliceQueue {
   std::size_t waiting_bytes_ = 0;  // taken, and not segmented
   bool waits_for_missing_ = false;
   bool closed_ = false;
+  bool is_woken_ = false;
 };
 
 }  // namespace kintsugi::segmenter

@@ -1,99 +1,75 @@
 #include "segmenter/query/answer.hpp"
 
 #include <algorithm>
-#include <array>
 #include <iterator>
 #include <numeric>
-#include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "segmenter/description/segment_description.hpp"
 #include "segmenter/map/map_snapshot.hpp"
-#include "segmenter/query/place_search.hpp"
+#include "segmenter/query/find_segments.hpp"
+#include "segmenter/query/map_excerpt.hpp"
 
 namespace kintsugi::segmenter {
 namespace {
 
-constexpr double kDefaultRadius_vox = 2.0;
 // For more segments it is faster to describe all segments of the map in parallel.
 constexpr std::size_t kFewSegments = 8;
 
-Eigen::Vector3d vector(const double (&v)[3]) { return {v[0], v[1], v[2]}; }
+/// Segments and points that descriptions are made from.
+struct Source {
+  LabelledCloud cloud;
+  std::span<const SegmentStatistics> segments;  // by ascending id
+  std::span<const LastChange> last_changes;     // of each; empty: not known
+
+  LastChange last_change(std::size_t place) const {
+    return last_changes.empty() ? LastChange{} : last_changes[place];
+  }
+};
 
 template <class Vector>
 void copy_vector(const Vector& from, float (&to)[3]) {
   for (int axis = 0; axis < 3; ++axis) to[axis] = static_cast<float>(from[axis]);
 }
 
-/// The indices in MapSnapshot::segments of the ids that exist, ascending.
-std::vector<std::size_t> places_of(const MapSnapshot& map, std::vector<std::uint32_t> ids) {
+std::vector<std::size_t> all_places(const Source& source) {
+  std::vector<std::size_t> all(source.segments.size());
+  std::iota(all.begin(), all.end(), 0);
+  return all;
+}
+
+/// The indices in Source::segments of the ids that exist, ascending.
+std::vector<std::size_t> places_of(const Source& source, std::vector<std::uint32_t> ids) {
   std::sort(ids.begin(), ids.end());
   ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
   std::vector<std::size_t> places;
   places.reserve(ids.size());
   for (const std::uint32_t id : ids) {
     const auto found =
-        std::ranges::lower_bound(map.segments, id, {}, &SegmentStatistics::segment_id);
-    if (found != map.segments.end() && found->segment_id == id) {
-      places.push_back(static_cast<std::size_t>(found - map.segments.begin()));
+        std::ranges::lower_bound(source.segments, id, {}, &SegmentStatistics::segment_id);
+    if (found != source.segments.end() && found->segment_id == id) {
+      places.push_back(static_cast<std::size_t>(found - source.segments.begin()));
     }
   }
   return places;
 }
 
-std::optional<Hit> find_hit(const LabelledCloud& cloud, const SegmentQuery& query) {
-  const double radius_m =
-      query.radius_m > 0.0 ? query.radius_m : kDefaultRadius_vox * cloud.resolution_m;
-  if (query.place == QueryPlace::kPoint) {
-    return nearest_point(cloud, vector(query.point_W), radius_m);
-  }
-  return visible_point(cloud, {vector(query.point_W), vector(query.direction_W)}, radius_m);
-}
-
-/// The segments at the place of the query. If a point was hit, it is entered into `answer`.
-std::vector<std::size_t> find_segments(const MapSnapshot& map, const SegmentQuery& query,
-                                       SegmentAnswer& answer, double& distance_m) {
-  const LabelledCloud cloud = labelled_cloud(map);
-  switch (query.place) {
-    case QueryPlace::kPoint:
-    case QueryPlace::kRay: {
-      const auto hit = find_hit(cloud, query);
-      if (!hit) return {};
-      const CloudPoint& point = cloud.points_W[hit->point];
-      answer.has_hit = true;
-      copy_vector(std::array{point.x, point.y, point.z}, answer.hit_W);
-      distance_m = hit->distance_m;
-      return places_of(map, {cloud.segment_ids[hit->point]});
-    }
-    case QueryPlace::kBox:
-      return places_of(map,
-                       segments_in_box(cloud, {vector(query.box_min_W), vector(query.box_max_W)}));
-    case QueryPlace::kIds:
-      return places_of(map, query.segment_ids);
-    case QueryPlace::kPixel:
-      answer.problem = "there is no view of the camera";
-      return {};
-    case QueryPlace::kAnywhere:
-      break;
-  }
-  std::vector<std::size_t> all(map.segments.size());
-  std::iota(all.begin(), all.end(), 0);
-  return all;
-}
-
 /// The descriptions of the segments with these indices.
-std::vector<SegmentDescription> describe(const MapSnapshot& map,
+std::vector<SegmentDescription> describe(const Source& source,
                                          const std::vector<std::size_t>& places) {
   std::vector<SegmentDescription> descriptions;
   descriptions.reserve(places.size());
   if (places.size() <= kFewSegments) {
     for (const std::size_t place : places) {
-      descriptions.push_back(describe_segment(map, map.segments[place].segment_id).value());
+      descriptions.push_back(
+          describe_segment(source.cloud, source.segments[place], source.last_change(place)));
     }
     return descriptions;
   }
-  std::vector<SegmentDescription> all = describe_segments(map);
+  std::vector<SegmentDescription> all = describe_segments(
+      source.cloud, source.segments, source.last_changes, adjacency_graph(source.cloud));
   for (const std::size_t place : places) descriptions.push_back(std::move(all[place]));
   return descriptions;
 }
@@ -127,13 +103,45 @@ DescribedSegment to_message(const SegmentDescription& description) {
   return segment;
 }
 
-void append(const SegmentDescription& description, double distance_m, SegmentAnswer& answer) {
+void append(const SegmentDescription& description, float distance_m, SegmentAnswer& answer) {
   DescribedSegment& segment = answer.segments.emplace_back(to_message(description));
-  segment.distance_m = static_cast<float>(distance_m);
+  segment.distance_m = distance_m;
   for (const SegmentNeighbour& neighbour : description.neighbours) {
     answer.contacts.push_back({segment.statistics.segment_id, neighbour.segment_id,
                                static_cast<std::uint32_t>(neighbour.num_pairs)});
   }
+}
+
+void enter(const FoundSegments& found, SegmentAnswer& answer) {
+  answer.has_hit = found.has_hit;
+  std::ranges::copy(found.hit_W, answer.hit_W);
+  answer.view_utime = found.view_utime;
+  answer.surface_distance_m = found.surface_distance_m;
+}
+
+/// Applies the filters of the query and describes what passes them.
+/// @param distance_m of each segment
+void enter_segments(const Source& source, const SegmentQuery& query,
+                    std::vector<std::size_t> places, float distance_m, SegmentAnswer& answer) {
+  if (query.changed_since > 0) {  // what is not known does not pass
+    std::erase_if(places, [&](std::size_t place) {
+      return source.last_changes.empty() || source.last_changes[place].utime <= query.changed_since;
+    });
+  }
+  std::ranges::sort(places, [&](std::size_t a, std::size_t b) {
+    return is_larger(source.segments[a], source.segments[b]);
+  });
+  if (!query.only_planar) {
+    answer.num_matching = std::ssize(places);
+    limit(query, places);
+  }
+  std::vector<SegmentDescription> segments = describe(source, places);
+  if (query.only_planar) {  // known only after the segments are described
+    std::erase_if(segments, [](const auto& segment) { return !segment.shape.is_planar; });
+    answer.num_matching = std::ssize(segments);
+    limit(query, segments);
+  }
+  for (const SegmentDescription& segment : segments) append(segment, distance_m, answer);
 }
 
 SegmentAnswer begin_answer(const MapSnapshot& map, const SegmentQuery& query) {
@@ -149,32 +157,39 @@ SegmentAnswer begin_answer(const MapSnapshot& map, const SegmentQuery& query) {
   return answer;
 }
 
+SegmentAnswer begin_answer(const MapExcerpt& map, const SegmentQuery& query) {
+  SegmentAnswer answer;
+  answer.session = map.session;
+  answer.client = query.client;
+  answer.number = query.number;
+  answer.map_session = map.map_session;
+  answer.map_name = map.map_name;
+  answer.map_slices = map.map_slices;
+  answer.map_points = map.map_points;
+  answer.map_segments = map.map_segments;
+  return answer;
+}
+
 }  // namespace
 
-SegmentAnswer answer(const MapSnapshot& map, const SegmentQuery& query) {
+SegmentAnswer answer(const MapSnapshot& map, const SegmentQuery& query, const CameraView* view) {
   SegmentAnswer answer = begin_answer(map, query);
-  double distance_m = 0.0;
-  std::vector<std::size_t> places = find_segments(map, query, answer, distance_m);
-  if (query.changed_since > 0) {
-    const auto& changes = map.state.last_changes;  // empty for files that do not have them
-    std::erase_if(places, [&](std::size_t place) {
-      return changes.empty() || changes[place].utime <= query.changed_since;
-    });
+  const Source source{labelled_cloud(map), map.segments, map.state.last_changes};
+  if (query.place == QueryPlace::kAnywhere) {
+    enter_segments(source, query, all_places(source), 0.0F, answer);
+    return answer;
   }
-  std::ranges::sort(places, [&](std::size_t a, std::size_t b) {
-    return is_larger(map.segments[a], map.segments[b]);
-  });
-  if (!query.only_planar) {
-    answer.num_matching = std::ssize(places);
-    limit(query, places);
-  }
-  std::vector<SegmentDescription> segments = describe(map, places);
-  if (query.only_planar) {  // known only after the segments are described
-    std::erase_if(segments, [](const auto& segment) { return !segment.shape.is_planar; });
-    answer.num_matching = std::ssize(segments);
-    limit(query, segments);
-  }
-  for (const SegmentDescription& segment : segments) append(segment, distance_m, answer);
+  const FoundSegments found = find_segments(source.cloud, query, view);
+  enter(found, answer);
+  enter_segments(source, query, places_of(source, found.ids), found.distance_m, answer);
+  return answer;
+}
+
+SegmentAnswer answer(const MapExcerpt& excerpt, const SegmentQuery& query) {
+  SegmentAnswer answer = begin_answer(excerpt, query);
+  const Source source{excerpt.cloud(), excerpt.segments, excerpt.last_changes};
+  enter(excerpt.found, answer);
+  enter_segments(source, query, all_places(source), excerpt.found.distance_m, answer);
   return answer;
 }
 

@@ -41,15 +41,18 @@ Intrinsics kinect_intrinsics() {
   return {.fx = 525, .fy = 525, .cx = 319.5, .cy = 239.5, .width = 640, .height = 480};
 }
 
-Ray pixel_ray(const Intrinsics& intrinsics, const Pose& X_WC, double u_px, double v_px) {
+void check_pixel(const Intrinsics& intrinsics, double u_px, double v_px) {
   // Integer coordinates are pixel centres: the image ends half a pixel beyond them.
   const bool is_inside = u_px >= -0.5 && u_px <= intrinsics.width - 0.5 && v_px >= -0.5 &&
                          v_px <= intrinsics.height - 0.5;
-  if (!is_inside) {
-    refuse(u_px, v_px,
-           "is outside the image of " + std::to_string(intrinsics.width) + " x " +
-               std::to_string(intrinsics.height));
-  }
+  if (is_inside) return;
+  refuse(u_px, v_px,
+         "is outside the image of " + std::to_string(intrinsics.width) + " x " +
+             std::to_string(intrinsics.height));
+}
+
+Ray pixel_ray(const Intrinsics& intrinsics, const Pose& X_WC, double u_px, double v_px) {
+  check_pixel(intrinsics, u_px, v_px);
   const Eigen::Vector2d seen((u_px - intrinsics.cx) / intrinsics.fx,
                              (v_px - intrinsics.cy) / intrinsics.fy);
   Eigen::Vector2d x;

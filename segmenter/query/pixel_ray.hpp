@@ -10,6 +10,10 @@ namespace kintsugi::segmenter {
 /// 640 x 480, f = 525, no distortion.
 Intrinsics kinect_intrinsics();
 
+/// @throws std::invalid_argument when the pixel (u, v), which need not be integers, is outside the
+///   image
+void check_pixel(const Intrinsics& intrinsics, double u_px, double v_px);
+
 /// The ray from the camera's centre through the pixel (u, v), which need not be integers.
 /// Distortion is removed by fixed-point iteration, as in OpenCV.
 /// @param X_WC pose of the camera in the map

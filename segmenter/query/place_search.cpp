@@ -1,6 +1,7 @@
 #include "segmenter/query/place_search.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace kintsugi::segmenter {
@@ -16,6 +17,31 @@ void for_each_point(const LabelledCloud& cloud, const Visit& visit) {
   for (std::size_t i = 0; i < cloud.segment_ids.size(); ++i) {
     if (cloud.segment_ids[i] != kNoSegment) visit(i, position(cloud.points_W[i]));
   }
+}
+
+/// The nearest point of a segment within `radius_m` for which keep(point) holds.
+template <class Keep>
+std::optional<Hit> nearest_of(const LabelledCloud& cloud, const Eigen::Vector3d& point_W,
+                              double radius_m, const Keep& keep) {
+  std::optional<std::size_t> nearest;
+  double least_m2 = radius_m * radius_m;
+  // Most points are far away, which one coordinate tells; float32 rounds by much less than this.
+  const Eigen::Vector3f center_W = point_W.cast<float>();
+  const float reach_m = static_cast<float>(1.001 * radius_m + 1e-6 * point_W.cwiseAbs().maxCoeff());
+  for (std::size_t i = 0; i < cloud.segment_ids.size(); ++i) {
+    const CloudPoint& point = cloud.points_W[i];
+    if (!(std::abs(point.x - center_W.x()) <= reach_m)) continue;
+    if (!(std::abs(point.y - center_W.y()) <= reach_m) || cloud.segment_ids[i] == kNoSegment) {
+      continue;
+    }
+    const double distance_m2 = (position(point) - point_W).squaredNorm();
+    const bool is_nearer = nearest ? distance_m2 < least_m2 : distance_m2 <= least_m2;
+    if (!is_nearer || !keep(point)) continue;
+    nearest = i;
+    least_m2 = distance_m2;
+  }
+  if (!nearest) return std::nullopt;
+  return Hit{*nearest, std::sqrt(least_m2)};
 }
 
 /// The intersection of a ray with the disc of a point.
@@ -67,11 +93,20 @@ std::optional<Hit> first_disc(const LabelledCloud& cloud, const Ray& ray, double
 
 std::optional<Hit> nearest_point(const LabelledCloud& cloud, const Eigen::Vector3d& point_W,
                                  double radius_m) {
-  std::optional<Hit> hit;
-  for_each_point(cloud, [&](std::size_t i, const Eigen::Vector3d& p_W) {
-    const double distance_m = (p_W - point_W).norm();
-    if (distance_m <= radius_m && (!hit || distance_m < hit->distance_m)) hit = {i, distance_m};
-  });
+  return nearest_of(cloud, point_W, radius_m, [](const CloudPoint&) { return true; });
+}
+
+std::optional<Hit> measured_surface(const LabelledCloud& cloud, const MeasuredPoint& measured,
+                                    double radius_m) {
+  const Eigen::Vector3d& direction_W = measured.ray.direction_W;
+  auto hit =
+      nearest_of(cloud, measured.point_W(), radius_m, [&direction_W](const CloudPoint& point) {
+        return Eigen::Vector3d(point.nx, point.ny, point.nz).dot(direction_W) <= 0.0;
+      });
+  if (hit) {
+    const Eigen::Vector3d to_point_W = position(cloud.points_W[hit->point]) - measured.ray.origin_W;
+    hit->distance_m = std::max(0.0, to_point_W.dot(direction_W));
+  }
   return hit;
 }
 

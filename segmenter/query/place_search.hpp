@@ -22,10 +22,25 @@ struct Ray {
   Eigen::Vector3d direction_W = Eigen::Vector3d::UnitZ();
 };
 
+/// A point that a camera measures.
+struct MeasuredPoint {
+  Ray ray;                  ///< from the camera's centre through the point
+  double distance_m = 0.0;  ///< along the ray, > 0
+
+  Eigen::Vector3d point_W() const { return ray.origin_W + distance_m * ray.direction_W; }
+};
+
 /// The point of a segment that is nearest to `point_W` and at most `radius_m` away; of equally near
 /// ones the first in the cloud.
 std::optional<Hit> nearest_point(const LabelledCloud& cloud, const Eigen::Vector3d& point_W,
                                  double radius_m);
+
+/// The point of a segment on the surface that a camera measures: the one nearest to the measured
+/// point, at most `radius_m` away, of those whose normal does not point away from the camera (the
+/// other side of a thin thing is near, but not in view) or that have none. Hit::distance_m is along
+/// the ray.
+std::optional<Hit> measured_surface(const LabelledCloud& cloud, const MeasuredPoint& measured,
+                                    double radius_m);
 
 /// The point of a segment that a camera at the ray's origin sees along it.
 ///

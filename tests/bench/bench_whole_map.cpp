@@ -10,11 +10,13 @@
 #include <filesystem>
 #include <iostream>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <oneapi/tbb/task_arena.h>
 
 #include "lcmtypes/stream/stream_publisher.hpp"
 #include "segmenter/description/segment_description.hpp"
@@ -23,6 +25,7 @@
 #include "segmenter/io/segments_csv.hpp"
 #include "segmenter/map/map_snapshot.hpp"
 #include "segmenter/query/answer.hpp"
+#include "segmenter/query/map_excerpt.hpp"
 #include "tests/bench/map_generator.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -77,6 +80,14 @@ double send_ms(const std::vector<SegmentUpdate>& state, std::int64_t& bytes) {
   });
 }
 
+/// The segment of about this many points.
+const SegmentStatistics& segment_of_size(std::span<const SegmentStatistics> segments,
+                                         std::uint32_t num_points) {
+  return *std::ranges::min_element(segments, {}, [&](const SegmentStatistics& segment) {
+    return std::abs(std::int64_t{segment.num_points} - num_points);
+  });
+}
+
 /// Descriptions of segments, on all cores.
 void describe_rows(const MapSnapshot& map) {
   const LabelledCloud cloud = labelled_cloud(map);
@@ -91,15 +102,9 @@ void describe_rows(const MapSnapshot& map) {
   row("description of every segment, given the graph (in the background)", describe_ms,
       static_cast<double>(segments.size() * sizeof(SegmentDescription)));
   for (const std::uint32_t num_points : {1000U, UINT32_MAX}) {
-    const auto nearest = std::min_element(
-        map.segments.begin(), map.segments.end(), [&](const auto& a, const auto& b) {
-          const auto difference = [&](const SegmentStatistics& segment) {
-            return std::abs(std::int64_t{segment.num_points} - num_points);
-          };
-          return difference(a) < difference(b);
-        });
-    row(fmt::format("description of one segment of {} points", nearest->num_points),
-        best_ms([&] { describe_segment(map, nearest->segment_id); }), 0.0);
+    const SegmentStatistics& segment = segment_of_size(map.segments, num_points);
+    row(fmt::format("description of one segment of {} points", segment.num_points),
+        best_ms([&] { describe_segment(map, segment.segment_id); }), 0.0);
   }
   const kintsugi::testing::TemporaryFolder folder;
   const double write_ms = time_ms([&] {
@@ -122,6 +127,28 @@ void query_rows(const MapSnapshot& map) {
   query.max_segments = 10;
   row("query for the ten largest planar segments (in the background)",
       best_ms([&] { answer(map, query); }), 0.0);
+}
+
+/// Queries for the segment at a point or pixel, from an excerpt of the map.
+void excerpt_rows(const SegmentMap& map, std::span<const SegmentStatistics> segments) {
+  for (const std::uint32_t num_points : {1000U, UINT32_MAX}) {
+    const SegmentStatistics& segment = segment_of_size(segments, num_points);
+    const auto points = map.segment_ids().points_of(segment.segment_id);
+    const CloudPoint& point = map.cloud()[*points.begin()];
+    SegmentQuery query;
+    query.client = 1;
+    query.place = QueryPlace::kPoint;
+    query.point_W[0] = point.x;
+    query.point_W[1] = point.y;
+    query.point_W[2] = point.z;
+    MapExcerpt excerpt;
+    const double take_ms = best_ms([&] { take_excerpt(map, query, nullptr, excerpt); });
+    row(fmt::format("excerpt for the segment of {} points at a point (holds the engine)",
+                    segment.num_points),
+        take_ms, static_cast<double>(excerpt.points_W.size()) * 36);
+    row("answer from it, on one core (in the background)",
+        best_ms([&] { oneapi::tbb::task_arena(1).execute([&] { answer(excerpt, query); }); }), 0.0);
+  }
 }
 
 void run(const MapConfig& config) {
@@ -155,6 +182,7 @@ void run(const MapConfig& config) {
       static_cast<double>(std::filesystem::file_size(file)));
   describe_rows(*snapshot);
   query_rows(*snapshot);
+  excerpt_rows(*map, snapshot->segments);
   snapshot.reset();
   map.reset();
   row("saved map read and engine rebuilt (--resume)", time_ms([&] { load_map(file); }),

@@ -12,11 +12,11 @@ from tempfile import TemporaryDirectory
 from trio_fakes import ROOT, UNTIL_TERM, environment, process_is_gone, wait_until, write_program
 
 # Each program notes how it was called. The display of the progress lasts until it is ended; questions are
-# answered at once.
+# answered at once: there is no other mapper on the bus, everything else is so.
 NOTE = 'echo "$@" >>"$CALLS/$(basename "$0")"; '
 FINISHES = NOTE + "sleep 0.2"
 LASTS = NOTE + UNTIL_TERM
-STATUS = f'case "$*" in *--viewer*) {UNTIL_TERM} ;; esac'
+STATUS = NOTE + f'case "$*" in *--viewer*) {UNTIL_TERM} ;; "--until-ready mapper --map-name"*) exit 2 ;; esac'
 LOGGER = 'for file; do :; done; echo a log >"$file"; trap "exit 0" INT; while :; do sleep 0.02; done'
 
 
@@ -89,8 +89,31 @@ class Trio(CommandTest):
                                                         "--store=run/mapper.lcm", "--volume=cube", "--session=7"])
         self.assertEqual(self.call("kintsugi-segmenter"), [
             "--out=run", "--exit-on-final", "--linger=-1", "--save=run/segmenter.map", "--save-every=5",
-            "--resume-if-saved", "--mode=batch"])
-        self.assertEqual(self.call("kintsugi-viewer"), ["--out=run", "--exit-on-final", "--video=run/run.mp4"])
+            "--resume-if-saved", "--map-name=map", "--mode=batch"])
+        self.assertEqual(self.call("kintsugi-viewer"),
+                         ["--out=run", "--exit-on-final", "--map-name=map", "--video=run/run.mp4"])
+
+    def test_a_name_of_the_map_is_that_of_all_processes(self):
+        for number, options in enumerate((["--map-name", "attic"], ["--mapper", "--map-name attic"],
+                                          ["--mapper=--map-name=attic", "--segmenter", "--map-name attic"])):
+            self.expect(0, "trio", "--out", f"run{number}", "--no-log", *options)
+            for name in ("mapper", "segmenter", "viewer", "status"):
+                call = " ".join(self.call(f"kintsugi-{name}")).replace("--map-name=", "--map-name ")
+                self.assertEqual(call.count("--map-name attic"), 1, (name, options))
+
+    def test_segmenter_and_viewer_alone_take_a_map_of_any_name(self):
+        self.expect(0, "trio", "--only", "segmenter,viewer", "--out", "run", "--no-log")
+        for name in ("segmenter", "viewer", "status"):
+            self.assertNotIn("--map-name=map", self.call(f"kintsugi-{name}"))
+
+    def test_a_second_mapper_with_the_name_of_the_map_is_refused(self):
+        self.expect(0, "trio", "--out", "run", "--no-log")
+        before = sorted(path.name for path in (self.work / "run").iterdir())
+        self.program("status", 'case "$*" in "--until-ready mapper --map-name=map"*) exit 0 ;; esac; ' + UNTIL_TERM)
+        said = self.expect(1, "trio", "--out", "run", "--no-log")
+        self.assertIn("another mapper makes a map called 'map' on this bus", said)
+        self.assertIn("--map-name", said)
+        self.assertEqual(sorted(path.name for path in (self.work / "run").iterdir()), before)
 
     def test_a_volume_that_is_given_replaces_the_cube(self):
         for number, options in enumerate((["--volume", "range"], ["--volume-size", "3"], ["--mapper", "--volume range"],

@@ -4,6 +4,7 @@
     document      replaces what is between the markers of a section in BENCHMARK.md
     tables        Markdown tables, CSV files, the output of Google Benchmark
     run           runs the programs over an input, in the folder of the measurement
+    live          the section about live runs
     mapping       sections about the mapper
     recordings    the section about recordings of any kind
     battery       the section about synthetic rooms under many conditions; battery_cases, battery_picture

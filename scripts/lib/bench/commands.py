@@ -13,7 +13,7 @@ from typing import Callable
 from trio.messages import Problem, os_error_text, say
 from trio.programs import ROOT
 
-from . import battery, mapping, others, recordings, segmenting
+from . import battery, live, mapping, others, recordings, segmenting
 from .battery_cases import chosen_cases
 from .document import Document
 from .run import Run, recordings_under
@@ -34,8 +34,8 @@ TRIO = ("kintsugi-mapper", "kintsugi-segmenter", "kintsugi-viewer", "kintsugi-st
 MAPPER = ("kintsugi-mapper", "kintsugi-evaluate")
 
 SECTIONS = (
-    Section("live", "mapper, segmenter and viewer at the camera's rate: CPU of each, frames dropped", mapping.live,
-            TRIO, needs_recording=True),
+    Section("live", "mapper, segmenter and viewer at the camera's rate: CPU, frames dropped, what of the view is segmented",
+            live.live, (*TRIO, "kintsugi-evaluate")),
     Section("paths", "the mapper alone: time of a frame, error of the camera's path", mapping.paths, MAPPER),
     Section("recordings", "every recording: frames located, parts of the map, error of the path, cost",
             recordings.recordings, MAPPER, needs_recording=True),

@@ -4,7 +4,7 @@ import re
 from collections import Counter
 
 from .accuracy import error, trajectory_errors
-from .run import PAPER_VOLUME, room
+from .run import room
 from .tables import first_table, fixed, markdown, number, quantile, read_csv
 
 VOXEL_M = 4.5 / 512  # the mapper's default
@@ -133,21 +133,6 @@ def surface(run):
                      *(fixed(value[f"normal_{each}_deg"], 1) for each in ("median", "p95"))])
     return markdown(["room", "points", "points a m2", "median, mm", "p95, mm", "p99, mm", "max, mm",
                      "normal, median, deg", "normal, p95, deg"], rows)
-
-
-def live(run):
-    rows = []
-    for source in run.recordings:
-        name = f"live_{source.name}"
-        printed = run.trio(name, source, "--no-log", *PAPER_VOLUME)
-        log = (run.folder / name / "mapper.log").read_text()
-        frames, dropped = (int(re.findall(rf"(\d+) {what}", log)[-1]) for what in ("frames in", "dropped"))
-        cpu = re.findall(r"(?m)^ *CPU: .*", printed)[-1]
-        cpu_ms = [1e3 * float(re.search(rf"{process} ([0-9.]+) s", cpu)[1]) / frames
-                  for process in ("mapper", "segmenter", "viewer")]
-        rows.append([source.name, frames, dropped, *(fixed(each, 1) for each in [*cpu_ms, sum(cpu_ms)])])
-    return markdown(["recording", "frames", "dropped", "mapper, CPU-ms a frame", "segmenter, CPU-ms a frame",
-                     "viewer, CPU-ms a frame", "all three, CPU-ms a frame"], rows)
 
 
 def pictures(run):

@@ -17,6 +17,8 @@ from .supervisor import Supervisor
 LINGER_S = 60  # without a viewer, which knows when all is drawn: until there has been no request for so long
 UNTIL_TOLD = -1
 READY_TIMEOUT_S = 20
+OTHER_MAPPER_S = 1  # a mapper sends three statuses a second
+DEFAULT_MAP_NAME = "map"
 INTERRUPTED = 130  # exit code, as shells have it
 # Of the mapper: with these it chooses the volume itself.
 VOLUME_FLAGS = {"--volume", "--volume-size", "--config", "--replay"}
@@ -47,6 +49,8 @@ def trio(arguments):
         choice = recalled(choice.out, arguments)
     check_programs([*choice.only, "status"], ["setpriv"] if choice.no_log else ["setpriv", "lcm-logger"])
     network.choose_network(choice.private, this_command())
+    if "mapper" in choice.only and not choice.private:  # nobody else is in a private network
+        refuse_second_mapper(choice)
     folder = RunFolder(choice.out)
     folder.create()
     folder.lock()
@@ -56,6 +60,35 @@ def trio(arguments):
         folder.keep_earlier_run()
         folder.remember_options(arguments)
     return run_trio(choice, folder)
+
+
+def given_map_name(words):
+    """The value of --map-name among the options of a process; None without."""
+    for place, word in enumerate(words):
+        flag, equals, value = word.partition("=")
+        if flag == "--map-name":
+            return value if equals else "".join(words[place + 1:place + 2])
+    return None
+
+
+def map_name(choice):
+    """The name of the map; None: of any, because the mapper is elsewhere and no name is given."""
+    if choice.map_name or "mapper" not in choice.only:
+        return choice.map_name
+    return given_map_name(choice.mapper) or DEFAULT_MAP_NAME
+
+
+def map_option(name, words):
+    """For a process with the options `words`."""
+    return [f"--map-name={name}"] if name and given_map_name(words) is None else []
+
+
+def refuse_second_mapper(choice):
+    """Raises Problem if a mapper with this map name is at work: the segmenters and viewers of both runs would follow
+    the newer one. The mapper itself refuses, too; but by then the folder of the run is changed."""
+    if Status.hears_mapper_of(map_name(choice), OTHER_MAPPER_S):
+        raise Problem(f"another mapper makes a map called '{map_name(choice)}' on this bus. Wait for its end, or run "
+                      "beside it with another --map-name, on another bus (LCM_DEFAULT_URL), or with --private")
 
 
 def recalled(out, arguments):
@@ -73,7 +106,7 @@ def run_trio(choice, folder):
     make = {"mapper": mapper_process, "segmenter": segmenter_process, "viewer": viewer_process}
     watched = [make[name](choice, folder) for name in choice.only]
     logger = None if choice.no_log else logger_process(folder)
-    with supervised(folder, watched, logger) as supervisor:
+    with supervised(folder, watched, logger, map_name(choice)) as supervisor:
         if logger:
             logger.start()
         for process in [*watched[1:], watched[0]] if "mapper" in choice.only else watched:
@@ -86,9 +119,9 @@ def run_trio(choice, folder):
 
 
 @contextlib.contextmanager
-def supervised(folder, processes, logger=None):
+def supervised(folder, processes, logger=None, its_map=None):
     """Yields a supervisor that handles signals. When the block ends, for whatever reason, its processes are ended."""
-    supervisor = Supervisor(folder, Status(folder.file("status.csv")), processes, logger)
+    supervisor = Supervisor(folder, Status(folder.file("status.csv"), its_map), processes, logger)
     supervisor.install_signal_handlers()
     try:
         yield supervisor
@@ -111,7 +144,7 @@ def mapper_process(choice, folder):
         log_option = "--resume" if resume and folder.has("mapper.lcm") else "--store"
         return [program("mapper"), "--output-trajectory=" + folder.file("trajectory.txt"),
                 f"--linger={linger_s(choice)}", f"{log_option}={folder.file('mapper.lcm')}",
-                *chosen_volume(choice.mapper), *choice.mapper]
+                *chosen_volume(choice.mapper), *map_option(choice.map_name, choice.mapper), *choice.mapper]
 
     # A mapper that gets SIGTERM finishes its session, and answers requests until it gets another one. When this
     # supervisor is killed the session must remain unfinished, so that --resume can continue it.
@@ -121,13 +154,14 @@ def mapper_process(choice, folder):
 def segmenter_process(choice, folder):
     return Process("segmenter", [program("segmenter"), f"--out={choice.out}", "--exit-on-final",
                                  f"--linger={linger_s(choice)}", "--save=" + folder.file("segmenter.map"),
-                                 "--save-every=5", "--resume-if-saved", *choice.segmenter], folder)
+                                 "--save-every=5", "--resume-if-saved", *map_option(map_name(choice), choice.segmenter),
+                                 *choice.segmenter], folder)
 
 
 def viewer_process(choice, folder):
     video = ["--video=" + folder.file("run.mp4")] if choice.video else []
-    return Process("viewer", [program("viewer"), f"--out={choice.out}", "--exit-on-final", *choice.viewer, *video],
-                   folder)
+    return Process("viewer", [program("viewer"), f"--out={choice.out}", "--exit-on-final",
+                              *map_option(map_name(choice), choice.viewer), *choice.viewer, *video], folder)
 
 
 def logger_process(folder):

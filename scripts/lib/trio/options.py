@@ -37,6 +37,9 @@ TRIO_OPTIONS = (
     ("--publish-frames", None, PASS_ON, "mapper",
      "publish the raw frames too, so that the log can be replayed into a mapper"),
     ("--no-log", None, STORE, False, "do not record the bus"),
+    ("--map-name", "NAME", STORE, None,
+     "name of the map (default: map). Several runs on one bus need a name each; segmenter and viewer then use only "
+     "this map"),
     ("--only", "NAMES", STORE, ",".join(PROCESSES),
      "run only these of %(default)s; the others run on other hosts"),
     ("--private", None, STORE, False, "run in a private network that no other program hears"),

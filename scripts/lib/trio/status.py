@@ -18,9 +18,11 @@ class Status:
     """Shows the progress of a run to the person and records each status in `csv_file`; answers questions
     about the processes."""
 
-    def __init__(self, csv_file):
+    def __init__(self, csv_file, map_name=None):
+        """`map_name`: of the map of the run; None: the one that is heard first."""
         self._csv_file = csv_file
-        self._csv_start = os.path.getsize(csv_file) if os.path.exists(csv_file) else 0
+        self._of_map = [f"--map-name={map_name}"] if map_name else []
+        self._csv_start = os.path.getsize(csv_file) if csv_file and os.path.exists(csv_file) else 0
         self._records = True
         self._display = None
 
@@ -28,7 +30,8 @@ class Status:
         """Until mapper, segmenter and viewer have finished, or there has been no progress for `idle_s` seconds."""
         self.end()
         log = ["--log", self._csv_file] if self._records else []
-        self._display = spawn([program("status"), "--until-finished", "--viewer", "--timeout", str(idle_s), *log])
+        self._display = spawn([program("status"), "--until-finished", "--viewer", "--timeout", str(idle_s), *self._of_map,
+                               *log])
 
     @property
     def shows_progress(self):
@@ -90,10 +93,14 @@ class Status:
         """Waits until mapper and segmenter have finished."""
         return self._ask("--until-finished", timeout_s=timeout_s, give_up=give_up)
 
-    @staticmethod
-    def _ask(*question, timeout_s, give_up):
-        query = spawn([program("status"), *question, "--timeout", str(timeout_s)], stdout=subprocess.DEVNULL,
-                      stderr=subprocess.DEVNULL)
+    @classmethod
+    def hears_mapper_of(cls, map_name, timeout_s):
+        """Whether a mapper with this map name is heard on the bus."""
+        return cls(None, map_name)._ask("--until-ready", "mapper", timeout_s=timeout_s)
+
+    def _ask(self, *question, timeout_s, give_up=lambda: False):
+        query = spawn([program("status"), *question, *self._of_map, "--timeout", str(timeout_s)],
+                      stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         while query.poll() is None:
             if give_up():
                 query.send_signal(signal.SIGTERM)

@@ -1,6 +1,6 @@
 // kintsugi-evaluate: segments a recorded map slice by slice and writes the tables and figures of
 // the paper; or scores its segments against true instances; or compares a camera path with the true
-// one.
+// one; or measures how much of what the camera saw in a live run was in the segment map.
 
 #include <filesystem>
 #include <stdexcept>
@@ -18,6 +18,7 @@
 #include "segmenter/evaluation/session/session_log.hpp"
 #include "segmenter/process/options.hpp"
 #include "segmenter/tools/cloud_options.hpp"
+#include "segmenter/tools/evaluate/live_task.hpp"
 #include "segmenter/tools/evaluate/paper_task.hpp"
 #include "segmenter/tools/evaluate/quality_task.hpp"
 #include "segmenter/tools/evaluate/trajectory_task.hpp"
@@ -33,14 +34,21 @@ struct EvaluateOptions {
   EvaluationConfig evaluation;
   QualityOptions quality;
   TrajectoryOptions trajectory;
+  std::filesystem::path live_log;
 };
 
-/// The input is a map or a camera path, but not both.
+/// The input is a map, a camera path or a live run, and only one of them.
 void require_task(const EvaluateOptions& options) {
   const bool has_path = !options.trajectory.estimate_file.empty();
+  const bool has_live = !options.live_log.empty();
   if (has_path && !options.input.empty()) throw CLI::ExcludesError("--trajectory", "IN");
-  if (has_path) return;
-  if (options.input.empty()) throw CLI::RequiredError("IN or --trajectory");
+  if (has_live && !options.input.empty()) throw CLI::ExcludesError("--live", "IN");
+  if (has_live && has_path) throw CLI::ExcludesError("--live", "--trajectory");
+  if (has_path || has_live) return;
+  if (!options.trajectory.json_file.empty()) {
+    throw CLI::RequiresError("--json", "--trajectory or --live");
+  }
+  if (options.input.empty()) throw CLI::RequiredError("IN, --trajectory or --live");
   if (options.folder.empty()) throw CLI::RequiredError("--out");
 }
 
@@ -72,6 +80,12 @@ void add_options(CLI::App& app, EvaluateOptions& options) {
   add_cloud_options(*group, options.cloud);
   add_quality_options(*app.add_option_group("Quality"), options.quality);
   add_trajectory_options(*app.add_option_group("Camera paths"), options.trajectory);
+  app.add_option_group("Live runs")
+      ->add_option(
+          "--live", options.live_log,
+          "instead of IN: the log of everything that was on the bus of a live run (run.lcm of "
+          "scripts/trio); prints how much of what the camera saw was in the segment map, and how "
+          "soon");
   app.callback([&options] { require_task(options); });
 }
 
@@ -124,13 +138,16 @@ int main(int argc, char** argv) {
     CLI::App app{
         "Segments a recorded map slice by slice and writes the paper's tables and figures; or, "
         "with --ground-truth, scores its segments; or, with --trajectory, computes the errors of a "
-        "camera path."};
+        "camera path; or, with --live, measures a live run."};
     EvaluateOptions options;
     add_options(app, options);
     CLI11_PARSE(app, argc, argv);
     if (!options.trajectory.estimate_file.empty()) {
       evaluate_trajectory(options.trajectory);
       return 0;
+    }
+    if (!options.live_log.empty()) {
+      return evaluate_live(options.live_log, options.trajectory.json_file);
     }
     std::string command_line;
     for (int i = 0; i < argc; ++i) command_line.append(i == 0 ? "" : " ").append(argv[i]);

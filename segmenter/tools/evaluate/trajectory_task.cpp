@@ -45,7 +45,7 @@ void add_trajectory_options(CLI::App& app, TrajectoryOptions& options) {
       ->needs(trajectory);
   app.add_option("--csv", options.csv_file, "write the errors as one row of a table")
       ->needs(trajectory);
-  app.add_option("--json", options.json_file, "write the errors as JSON")->needs(trajectory);
+  app.add_option("--json", options.json_file, "write the errors, or what --live measures, as JSON");
 }
 
 void evaluate_trajectory(const TrajectoryOptions& options) {

@@ -17,7 +17,7 @@ struct TrajectoryOptions {
   std::string truth_file;     ///< TUM format
   RelativeTrajectoryErrorConfig relative;
   std::filesystem::path csv_file;   ///< empty: none
-  std::filesystem::path json_file;  ///< empty: none
+  std::filesystem::path json_file;  ///< empty: none; also of --live
 };
 
 void add_trajectory_options(CLI::App& app, TrajectoryOptions& options);

@@ -19,8 +19,9 @@
 namespace kintsugi::segmenter {
 namespace {
 
-SegmentAnswer ask_file(const QueryOptions& options) {
-  SegmentQuery query = make_query(options, nullptr);
+constexpr int kFirstPixelCode = 3;  // exit codes from here on: why a pixel has no segment
+
+SegmentAnswer ask_file(const QueryOptions& options, SegmentQuery query) {
   query.client = 1;
   (void)encode(query);  // checks every field as the bus does
   const MapSnapshot map = take_snapshot(*load_map(options.map));
@@ -28,16 +29,33 @@ SegmentAnswer ask_file(const QueryOptions& options) {
   return answer(map, query);
 }
 
-SegmentAnswer ask_bus(const QueryOptions& options) {
-  QueryClient client(options.lcm_url);
-  return client.ask(make_query(options, &client), QueryClient::Seconds(options.timeout_s));
+SegmentAnswer ask_bus(const QueryOptions& options, const SegmentQuery& query) {
+  return QueryClient(options.lcm_url).ask(query, QueryClient::Seconds(options.timeout_s));
+}
+
+int exit_code(const SegmentAnswer& answer, QueryPlace place) {
+  if (place != QueryPlace::kPixel) return 0;
+  switch (pixel_result(answer)) {
+    case PixelResult::kNoView:
+      return kFirstPixelCode;
+    case PixelResult::kNotMeasured:
+      return kFirstPixelCode + 1;
+    case PixelResult::kNotSegmented:
+      return kFirstPixelCode + 2;
+    case PixelResult::kFound:
+      break;
+  }
+  return 0;
 }
 
 int run(const QueryOptions& options) {
-  const SegmentAnswer answer = options.map.empty() ? ask_bus(options) : ask_file(options);
+  const SegmentQuery query = make_query(options);
+  const SegmentAnswer answer =
+      options.map.empty() ? ask_bus(options, query) : ask_file(options, query);
   if (!answer.problem.empty()) throw std::runtime_error(answer.problem);
-  std::cout << (options.json ? answer_json(answer) : answer_table(answer)) << std::flush;
-  return std::cout ? 0 : 1;
+  std::cout << (options.json ? answer_json(answer, query.place) : answer_table(answer, query.place))
+            << std::flush;
+  return std::cout ? exit_code(answer, query.place) : 1;
 }
 
 }  // namespace

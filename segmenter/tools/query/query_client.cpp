@@ -18,7 +18,6 @@ using std::chrono::milliseconds;
 constexpr milliseconds kFirstWait{500};  // before asking again; doubled each time up to
 constexpr milliseconds kLongestWait{4'000};
 constexpr milliseconds kOthersWait{500};  // for another segmenter when one has no answer
-constexpr milliseconds kFrameWait{500};   // for a raw frame when a pose has come
 
 std::int64_t random_client() {
   std::random_device device;
@@ -83,28 +82,6 @@ std::string QueryClient::silence(Seconds timeout, int times_asked) const {
                     ": the segmenter of map '{}' is heard, {} slices behind and {:.0f} ms a slice; "
                     "give it longer with --timeout",
                     status_->map_name, status_->lag_slices, status_->slice_ms);
-}
-
-HeardCamera QueryClient::hear_camera(std::int64_t map_session, Seconds timeout) {
-  subscribe<CameraPose>(bus_, channels::kCameraPose, [this, map_session](const CameraPose& pose) {
-    if (map_session != 0 && pose.session != map_session) return;
-    if (is_located(pose.state)) pose_ = pose;
-    camera_is_lost_ = !is_located(pose.state);
-  });
-  bus_.subscribe(channels::kRgbdFrame, [this](ByteView data) {
-    try {
-      intrinsics_ = decode_chunk<RgbdFrameMessage>(data).header.intrinsics;
-    } catch (const DecodeError&) {  // without intrinsics
-    }
-  });
-  const auto deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(timeout);
-  if (!handle_until(deadline, [&] { return pose_.has_value(); })) {
-    throw std::runtime_error(fmt::format(
-        "no camera pose within {} s on {}: {}; give --pose", timeout.count(), bus_.url(),
-        camera_is_lost_ ? "camera tracking is lost" : "no mapper is heard there, or it has ended"));
-  }
-  handle_until(Clock::now() + kFrameWait, [&] { return intrinsics_.has_value(); });
-  return {*pose_, intrinsics_};
 }
 
 }  // namespace kintsugi::segmenter

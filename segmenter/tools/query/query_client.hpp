@@ -1,5 +1,5 @@
 #pragma once
-// Sends queries to segmenters on the bus, and listens to the camera pose.
+// Sends queries to segmenters on the bus.
 
 #include <chrono>
 #include <cstdint>
@@ -10,12 +10,6 @@
 #include "lcmtypes/stream/stream_subscriber.hpp"
 
 namespace kintsugi::segmenter {
-
-/// The pose of a camera and, if known, its intrinsics.
-struct HeardCamera {
-  CameraPose pose;
-  std::optional<Intrinsics> intrinsics;  ///< absent: no raw frame was received
-};
 
 /// One client of the segmenters on a bus. Belongs to one thread.
 class QueryClient {
@@ -33,11 +27,6 @@ class QueryClient {
   /// @throws std::invalid_argument for a query that is out of bounds
   SegmentAnswer ask(SegmentQuery query, Seconds timeout);
 
-  /// The newest tracked pose of a camera, of the mapper session `map_session` (0: any), with the
-  /// intrinsics if raw frames arrive within half a second. Call it once.
-  /// @throws std::runtime_error when no such pose arrives within `timeout`, with what was heard
-  HeardCamera hear_camera(std::int64_t map_session, Seconds timeout);
-
  private:
   using Clock = std::chrono::steady_clock;
 
@@ -54,9 +43,6 @@ class QueryClient {
   std::optional<SegmentAnswer> answer_;
   std::optional<SegmentAnswer> refusal_;
   std::optional<SegmenterStatus> status_;  // of any segmenter, the newest
-  std::optional<CameraPose> pose_;         // the newest tracked one
-  bool camera_is_lost_ = false;
-  std::optional<Intrinsics> intrinsics_;
 };
 
 }  // namespace kintsugi::segmenter

@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "lcmtypes/codec/codec.hpp"
 #include "segmenter/query/pixel_ray.hpp"
 
 namespace kintsugi::segmenter {
@@ -22,8 +23,11 @@ void add_places(CLI::App& app, QueryOptions& options) {
   place
       .add_option(
           "--pixel", options.pixel,
-          "U V: the segment that the camera sees at this pixel now (or from --pose); integers are "
-          "pixel centres")
+          "U V: the segment of the surface that the camera measures at this pixel of its depth "
+          "image "
+          "now; integers are pixel centres. Exit code 3: no view of the camera, 4: it measures "
+          "nothing there, 5: the surface is in no segment yet. With --pose: what a camera there "
+          "would see of the map")
       ->expected(2);
   place
       .add_option("--ray", options.ray,
@@ -63,23 +67,19 @@ void look_along(const Ray& ray, SegmentQuery& query) {
   }
 }
 
-/// The ray of --pixel; `client` is null where there is no bus.
-void look_through_pixel(const QueryOptions& options, QueryClient* client, SegmentQuery& query) {
-  Intrinsics intrinsics = kinect_intrinsics();
-  Pose X_WC = Pose::Identity();
-  if (!options.pose.empty()) {
-    X_WC = given_pose(options.pose);
-  } else if (client != nullptr) {
-    const HeardCamera camera =
-        client->hear_camera(query.map_session, QueryClient::Seconds(options.timeout_s));
-    X_WC = camera.pose.X_WC;
-    intrinsics = camera.intrinsics.value_or(intrinsics);
-    query.map_session = camera.pose.session;
-  } else {
-    throw std::invalid_argument("--pixel of a saved map needs --pose");
-  }
-  if (!options.intrinsics.empty()) intrinsics = given_intrinsics(options.intrinsics);
-  look_along(pixel_ray(intrinsics, X_WC, options.pixel[0], options.pixel[1]), query);
+/// What a camera at --pose would see of the map, which may be hidden behind what is not mapped yet.
+void look_through_pixel(const QueryOptions& options, SegmentQuery& query) {
+  const Intrinsics intrinsics =
+      options.intrinsics.empty() ? kinect_intrinsics() : given_intrinsics(options.intrinsics);
+  look_along(pixel_ray(intrinsics, given_pose(options.pose), options.pixel[0], options.pixel[1]),
+             query);
+}
+
+void ask_for_pixel(const QueryOptions& options, SegmentQuery& query) {
+  if (!options.pose.empty()) return look_through_pixel(options, query);
+  if (!options.map.empty()) throw std::invalid_argument("--pixel of a saved map needs --pose");
+  query.place = QueryPlace::kPixel;
+  std::copy_n(options.pixel.begin(), 2, query.pixel_px);
 }
 
 }  // namespace
@@ -95,18 +95,23 @@ void add_options(CLI::App& app, QueryOptions& options) {
   app.add_option("--largest", query.max_segments, "only the N largest; 0: all")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
-  app.add_option("--radius", query.radius_m,
-                 "--at, --pixel, --ray: maximum distance to a map point, metres; 0: two voxels")
+  app.add_option(
+         "--radius", query.radius_m,
+         "--at, --pixel, --ray: maximum distance to a map point, metres; 0: two voxels, for "
+         "--pixel without --pose at least 0.03")
       ->check(CLI::Range(0.0, kMaxQueryRadius_m))
       ->capture_default_str();
-  app.add_option("--pose", options.pose,
-                 "TX TY TZ QX QY QZ QW: camera pose for --pixel (default: the one on the bus)")
-      ->expected(7);
+  auto* const pose =
+      app.add_option(
+             "--pose", options.pose,
+             "TX TY TZ QX QY QZ QW: with --pixel, the pose of a camera, instead of what the "
+             "camera on the bus measures")
+          ->expected(7);
   app.add_option("--intrinsics", options.intrinsics,
-                 "FX FY CX CY WIDTH HEIGHT: camera intrinsics for --pixel (default: those of the "
-                 "raw frames on the bus if there are any, else a Kinect's, 525 525 319.5 239.5 640 "
-                 "480)")
-      ->expected(6);
+                 "FX FY CX CY WIDTH HEIGHT: of the camera at --pose (default: a Kinect's, 525 525 "
+                 "319.5 239.5 640 480)")
+      ->expected(6)
+      ->needs(pose);
   app.add_option("--map", options.map,
                  "query this saved map (kintsugi-segmenter --save) instead of the bus");
   app.add_option("--map-name", query.map_name, "name of the map, when there are several");
@@ -120,7 +125,7 @@ void add_options(CLI::App& app, QueryOptions& options) {
   app.add_flag("--json", options.json, "print a JSON object instead of a table");
 }
 
-SegmentQuery make_query(const QueryOptions& options, QueryClient* client) {
+SegmentQuery make_query(const QueryOptions& options) {
   SegmentQuery query = options.query;
   if (!query.segment_ids.empty()) query.place = QueryPlace::kIds;
   if (!options.point_W.empty()) {
@@ -141,7 +146,7 @@ SegmentQuery make_query(const QueryOptions& options, QueryClient* client) {
           std::minmax(options.box_W[axis], options.box_W[axis + 3]);
     }
   }
-  if (!options.pixel.empty()) look_through_pixel(options, client, query);
+  if (!options.pixel.empty()) ask_for_pixel(options, query);
   return query;
 }
 

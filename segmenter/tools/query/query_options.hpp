@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "lcmtypes/messages.hpp"
-#include "segmenter/tools/query/query_client.hpp"
 
 namespace CLI {
 class App;
@@ -32,11 +31,10 @@ struct QueryOptions {
 
 void add_options(CLI::App& app, QueryOptions& options);
 
-/// The query of the options. With --pixel and without --pose, listens to the camera pose.
-/// @param client null when there is no bus
-/// @throws std::invalid_argument for a direction or rotation that is zero, and for --pixel when
-///   there is neither --pose nor bus
-/// @throws std::runtime_error as QueryClient::hear_camera()
-SegmentQuery make_query(const QueryOptions& options, QueryClient* client);
+/// The query of the options. --pixel asks for what the camera measures there now, and with --pose
+/// for what a camera there would see of the map: that is a ray.
+/// @throws std::invalid_argument for a direction or rotation that is zero, and for --pixel of a
+///   saved map without --pose
+SegmentQuery make_query(const QueryOptions& options);
 
 }  // namespace kintsugi::segmenter

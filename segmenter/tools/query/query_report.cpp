@@ -105,14 +105,38 @@ Json segment_json(const DescribedSegment& segment, std::span<const SegmentContac
   return json;
 }
 
+/// Why there is no segment.
+std::string pixel_text(const SegmentAnswer& answer) {
+  switch (pixel_result(answer)) {
+    case PixelResult::kNoView:
+      return "no view of the camera: the segmenter has received none with a known pose in the last "
+             "2 s; is a mapper running, and does it track the camera?\n";
+    case PixelResult::kNotMeasured:
+      return "the camera measures nothing at this pixel\n";
+    case PixelResult::kNotSegmented:
+      return fmt::format("the surface at this pixel, {:.2f} m away, is in no segment yet\n",
+                         answer.surface_distance_m);
+    case PixelResult::kFound:
+      break;
+  }
+  return "";
+}
+
 }  // namespace
 
-std::string answer_table(const SegmentAnswer& answer) {
+PixelResult pixel_result(const SegmentAnswer& answer) {
+  if (answer.has_hit) return PixelResult::kFound;
+  if (answer.view_utime == 0) return PixelResult::kNoView;
+  return answer.surface_distance_m == 0.0F ? PixelResult::kNotMeasured : PixelResult::kNotSegmented;
+}
+
+std::string answer_table(const SegmentAnswer& answer, QueryPlace place) {
   std::string out =
       fmt::format("map '{}' of session {}: {} slices, {} points, {} segments\n", answer.map_name,
                   answer.map_session, answer.map_slices, answer.map_points, answer.map_segments);
   Appender to(out);
   if (answer.has_hit) fmt::format_to(to, "found at {}\n", text(answer.hit_W, " ", 3));
+  if (place == QueryPlace::kPixel && !answer.has_hit) return out + pixel_text(answer);
   if (answer.segments.empty()) return out + "no segment matches\n";
   if (answer.num_matching > std::ssize(answer.segments)) {
     fmt::format_to(to, "the {} largest of {} that match\n", answer.segments.size(),
@@ -127,21 +151,30 @@ std::string answer_table(const SegmentAnswer& answer) {
   return out;
 }
 
-std::string answer_json(const SegmentAnswer& answer) {
+std::string answer_json(const SegmentAnswer& answer, QueryPlace place) {
   Json segments = Json::array();
   for (const DescribedSegment& segment : answer.segments) {
     segments.push_back(segment_json(segment, contacts_of(answer, segment.statistics.segment_id)));
   }
-  const Json root{{"map",
-                   {{"name", answer.map_name},
-                    {"map_session", answer.map_session},
-                    {"session", answer.session},
-                    {"slices", answer.map_slices},
-                    {"points", answer.map_points},
-                    {"segments", answer.map_segments}}},
-                  {"matching", answer.num_matching},
-                  {"hit", answer.has_hit ? vector_json(answer.hit_W) : Json(nullptr)},
-                  {"segments", std::move(segments)}};
+  Json root{
+      {"map",
+       {{"name", answer.map_name},
+        {"map_session", answer.map_session},
+        {"session", answer.session},
+        {"slices", answer.map_slices},
+        {"points", answer.map_points},
+        {"segments", answer.map_segments}}},
+      {"matching", answer.num_matching},
+      {"hit", answer.has_hit ? vector_json(answer.hit_W) : Json(nullptr)},
+  };
+  if (place == QueryPlace::kPixel) {
+    const PixelResult result = pixel_result(answer);
+    const bool is_measured = answer.surface_distance_m > 0.0F;
+    root["view_utime"] = result == PixelResult::kNoView ? Json(nullptr) : Json(answer.view_utime);
+    root["surface_distance_m"] =
+        is_measured ? Json(readable(answer.surface_distance_m)) : Json(nullptr);
+  }
+  root["segments"] = std::move(segments);
   return root.dump(1) + "\n";
 }
 

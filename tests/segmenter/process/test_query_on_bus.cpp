@@ -1,7 +1,7 @@
 // Questions to a segmenter over a real bus, in a network namespace of the test's own.
 
 #include <atomic>
-#include <cmath>
+#include <mutex>
 #include <thread>
 
 #include <gmock/gmock.h>
@@ -12,6 +12,7 @@
 #include "segmenter/tools/query/query_client.hpp"
 #include "tests/segmenter/process/listener.hpp"
 #include "tests/segmenter/process/room_session.hpp"
+#include "tests/segmenter/query/camera_view.hpp"
 #include "tests/segmenter/tools/program.hpp"
 #include "tests/support/message_equality.hpp"
 
@@ -132,8 +133,9 @@ TEST_F(QueryOnTheBus, ProgramTellsOfSilence) {
   EXPECT_EQ(alone.exit_code, 1);
   EXPECT_THAT(alone.output, AllOf(HasSubstr("nobody answered within 0.7 s"), HasSubstr("2 times"),
                                   HasSubstr("is kintsugi-segmenter running?")));
-  EXPECT_THAT(run_query("--pixel 320 240 --timeout 0.5").output,
-              HasSubstr("no mapper is heard there"));
+  EXPECT_THAT(run_query("--pixel 320 240 --map x").output, HasSubstr("needs --pose"));
+  EXPECT_THAT(run_query("--pixel 320 240 --intrinsics 500 500 320 240 640 480").output,
+              HasSubstr("--intrinsics requires --pose"));
   EXPECT_THAT(run_query("--map " + (folder_ / "none.kseg").string()).output,
               HasSubstr("none.kseg"));
   EXPECT_NE(run_query("--at 1 2").exit_code, 0);
@@ -151,36 +153,91 @@ TEST_F(QueryOnTheBus, ProgramGivesTheSameOverTheBusAndOfTheSavedMap) {
   for (const CloudSlice& slice : slices) publisher.publish(slice);
   ASSERT_TRUE(listener.hears([&] { return listener.last && listener.last->is_final; }));
   ASSERT_TRUE(listener.hears([&] { return std::filesystem::exists(folder_ / "map.kseg"); }));
-  // A camera above the table that looks down, on the bus and by hand.
-  CameraPose pose;
-  pose.session = slices[0].session;
-  pose.state = TrackingState::kTracking;
-  pose.X_WC.linear() = Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitX()).matrix();
-  pose.X_WC.translation() << 2.1, 1.4, 2.0;
-  std::atomic<bool> stopping = false;
-  std::thread camera([&] {
-    Bus bus(kPrivateBusUrl);
-    while (!stopping) {
-      bus.publish(channels::kCameraPose, pose);
-      std::this_thread::sleep_for(std::chrono::milliseconds(50));
-    }
-  });
   for (const std::string what :
        {"--largest 3", "--planar --json", "--at 1 0.5 0", "--id 1,2,3",
-        "--box 0 0 0 1 1 1 --json --largest 0", "--changed-since 1003 --largest 2"}) {
+        "--box 0 0 0 1 1 1 --json --largest 0", "--changed-since 1003 --largest 2",
+        "--pixel 319.5 239.5 --json --pose 2.1 1.4 2 1 0 0 0"}) {
     const auto of_bus = run_query(what + " --timeout 60");
     EXPECT_EQ(of_bus.exit_code, 0);
     EXPECT_EQ(of_bus.output, run_query(what + " --map " + (folder_ / "map.kseg").string()).output);
   }
-  const auto seen = run_query("--pixel 319.5 239.5 --json --timeout 60");
-  stopping = true;
-  camera.join();
-  EXPECT_EQ(seen.output, run_query("--pixel 319.5 239.5 --json --pose 2.1 1.4 2 1 0 0 0 --map " +
-                                   (folder_ / "map.kseg").string())
-                             .output);
-  const auto map = load_map(folder_ / "map.kseg");
-  EXPECT_THAT(seen.output, HasSubstr("\"hit\": ["));
-  EXPECT_THAT(seen.output, HasSubstr("\"points\": " + std::to_string(map->cloud().num_live())));
+}
+
+/// Publishes what a camera sees ten times a second, as a mapper does.
+class CameraOnTheBus {
+ public:
+  explicit CameraOnTheBus(const CameraView& view)
+      : view_(view), stream_(bus_, channels::kCameraView, view.session, {}), thread_([this] {
+          while (!stopping_) {
+            publish();
+            std::this_thread::sleep_for(std::chrono::milliseconds(100));
+          }
+        }) {}
+  ~CameraOnTheBus() {
+    stopping_ = true;
+    thread_.join();
+  }
+  /// From now on it sees this.
+  void look_at(const CameraView& view) {
+    {
+      const std::lock_guard lock(mutex_);
+      view_ = view;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));  // until it has arrived
+  }
+
+ private:
+  void publish() {
+    const std::lock_guard lock(mutex_);
+    ++utime_;
+    view_.utime = utime_;
+    stream_.publish(view_);
+  }
+
+  std::atomic<bool> stopping_ = false;
+  Bus bus_{kPrivateBusUrl};
+  std::mutex mutex_;  // guards the next two
+  CameraView view_;
+  std::int64_t utime_ = 0;
+  StreamPublisher stream_;
+  std::thread thread_;
+};
+
+TEST_F(QueryOnTheBus, PixelIsWhatTheCameraMeasuresOrWhyThereIsNoSegment) {
+  const auto slices = testing::RoomRow(1, 0.04).cut(0.5);
+  SegmenterProcess::Config config = on_the_bus(folder_, "exact");
+  config.exit_on_final = false;
+  Listener listener(config);
+  StreamPublisher publisher(listener.bus(), channels::kCloudSlice, slices[0].session, {});
+  for (const CloudSlice& slice : slices) publisher.publish(slice);
+  ASSERT_TRUE(listener.hears([&] { return listener.last && listener.last->is_final; }));
+  const std::string pixel = "--pixel 320 240 --timeout 60 ";
+  const auto none = run_query(pixel);
+  EXPECT_EQ(none.exit_code, 3);
+  EXPECT_THAT(none.output, HasSubstr("no view of the camera"));
+
+  // 0.2 m above the table is a thing that is in no slice.
+  const Pose X_WC = testing::looking_down(2.1, 1.4, 2.0);
+  const CameraView thing = testing::view_of_wall(slices[0].session, X_WC, 1.1);
+  CameraOnTheBus camera(thing);
+  camera.look_at(thing);
+  const auto hidden = run_query(pixel);
+  EXPECT_EQ(hidden.exit_code, 5);
+  EXPECT_THAT(hidden.output, HasSubstr("1.10 m away, is in no segment yet"));
+  EXPECT_THAT(run_query(pixel + "--json").output,
+              AllOf(HasSubstr("\"hit\": null"), HasSubstr("\"surface_distance_m\": 1.1"),
+                    HasSubstr("\"view_utime\": ")));
+  EXPECT_THAT(run_query("--pixel 900 240 --timeout 60").output, HasSubstr("outside the image"));
+
+  camera.look_at(testing::blind_view(slices[0].session, X_WC));
+  const auto blind = run_query(pixel);
+  EXPECT_EQ(blind.exit_code, 4);
+  EXPECT_THAT(blind.output, HasSubstr("measures nothing at this pixel"));
+
+  camera.look_at(testing::view_of_wall(slices[0].session, X_WC, 1.3));
+  const auto table = run_query(pixel + "--json");
+  EXPECT_EQ(table.exit_code, 0);
+  EXPECT_THAT(table.output, HasSubstr("\"hit\": ["));
 }
 
 }  // namespace

@@ -66,5 +66,11 @@ TEST(SliceQueue, IsExhaustedWhenClosedAndEmpty) {
   EXPECT_TRUE(queue.take(std::chrono::hours(1)).empty());  // waits for nothing
 }
 
+TEST(SliceQueue, AWaitForSlicesEndsWhenItIsWoken) {
+  SliceQueue queue(1);
+  queue.wake();  // before the wait begins
+  EXPECT_TRUE(queue.take(std::chrono::hours(1)).empty());
+}
+
 }  // namespace
 }  // namespace kintsugi::segmenter

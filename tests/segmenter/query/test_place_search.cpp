@@ -104,6 +104,37 @@ TEST(PlaceSearch, BoxHoldsTheSegmentsOfItsPointsFacesIncluded) {
   EXPECT_EQ(segments_in_box(labelled.cloud(), {p_W, p_W}), std::vector{labelled.segment_ids[1]});
 }
 
+TEST(PlaceSearch, MeasuredSurfaceIsNeitherBehindNorInFrontOfWhatIsMeasured) {
+  Labelled labelled;
+  add_square(1.0, 20, 1, labelled);
+  add_square(2.0, 60, 2, labelled);
+  add_square(3.0, 90, 3, labelled);
+  const Ray forward{{0, 0, 0}, {0, 0, 1}};
+  const double radius_m = 0.03;
+  for (int wall = 1; wall <= 3; ++wall) {
+    for (const double off_m : {-0.025, 0.0, 0.025}) {
+      const auto hit = measured_surface(labelled.cloud(), {forward, wall + off_m}, radius_m);
+      ASSERT_TRUE(hit);
+      EXPECT_EQ(labelled.segment_ids[hit->point], static_cast<std::uint32_t>(wall));
+      EXPECT_NEAR(hit->distance_m, wall, 1e-6);  // of the map, not of the measurement
+    }
+    EXPECT_FALSE(measured_surface(labelled.cloud(), {forward, wall + 0.04}, radius_m));
+    EXPECT_FALSE(measured_surface(labelled.cloud(), {forward, wall - 0.04}, radius_m));
+  }
+}
+
+TEST(PlaceSearch, MeasuredSurfaceFacesTheCamera) {
+  Labelled board;  // 2 cm thick, measured in its middle
+  board.add(make_point(0, 0, 1.0, 0, 0, -1), 1);
+  board.add(make_point(0, 0, 1.02, 0, 0, 1), 2);
+  const MeasuredPoint measured{{{0, 0, 0}, {0, 0, 1}}, 1.015};
+  const auto front = measured_surface(board.cloud(), measured, 0.03);
+  ASSERT_TRUE(front);
+  EXPECT_EQ(board.segment_ids[front->point], 1U);
+  board.segment_ids[0] = kNoSegment;
+  EXPECT_FALSE(measured_surface(board.cloud(), measured, 0.03));
+}
+
 TEST(PlaceSearch, RayMeetsAPlaneWhereItIsAndNamesTheNearestPointThere) {
   Labelled labelled;
   add_square(2.0, 60, 7, labelled);

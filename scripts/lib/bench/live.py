@@ -1,0 +1,56 @@
+"""The section about a live run: cost, and how much of what the camera sees is in the segment map."""
+
+import json
+import re
+
+from .tables import fixed, markdown
+
+PROCESSES = ("mapper", "segmenter", "viewer")
+
+
+def live(run):
+    costs, measures = [], []
+    for source in run.inputs("office"):
+        name = f"live_{source.name}"
+        printed = run.trio(name, source)
+        costs.append([source.name, *cost(printed, (run.folder / name / "mapper.log").read_text())])
+        measures.append([source.name, *in_view(measured(run, name))])
+    return (markdown(["recording", "frames", "dropped", *(f"{process}, CPU-ms a frame" for process in PROCESSES),
+                      "all three, CPU-ms a frame"], costs) + "\n" +
+            markdown(["recording", "centre pixel has its right segment, %", "visible surface in a segment, mean, %",
+                      "from seen to labelled, median (p99), s", "`--pixel` answered (wrong), %",
+                      "`--ray` answered (wrong), %", "label never changed, %", "times that a point is sent"], measures))
+
+
+def cost(printed, log):
+    """Frames, frames dropped, and CPU-ms a frame of each process and of all."""
+    frames, dropped = (int(re.findall(rf"(\d+) {what}", log)[-1]) for what in ("frames in", "dropped"))
+    cpu = re.findall(r"(?m)^ *CPU: .*", printed)[-1]
+    cpu_ms = [1e3 * float(re.search(rf"{process} ([0-9.]+) s", cpu)[1]) / frames for process in PROCESSES]
+    return [frames, dropped, *(fixed(each, 1) for each in [*cpu_ms, sum(cpu_ms)])]
+
+
+def measured(run, name):
+    """What kintsugi-evaluate measures of the log of the bus."""
+    file = run.folder / name / "live.json"
+    run.kintsugi("evaluate", "--live", run.folder / name / "run.lcm", "--json", file)
+    return json.loads(file.read_text())
+
+
+def percent(share):
+    return None if share is None else fixed(100 * share, 1)
+
+
+def answers(counts):
+    """Shares of the pixels that were asked, and of the answers; both in percent."""
+    answered = counts["answered"] / max(counts["asked"], 1)
+    return f"{percent(answered)} ({percent(counts['wrong'] / max(counts['answered'], 1))})"
+
+
+def in_view(told):
+    """The cells of one run."""
+    delays = [told["delay_median_s"], told["delay_p99_s"]]
+    delay = None if None in delays else "{:.2f} ({:.2f})".format(*delays)
+    return [percent(told["centre_right"]), percent(told["covered_mean"]), delay, answers(told["pixel"]),
+            answers(told["ray"]), percent(told["unchanged"]),
+            None if told["times_sent"] is None else fixed(told["times_sent"], 1)]

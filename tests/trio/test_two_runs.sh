@@ -1,0 +1,57 @@
+#!/usr/bin/env bash
+# Two runs on one bus: with the same map name the second refuses to start and the first is not disturbed, nor does a
+# mapper without scripts/trio disturb it; with a name each, both finish with their own maps.
+source "$(dirname "${BASH_SOURCE[0]}")/lib.sh"
+if [[ -z "${KINTSUGI_TEST_TWO_RUNS:-}" ]]; then
+  KINTSUGI_TEST_TWO_RUNS=1 "$root/scripts/private_bus" "$root/tests/trio/test_two_runs.sh" && exit
+  exit 1
+fi
+
+# run OUT FRAMES ARGS...: a run at the camera's rate. Runs of different lengths have different maps.
+run() {
+  local out="$1" frames="$2"
+  shift 2
+  "$root/scripts/trio" --device 'synthetic://office?frames=200' --resolution 0.03 --volume-size 3.2 --no-log \
+    --max-frames "$frames" --out "$out" "$@" >"$out.txt" 2>&1
+}
+
+run first 150 &
+first=$!
+wait_for_file first/mapper.lcm
+sleep 1
+
+run second 60 && fail "a second run with the same map name was started"
+grep -q "another mapper makes a map called 'map' on this bus" second.txt || fail "the reason is not told: $(cat second.txt)"
+[[ ! -e second ]] || fail "a run that is refused has made its folder"
+"$KINTSUGI_BIN/kintsugi-mapper" --device 'synthetic://office?frames=30' --replay --store none.lcm >mapper.txt 2>&1 &&
+  fail "a second mapper with the same map name was started"
+grep -q "another mapper with the map name 'map'" mapper.txt || fail "the reason is not told: $(cat mapper.txt)"
+[[ ! -e none.lcm ]] || fail "a mapper that is refused has made its log"
+
+run other 60 --map-name other || fail "the run with another map name: $(cat other.txt)"
+wait "$first" || fail "the first run: $(cat first.txt)"
+
+# frames OUT: how many the mapper mapped.
+frames() { grep -oP '\d+(?= frames in )' "$1/mapper.log"; }
+[[ "$(frames first)" == 150 ]] || fail "the first run mapped $(frames first) of 150 frames"
+[[ "$(frames other)" == 60 ]] || fail "the other run mapped $(frames other) of 60 frames"
+for out in first other; do
+  [[ "$(ls "$out"/segments*.ply)" == "$out/segments.ply" ]] || fail "$out has more than its own map: $(ls "$out")"
+  published="$(grep -oP '\d+(?= points, \d+ messages published)' "$out/mapper.log")"
+  [[ "$(vertices "$out/segments.ply")" == "$published" ]] ||
+    fail "$out/segments.ply has $(vertices "$out/segments.ply") of $published points"
+  expect_file "$out/final.png"
+done
+
+# Of two mappers that start together one goes on.
+start_mapper() {
+  exec "$KINTSUGI_BIN/kintsugi-mapper" --device 'synthetic://office?frames=30' --replay --linger 3 --resolution 0.03 \
+    >"$1.txt" 2>&1
+}
+start_mapper a &
+a=$!
+start_mapper b &
+b=$!
+codes=""
+for mapper in "$a" "$b"; do wait "$mapper" && codes+=0 || codes+=1; done
+[[ "$codes" == 01 || "$codes" == 10 ]] || fail "of two mappers that start together: $codes, $(cat a.txt b.txt)"
