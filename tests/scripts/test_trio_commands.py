@@ -86,7 +86,7 @@ class Trio(CommandTest):
         self.expect(0, "trio", "--out", "run", "--no-log", "--device", "", "--mapper", "--session=7", "--video",
                     "--mode", "batch")
         self.assertEqual(self.call("kintsugi-mapper"), ["--output-trajectory=run/trajectory.txt", "--linger=-1",
-                                                        "--store=run/mapper.lcm", "--volume=cube", "--session=7"])
+                                                        "--store=run/mapper.lcm", "--session=7"])
         self.assertEqual(self.call("kintsugi-segmenter"), [
             "--out=run", "--exit-on-final", "--linger=-1", "--save=run/segmenter.map", "--save-every=5",
             "--resume-if-saved", "--map-name=map", "--mode=batch"])
@@ -114,14 +114,6 @@ class Trio(CommandTest):
         self.assertIn("another mapper makes a map called 'map' on this bus", said)
         self.assertIn("--map-name", said)
         self.assertEqual(sorted(path.name for path in (self.work / "run").iterdir()), before)
-
-    def test_a_volume_that_is_given_replaces_the_cube(self):
-        for number, options in enumerate((["--volume", "range"], ["--volume-size", "3"], ["--mapper", "--volume range"],
-                                          ["--mapper", "--config=mapper.toml"], ["--replay"])):
-            self.expect(0, "trio", "--out", f"run{number}", "--no-log", *options)
-            self.assertNotIn("--volume=cube", self.call("kintsugi-mapper"))
-        self.expect(0, "trio", "--out", "last", "--no-log", "--mapper", "--volume-memory=100")
-        self.assertIn("--volume=cube", self.call("kintsugi-mapper"))
 
     def test_without_a_viewer_the_others_linger_for_a_minute(self):
         self.program("segmenter", FINISHES)

@@ -14,8 +14,8 @@ from .tables import parse_google_benchmark
 
 SCRIPTS = os.path.join(ROOT, "scripts")
 BENCH_PROGRAMS = os.path.join(ROOT, "build", "release", "bench")
-# The paper's, in which slices leave all the time; of a room in the mapper's default volume none does before the end.
-PAPER_VOLUME = ("--volume", "cube")
+# The paper's: slices of what leaves a cube.
+PAPER_SLICES = ("--slices", "shift", "--volume", "cube")
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from trio.programs import ROOT
 
-from .run import PAPER_VOLUME, room
+from .run import PAPER_SLICES, room
 from .tables import fixed, markdown, number, parse_tables, read_csv
 
 PAPER_RESULTS = Path(ROOT, "segmenter", "evaluation", "paper", "paper_results.hpp")
@@ -31,7 +31,7 @@ def add_map(run, source, options_of_trio, options_of_evaluation, lines, agreemen
     """Appends a row for each mode to both tables."""
     name = f"map_{source.name}"
     out = run.folder / name / "evaluation"
-    run.trio(name, source, "--replay", *PAPER_VOLUME, *options_of_trio)
+    run.trio(name, source, "--replay", *PAPER_SLICES, *options_of_trio)
     run.kintsugi("evaluate", run.folder / name / "run.lcm", "--out", out, *options_of_evaluation)
     behind = {row["mode"]: row for row in read_csv(out / "table2.csv")}
     for row in read_csv(out / "table1.csv"):
@@ -77,7 +77,7 @@ def quality(run):
     for title, name, options_of_mapper, options_of_truth in runs:
         out = run.folder / f"quality_{name}"
         log, truth = out.with_suffix(".lcm"), out.with_suffix(".ply")
-        run.map_alone(out.name, office, "--store", log, *PAPER_VOLUME, *options_of_mapper)
+        run.map_alone(out.name, office, "--store", log, *PAPER_SLICES, *options_of_mapper)
         run.kintsugi("ground-truth", office.device, log, truth, *options_of_truth)
         run.kintsugi("evaluate", log, "--ground-truth", truth, "--sweep", "--out", out)
         for figure in out.glob("*.gp"):

@@ -20,8 +20,6 @@ READY_TIMEOUT_S = 20
 OTHER_MAPPER_S = 1  # a mapper sends three statuses a second
 DEFAULT_MAP_NAME = "map"
 INTERRUPTED = 130  # exit code, as shells have it
-# Of the mapper: with these it chooses the volume itself.
-VOLUME_FLAGS = {"--volume", "--volume-size", "--config", "--replay"}
 # What the mapper published. Messages of the recorded segmenter would contradict those of the one that listens now.
 REPLAYED_CHANNELS = "^(CLOUD_SLICE|CAMERA_POSE|MAPPER_STATUS)$"
 
@@ -133,18 +131,12 @@ def linger_s(choice):
     return UNTIL_TOLD if "viewer" in choice.only else LINGER_S
 
 
-def chosen_volume(words):
-    """The volume for a mapper with these options. By default a mapper keeps a whole room in its volume, so that during
-    a live run the segmenter and the viewer would have nothing to show."""
-    return [] if any(word.partition("=")[0] in VOLUME_FLAGS for word in words) else ["--volume=cube"]
-
-
 def mapper_process(choice, folder):
     def command(resume):
         log_option = "--resume" if resume and folder.has("mapper.lcm") else "--store"
         return [program("mapper"), "--output-trajectory=" + folder.file("trajectory.txt"),
                 f"--linger={linger_s(choice)}", f"{log_option}={folder.file('mapper.lcm')}",
-                *chosen_volume(choice.mapper), *map_option(choice.map_name, choice.mapper), *choice.mapper]
+                *map_option(choice.map_name, choice.mapper), *choice.mapper]
 
     # A mapper that gets SIGTERM finishes its session, and answers requests until it gets another one. When this
     # supervisor is killed the session must remain unfinished, so that --resume can continue it.

@@ -25,9 +25,11 @@ TRIO_OPTIONS = (
     ("--preset", "NAME", PASS_ON, "segmenter", "parameters of the segmenter: objects (default) or paper"),
     ("--resolution", "M", PASS_ON, "mapper", "side of a voxel in metres"),
     ("--volume", "NAME", PASS_ON, "mapper",
-     "what the mapper keeps around the camera. range (default with --replay): all that the camera sees, most of it is "
-     "sent at the end; cube (default without): 4.5 m, what lies outside is sent during the run"),
+     "what the mapper keeps around the camera. range (default): all that the camera sees; cube: 4.5 m"),
     ("--volume-size", "M", PASS_ON, "mapper", "side of the cube in metres"),
+    ("--slices", "KIND", PASS_ON, "mapper",
+     "patch (default): surface is sent as soon as it is seen, and again when it has changed; shift: once, when it "
+     "leaves the volume"),
     ("--calibration", "FILE", PASS_ON, "mapper", "camera.txt of the camera"),
     ("--replay", None, PASS_ON, "mapper",
      "map every frame, as fast as processing allows (recordings and synthetic rooms)"),
