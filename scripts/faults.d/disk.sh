@@ -45,10 +45,10 @@ problems_are_said() {
   must "the viewer does not say that its pictures cannot be written" said_problem viewer problem
 }
 
-# fill_disk_in_a_run: starts the run with a snapshot and a saved map at each slice, so that all writers meet the full disk,
+# fill_disk_in_a_run: starts the run with many snapshots and a saved map at each slice, so that all writers meet the full disk,
 # and fills the disk after a third of the time that the reference took.
 fill_disk_in_a_run() {
-  local snapshot_every=1
+  local snapshot_every=0.1
   choose_scene
   scene+=(--segmenter '--write-every=1')
   reference

@@ -4,27 +4,27 @@
 #include <filesystem>
 
 #include <opencv2/core.hpp>
-#include <opencv2/videoio.hpp>
 
 #include "lcmtypes/base/atomic_file.hpp"
+#include "viewer/output/h264_encoder.hpp"
 
 namespace kintsugi::viewer {
 
-/// An MPEG-4 video file that is complete or absent, also after an error.
+/// An H.264 video in an MP4 file that is complete or absent, also after an error.
 class VideoFile {
  public:
   /// Opens a temporary file beside `path`.
   /// @throws std::invalid_argument when `path` does not end in .mp4, std::runtime_error naming the
-  ///   file when it cannot be written
-  VideoFile(const std::filesystem::path& path, cv::Size size, double frames_per_s);
+  ///   file when it cannot be written, or when there is no H.264 encoder
+  VideoFile(const std::filesystem::path& path, cv::Size size, double pictures_per_s);
 
   /// Appends a picture.
-  /// @throws std::invalid_argument when it has another size than the video
+  /// @throws std::invalid_argument when it has another size than the video, std::runtime_error when
+  ///   it cannot be written: the video is lost then
   void add(const cv::Mat3b& image);
 
-  /// Closes the file, checks that its index is complete (FFmpeg does not report a full disk to
-  /// OpenCV) and renames it to `path`. A video without frames is removed. Call once, after the last
-  /// add().
+  /// Closes the file and renames it to `path`. A video without frames is removed. Call once, after
+  /// the last add().
   /// @throws std::runtime_error naming the file when it is not complete; it is removed then
   void finish();
 
@@ -34,8 +34,9 @@ class VideoFile {
  private:
   std::filesystem::path path_;
   cv::Size size_;
-  AtomicFile file_;  // before the writer, so that it is destroyed after it
-  cv::VideoWriter writer_;
+  AtomicFile file_;  // before the encoder, so that it is destroyed after it
+  H264Encoder encoder_;
+  bool has_failed_ = false;
   std::int64_t frames_ = 0;
 };
 

@@ -16,8 +16,9 @@ std::int64_t reserve_for(cv::Size size) {
 
 }  // namespace
 
-VideoRecorder::VideoRecorder(const std::filesystem::path& path, cv::Size size, double frames_per_s)
-    : reserve_bytes_(reserve_for(size)), file_(path, size, frames_per_s) {}
+VideoRecorder::VideoRecorder(const std::filesystem::path& path, cv::Size size,
+                             double pictures_per_s)
+    : reserve_bytes_(reserve_for(size)), file_(path, size, pictures_per_s) {}
 
 /// Also true when the file system does not report its free space.
 bool VideoRecorder::has_room() const {
@@ -28,7 +29,13 @@ bool VideoRecorder::has_room() const {
   return unknown || space.available >= static_cast<std::uintmax_t>(reserve_bytes_);
 }
 
-void VideoRecorder::add(const cv::Mat3b& figure) {
+void VideoRecorder::add(const cv::Mat3b& figure, int count) {
+  for (int i = 0; i + 1 < count; ++i) append(newest_.empty() ? figure : newest_);
+  append(figure);
+  newest_ = figure;
+}
+
+void VideoRecorder::append(const cv::Mat3b& picture) {
   if (!has_room()) {
     ++frames_left_out_;
     attempts_.note_failure(
@@ -36,7 +43,7 @@ void VideoRecorder::add(const cv::Mat3b& figure) {
                     file_.path().string(), reserve_bytes_));
     return;
   }
-  attempts_([&] { file_.add(figure); });
+  attempts_([&] { file_.add(picture); });
 }
 
 bool VideoRecorder::finish() {

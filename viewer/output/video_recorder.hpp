@@ -11,16 +11,17 @@ namespace kintsugi::viewer {
 
 /// Records a video for as long as the disk has room.
 ///
-/// FFmpeg does not report a full disk to OpenCV, and a single failed write makes the whole file
-/// unreadable. So frames are left out, and that is logged, while the free space is less than a
-/// frame and the index may need; the frames before and after make a valid video.
+/// A single failed write makes the whole file unreadable. So frames are left out, and that is
+/// logged, while the free space is less than a frame and the index may need; the frames before and
+/// after make a valid video.
 class VideoRecorder {
  public:
   /// @throws as VideoFile
-  VideoRecorder(const std::filesystem::path& path, cv::Size size, double frames_per_s);
+  VideoRecorder(const std::filesystem::path& path, cv::Size size, double pictures_per_s);
 
-  /// Appends a picture, or leaves it out when the disk is full.
-  void add(const cv::Mat3b& figure);
+  /// Appends `count` pictures: the one before again and again, then this one. Pictures are left out
+  /// when the disk is full.
+  void add(const cv::Mat3b& figure, int count = 1);
 
   /// Closes the file. False, and logged, when the video is lost. Call once, after the last add().
   bool finish();
@@ -30,11 +31,13 @@ class VideoRecorder {
 
  private:
   bool has_room() const;
+  void append(const cv::Mat3b& picture);
 
   std::int64_t reserve_bytes_;
   VideoFile file_;
   Attempts attempts_;
   std::int64_t frames_left_out_ = 0;
+  cv::Mat3b newest_;
 };
 
 }  // namespace kintsugi::viewer

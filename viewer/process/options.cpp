@@ -55,19 +55,23 @@ void add_output_flags(CLI::App& app, Flags& flags) {
   ViewerProcess::Config& process = flags.options.process;
   app.add_option("--out", flags.folder, "Folder for the pictures; created if it is missing")
       ->capture_default_str();
-  app.add_option("--every", process.every_slices, "Number of slices between two snapshots")
+  app.add_option("--every", process.every_s, "Map time between two snapshots, s")
       ->capture_default_str();
   app.add_option("--size", flags.size, "WIDTHxHEIGHT of the pictures, pixels")
       ->capture_default_str();
-  app.add_option("--video", flags.video, "Write a video to this .mp4 file");
-  app.add_option("--video-period", process.video_period_s, "Map time between two frames, s")
+  app.add_option("--video", flags.video, "Write a video (H.264) to this .mp4 file");
+  app.add_option("--video-rate", process.video_rate_hz,
+                 "Pictures of the video in a second, of map time and when it is played")
       ->capture_default_str();
-  app.add_option("--video-rate", process.video_frames_per_s, "Frames per second of the video")
+  app.add_option(
+         "--map-period", flags.painter().map_period_s,
+         "Map time after which a picture of the video has the map anew, s; the camera's image "
+         "is always new")
       ->capture_default_str();
   app.add_flag("--plots", flags.painter().plots, "Write plots.png: lag and times over the slices");
   app.add_option("--drawing-share", flags.painter().max_drawing_share,
                  "Largest share of the wall time for drawing; with --log it is 1")
-      ->default_val(0.5);
+      ->default_val(0.25);
 }
 
 void add_segment_flags(CLI::App& app, Flags& flags) {

@@ -1,5 +1,6 @@
 #include "viewer/process/painter.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "lcmtypes/base/argument_check.hpp"
@@ -12,21 +13,35 @@ void Painter::Config::validate() const {
   renderer.validate();
   require(max_drawing_share > 0.0 && max_drawing_share <= 1.0, "Painter::Config::max_drawing_share",
           max_drawing_share, "in (0, 1]");
+  require(map_period_s >= 0.0, "Painter::Config::map_period_s", map_period_s, ">= 0 s");
 }
 
 Painter::Painter(const Config& config)
     : config_((config.validate(), config)), renderer_(config.renderer) {}
 
-cv::Mat3b Painter::draw_figure(MapSession& session) {
+cv::Mat3b Painter::draw_figure(MapSession& session, RunFigure::Map map_wanted) {
   const Stopwatch stopwatch;
   const ReceivedMap& map = session.map();
   Highlight highlight = config_.highlight;
   highlight.insert(session.answered().begin(), session.answered().end());
-  cv::Mat3b figure = renderer_.draw_figure(
+  cv::Mat3b figure = run_figure_.draw(
       {map, map.received_track(), session.depth_camera(), config_.viewpoint, std::move(highlight)},
-      caption(map));
-  note_time(session, stopwatch.elapsed_ms());
+      session.view(), caption(map), map_is_due(session) ? RunFigure::Map::kNew : map_wanted);
+  const double elapsed_ms = stopwatch.elapsed_ms();
+  if (!run_figure_.has_drawn_map()) {
+    without_map_ms_ = elapsed_ms;
+    rest_end_ = after_rest(elapsed_ms);
+    return figure;
+  }
+  map_utime_ = map.utime();
+  note_time(session, elapsed_ms);
   return figure;
+}
+
+bool Painter::map_is_due(const MapSession& session) const {
+  const std::int64_t age_us = session.map().utime() - map_utime_;
+  const bool is_old = age_us < 0 || 1e-6 * static_cast<double>(age_us) >= config_.map_period_s;
+  return is_old && Clock::now() >= map_rest_end_;
 }
 
 std::vector<NamedPicture> Painter::draw_finals(MapSession& session) {
@@ -47,12 +62,22 @@ std::vector<NamedPicture> Painter::draw_finals(MapSession& session) {
   return pictures;
 }
 
+/// The pictures and the maps in them have half of the share each, so that the camera's image goes
+/// on between two maps.
+Painter::Clock::time_point Painter::after_rest(double drawing_ms) const {
+  const std::chrono::duration<double, std::milli> rest(
+      2.0 * (1.0 / config_.max_drawing_share - 1.0) * drawing_ms);
+  return Clock::now() + std::chrono::duration_cast<Clock::duration>(rest);
+}
+
+/// Of a picture with its map.
 void Painter::note_time(MapSession& session, double render_ms) {
   render_ms_ = render_ms;
   session.history().add_render_time(session.map(), render_ms);
-  const std::chrono::duration<double, std::milli> rest((1.0 / config_.max_drawing_share - 1.0) *
-                                                       render_ms);
-  rest_end_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(rest);
+  const bool has_view = session.view() != nullptr;
+  const double of_picture_ms = has_view ? std::min(without_map_ms_, render_ms) : render_ms;
+  rest_end_ = after_rest(of_picture_ms);
+  map_rest_end_ = after_rest(render_ms - (has_view ? of_picture_ms : 0.0));
 }
 
 }  // namespace kintsugi::viewer

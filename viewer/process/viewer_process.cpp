@@ -1,5 +1,6 @@
 #include "viewer/process/viewer_process.hpp"
 
+#include <algorithm>
 #include <type_traits>
 #include <utility>
 #include <variant>
@@ -15,9 +16,8 @@ namespace kintsugi::viewer {
 
 void ViewerProcess::Config::validate() const {
   painter.validate();
-  require(every_slices >= 1, "ViewerProcess::Config::every_slices", every_slices, ">= 1");
-  require(video_period_s > 0.0, "ViewerProcess::Config::video_period_s", video_period_s, "> 0 s");
-  check_range("ViewerProcess::Config::video_frames_per_s", video_frames_per_s, 1.0, 120.0);
+  require(every_s > 0.0, "ViewerProcess::Config::every_s", every_s, "> 0 s");
+  check_range("ViewerProcess::Config::video_rate_hz", video_rate_hz, 0.1, 120.0);
 }
 
 ViewerProcess::ViewerProcess(const Config& config, Outputs outputs)
@@ -25,11 +25,12 @@ ViewerProcess::ViewerProcess(const Config& config, Outputs outputs)
       outputs_(std::move(outputs)),
       painter_(config.painter),
       folder_(config.folder),
+      video_clock_(config.video_rate_hz),
       sessions_(!config.painter.timelines.empty()) {
   if (config_.video) {
     const MapRenderer::Config& renderer = config_.painter.renderer;
     const cv::Size size(renderer.width_px, renderer.height_px);
-    video_ = std::make_unique<VideoRecorder>(*config_.video, size, config_.video_frames_per_s);
+    video_ = std::make_unique<VideoRecorder>(*config_.video, size, config_.video_rate_hz);
   }
 }
 
@@ -46,6 +47,9 @@ void ViewerProcess::add(Message message, double now_s) {
       if (session != nullptr) session->use(m, now_s);
     } else if constexpr (std::is_same_v<Type, CameraPose>) {
       sessions_.use(m);
+    } else if constexpr (std::is_same_v<Type, CameraView>) {
+      MapSession* const session = find_or_create_session(m.session, now_s);
+      if (session != nullptr) session->use(std::forward<M>(m));
     } else {  // a status or an answer of the segmenter
       if (MapSession* const session = sessions_.find(m.map_session)) session->use(m);
     }
@@ -68,36 +72,46 @@ void ViewerProcess::forget_oldest() {
   sessions_.forget_oldest();
 }
 
+/// Pictures of the video that the map has passed and that are not in it.
+int ViewerProcess::frames_due() const {
+  const MapSession* const session = sessions_.current();
+  if (!video_ || session == nullptr || !session->has_picture()) return 0;
+  return video_clock_.due(session->map().utime());
+}
+
 void ViewerProcess::draw_if_due() {
   MapSession* const session = sessions_.current();
   if (session == nullptr) return;
-  const bool snapshot = session->snapshot_is_due(config_.every_slices);
-  const bool frame = video_ && session->frame_is_due(config_.video_period_s);
+  const bool snapshot = session->snapshot_is_due(config_.every_s);
   const bool answer = session->answer_is_due();
-  if ((!snapshot && !frame && !answer) || painter_.is_resting()) return;
-  const cv::Mat3b figure = painter_.draw_figure(*session);
-  if (frame) {
-    video_->add(figure);
-    session->note_frame();
-  }
+  const int frames = frames_due();
+  if ((!snapshot && frames == 0 && !answer) || painter_.is_resting()) return;
+  const auto map = snapshot || answer ? RunFigure::Map::kNew : RunFigure::Map::kMayBeOld;
+  const cv::Mat3b figure = painter_.draw_figure(*session, map);
+  if (frames > 0) add_to_video(*session, figure, frames);
   if (answer) write_highlight(*session, figure);
   if (snapshot) write_snapshot(*session, figure);
 }
 
+void ViewerProcess::add_to_video(const MapSession& session, const cv::Mat3b& figure, int frames) {
+  video_->add(figure, frames);
+  video_clock_.note(session.map().utime(), frames);
+}
+
 void ViewerProcess::draw_snapshot_now() {
   MapSession* const session = sessions_.current();
-  if (session != nullptr && session->map().newest_slice() != nullptr) {
-    write_snapshot(*session, painter_.draw_figure(*session));
+  if (session != nullptr && session->has_picture()) {
+    write_snapshot(*session, painter_.draw_figure(*session, RunFigure::Map::kNew));
   }
 }
 
 void ViewerProcess::write_snapshot(MapSession& session, const cv::Mat3b& figure) {
-  const std::string text = caption(session.map());
-  const std::int32_t slice_id = session.map().newest_slice()->id();
-  if (!folder_.save(fmt::format("snapshot_{:06}.png", slice_id), figure)) ++failures_;
-  outputs_.on_picture(figure, text);
+  const ReceivedMap& map = session.map();
+  const double time_s = 1e-6 * static_cast<double>(map.utime() - map.first_utime());
+  if (!folder_.save(fmt::format("snapshot_{:06.1f}s.png", time_s), figure)) ++failures_;
+  outputs_.on_picture(figure, caption(map));
   session.note_snapshot();
-  spdlog::info("{}; drawn in {:.0f} ms", text, painter_.render_ms());
+  spdlog::info("{}; drawn in {:.0f} ms", caption(map), painter_.render_ms());
 }
 
 void ViewerProcess::write_highlight(MapSession& session, const cv::Mat3b& figure) {
@@ -164,14 +178,24 @@ bool ViewerProcess::write_final(MapSession& session) {
   return true;
 }
 
+/// The last picture of the video shows all that came.
+void ViewerProcess::end_video() {
+  MapSession* const session = sessions_.current();
+  if (session != nullptr && session->has_picture()) {
+    const cv::Mat3b figure = painter_.draw_figure(*session, RunFigure::Map::kNew);
+    add_to_video(*session, figure, std::max(1, frames_due()));
+  }
+  if (!video_->finish()) ++failures_;
+}
+
 void ViewerProcess::close() {
+  if (video_) end_video();
   for (auto& [number, session] : sessions_.all()) {
     if (!write_final(session)) ++failures_;
   }
   if (const MapSession* const session = sessions_.current()) {
     finished_ = finished_ || session->is_complete();
   }
-  if (video_ && !video_->finish()) ++failures_;
 }
 
 ViewerStatus ViewerProcess::status() const {

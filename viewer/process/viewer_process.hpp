@@ -8,6 +8,7 @@
 #include <string>
 
 #include "viewer/output/picture_folder.hpp"
+#include "viewer/output/video_clock.hpp"
 #include "viewer/output/video_recorder.hpp"
 #include "viewer/process/painter.hpp"
 #include "viewer/process/retry_clock.hpp"
@@ -29,10 +30,9 @@ class ViewerProcess {
   struct Config {
     Painter::Config painter;
     std::filesystem::path folder = ".";          ///< for the pictures; must exist
-    int every_slices = 10;                       ///< slices between two snapshots
+    double every_s = 10.0;                       ///< map time between two snapshots
     std::optional<std::filesystem::path> video;  ///< .mp4 file; nothing: no video
-    double video_period_s = 0.1;                 ///< map time between two frames
-    double video_frames_per_s = 20.0;            ///< of playback
+    double video_rate_hz = 10.0;  ///< pictures in a second of map time and of the video
 
     /// @throws std::invalid_argument naming the field, its value and the bound
     void validate() const;
@@ -82,6 +82,9 @@ class ViewerProcess {
   bool write_final(MapSession& session);
 
   void write_snapshot(MapSession& session, const cv::Mat3b& figure);
+  int frames_due() const;
+  void add_to_video(const MapSession& session, const cv::Mat3b& figure, int frames);
+  void end_video();
   void write_highlight(MapSession& session, const cv::Mat3b& figure);
 
   Config config_;
@@ -89,6 +92,7 @@ class ViewerProcess {
   Painter painter_;
   PictureFolder folder_;
   std::unique_ptr<VideoRecorder> video_;
+  VideoClock video_clock_;
 
   std::string map_name_;
   MapSessions sessions_;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <variant>
 
 #include "lcmtypes/messages.hpp"
@@ -8,7 +9,8 @@
 namespace kintsugi::viewer {
 
 /// A message that the viewer uses, from the bus or a log.
-using Message = std::variant<CloudSlice, SegmentUpdate, CameraPose, SegmenterStatus, SegmentAnswer>;
+using Message =
+    std::variant<CloudSlice, SegmentUpdate, CameraPose, CameraView, SegmenterStatus, SegmentAnswer>;
 
 /// Memory that a message takes.
 inline std::size_t bytes_of(const Message& message) {
@@ -22,6 +24,9 @@ inline std::size_t bytes_of(const Message& message) {
              m.statistics.size() * sizeof(SegmentStatistics);
     }
     std::size_t operator()(const CameraPose& /*small*/) const { return 0; }
+    std::size_t operator()(const CameraView& m) const {
+      return m.depth_mm.size() * sizeof(std::uint16_t) + m.color_jpeg.size();
+    }
     std::size_t operator()(const SegmenterStatus& /*small*/) const { return 0; }
     std::size_t operator()(const SegmentAnswer& m) const {
       return m.segments.size() * sizeof(DescribedSegment) +
@@ -34,6 +39,7 @@ inline std::size_t bytes_of(const Message& message) {
 /// The message belongs to no resent stream: it may be lost anyway, so it may be dropped.
 inline bool is_droppable(const Message& message) {
   return std::holds_alternative<CameraPose>(message) ||
+         std::holds_alternative<CameraView>(message) ||
          std::holds_alternative<SegmenterStatus>(message) ||
          std::holds_alternative<SegmentAnswer>(message);
 }

@@ -45,6 +45,12 @@ Receiver::Receiver(const Config& config, OnMessage on_message, OnBad on_bad)
       updates_(
           channels::kSegmentUpdate, [this](SegmentUpdate update) { use(std::move(update)); },
           [this](const DecodeError& reason) { bad(reason); }, stream_config<SegmentUpdate>(config)),
+      views_(
+          channels::kCameraView,
+          [this](CameraView view) {
+            if (choice_.is_drawn(view.map_name)) on_message_(std::move(view));
+          },
+          [this](const DecodeError& reason) { bad(reason); }, stream_config<CameraView>(config)),
       answers_(
           channels::kSegmentAnswer,
           [this](SegmentAnswer answer) { on_message_(std::move(answer)); },
@@ -65,6 +71,7 @@ void Receiver::use(SegmentUpdate update) {
 void Receiver::subscribe(Bus& bus) {
   slices_.subscribe(bus);
   updates_.subscribe(bus);
+  views_.subscribe(bus);
   answers_.subscribe(bus);
   bus.subscribe(channels::kCameraPose, [this](ByteView data) { handle_small<CameraPose>(data); });
   bus.subscribe(channels::kSegmenterStatus,
@@ -79,6 +86,7 @@ void Receiver::request_missing(Bus& bus, double now_s) {
 void Receiver::handle(const std::string& channel, ByteView data) {
   slices_.handle(channel, data);
   updates_.handle(channel, data);
+  views_.handle(channel, data);
   answers_.handle(channel, data);
   if (channel == channels::kCameraPose) handle_small<CameraPose>(data);
   if (channel == channels::kSegmenterStatus) handle_small<SegmenterStatus>(data);

@@ -68,6 +68,7 @@ class Receiver {
   std::atomic<std::int64_t> bad_{0};
   StreamSubscriber<CloudSlice> slices_;
   StreamSubscriber<SegmentUpdate> updates_;
+  StreamSubscriber<CameraView> views_;       // never requested again
   StreamSubscriber<SegmentAnswer> answers_;  // to queries of any client; never requested again
 };
 

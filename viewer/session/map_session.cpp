@@ -1,5 +1,6 @@
 #include "viewer/session/map_session.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace kintsugi::viewer {
@@ -10,20 +11,31 @@ void MapSession::note_change(double now_s) {
 }
 
 void MapSession::use(CloudSlice slice, double now_s) {
+  const bool is_newest = slice.utime > map_.utime();
   CameraPose pose;  // replaces one that was not received
   pose.utime = slice.utime;
   pose.state = TrackingState::kTracking;
   pose.X_WC = slice.X_WC;
+  const std::int32_t id = slice.id;
   if (!map_.add_slice(std::move(slice))) return;
-  depth_camera_.update(pose, map_.up().up_W());
+  slice_utime_ = std::max(slice_utime_, pose.utime);
+  note_labelled(id);
+  if (is_newest) depth_camera_.update(pose, map_.up().up_W());
   note_change(now_s);
 }
 
 void MapSession::use(const SegmentUpdate& update, double now_s) {
   if (keep_updates_) updates_.add(update);
   if (!map_.apply_update(update)) return;
+  note_labelled(update.slice_id);
   history_.add_lag(map_);
   note_change(now_s);
+}
+
+void MapSession::note_labelled(std::int32_t slice_id) {
+  const MapSlice* const slice = map_.slice(slice_id);
+  if (slice == nullptr || !slice->was_labelled()) return;
+  labelled_utime_ = std::max(labelled_utime_, slice->utime());
 }
 
 void MapSession::use(const CameraPose& pose) {
@@ -40,17 +52,32 @@ void MapSession::use(const SegmentAnswer& answer) {
   is_answer_new_ = true;
 }
 
-bool MapSession::snapshot_is_due(int every_slices) const {
-  const MapCounts& now = map_.counts();
-  const std::int64_t more = now.updates > 0 ? now.labellings - counts_at_snapshot_.labellings
-                                            : now.slices - counts_at_snapshot_.slices;
-  return more >= every_slices && map_.newest_slice() != nullptr;
+void MapSession::use(CameraView view) {
+  if (view_ && view.utime <= view_->utime) return;
+  CameraPose pose;  // replaces one that was not received
+  pose.utime = view.utime;
+  pose.state = view.state;
+  pose.X_WC = view.X_WC;
+  use(pose);
+  map_.note_time(view.utime);
+  view_ = std::move(view);
 }
 
-bool MapSession::frame_is_due(double period_s) const {
+std::int64_t MapSession::utime_of_snapshot() const {
+  const std::int64_t of_map = map_.counts().updates > 0 ? labelled_utime_ : slice_utime_;
+  return std::max(of_map, view_ ? view_->utime : 0);
+}
+
+bool MapSession::snapshot_is_due(double every_s) const {
   if (is_empty()) return false;
-  const double elapsed_s = 1e-6 * static_cast<double>(map_.utime() - last_frame_utime_.value_or(0));
-  return !last_frame_utime_ || elapsed_s >= period_s;
+  const bool has_segments = map_.counts().labelled_slices > 0;
+  if (snapshot_ && has_segments && !snapshot_->has_segments) return true;
+  const std::int64_t last_utime = snapshot_ ? snapshot_->utime : map_.first_utime();
+  return 1e-6 * static_cast<double>(utime_of_snapshot() - last_utime) >= every_s;
+}
+
+void MapSession::note_snapshot() {
+  snapshot_ = Snapshot{utime_of_snapshot(), map_.counts().labelled_slices > 0};
 }
 
 }  // namespace kintsugi::viewer

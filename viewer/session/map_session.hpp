@@ -24,12 +24,15 @@ class MapSession {
   void use(CloudSlice slice, double now_s);
   void use(const SegmentUpdate& update, double now_s);
   void use(const CameraPose& pose);
+  void use(CameraView view);
   void use(const SegmenterStatus& status) { history_.add_slice_time(status); }
   /// Highlights the segments of the answer, if it is the newest by its time and has no problem.
   void use(const SegmentAnswer& answer);
 
   const ReceivedMap& map() const { return map_; }
   const SmoothedCamera& depth_camera() const { return depth_camera_; }
+  /// What the camera saw last; nullptr: no view has come.
+  const CameraView* view() const { return view_ ? &*view_ : nullptr; }
   RunHistory& history() { return history_; }
   const UpdateLog& updates() const { return updates_; }
   bool is_empty() const { return map_.counts().slices == 0; }
@@ -39,32 +42,42 @@ class MapSession {
   /// Nothing has changed for kSilence_s.
   bool is_silent(double now_s) const { return now_s - last_change_s_ >= kSilence_s; }
 
-  /// True when `every_slices` more slices are visible than in the last snapshot. Slices count when
-  /// they get their labels, corrected ones again; without a segmenter, when they arrive.
-  bool snapshot_is_due(int every_slices) const;
-  void note_snapshot() { counts_at_snapshot_ = map_.counts(); }
+  /// There is something to draw.
+  bool has_picture() const { return view_ || !is_empty(); }
+
+  /// True when the map is `every_s` of map time further than in the last snapshot, or after its
+  /// begin; and when the segmenter was heard since the last snapshot for the first time. The map is
+  /// as far as its newest slice that has its segments (without a segmenter, its newest slice) and
+  /// the newest view.
+  bool snapshot_is_due(double every_s) const;
+  void note_snapshot();
 
   /// The segments of the newest answer of the segmenter; empty when there are none.
   const Highlight& answered() const { return answered_; }
   bool answer_is_due() const { return is_answer_new_ && !is_empty(); }
   void note_answer() { is_answer_new_ = false; }
 
-  /// True when `period_s` of map time have passed since the last frame of the video.
-  bool frame_is_due(double period_s) const;
-  void note_frame() { last_frame_utime_ = map_.utime(); }
-
   /// The final pictures with this suffix in their names do not exist or are out of date.
   bool final_is_due(const std::string& suffix) const {
     return !is_empty() && final_suffix_ != suffix;
   }
-  /// Call before the final pictures are drawn: removes labels of earlier segmenters.
-  void prepare_final() { map_.discard_old_labels(); }
+  /// Call before the final pictures are drawn: they show the newest of everything, and no labels of
+  /// earlier segmenters.
+  void prepare_final() { map_.settle(); }
   void note_final(const std::string& suffix) { final_suffix_ = suffix; }
 
  private:
   static constexpr double kSilence_s = 5.0;
 
+  /// Of a snapshot that was drawn.
+  struct Snapshot {
+    std::int64_t utime = 0;  ///< of the map in it
+    bool has_segments = false;
+  };
+
   void note_change(double now_s);
+  void note_labelled(std::int32_t slice_id);
+  std::int64_t utime_of_snapshot() const;
 
   ReceivedMap map_;
   SmoothedCamera depth_camera_;
@@ -72,11 +85,13 @@ class MapSession {
   bool keep_updates_;
   UpdateLog updates_;
   double last_change_s_;
-  MapCounts counts_at_snapshot_;
+  std::optional<CameraView> view_;
+  std::int64_t slice_utime_ = 0;      // of the newest slice
+  std::int64_t labelled_utime_ = 0;   // of the newest slice with labels
+  std::optional<Snapshot> snapshot_;  // the last one
   Highlight answered_;
   std::int64_t answer_utime_ = 0;
   bool is_answer_new_ = false;
-  std::optional<std::int64_t> last_frame_utime_;
   std::optional<std::string> final_suffix_;  // of the final pictures that are up to date
 };
 

@@ -19,6 +19,7 @@ CloudSlice slice_of(std::int32_t id, int num_points, std::int32_t revision = 0) 
   slice.session = kMapSession;
   slice.id = id;
   slice.revision = revision;
+  slice.kind = SliceKind::kPatch;
   slice.utime = 1'000 + id;
   slice.resolution_m = 0.01F;
   for (int i = 0; i < num_points; ++i) {
@@ -57,7 +58,6 @@ using Labels = std::vector<std::uint32_t>;
 
 TEST(ReceivedMap, IsEmptyAtFirst) {
   const ReceivedMap map(kMapSession);
-  EXPECT_EQ(nullptr, map.newest_slice());
   EXPECT_EQ(nullptr, map.slice(0));
   EXPECT_TRUE(map.chunks().empty());
   EXPECT_FALSE(map.received_track().X_WC.has_value());
@@ -289,7 +289,7 @@ TEST(ReceivedMap, StartsTheLabelsAnewWithANewSegmenter) {
   SegmentUpdate run = update_of(0, {5, 5}, {{1, 0, 1, 6}});
   run.session = restarted.session;
   apply(map, run, 1);
-  map.discard_old_labels();
+  map.settle();
   EXPECT_EQ(Labels({5, 5}), labels_of(map, 0));
   EXPECT_EQ(Labels({6, 0}), labels_of(map, 1));
 }
@@ -342,19 +342,98 @@ TEST(ReceivedMap, IsTheSameFromADescriptionAsFromAllThatWentBefore) {
   }
   EXPECT_EQ(0, late.lag_slices());
   EXPECT_EQ(there.counts().labelled_slices, late.counts().labelled_slices);
-  EXPECT_EQ(there.newest_slice()->id(), late.newest_slice()->id());
 }
 
-TEST(ReceivedMap, ShowsTheSliceSegmentedLastOrWithoutSegmenterTheLast) {
+SegmentUpdate update_of_revision(std::int32_t id, std::int32_t revision, Labels labels) {
+  SegmentUpdate update = update_of(id, std::move(labels));
+  update.slice_revision = revision;
+  return update;
+}
+
+TEST(ReceivedMap, ShowsARevisionWithItsSegmentsUntilTheNextHasThem) {
   ReceivedMap map(kMapSession);
-  map.add_slice(slice_of(0, 2));
+  map.add_slice(slice_of(0, 3));
+  apply(map, update_of(0, {1, 1, 2}), 0);
+  map.add_slice(slice_of(0, 4, 1));
+  EXPECT_EQ(Labels({1, 1, 2}), labels_of(map, 0));
+  EXPECT_EQ(3, map.counts().points);
+  EXPECT_EQ(1, map.lag_slices());
+
+  apply(map, update_of(1, {}, {{0, 0, 1, 5, 0}, {0, 3, 1, 6, 1}}), 1);  // of both revisions
+  EXPECT_EQ(Labels({5, 1, 2}), labels_of(map, 0));
+  map.add_slice(slice_of(1, 0));
+  apply(map, update_of_revision(0, 1, {2, 2, 2, 2}), 0);  // late: the run of revision 1 is newer
+  EXPECT_EQ(Labels({2, 2, 2, 6}), labels_of(map, 0));
+  EXPECT_EQ(4, map.counts().points);
+  EXPECT_EQ(4U, map.chunks().front().points_W.size());
+  EXPECT_EQ(0, map.lag_slices());
+}
+
+TEST(ReceivedMap, ShowsRevisionsInWhateverStepsTheirSegmentsCome) {
+  ReceivedMap map(kMapSession);
+  map.add_slice(slice_of(0, 1));
+  apply(map, update_of(0, {1}), 0);
+  for (std::int32_t revision = 1; revision <= 20; ++revision) {
+    map.add_slice(slice_of(0, revision + 1, revision));
+  }
+  EXPECT_EQ(Labels({1}), labels_of(map, 0));
+  apply(map, update_of_revision(0, 18, Labels(19, 4)), 1);  // the segmenter is behind
+  EXPECT_EQ(Labels(19, 4), labels_of(map, 0));
+  EXPECT_EQ(1, map.lag_slices());
+  apply(map, update_of_revision(0, 17, Labels(18, 3)), 2);  // of a revision before
+  EXPECT_EQ(Labels(19, 4), labels_of(map, 0));
+  apply(map, update_of_revision(0, 20, Labels(21, 5)), 3);
+  EXPECT_EQ(Labels(21, 5), labels_of(map, 0));
+  EXPECT_EQ(0, map.lag_slices());
+  EXPECT_EQ(21, map.counts().points);
+  EXPECT_EQ(1, map.counts().labelled_slices);
+}
+
+TEST(ReceivedMap, ShowsTheNewestRevisionWithoutASegmenterAndWhenItIsSettled) {
+  ReceivedMap map(kMapSession);
+  map.add_slice(slice_of(0, 3));
+  map.add_slice(slice_of(0, 4, 1));
+  EXPECT_EQ(Labels(4), labels_of(map, 0));  // nothing was labelled: nothing to keep
+  apply(map, update_of_revision(0, 1, {1, 1, 1, 1}), 0);
+  map.add_slice(slice_of(0, 5, 2));
+  EXPECT_EQ(4, map.counts().points);
+  map.settle();
+  EXPECT_EQ(Labels(5), labels_of(map, 0));
+  EXPECT_EQ(5, map.counts().points);
+}
+
+TEST(ReceivedMap, CountsWhatMayStillChange) {
+  ReceivedMap map(kMapSession);
+  CloudSlice patch = slice_of(0, 3);
+  patch.in_volume = true;
+  map.add_slice(patch);
   map.add_slice(slice_of(1, 2));
-  map.add_slice(slice_of(2, 0));
-  EXPECT_EQ(1, map.newest_slice()->id());  // the last that has points
-  apply(map, update_of(0, {1, 1}), 0);
-  EXPECT_EQ(0, map.newest_slice()->id());
-  apply(map, update_of(1, {1, 1}), 1);
-  EXPECT_EQ(1, map.newest_slice()->id());
+  EXPECT_EQ(3, map.counts().points_in_volume);
+  apply(map, update_of(0, {1, 1, 1}), 0);
+  map.add_slice(slice_of(0, 3, 1));
+  EXPECT_EQ(3, map.counts().points_in_volume);  // what is shown
+  apply(map, update_of_revision(0, 1, {1, 1, 1}), 1);
+  EXPECT_EQ(0, map.counts().points_in_volume);
+  EXPECT_EQ(5, map.counts().points);
+}
+
+TEST(ReceivedMap, LacksSlicesAndRevisionsThatTheFinalSliceTellsOf) {
+  ReceivedMap map(kMapSession);
+  CloudSlice final_slice = slice_of(2, 0);
+  final_slice.kind = SliceKind::kFinal;
+  final_slice.revision_sum = 3;
+  map.add_slice(slice_of(0, 1, 1));
+  map.add_slice(final_slice);
+  apply(map, update_of_revision(0, 1, {1}), 0);
+  apply(map, update_of(2, {}), 1);
+  EXPECT_GE(map.lag_slices(), 1);  // slice 1
+  map.add_slice(slice_of(1, 1));
+  apply(map, update_of(1, {1}), 2);
+  EXPECT_EQ(1, map.lag_slices());  // two revisions, of whatever slice
+  map.add_slice(slice_of(1, 1, 2));
+  EXPECT_EQ(1, map.lag_slices());
+  apply(map, update_of_revision(1, 2, {1}), 3);
+  EXPECT_EQ(0, map.lag_slices());
 }
 
 TEST(ReceivedMap, CutsSlicesIntoChunksThatHoldEveryPointOnceInItsBox) {

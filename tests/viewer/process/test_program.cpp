@@ -5,10 +5,12 @@
 #include <fstream>
 
 #include <gtest/gtest.h>
+#include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/videoio.hpp>
 
 #include "tests/support/temporary_folder.hpp"
+#include "tests/viewer/support/patched_room.hpp"
 #include "tests/viewer/support/recorded_room.hpp"
 #include "tests/viewer/support/viewer_program.hpp"
 
@@ -34,19 +36,20 @@ std::vector<std::string> names_in(const fs::path& folder) {
   return names;
 }
 
-TEST(ViewerProcess, DrawsEachTenthSliceOfALogAndTheFinalMap) {
+TEST(ViewerProcess, DrawsALogAtIntervalsOfMapTimeAndTheFinalMap) {
   const TemporaryFolder folder;
   write_log(folder / "room.log", make_room(kLength_m, kResolution_m));
 
   EXPECT_EQ(0, run({"--log", folder / "room.log", "--out", folder / "out", "--size", "640x360",
-                    "--plots"}));
+                    "--every", "3", "--plots"}));
 
-  const std::vector<std::string> expected{"final.png",           "map_final.png",
-                                          "plots.png",           "segments_final.png",
-                                          "snapshot_000009.png", "snapshot_000019.png"};
+  const std::vector<std::string> expected{
+      "final.png",           "map_final.png",        "plots.png",
+      "segments_final.png",  "snapshot_0003.0s.png", "snapshot_0006.0s.png",
+      "snapshot_0009.0s.png"};
   EXPECT_EQ(expected, names_in(folder / "out"));
   for (const char* name : {"final.png", "map_final.png", "segments_final.png",
-                           "snapshot_000009.png", "snapshot_000019.png"}) {
+                           "snapshot_0003.0s.png", "snapshot_0009.0s.png"}) {
     EXPECT_EQ(cv::Size(640, 360), size_of(folder / "out" / name)) << name;
   }
 }
@@ -55,30 +58,60 @@ TEST(ViewerProcess, DrawsAMapThatNobodySegments) {
   const TemporaryFolder folder;
   write_log(folder / "room.log", make_room(kLength_m, kResolution_m), {.updates = false});
 
-  EXPECT_EQ(0, run({"--log", folder / "room.log", "--out", folder / "out", "--size", "640x360"}));
+  EXPECT_EQ(0, run({"--log", folder / "room.log", "--out", folder / "out", "--size", "640x360",
+                    "--every", "3"}));
 
-  EXPECT_TRUE(fs::exists(folder / "out/snapshot_000009.png"));
+  EXPECT_TRUE(fs::exists(folder / "out/snapshot_0003.0s.png"));
   EXPECT_TRUE(fs::exists(folder / "out/final.png"));
 }
 
-TEST(ViewerProcess, WritesAVideoThatPlaysBack) {
-  const TemporaryFolder folder;
-  const SyntheticMap room = make_room(kLength_m, kResolution_m);
-  write_log(folder / "room.log", room);
-
-  EXPECT_EQ(0, run({"--log", folder / "room.log", "--out", folder / "out", "--size", "320x180",
-                    "--video", folder / "room.mp4", "--video-period", "0.5"}));
-
-  // A frame at the first slice, and one for each half second of map time after it; poses come every
-  // 1/30 s, so a frame may be that much late and the count one or two smaller.
-  const double seconds =
-      1e-6 * static_cast<double>(std::max(room.poses.back().utime, room.slices.back().utime) -
-                                 room.slices.front().utime);
-  cv::VideoCapture video((folder / "room.mp4").string());
+/// Duration of a video, s; its frames are decoded. Checks their size.
+double duration_s(const fs::path& path, cv::Size size) {
+  cv::VideoCapture video(path.string());
   int frames = 0;
-  for (cv::Mat frame; video.read(frame); ++frames) EXPECT_EQ(cv::Size(320, 180), frame.size());
-  EXPECT_NEAR(1 + seconds / 0.5, frames, 2.0);
+  for (cv::Mat frame; video.read(frame); ++frames) EXPECT_EQ(size, frame.size());
+  return frames / video.get(cv::CAP_PROP_FPS);
+}
+
+/// From the first message to the last, in map time.
+double duration_s(const SyntheticMap& room) {
+  return 1e-6 * static_cast<double>(std::max(room.poses.back().utime, room.slices.back().utime) -
+                                    room.poses.front().utime);
+}
+
+TEST(ViewerProcess, WritesAVideoThatTakesAsLongAsTheRun) {
+  const TemporaryFolder folder;
+  SyntheticMap room = make_room(kLength_m, kResolution_m);
+  // Two seconds without anything.
+  const std::int64_t middle = room.poses[room.poses.size() / 2].utime;
+  const auto is_in_gap = [&](const CameraPose& pose) {
+    return pose.utime > middle && pose.utime < middle + 2'000'000;
+  };
+  std::erase_if(room.poses, is_in_gap);
+  // The video begins with the first slice.
+  std::erase_if(room.poses,
+                [&](const CameraPose& pose) { return pose.utime < room.slices.front().utime; });
+  write_log(folder / "room.log", room);
+  for (const char* rate : {"10", "4"}) {
+    EXPECT_EQ(0, run({"--log", folder / "room.log", "--out", folder / "out", "--size", "320x180",
+                      "--video", folder / "room.mp4", "--video-rate", rate}));
+    EXPECT_NEAR(duration_s(room), duration_s(folder / "room.mp4", {320, 180}), 2.0 / 4.0) << rate;
+  }
   EXPECT_EQ(std::vector<std::string>({"out", "room.log", "room.mp4"}), names_in(folder.path()));
+}
+
+TEST(ViewerProcess, ShowsTheCamerasImageFromItsFirstViewOn) {
+  const TemporaryFolder folder;
+  const SyntheticMap room = make_patched_room(2.5, kResolution_m);
+  write_log(folder / "room.log", room);
+  EXPECT_EQ(0, run({"--log", folder / "room.log", "--out", folder / "out", "--size", "640x360",
+                    "--video", folder / "room.mp4", "--every", "2"}));
+  EXPECT_NEAR(duration_s(room), duration_s(folder / "room.mp4", {640, 360}), 0.25);
+  EXPECT_TRUE(fs::exists(folder / "out/snapshot_0002.0s.png"));
+  cv::Mat first;
+  ASSERT_TRUE(cv::VideoCapture((folder / "room.mp4").string()).read(first));
+  const cv::Mat camera = first(cv::Rect(0, 40, 400, 240));  // without the title
+  EXPECT_GT(cv::mean(camera)[0], 60.0);                     // of the walls; the background is dark
 }
 
 TEST(ViewerProcess, KeepsTheFinalPicturesOfAnEarlierSession) {

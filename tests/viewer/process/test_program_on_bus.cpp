@@ -21,6 +21,7 @@
 #include "lcmtypes/stream/stream_subscriber.hpp"
 #include "tests/support/private_bus.hpp"
 #include "tests/support/temporary_folder.hpp"
+#include "tests/viewer/support/patched_room.hpp"
 #include "tests/viewer/support/recorded_room.hpp"
 #include "tests/viewer/support/stuck_file.hpp"
 #include "tests/viewer/support/viewer_program.hpp"
@@ -135,12 +136,27 @@ TEST_F(ViewerOnBus, WritesOnSignals) {
 
   program.signal(SIGUSR1);
   ASSERT_TRUE(wait_until([&] { return status_->snapshots_written == 1; }));
-  EXPECT_TRUE(fs::exists(folder_ / "out/snapshot_000004.png"));
+  EXPECT_TRUE(fs::exists(folder_ / "out/snapshot_0004.5s.png"));
 
   program.signal(SIGTERM);
   EXPECT_EQ(0, program.wait());
   EXPECT_TRUE(fs::exists(folder_ / "out/final.png"));
   EXPECT_TRUE(cv::VideoCapture((folder_ / "room.mp4").string()).isOpened());
+}
+
+TEST_F(ViewerOnBus, ShowsWhatTheCameraSeesBeforeThereIsAMap) {
+  const SyntheticMap room = make_patched_room(kLength_m, kResolution_m);
+  Program program(arguments({}));
+  ASSERT_TRUE(wait_until([&] { return status_.has_value(); }));
+  StreamPublisher views(*bus_, channels::kCameraView, room.views.front().session, {});
+  views.publish(room.views.front());
+  ASSERT_TRUE(wait_until([&] { return status_->map_session == room.views.front().session; }));
+  program.signal(SIGUSR1);
+  ASSERT_TRUE(wait_until([&] { return status_->snapshots_written == 1; }));
+  EXPECT_TRUE(fs::exists(folder_ / "out/snapshot_0000.0s.png"));
+  program.signal(SIGTERM);
+  EXPECT_EQ(0, program.wait());
+  EXPECT_FALSE(fs::exists(folder_ / "out/final.png"));
 }
 
 std::string bytes_of_file(const fs::path& path) {
@@ -183,7 +199,7 @@ TEST_F(ViewerOnBus, RefusesWhatComesWhileItDrawsAndAsksForItLater) {
   const SyntheticMap room = make_room(kLength_m, 0.02);  // 9 MB of points
   RoomOnBus trio(*bus_, room);
   fs::create_directory(folder_ / "out");
-  const StuckFile first_picture(folder_ / "out/snapshot_000000.partial.png");
+  const StuckFile first_picture(folder_ / "out/snapshot_0002.5s.partial.png");
   Program program(arguments({"--exit-on-final", "--max-queue", "1", "--every", "1"}), 0,
                   folder_ / "said.txt");
   ASSERT_TRUE(wait_until([&] { return status_.has_value(); }));

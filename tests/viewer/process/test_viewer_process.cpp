@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <random>
 #include <set>
 #include <string>
@@ -11,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/temporary_folder.hpp"
+#include "tests/viewer/support/patched_room.hpp"
 #include "tests/viewer/support/synthetic_room.hpp"
 #include "viewer/process/viewer_process.hpp"
 
@@ -26,7 +28,7 @@ class ViewerTest : public ::testing::Test {
     config_.painter.renderer.width_px = 160;
     config_.painter.renderer.height_px = 120;
     config_.folder = folder_.path();
-    config_.every_slices = 4;
+    config_.every_s = 1.5;  // from the first slice to the fourth
     return {config_,
             {.on_picture = [this](const cv::Mat3b&,
                                   const std::string& caption) { captions_.push_back(caption); },
@@ -77,10 +79,10 @@ TEST_F(ViewerTest, WaitsForTheSegmentsOfTheSlicesItShows) {
   viewer.add(room_.updates[0], kNow_s);  // there is a segmenter: slices count when labelled
   for (const CloudSlice& slice : room_.slices) viewer.add(slice, kNow_s);
   viewer.draw_if_due();
-  EXPECT_FALSE(exists("snapshot_000000.png"));
+  EXPECT_TRUE(captions_.empty());
   for (std::size_t i = 1; i < 4; ++i) viewer.add(room_.updates[i], kNow_s);
   viewer.draw_if_due();
-  EXPECT_TRUE(exists("snapshot_000003.png"));
+  EXPECT_TRUE(exists("snapshot_0001.5s.png"));
   EXPECT_EQ(1U, captions_.size());
 }
 
@@ -135,6 +137,64 @@ TEST_F(ViewerTest, DrawsTheSameFinalPicturesFromWhateverCameInWhateverOrder) {
       EXPECT_TRUE(expected[i] == read(names[i])) << names[i] << ", trial " << trial;
     }
   }
+}
+
+TEST_F(ViewerTest, DrawsTheSameFinalPicturesOfPatchesFromTheirNewestRevisionsAlone) {
+  const SyntheticMap room = make_patched_room(2.5, 0.1);
+  std::map<std::int32_t, std::int32_t> newest;
+  for (const CloudSlice& slice : room.slices) newest[slice.id] = slice.revision;
+  const auto is_newest = [&](const CloudSlice& slice) {
+    return slice.revision == newest.at(slice.id);
+  };
+  const std::vector<std::string> names{"final.png", "map_final.png", "segments_final.png"};
+  std::vector<std::string> expected;
+  std::mt19937 random(1);
+  for (int trial = 0; trial < 5; ++trial) {
+    std::vector<Message> messages;
+    for (std::size_t i = 0; i < room.slices.size(); ++i) {
+      if (trial > 0 && !is_newest(room.slices[i]) && random() % 2 == 0) continue;
+      messages.emplace_back(room.slices[i]);
+      messages.emplace_back(room.updates[i]);
+    }
+    for (const CameraView& view : room.views) {
+      if (random() % 2 == 0) messages.emplace_back(view);
+    }
+    if (trial > 0) std::ranges::shuffle(messages, random);
+    ViewerProcess viewer = make_viewer();
+    for (const Message& message : messages) viewer.add(message, kNow_s);
+    EXPECT_EQ(0, viewer.status().lag_slices);
+    viewer.write_finals(kNow_s, true);  // complete: nothing is waited for
+    EXPECT_TRUE(viewer.finished());
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      if (trial == 0) expected.push_back(read(names[i]));
+      EXPECT_FALSE(expected[i].empty());
+      EXPECT_TRUE(expected[i] == read(names[i])) << names[i] << ", trial " << trial;
+      fs::remove(folder_ / names[i]);
+    }
+  }
+}
+
+TEST_F(ViewerTest, WaitsForTheRevisionsThatTheFinalSliceTellsOf) {
+  const SyntheticMap room = make_patched_room(2.5, 0.1);
+  ViewerProcess viewer = make_viewer();
+  const CloudSlice* missing = nullptr;
+  for (std::size_t i = 0; i < room.slices.size(); ++i) {
+    if (room.slices[i].revision > 0) missing = &room.slices[i];  // the last revision of all
+  }
+  ASSERT_NE(nullptr, missing);
+  for (std::size_t i = 0; i < room.slices.size(); ++i) {
+    if (&room.slices[i] == missing) continue;
+    viewer.add(room.slices[i], kNow_s);
+    viewer.add(room.updates[i], kNow_s);
+  }
+  viewer.write_finals(kNow_s, true);
+  EXPECT_FALSE(viewer.finished());
+  viewer.add(*missing, kNow_s);
+  viewer.write_finals(kNow_s, true);
+  EXPECT_FALSE(viewer.finished());  // it lacks its segments
+  viewer.add(room.updates[static_cast<std::size_t>(missing - room.slices.data())], kNow_s);
+  viewer.write_finals(kNow_s, true);
+  EXPECT_TRUE(viewer.finished());
 }
 
 TEST_F(ViewerTest, WritesTheSameTimelineFromUpdatesInWhateverOrder) {
@@ -214,7 +274,7 @@ TEST_F(ViewerTest, LeavesAnswersOutOfTheFinalPictures) {
   EXPECT_FALSE(expected == read("segments_final.png"));
 }
 
-TEST_F(ViewerTest, DrawsCorrectedSlicesAgain) {
+TEST_F(ViewerTest, WaitsForTheSegmentsOfACorrectionBeforeItCountsAsProgress) {
   ViewerProcess viewer = make_viewer();
   for (std::size_t i = 0; i < 4; ++i) {
     viewer.add(room_.slices[i], kNow_s);
@@ -222,18 +282,18 @@ TEST_F(ViewerTest, DrawsCorrectedSlicesAgain) {
   }
   viewer.draw_if_due();
   EXPECT_EQ(1U, captions_.size());
-  for (std::size_t i = 0; i < 4; ++i) {
-    EXPECT_EQ(1U, captions_.size());
-    CloudSlice slice = room_.slices[i];
-    SegmentUpdate update = room_.updates[i];
-    slice.revision = update.slice_revision = 1;
-    update.sequence += 100;
-    viewer.add(update, kNow_s);
-    EXPECT_EQ(1, viewer.status().lag_slices);
-    viewer.add(slice, kNow_s);
-    EXPECT_EQ(0, viewer.status().lag_slices);
-    viewer.draw_if_due();
-  }
+  CloudSlice slice = room_.slices[0];
+  SegmentUpdate update = room_.updates[0];
+  slice.revision = update.slice_revision = 1;
+  slice.utime = room_.slices[3].utime + 1'500'000;
+  update.sequence += 100;
+  viewer.add(slice, kNow_s);
+  EXPECT_EQ(1, viewer.status().lag_slices);
+  viewer.draw_if_due();
+  EXPECT_EQ(1U, captions_.size());
+  viewer.add(update, kNow_s);
+  EXPECT_EQ(0, viewer.status().lag_slices);
+  viewer.draw_if_due();
   EXPECT_EQ(2U, captions_.size());
 }
 
@@ -367,7 +427,7 @@ TEST_F(ViewerTest, GoesOnWhenItsFolderIsGone) {
   EXPECT_EQ(1, viewer.failures());
   EXPECT_EQ(0, viewer.status().snapshots_written);
   EXPECT_EQ(1U, captions_.size());  // still published
-  EXPECT_NE(std::string::npos, viewer.status().problem.find("snapshot_000009"))
+  EXPECT_NE(std::string::npos, viewer.status().problem.find("snapshot_0001.5s"))
       << viewer.status().problem;
 
   viewer.write_finals(kNow_s, false);
@@ -398,9 +458,9 @@ TEST_F(ViewerTest, IsFinishedWithoutItsFinalPicturesAfterTryingLong) {
 
 TEST_F(ViewerTest, RefusesAConfigurationOutOfItsBounds) {
   for (const auto spoil : std::initializer_list<void (*)(ViewerProcess::Config&)>{
-           [](ViewerProcess::Config& c) { c.every_slices = 0; },
-           [](ViewerProcess::Config& c) { c.video_period_s = 0.0; },
-           [](ViewerProcess::Config& c) { c.video_frames_per_s = 0.5; },
+           [](ViewerProcess::Config& c) { c.every_s = 0.0; },
+           [](ViewerProcess::Config& c) { c.video_rate_hz = 0.0; },
+           [](ViewerProcess::Config& c) { c.video_rate_hz = 500.0; },
            [](ViewerProcess::Config& c) { c.painter.max_drawing_share = 1.5; },
            [](ViewerProcess::Config& c) { c.painter.renderer.width_px = 0; }}) {
     ViewerProcess::Config config;

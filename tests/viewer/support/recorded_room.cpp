@@ -21,7 +21,8 @@ StreamPublisher::Config unpaced() {
 /// Sends each pose, then the messages of mapper and segmenter at its time.
 template <class SendPose>
 void play(const SyntheticMap& map, const Recorded& recorded, StreamPublisher& slices,
-          StreamPublisher& updates, SendPose&& send_pose) {
+          StreamPublisher& updates, StreamPublisher& views, SendPose&& send_pose) {
+  std::size_t next_view = 0;
   std::size_t next = 0;
   const auto send_slices_until = [&](std::int64_t utime) {
     for (; next < map.slices.size() && map.slices[next].utime <= utime; ++next) {
@@ -40,6 +41,12 @@ void play(const SyntheticMap& map, const Recorded& recorded, StreamPublisher& sl
   for (CameraPose pose : map.poses) {
     pose.session += recorded.session_offset;
     send_pose(pose);
+    for (; next_view < map.views.size() && map.views[next_view].utime <= pose.utime; ++next_view) {
+      CameraView view = map.views[next_view];
+      view.session += recorded.session_offset;
+      views.publish(std::move(view));
+      views.flush();
+    }
     send_slices_until(pose.utime);
   }
   send_slices_until(INT64_MAX);
@@ -68,7 +75,8 @@ void write_log(const std::filesystem::path& path, const SyntheticMap& map, const
   const std::int64_t segmenter_session = map.updates.front().session + recorded.session_offset;
   StreamPublisher slices(write, channels::kCloudSlice, map_session, unpaced());
   StreamPublisher updates(write, channels::kSegmentUpdate, segmenter_session, unpaced());
-  play(map, recorded, slices, updates,
+  StreamPublisher views(write, channels::kCameraView, map_session, unpaced());
+  play(map, recorded, slices, updates, views,
        [&](const CameraPose& pose) { write(channels::kCameraPose, encode(pose)); });
 }
 

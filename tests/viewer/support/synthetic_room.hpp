@@ -12,6 +12,7 @@ struct SyntheticMap {
   std::vector<CloudSlice> slices;      ///< the last is kFinal
   std::vector<SegmentUpdate> updates;  ///< one per slice, with the true objects as segments
   std::vector<CameraPose> poses;       ///< a walk along the room's z, 30 Hz
+  std::vector<CameraView> views;       ///< what the camera sees on it; may be empty
 };
 
 /// A room 5 m wide and 2.6 m high along `length_m` of W's z, sampled every `resolution_m` with a

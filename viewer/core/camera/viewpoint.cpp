@@ -49,15 +49,32 @@ std::vector<Eigen::Vector3d> sample(std::span<const PointChunk> chunks,
   return points_W;
 }
 
+/// The camera with this orientation in whose picture all points fit that face it, but for a few
+/// outliers; at W's origin when there is nothing.
+VirtualCamera camera_around(std::span<const PointChunk> chunks, const Eigen::Matrix3d& R_WV,
+                            const Intrinsics& intrinsics, const ViewpointConfig& config,
+                            std::span<const Eigen::Vector3d> all_of_these_W) {
+  constexpr double kOutliers = 0.0002;  // share of the points, at each side
+  const std::vector<Eigen::Vector3d> points_W = sample(chunks, R_WV.col(2));
+  if (points_W.empty() && all_of_these_W.empty()) {
+    VirtualCamera camera{intrinsics, Pose::Identity()};
+    camera.X_WV.linear() = R_WV;
+    return camera;
+  }
+  return fit_points(points_W, kOutliers, R_WV, intrinsics, config.margin_px, all_of_these_W);
+}
+
 VirtualCamera overview(const ReceivedMap& map, const Intrinsics& intrinsics,
-                       const ViewpointConfig& config) {
+                       const ViewpointConfig& config,
+                       std::span<const Eigen::Vector3d> all_of_these_W) {
   const Eigen::Matrix3d R_WV =
       look_down(map.up().up_W(), config.overview_yaw_rad, config.overview_pitch_rad);
-  return camera_around(map.chunks(), R_WV, intrinsics, config);
+  return camera_around(map.chunks(), R_WV, intrinsics, config, all_of_these_W);
 }
 
 VirtualCamera follow(const ReceivedMap& map, const SmoothedCamera& depth_camera,
-                     const Intrinsics& intrinsics, const ViewpointConfig& config) {
+                     const Intrinsics& intrinsics, const ViewpointConfig& config,
+                     std::span<const Eigen::Vector3d> all_of_these_W) {
   const Eigen::Vector3d up_W = map.up().up_W();
   const Eigen::Vector3d forward_W = std::cos(config.follow_pitch_rad) * depth_camera.heading_W() -
                                     std::sin(config.follow_pitch_rad) * up_W;
@@ -67,7 +84,7 @@ VirtualCamera follow(const ReceivedMap& map, const SmoothedCamera& depth_camera,
     return (p_W - depth_camera.position_W()).norm() > config.follow_radius_m;
   });
   points_W.push_back(depth_camera.position_W());
-  return fit_points(points_W, 0.0, R_WV, intrinsics, config.margin_px);
+  return fit_points(points_W, 0.0, R_WV, intrinsics, config.margin_px, all_of_these_W);
 }
 
 }  // namespace
@@ -96,18 +113,6 @@ Viewpoint parse_viewpoint(const std::string& text) {
   return fixed;
 }
 
-VirtualCamera camera_around(std::span<const PointChunk> chunks, const Eigen::Matrix3d& R_WV,
-                            const Intrinsics& intrinsics, const ViewpointConfig& config) {
-  constexpr double kOutliers = 0.0002;  // share of the points, at each side
-  const std::vector<Eigen::Vector3d> points_W = sample(chunks, R_WV.col(2));
-  if (points_W.empty()) {
-    VirtualCamera camera{intrinsics, Pose::Identity()};
-    camera.X_WV.linear() = R_WV;
-    return camera;
-  }
-  return fit_points(points_W, kOutliers, R_WV, intrinsics, config.margin_px);
-}
-
 std::optional<VirtualCamera> close_up(std::span<const PointChunk> chunks,
                                       const std::set<std::uint32_t>& segments,
                                       const Eigen::Matrix3d& R_WV, const Intrinsics& intrinsics) {
@@ -127,15 +132,16 @@ std::optional<VirtualCamera> close_up(std::span<const PointChunk> chunks,
 
 VirtualCamera camera_at(const Viewpoint& viewpoint, const ReceivedMap& map,
                         const SmoothedCamera& depth_camera, int width_px, int height_px,
-                        const ViewpointConfig& config) {
+                        const ViewpointConfig& config,
+                        std::span<const Eigen::Vector3d> all_of_these_W) {
   const Intrinsics intrinsics = pinhole(width_px, height_px, config.field_of_view_rad);
   if (const auto* fixed = std::get_if<FixedViewpoint>(&viewpoint)) {
     return {intrinsics, look_at(fixed->eye_W, fixed->target_W, map.up().up_W())};
   }
   if (std::holds_alternative<FollowViewpoint>(viewpoint) && depth_camera.has_pose()) {
-    return follow(map, depth_camera, intrinsics, config);
+    return follow(map, depth_camera, intrinsics, config, all_of_these_W);
   }
-  return overview(map, intrinsics, config);
+  return overview(map, intrinsics, config, all_of_these_W);
 }
 
 }  // namespace kintsugi::viewer

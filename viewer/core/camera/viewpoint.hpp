@@ -43,20 +43,18 @@ struct ViewpointConfig {
   void validate() const;
 };
 
-/// The camera with this orientation in whose picture all points fit that face it, but for a few
-/// outliers; at W's origin when there are no points.
-VirtualCamera camera_around(std::span<const PointChunk> chunks, const Eigen::Matrix3d& R_WV,
-                            const Intrinsics& intrinsics, const ViewpointConfig& config);
-
 /// The camera with this orientation in whose picture the points of these segments fit, with some of
 /// their surroundings. Nothing when no point has one of these labels.
 std::optional<VirtualCamera> close_up(std::span<const PointChunk> chunks,
                                       const std::set<std::uint32_t>& segments,
                                       const Eigen::Matrix3d& R_WV, const Intrinsics& intrinsics);
 
-/// The virtual camera at a viewpoint; the overview instead of following a camera without a pose.
+/// The virtual camera at a viewpoint; the overview instead of following a camera without a pose. A
+/// few outliers of the map may lie beside the picture, and at a fixed viewpoint anything; but not
+/// `all_of_these_W`, metres: the frustum of the depth camera.
 VirtualCamera camera_at(const Viewpoint& viewpoint, const ReceivedMap& map,
                         const SmoothedCamera& depth_camera, int width_px, int height_px,
-                        const ViewpointConfig& config);
+                        const ViewpointConfig& config,
+                        std::span<const Eigen::Vector3d> all_of_these_W = {});
 
 }  // namespace kintsugi::viewer

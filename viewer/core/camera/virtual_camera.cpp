@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <vector>
 
@@ -26,9 +27,10 @@ Eigen::Matrix3d rotation_along(const Eigen::Vector3d& forward_W, const Eigen::Ve
   return R_WV;
 }
 
-/// The quantile `share` of the coordinates along `axis`.
+/// The quantile `share` of the coordinates along `axis`; infinity without points.
 double low_quantile(std::span<const Eigen::Vector3d> points, const Eigen::Vector3d& axis,
                     double share) {
+  if (points.empty()) return std::numeric_limits<double>::infinity();
   std::vector<double> along(points.size());
   std::ranges::transform(points, along.begin(), [&](const auto& p) { return p.dot(axis); });
   const auto rank = static_cast<std::ptrdiff_t>(share * static_cast<double>(points.size()));
@@ -64,7 +66,7 @@ Pose look_at(const Eigen::Vector3d& eye_W, const Eigen::Vector3d& target_W,
 
 VirtualCamera fit_points(std::span<const Eigen::Vector3d> points_W, double outliers,
                          const Eigen::Matrix3d& R_WV, const Intrinsics& intrinsics,
-                         double margin_px) {
+                         double margin_px, std::span<const Eigen::Vector3d> all_of_these_W) {
   // A point (x, y, z) in V's axes is in the picture of an eye at (a, b, c) when |x - a| <= (z - c)
   // sx, that is x - z sx <= a - c sx and a + c sx <= x + z sx; likewise for b.
   const double sx = std::max(0.5 * intrinsics.width - margin_px, 1.0) / intrinsics.fx;
@@ -73,7 +75,8 @@ VirtualCamera fit_points(std::span<const Eigen::Vector3d> points_W, double outli
   const Eigen::Vector3d y = R_WV.col(1);
   const Eigen::Vector3d z = R_WV.col(2);
   const auto lowest = [&](const Eigen::Vector3d& axis) {
-    return low_quantile(points_W, axis, outliers);
+    return std::min(low_quantile(points_W, axis, outliers),
+                    low_quantile(all_of_these_W, axis, 0.0));
   };
   const double right = -lowest(sx * z - x);
   const double left = lowest(sx * z + x);

@@ -26,10 +26,10 @@ Pose look_at(const Eigen::Vector3d& eye_W, const Eigen::Vector3d& target_W,
 
 /// The camera with this orientation, as near as possible, in whose picture the points are at least
 /// `margin_px` from every edge and 1 m away along its z. Beyond each of these five limits may be a
-/// share `outliers` of the points. `points_W` must not be empty.
+/// share `outliers` of `points_W`, but none of `all_of_these_W`; one of them must not be empty.
 VirtualCamera fit_points(std::span<const Eigen::Vector3d> points_W, double outliers,
                          const Eigen::Matrix3d& R_WV, const Intrinsics& intrinsics,
-                         double margin_px);
+                         double margin_px, std::span<const Eigen::Vector3d> all_of_these_W = {});
 
 /// R_WV of a camera that looks `pitch_rad` below the horizon, turned to the left by `yaw_rad` about
 /// `up_W` from W's z, the viewing direction of the first camera pose.

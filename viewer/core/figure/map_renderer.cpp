@@ -15,56 +15,39 @@
 namespace kintsugi::viewer {
 namespace {
 
-VirtualCamera camera_of(const Subject& subject, cv::Size size, const ViewpointConfig& config) {
-  return camera_at(subject.viewpoint, subject.map, subject.depth_camera, size.width, size.height,
-                   config);
-}
+const std::vector<Coloring> kBoth{Coloring::kTrue, Coloring::kSegments};
 
-/// The parts of the figure: two columns, each with the map above and the detail below; the caption
-/// at the bottom.
+/// The parts of the figure: two columns, each with the map above and, if there is one, a close-up
+/// below; the caption at the bottom.
 struct Layout {
   std::array<cv::Rect, 2> map;
-  std::array<cv::Rect, 2> detail;
+  std::array<cv::Rect, 2> close_up;
   cv::Rect caption;
 };
 
-Layout layout_of(int width, int height) {
+Layout layout_of(int width, int height, bool has_close_up) {
   constexpr int kGap = 2;
   const int caption_height = std::clamp(height / 20, 16, 60);
-  const int map_height = (height - caption_height) * 68 / 100;
-  const int detail_top = map_height + kGap;
-  const int detail_height = height - caption_height - detail_top;
+  const int map_height = (height - caption_height) * (has_close_up ? 68 : 100) / 100;
+  const int close_up_top = map_height + kGap;
   const int column = (width - kGap) / 2;
   Layout layout;
-  for (int i = 0; i < 2; ++i) {
+  for (std::size_t i = 0; i < layout.map.size(); ++i) {
     const int left = i == 0 ? 0 : width - column;
     layout.map[i] = {left, 0, column, map_height};
-    layout.detail[i] = {left, detail_top, column, detail_height};
+    layout.close_up[i] = {left, close_up_top, column,
+                          std::max(0, height - caption_height - close_up_top)};
   }
   layout.caption = {0, height - caption_height, width, caption_height};
   return layout;
 }
 
-/// What is below the map: a close-up of the highlighted segments, or the newest slice alone.
-struct Detail {
-  std::string title;
-  std::vector<PointChunk> chunks;
-  VirtualCamera camera;
-};
-
-Detail detail_of(const Subject& subject, const Eigen::Matrix3d& R_WV, cv::Size size,
-                 const ViewpointConfig& config) {
-  const Intrinsics intrinsics = pinhole(size.width, size.height, config.field_of_view_rad);
-  std::vector<PointChunk> all = subject.map.chunks();
-  if (const auto camera = close_up(all, subject.highlight, R_WV, intrinsics)) {
-    return {"highlighted", std::move(all), *camera};
-  }
-  const MapSlice* const newest = subject.map.newest_slice();
-  if (newest == nullptr) return {"no slice yet", {}, camera_around({}, R_WV, intrinsics, config)};
-  std::vector<PointChunk> chunks;
-  newest->append_chunks(chunks);
-  const VirtualCamera camera = camera_around(chunks, R_WV, intrinsics, config);
-  return {"newest slice: " + std::to_string(newest->id()), std::move(chunks), camera};
+bool has_highlighted(const Subject& subject) {
+  const std::vector<PointChunk> chunks = subject.map.chunks();
+  return !subject.highlight.empty() && std::ranges::any_of(chunks, [&](const PointChunk& chunk) {
+    return std::ranges::any_of(chunk.labels,
+                               [&](std::uint32_t id) { return subject.highlight.contains(id); });
+  });
 }
 
 }  // namespace
@@ -81,52 +64,105 @@ void MapRenderer::Config::validate() const {
 MapRenderer::MapRenderer(const Config& config) : config_(config) { config_.validate(); }
 
 cv::Mat3b MapRenderer::draw_figure(const Subject& subject, const std::string& caption) const {
-  constexpr std::array kColorings{Coloring::kTrue, Coloring::kSegments};
-  constexpr std::array kMapTitles{"map", "segments"};
-  const Layout layout = layout_of(config_.width_px, config_.height_px);
+  const bool has_close_up = has_highlighted(subject);
+  const Layout layout = layout_of(config_.width_px, config_.height_px, has_close_up);
   cv::Mat3b figure(config_.height_px, config_.width_px, palette::kPanelGap);
-  const Panel map = panel(subject, subject.map.chunks(),
-                          camera_of(subject, layout.map[0].size(), config_.viewpoint));
-  const Detail detail =
-      detail_of(subject, map.camera().X_WV.linear(), layout.detail[0].size(), config_.viewpoint);
-  const Panel detail_panel = panel(subject, detail.chunks, detail.camera);
-  for (std::size_t i = 0; i < kColorings.size(); ++i) {
-    draw_panel(map, kColorings[i], kMapTitles[i], &subject.track).copyTo(figure(layout.map[i]));
-    draw_panel(detail_panel, kColorings[i], detail.title, nullptr).copyTo(figure(layout.detail[i]));
+  const std::vector<MapPicture> maps = map_pictures(subject, layout.map[0].size(), kBoth);
+  for (std::size_t i = 0; i < maps.size(); ++i) {
+    finish(maps[i], subject.track).copyTo(figure(layout.map[i]));
+  }
+  if (has_close_up) {
+    const std::vector<MapPicture> details =
+        close_ups(subject, maps.front().camera.X_WV.linear(), layout.close_up[0].size(), kBoth);
+    for (std::size_t i = 0; i < details.size(); ++i) {
+      finish(details[i], subject.track).copyTo(figure(layout.close_up[i]));
+    }
   }
   draw_caption(figure, layout.caption, caption);
   return figure;
 }
 
 cv::Mat3b MapRenderer::draw_map(const Subject& subject, Coloring coloring) const {
+  std::vector<MapPicture> maps =
+      map_pictures(subject, {config_.width_px, config_.height_px}, {coloring});
+  maps.front().title.clear();
+  return finish(maps.front(), subject.track);
+}
+
+std::optional<Frustum> MapRenderer::frustum(const CameraTrack& track) const {
+  if (!track.X_WC) return std::nullopt;
+  return frustum_of(*track.X_WC, config_.frustum_m);
+}
+
+std::vector<MapPicture> MapRenderer::map_pictures(const Subject& subject, cv::Size size,
+                                                  const std::vector<Coloring>& colorings) const {
+  const std::optional<Frustum> camera_in_map = frustum(subject.track);
+  std::vector<Eigen::Vector3d> all_of_these_W;
+  if (camera_in_map) {
+    const auto corners_W = camera_in_map->corners_W();
+    all_of_these_W.assign(corners_W.begin(), corners_W.end());
+  }
   const VirtualCamera camera =
-      camera_of(subject, {config_.width_px, config_.height_px}, config_.viewpoint);
-  return draw_panel(panel(subject, subject.map.chunks(), camera), coloring, "", &subject.track);
+      camera_at(subject.viewpoint, subject.map, subject.depth_camera, size.width, size.height,
+                config_.viewpoint, all_of_these_W);
+  return pictures(subject, camera, colorings);
 }
 
-Panel MapRenderer::panel(const Subject& subject, std::vector<PointChunk> chunks,
-                         const VirtualCamera& camera) const {
-  return {std::move(chunks), camera, config_.splat, config_.supersampling, subject.highlight};
+std::vector<MapPicture> MapRenderer::close_ups(const Subject& subject, const Eigen::Matrix3d& R_WV,
+                                               cv::Size size,
+                                               const std::vector<Coloring>& colorings) const {
+  const Intrinsics intrinsics =
+      pinhole(size.width, size.height, config_.viewpoint.field_of_view_rad);
+  const auto camera = close_up(subject.map.chunks(), subject.highlight, R_WV, intrinsics);
+  if (!camera) return {};
+  std::vector<MapPicture> drawn = pictures(subject, *camera, colorings);
+  for (MapPicture& picture : drawn) {
+    picture.title = "highlighted";
+    picture.has_camera = false;
+  }
+  return drawn;
 }
 
-cv::Mat3b MapRenderer::draw_panel(const Panel& panel, Coloring coloring, const std::string& title,
-                                  const CameraTrack* track) const {
-  cv::Mat3b image = panel.draw(coloring);
-  if (track != nullptr) {
-    draw_path(image, panel.camera(), track->path_W);
-    if (track->X_WC) draw_frustum(image, panel.camera(), *track->X_WC, config_.frustum_m);
+std::vector<MapPicture> MapRenderer::pictures(const Subject& subject, const VirtualCamera& camera,
+                                              const std::vector<Coloring>& colorings) const {
+  const Panel panel(subject.map.chunks(), camera, config_.splat, config_.supersampling,
+                    subject.highlight);
+  std::vector<MapPicture> drawn;
+  for (const Coloring coloring : colorings) {
+    MapPicture& picture = drawn.emplace_back();
+    picture.title = coloring == Coloring::kTrue ? "map" : "segments";
+    picture.camera = camera;
+    picture.image = panel.draw(coloring);
+    if (coloring == Coloring::kSegments && (config_.label_ids || !subject.highlight.empty())) {
+      const std::array reserved{title_box(picture.image, picture.title)};
+      picture.labels = place_labels(panel.segment_ids(), subject.highlight, reserved);
+    }
   }
-  if (coloring == Coloring::kSegments && (config_.label_ids || !panel.highlight().empty())) {
-    const std::array reserved{title_box(image, title)};
-    draw_labels(image, place_labels(panel.segment_ids(), panel.highlight(), reserved));
+  return drawn;
+}
+
+cv::Mat3b MapRenderer::finish(const MapPicture& picture, const CameraTrack& track) const {
+  cv::Mat3b image = picture.image.clone();
+  if (picture.has_camera) {
+    draw_path(image, picture.camera, track.path_W);
+    if (const auto camera_in_map = frustum(track)) {
+      draw_frustum(image, picture.camera, *camera_in_map);
+    }
   }
-  draw_title(image, title);
+  draw_labels(image, picture.labels);
+  draw_title(image, picture.title);
   return image;
 }
 
 std::string caption(const ReceivedMap& map) {
   const double time_s = 1e-6 * static_cast<double>(map.utime() - map.first_utime());
-  return format("%.1f s   ", time_s) + final_caption(map);
+  std::string text = format("%.1f s   ", time_s) + final_caption(map);
+  const MapCounts& counts = map.counts();
+  if (counts.points_in_volume > 0) {
+    text += format("   %.0f %% may change", 100.0 * static_cast<double>(counts.points_in_volume) /
+                                                static_cast<double>(counts.points));
+  }
+  return text;
 }
 
 std::string final_caption(const ReceivedMap& map) {

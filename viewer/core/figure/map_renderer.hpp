@@ -1,12 +1,15 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <opencv2/core.hpp>
 
+#include "viewer/core/camera/frustum.hpp"
 #include "viewer/core/camera/viewpoint.hpp"
 #include "viewer/core/figure/panel.hpp"
+#include "viewer/core/figure/segment_labels.hpp"
 #include "viewer/core/map/camera_track.hpp"
 #include "viewer/core/map/received_map.hpp"
 #include "viewer/core/rendering/highlight.hpp"
@@ -24,8 +27,17 @@ struct Subject {
   Highlight highlight = {};
 };
 
-/// Draws a ReceivedMap. The pictures depend on the subject and the configuration alone: the same
-/// bytes with any number of threads.
+/// A picture of points, on which nothing is written yet.
+struct MapPicture {
+  std::string title;
+  VirtualCamera camera;
+  cv::Mat3b image;
+  std::vector<SegmentLabel> labels;
+  bool has_camera = true;  ///< the camera's path and frustum are drawn over it
+};
+
+/// The figure like Fig. 1 of the paper, and the pictures that figures are made of. They depend on
+/// the subject and the configuration alone: the same bytes with any number of threads.
 class MapRenderer {
  public:
   struct Config {
@@ -44,20 +56,32 @@ class MapRenderer {
   /// @throws std::invalid_argument as Config::validate()
   explicit MapRenderer(const Config& config);
 
-  /// A figure like Fig. 1 of the paper: left in true colour, right in the colours of the segments;
-  /// above the map with the camera's path, below the newest slice alone; a caption. When segments
-  /// are highlighted, a close-up of them replaces the newest slice.
+  const Config& config() const { return config_; }
+
+  /// The whole map with the camera's path, left in true colour, right in the colours of the
+  /// segments; a caption. When segments are highlighted, a close-up of them is below.
   cv::Mat3b draw_figure(const Subject& subject, const std::string& caption) const;
 
   /// The map alone in one coloring, filling the picture.
   cv::Mat3b draw_map(const Subject& subject, Coloring coloring) const;
 
+  /// The map in each of the colorings, seen from the subject's viewpoint.
+  std::vector<MapPicture> map_pictures(const Subject& subject, cv::Size size,
+                                       const std::vector<Coloring>& colorings) const;
+  /// A close-up of the highlighted segments, seen in the direction of `R_WV`. Empty when there are
+  /// none in the map.
+  std::vector<MapPicture> close_ups(const Subject& subject, const Eigen::Matrix3d& R_WV,
+                                    cv::Size size, const std::vector<Coloring>& colorings) const;
+
+  /// Draws the camera over the picture, and writes ids and title.
+  cv::Mat3b finish(const MapPicture& picture, const CameraTrack& track) const;
+
+  /// What is drawn for the camera; nothing: its pose is not known.
+  std::optional<Frustum> frustum(const CameraTrack& track) const;
+
  private:
-  Panel panel(const Subject& subject, std::vector<PointChunk> chunks,
-              const VirtualCamera& camera) const;
-  /// `track` may be nullptr: none is drawn.
-  cv::Mat3b draw_panel(const Panel& panel, Coloring coloring, const std::string& title,
-                       const CameraTrack* track) const;
+  std::vector<MapPicture> pictures(const Subject& subject, const VirtualCamera& camera,
+                                   const std::vector<Coloring>& colorings) const;
 
   Config config_;
 };

@@ -1,7 +1,6 @@
 #include "viewer/core/figure/overlay.hpp"
 
 #include <algorithm>
-#include <array>
 
 #include <opencv2/imgproc.hpp>
 
@@ -48,22 +47,15 @@ void draw_path(cv::Mat3b& image, const VirtualCamera& camera,
   }
 }
 
-void draw_frustum(cv::Mat3b& image, const VirtualCamera& camera, const Pose& X_WC, double size_m) {
-  // Half the width and height of the field of view of a Kinect, 57 x 43 degrees, at a distance
-  // of 1.
-  constexpr double kHalfWidth = 0.54;
-  constexpr double kHalfHeight = 0.40;
-  const Pose X_VC = camera.X_WV.inverse() * X_WC;
-  std::array<Eigen::Vector3d, 4> corners_V;
-  constexpr std::array<std::array<int, 2>, 4> kSigns{{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}};
-  for (std::size_t i = 0; i < corners_V.size(); ++i) {
-    const Eigen::Vector3d corner_C(kSigns[i][0] * kHalfWidth, kSigns[i][1] * kHalfHeight, 1.0);
-    corners_V[i] = X_VC * (size_m * corner_C);
-  }
-  for (std::size_t i = 0; i < corners_V.size(); ++i) {
-    const int width = line_width(image);
-    draw_line(image, camera, X_VC.translation(), corners_V[i], palette::kCameraFrustum, width);
-    draw_line(image, camera, corners_V[i], corners_V[(i + 1) % 4], palette::kCameraFrustum, width);
+void draw_frustum(cv::Mat3b& image, const VirtualCamera& camera, const Frustum& frustum) {
+  const Pose X_VW = camera.X_WV.inverse();
+  const int width = line_width(image);
+  const auto draw = [&](const Eigen::Vector3d& a_W, const Eigen::Vector3d& b_W) {
+    draw_line(image, camera, X_VW * a_W, X_VW * b_W, palette::kCameraFrustum, width);
+  };
+  for (std::size_t i = 0; i < frustum.base_W.size(); ++i) {
+    draw(frustum.apex_W, frustum.base_W[i]);
+    draw(frustum.base_W[i], frustum.base_W[(i + 1) % frustum.base_W.size()]);
   }
 }
 

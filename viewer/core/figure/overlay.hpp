@@ -5,6 +5,7 @@
 
 #include <opencv2/core.hpp>
 
+#include "viewer/core/camera/frustum.hpp"
 #include "viewer/core/camera/virtual_camera.hpp"
 
 namespace kintsugi::viewer {
@@ -14,8 +15,8 @@ namespace kintsugi::viewer {
 void draw_path(cv::Mat3b& image, const VirtualCamera& camera,
                std::span<const Eigen::Vector3f> path_W);
 
-/// Draws the depth camera C as a pyramid `size_m` deep.
-void draw_frustum(cv::Mat3b& image, const VirtualCamera& camera, const Pose& X_WC, double size_m);
+/// Draws the edges of the frustum of the depth camera, over the map.
+void draw_frustum(cv::Mat3b& image, const VirtualCamera& camera, const Frustum& frustum);
 
 /// Fills `bar` and writes the text into it, as large as fits.
 void draw_caption(cv::Mat3b& image, const cv::Rect& bar, const std::string& text);

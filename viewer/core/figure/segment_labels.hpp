@@ -7,10 +7,9 @@
 
 #include <opencv2/core.hpp>
 
-namespace kintsugi::viewer {
+#include "viewer/core/rendering/id_image.hpp"
 
-/// The id of the segment visible in each pixel; kNoSegment: none.
-using IdImage = cv::Mat_<std::int32_t>;
+namespace kintsugi::viewer {
 
 /// The id of a segment as it is written into a picture.
 struct SegmentLabel {

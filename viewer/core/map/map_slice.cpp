@@ -10,6 +10,7 @@ MapSlice::MapSlice(CloudSlice slice)
     : utime_(slice.utime),
       id_(slice.id),
       revision_(slice.revision),
+      in_volume_(slice.in_volume),
       resolution_m_(slice.resolution_m),
       X_WC_(slice.X_WC),
       points_W_(std::move(slice.points_W)),

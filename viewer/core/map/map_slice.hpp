@@ -21,6 +21,8 @@ class MapSlice {
   std::int32_t id() const { return id_; }
   std::int32_t revision() const { return revision_; }
   const Pose& X_WC() const { return X_WC_; }
+  /// It may still change, as long as the mapper observes it.
+  bool in_volume() const { return in_volume_; }
   const std::vector<CloudPoint>& points_W() const { return points_W_; }
   const std::vector<std::uint32_t>& labels() const { return labels_; }
   void append_chunks(std::vector<PointChunk>& chunks) const;
@@ -46,6 +48,7 @@ class MapSlice {
   std::int64_t utime_;
   std::int32_t id_;
   std::int32_t revision_;
+  bool in_volume_;
   float resolution_m_;
   Pose X_WC_;
   std::vector<CloudPoint> points_W_;

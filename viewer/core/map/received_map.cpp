@@ -7,24 +7,55 @@
 namespace kintsugi::viewer {
 
 bool ReceivedMap::add_slice(CloudSlice message) {
-  if (const MapSlice* const held = slice(message.id)) {
-    if (message.revision <= held->revision()) {
-      ++counts_.ignored_slices;
-      return false;
-    }
-    counts_.points -= static_cast<std::int64_t>(held->points_W().size());
-    up_.remove(held->points_W());
-    if (held->is_labelled()) --counts_.labelled_slices;
-  } else {
-    ++counts_.slices;
+  const auto held = slices_.find(message.id);
+  if (held != slices_.end() && message.revision <= held->second.newest().revision()) {
+    ++counts_.ignored_slices;
+    return false;
   }
-  const std::int32_t id = message.id;
-  MapSlice& added = slices_.insert_or_assign(id, MapSlice(std::move(message))).first->second;
-  counts_.points += static_cast<std::int64_t>(added.points_W().size());
-  advance_time(added.utime());
-  up_.add(added.points_W());
-  apply_pending(added);
+  if (message.kind == SliceKind::kFinal) note_final(message);
+  note_time(message.utime);
+  revision_sum_ += message.revision;
+  if (held == slices_.end()) {
+    ++counts_.slices;
+    const std::int32_t id = message.id;
+    SliceRevisions& added = slices_.try_emplace(id, MapSlice(std::move(message))).first->second;
+    apply_pending(added.newest());
+    note_shown(added.shown());
+    return true;
+  }
+  SliceRevisions& slice = held->second;
+  revision_sum_ -= slice.newest().revision();
+  if (slice.newest().is_labelled()) --counts_.labelled_slices;
+  slice.add(MapSlice(std::move(message)));
+  apply_pending(slice.newest());
+  advance(slice);
   return true;
+}
+
+void ReceivedMap::note_final(const CloudSlice& slice) {
+  final_slice_ = {slice.id, slice.revision_sum};
+}
+
+/// Shows another revision of the slice, if one is to be shown now.
+void ReceivedMap::advance(SliceRevisions& slice) {
+  if (const auto replaced = slice.advance()) {
+    note_hidden(*replaced);
+    note_shown(slice.shown());
+  }
+}
+
+void ReceivedMap::note_shown(const MapSlice& slice) {
+  const auto num_points = static_cast<std::int64_t>(slice.points_W().size());
+  counts_.points += num_points;
+  if (slice.in_volume()) counts_.points_in_volume += num_points;
+  up_.add(slice.points_W());
+}
+
+void ReceivedMap::note_hidden(const MapSlice& slice) {
+  const auto num_points = static_cast<std::int64_t>(slice.points_W().size());
+  counts_.points -= num_points;
+  if (slice.in_volume()) counts_.points_in_volume -= num_points;
+  up_.remove(slice.points_W());
 }
 
 bool ReceivedMap::accept_segmenter(std::int64_t session) {
@@ -36,7 +67,8 @@ bool ReceivedMap::accept_segmenter(std::int64_t session) {
 }
 
 void ReceivedMap::await_new_segmenter() {
-  for (auto& [id, slice] : slices_) slice.await_new_segmenter();
+  for (auto& [id, slice] : slices_)
+    slice.for_each([](MapSlice& held) { held.await_new_segmenter(); });
   counts_.labelled_slices = 0;
   pending_.clear();
   newest_update_.reset();
@@ -44,14 +76,26 @@ void ReceivedMap::await_new_segmenter() {
   final_update_seen_ = false;
 }
 
-void ReceivedMap::discard_old_labels() {
-  for (auto& [id, slice] : slices_) slice.discard_old_labels();
+void ReceivedMap::settle() {
+  for (auto& [id, slice] : slices_) {
+    if (const auto replaced = slice.advance_to_newest()) {
+      note_hidden(*replaced);
+      note_shown(slice.shown());
+    }
+    slice.newest().discard_old_labels();
+  }
 }
 
-ReceivedMap::Presence ReceivedMap::presence(SliceKey key) const {
-  const MapSlice* const held = slice(key.id);
-  if (held == nullptr || held->revision() < key.revision) return Presence::kNotYet;
-  return held->revision() == key.revision ? Presence::kHere : Presence::kReplaced;
+/// A newer revision than this one is here.
+bool ReceivedMap::is_replaced(SliceKey key) const {
+  const auto found = slices_.find(key.id);
+  return found != slices_.end() && found->second.newest().revision() > key.revision;
+}
+
+/// nullptr: not here.
+MapSlice* ReceivedMap::find(SliceKey key) {
+  const auto found = slices_.find(key.id);
+  return found == slices_.end() ? nullptr : found->second.find(key.revision);
 }
 
 bool ReceivedMap::apply_update(const SegmentUpdate& update) {
@@ -88,18 +132,20 @@ bool ReceivedMap::use_counts(const SegmentUpdate& update, std::uint32_t number) 
 }
 
 UpdateEffect ReceivedMap::use_labels(SliceKey key, NumberedLabels labels) {
-  const Presence slice = presence(key);
-  if (slice == Presence::kNotYet) return pending_.add(key, std::move(labels));
-  if (slice == Presence::kReplaced) return UpdateEffect::kNotUsable;
-  return apply_labels(slices_.at(key.id), labels);
+  if (MapSlice* const slice = find(key)) {
+    const UpdateEffect effect = apply_labels(*slice, labels);
+    advance(slices_.at(key.id));
+    return effect;
+  }
+  if (is_replaced(key)) return UpdateEffect::kNotUsable;
+  return pending_.add(key, std::move(labels));
 }
 
 /// True when it changed something, or will when its slice arrives.
 bool ReceivedMap::use_run(const NumberedRun& run) {
   const SliceKey key{run.run.slice_id, run.run.slice_revision};
-  const Presence slice = presence(key);
-  if (slice == Presence::kHere) return apply_run(slices_.at(key.id), run);
-  if (slice == Presence::kReplaced) return false;
+  if (MapSlice* const slice = find(key)) return apply_run(*slice, run);
+  if (is_replaced(key)) return false;
   const bool is_kept = pending_.add(run);
   if (!is_kept) ++counts_.ignored_runs;
   return is_kept;
@@ -126,7 +172,8 @@ UpdateEffect ReceivedMap::apply_labels(MapSlice& slice, const NumberedLabels& la
   const bool is_first_of_any_segmenter = !slice.was_labelled();
   const UpdateEffect effect = slice.apply(labels);
   if (effect == UpdateEffect::kNotUsable) return effect;
-  if (is_first) ++counts_.labelled_slices;
+  const bool is_newest = slice.revision() == slices_.at(slice.id()).newest().revision();
+  if (is_first && is_newest) ++counts_.labelled_slices;
   if (is_first_of_any_segmenter) ++counts_.labellings;
   return effect;
 }
@@ -140,52 +187,51 @@ bool ReceivedMap::apply_run(MapSlice& slice, const NumberedRun& run) {
 
 bool ReceivedMap::add_pose(const CameraPose& pose) {
   if (!poses_.add(pose)) return false;
-  advance_time(pose.utime);
+  note_time(pose.utime);
   return true;
 }
 
 std::vector<TimedPose> ReceivedMap::slice_poses() const {
   std::vector<TimedPose> poses;
   poses.reserve(slices_.size());
-  for (const auto& [id, slice] : slices_) poses.push_back({slice.utime(), slice.X_WC()});
+  for (const auto& [id, slice] : slices_) {
+    poses.push_back({slice.newest().utime(), slice.newest().X_WC()});
+  }
   std::ranges::stable_sort(poses, {}, &TimedPose::utime);
+  const auto repeated = std::ranges::unique(poses, {}, &TimedPose::utime);  // those of one batch
+  poses.erase(repeated.begin(), repeated.end());
   return poses;
 }
 
-void ReceivedMap::advance_time(std::int64_t utime) {
+void ReceivedMap::note_time(std::int64_t utime) {
   utime_ = std::max(utime_.value_or(utime), utime);
   first_utime_ = std::min(first_utime_.value_or(utime), utime);
 }
 
 std::int64_t ReceivedMap::lag_slices() const {
-  const std::int64_t known = std::max(counts_.slices, announced_slices_);
+  std::int64_t known = std::max(counts_.slices, announced_slices_);
+  std::int64_t outdated = 0;
+  if (final_slice_) {
+    known = std::max(known, std::int64_t{final_slice_->id} + 1);
+    if (revision_sum_ < final_slice_->revision_sum) outdated = 1;  // at least
+  }
   // The segmenter may have labelled a newer revision of a labelled slice.
   const auto is_labelled = [this](std::int32_t id) {
-    const MapSlice* const held = slice(id);
-    return held != nullptr && held->is_labelled();
+    const auto found = slices_.find(id);
+    return found != slices_.end() && found->second.newest().is_labelled();
   };
-  return known - counts_.labelled_slices + pending_.count_labelled_if(is_labelled);
+  const std::int64_t named = pending_.count_labelled_if(is_labelled);
+  return known - counts_.labelled_slices + std::max(named, outdated);
 }
 
 const MapSlice* ReceivedMap::slice(std::int32_t id) const {
   const auto found = slices_.find(id);
-  return found == slices_.end() ? nullptr : &found->second;
-}
-
-const MapSlice* ReceivedMap::newest_slice() const {
-  const MapSlice* newest = nullptr;
-  for (auto it = slices_.rbegin(); it != slices_.rend(); ++it) {
-    const MapSlice& slice = it->second;
-    if (slice.points_W().empty()) continue;
-    if (slice.was_labelled()) return &slice;
-    if (newest == nullptr) newest = &slice;
-  }
-  return newest;
+  return found == slices_.end() ? nullptr : &found->second.shown();
 }
 
 std::vector<PointChunk> ReceivedMap::chunks() const {
   std::vector<PointChunk> chunks;
-  for (const auto& [id, slice] : slices_) slice.append_chunks(chunks);
+  for (const auto& [id, slice] : slices_) slice.shown().append_chunks(chunks);
   return chunks;
 }
 

@@ -11,16 +11,18 @@
 #include "viewer/core/map/map_slice.hpp"
 #include "viewer/core/map/pending_updates.hpp"
 #include "viewer/core/map/point_chunk.hpp"
+#include "viewer/core/map/slice_revisions.hpp"
 #include "viewer/core/map/up_direction.hpp"
 
 namespace kintsugi::viewer {
 
 /// What a ReceivedMap holds now, and what it has been given since it began.
 struct MapCounts {
-  std::int64_t slices = 0;           ///< held now
-  std::int64_t points = 0;           ///< held now
-  std::int64_t labelled_slices = 0;  ///< held now, with their update applied
-  std::int64_t segments = 0;         ///< in the whole map, according to the newest update
+  std::int64_t slices = 0;            ///< held now
+  std::int64_t points = 0;            ///< shown now
+  std::int64_t points_in_volume = 0;  ///< of these: may still change
+  std::int64_t labelled_slices = 0;   ///< held now, their newest revision with its update applied
+  std::int64_t segments = 0;          ///< in the whole map, according to the newest update
 
   std::int64_t updates = 0;           ///< applied, or kept until their slice arrives
   std::int64_t repeated_updates = 0;  ///< said nothing new
@@ -33,9 +35,11 @@ struct MapCounts {
 /// The slices of one map session, their labels and the camera's path, as far as they have arrived.
 ///
 /// Slices and updates may arrive in any order and more than once; the result is the same. A higher
-/// revision of a slice replaces points and labels of the one held. Labels for a revision that has
-/// not arrived are kept until it does; labels for one that has been replaced are ignored. The full
-/// state that a segmenter sends to late joiners changes nothing in a map that is up to date.
+/// revision of a slice replaces points and labels of the one held: if that has labels, not before
+/// the labels of the higher one are here, so that no surface loses its segments for a moment.
+/// Labels for a revision that has not arrived are kept until it does; labels for one that has been
+/// replaced are ignored. The full state that a segmenter sends to late joiners changes nothing in a
+/// map that is up to date. The cost of a message does not grow with the map.
 ///
 /// A segmenter session with a larger number replaces the one before, after a restart. The old
 /// labels remain visible until the new ones arrive, slice by slice, but slices with old labels
@@ -44,8 +48,8 @@ class ReceivedMap {
  public:
   explicit ReceivedMap(std::int64_t map_session) : map_session_(map_session) {}
 
-  /// Adds a slice, or replaces an earlier revision of it, whose labels are dropped. False when the
-  /// revision is not newer than the one held: ignored and counted.
+  /// Adds a slice or a revision of one. False when the revision is not newer than the newest held:
+  /// ignored and counted.
   bool add_slice(CloudSlice slice);
 
   /// Applies the labels and runs of an update; false when it changed nothing. Ignored and counted
@@ -53,30 +57,32 @@ class ReceivedMap {
   /// a sequence number of 2^32 - 1 or more: no stream is that long.
   bool apply_update(const SegmentUpdate& update);
 
-  /// Removes the labels of earlier segmenters that the present one has not replaced.
-  void discard_old_labels();
+  /// Shows the newest revision of every slice, with or without labels, and removes the labels of
+  /// earlier segmenters that the present one has not replaced.
+  void settle();
 
   /// False when the pose is not used: camera lost or starting, or not newer than the last pose.
   bool add_pose(const CameraPose& pose);
 
+  /// Something of the map has this device time.
+  void note_time(std::int64_t utime);
+
   std::int64_t map_session() const { return map_session_; }
   const MapCounts& counts() const { return counts_; }
-  /// Slices without their update, plus slices (or newer revisions of them) that updates have named
-  /// but that have not arrived.
+  /// Slices without their update, plus slices (or newer revisions of them) that have not arrived
+  /// although an update or the final slice has named them. 0: with the final slice, the map is
+  /// complete.
   std::int64_t lag_slices() const;
-  /// Device time of the newest slice or pose, microseconds; 0 when there is none.
+  /// Newest device time heard of, microseconds; 0 when there is none.
   std::int64_t utime() const { return utime_.value_or(0); }
-  /// Device time of the earliest slice or pose, microseconds; 0 when there is none.
+  /// Earliest device time heard of, microseconds; 0 when there is none.
   std::int64_t first_utime() const { return first_utime_.value_or(0); }
   /// The segmenter has sent the update that completes its map.
   bool final_update_seen() const { return final_update_seen_; }
 
-  const MapSlice* slice(std::int32_t id) const;  ///< nullptr: not here
-  /// The labelled slice with the highest id; with no segmenter, the slice with the highest id.
-  /// Slices without points are skipped. nullptr: none.
-  const MapSlice* newest_slice() const;
+  const MapSlice* slice(std::int32_t id) const;  ///< as it is shown; nullptr: not here
 
-  std::vector<PointChunk> chunks() const;  ///< of all slices, by slice id
+  std::vector<PointChunk> chunks() const;  ///< of all slices as they are shown, by slice id
 
   const UpDirection& up() const { return up_; }
 
@@ -88,9 +94,14 @@ class ReceivedMap {
  private:
   static constexpr std::size_t kMaxPendingBytes = std::size_t{1} << 29U;  ///< 130 million labels
 
-  enum class Presence { kHere, kReplaced, kNotYet };
+  /// What the final slice tells of the whole map.
+  struct Announcement {
+    std::int32_t id = 0;
+    std::int64_t revision_sum = 0;
+  };
 
-  Presence presence(SliceKey key) const;
+  bool is_replaced(SliceKey key) const;
+  MapSlice* find(SliceKey key);
   bool accept_segmenter(std::int64_t session);
   void await_new_segmenter();
   bool use_counts(const SegmentUpdate& update, std::uint32_t number);
@@ -99,16 +110,21 @@ class ReceivedMap {
   UpdateEffect apply_labels(MapSlice& slice, const NumberedLabels& labels);
   bool apply_run(MapSlice& slice, const NumberedRun& run);
   void apply_pending(MapSlice& slice);
+  void advance(SliceRevisions& slice);
+  void note_shown(const MapSlice& slice);
+  void note_hidden(const MapSlice& slice);
+  void note_final(const CloudSlice& slice);
   std::vector<TimedPose> slice_poses() const;
-  void advance_time(std::int64_t utime);
 
   std::int64_t map_session_;
   std::int64_t segmenter_session_ = 0;
-  std::map<std::int32_t, MapSlice> slices_;
+  std::map<std::int32_t, SliceRevisions> slices_;
   PendingUpdates pending_{kMaxPendingBytes};
   std::optional<std::uint32_t> newest_update_;
   std::int64_t announced_slices_ = 0;  ///< slices in the map, according to the segmenter
   bool final_update_seen_ = false;
+  std::optional<Announcement> final_slice_;
+  std::int64_t revision_sum_ = 0;  ///< of the newest revisions held
   MapCounts counts_;
   std::optional<std::int64_t> utime_;
   std::optional<std::int64_t> first_utime_;

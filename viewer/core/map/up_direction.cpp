@@ -46,6 +46,7 @@ void UpDirection::add(std::span<const CloudPoint> points_W) { count(points_W, 1.
 void UpDirection::remove(std::span<const CloudPoint> points_W) { count(points_W, -1.0); }
 
 void UpDirection::count(std::span<const CloudPoint> points_W, double sign) {
+  if (!points_W.empty()) up_W_.reset();
   for (const CloudPoint& p : points_W) {
     Eigen::Vector3d normal(p.nx, p.ny, p.nz);
     if (!(std::abs(normal.squaredNorm() - 1.0) < 0.1)) continue;
@@ -59,6 +60,11 @@ void UpDirection::count(std::span<const CloudPoint> points_W, double sign) {
 }
 
 Eigen::Vector3d UpDirection::up_W() const {
+  if (!up_W_) up_W_ = estimate_W();
+  return *up_W_;
+}
+
+Eigen::Vector3d UpDirection::estimate_W() const {
   Eigen::Vector3d level = -Eigen::Vector3d::UnitY();
   const double cos_tilt = std::cos(kMaxTilt_rad);
   const double cos_window = std::cos(0.2);

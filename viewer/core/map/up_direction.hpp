@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -27,11 +28,13 @@ class UpDirection {
   /// Subtracts normals that were added.
   void remove(std::span<const CloudPoint> points_W);
 
-  /// Unit vector in W. Costs under a millisecond however many points were added.
+  /// Unit vector in W. Costs under a millisecond however many points were added, and nothing when
+  /// none were since the last call.
   Eigen::Vector3d up_W() const;
 
  private:
   void count(std::span<const CloudPoint> points_W, double sign);
+  Eigen::Vector3d estimate_W() const;
 
   static constexpr int kSide = 32;  ///< bins along one side of the unfolded octahedron
   static constexpr double kMaxTilt_rad =
@@ -40,6 +43,7 @@ class UpDirection {
 
   std::vector<Eigen::Vector4d> bins_;  ///< sum of normals, and their number
   double total_ = 0.0;
+  mutable std::optional<Eigen::Vector3d> up_W_;  ///< of these bins; nothing: not estimated yet
 };
 
 }  // namespace kintsugi::viewer

@@ -25,14 +25,15 @@ constexpr float kBulge = 0.25F;
 /// Projects points; in single precision for speed.
 class Projector {
  public:
-  Projector(const VirtualCamera& camera, const SplatConfig& config)
+  Projector(const VirtualCamera& camera, const SplatConfig& config, const MeasuredDepth* measured)
       : R_VW_(camera.X_WV.linear().transpose().cast<float>()),
         eye_W_(camera.X_WV.translation().cast<float>()),
         fx_(static_cast<float>(camera.intrinsics.fx)),
         fy_(static_cast<float>(camera.intrinsics.fy)),
         cx_(static_cast<float>(camera.intrinsics.cx)),
         cy_(static_cast<float>(camera.intrinsics.cy)),
-        config_(config) {}
+        config_(config),
+        measured_(measured) {}
 
   bool may_see(const Eigen::AlignedBox3f& box_W, float radius_m,
                const VisibilityImage& image) const;
@@ -41,11 +42,16 @@ class Projector {
  private:
   void draw_disc(const Eigen::Vector3f& p_V, const Eigen::Vector3f& n_V, float radius_m,
                  std::uint32_t number, VisibilityImage& image) const;
+  bool may_be_at(int u, int v, float depth_m, float radius_m) const {
+    const auto voxels = static_cast<float>(config_.radius_vox);
+    return measured_ == nullptr || measured_->agrees(u, v, depth_m, radius_m / voxels);
+  }
 
   Eigen::Matrix3f R_VW_;
   Eigen::Vector3f eye_W_;
   float fx_, fy_, cx_, cy_;
   SplatConfig config_;
+  const MeasuredDepth* measured_;
 };
 
 /// False when all corners are beyond the same side of the picture or nearer than near_m.
@@ -97,10 +103,11 @@ void Projector::draw_disc(const Eigen::Vector3f& p_V, const Eigen::Vector3f& n_V
   }
   const int center_u = static_cast<int>(std::lround(u));
   const int center_v = static_cast<int>(std::lround(v));
-  if (center_u >= 0 && center_u < image.width() && center_v >= 0 && center_v < image.height()) {
+  if (center_u >= 0 && center_u < image.width() && center_v >= 0 && center_v < image.height() &&
+      may_be_at(center_u, center_v, p_V.z(), radius_m)) {
     image.keep_nearest(center_u, center_v, p_V.z(), number);
   }
-  if (radius_px < 0.5F) return;
+  if (radius_px < static_cast<float>(config_.min_radius_px)) return;
 
   // The disc's nearest edge looks larger than its middle: at most by z / (z - r).
   const float reach_px = radius_px * p_V.z() / std::max(p_V.z() - radius_m, 0.5F * p_V.z());
@@ -116,6 +123,7 @@ void Projector::draw_disc(const Eigen::Vector3f& p_V, const Eigen::Vector3f& n_V
       const float depth_m = plane / n_V.dot(ray);
       const float distance2_m2 = (ray * depth_m - p_V).squaredNorm();
       if (!(distance2_m2 <= radius_m * radius_m && depth_m > 0.0F)) continue;
+      if (!may_be_at(x, y, depth_m, radius_m)) continue;
       image.keep_nearest(x, y, depth_m + kBulge * distance2_m2 / radius_m, number);
     }
   }
@@ -127,6 +135,7 @@ void SplatConfig::validate() const {
   require(radius_vox > 0.0 && radius_vox <= 10.0, "SplatConfig::radius_vox", radius_vox,
           "in (0, 10]");
   check_range("SplatConfig::max_radius_px", max_radius_px, 1.0, 1000.0);
+  check_range("SplatConfig::min_radius_px", min_radius_px, 0.0, 10.0);
   require(near_m > 0.0 && near_m <= 10.0, "SplatConfig::near_m", near_m, "in (0, 10]");
 }
 
@@ -159,13 +168,13 @@ void VisibilityImage::keep_nearest(int u, int v, float depth_m, std::uint32_t po
 }
 
 VisibilityImage splat_points(std::span<const PointChunk> chunks, const VirtualCamera& camera,
-                             const SplatConfig& config) {
+                             const SplatConfig& config, const MeasuredDepth* measured) {
   if (chunks.size() > kMaxChunks) {
     throw std::length_error("the picture has " + std::to_string(chunks.size()) +
                             " chunks of points, must be at most " + std::to_string(kMaxChunks));
   }
   VisibilityImage image(camera.intrinsics.width, camera.intrinsics.height);
-  const Projector projector(camera, config);
+  const Projector projector(camera, config, measured);
   tbb::parallel_for(std::size_t{0}, chunks.size(), [&](std::size_t i) {
     const PointChunk& chunk = chunks[i];
     const float radius_m = static_cast<float>(config.radius_vox) * chunk.resolution_m;

@@ -6,12 +6,14 @@
 
 #include "viewer/core/camera/virtual_camera.hpp"
 #include "viewer/core/map/point_chunk.hpp"
+#include "viewer/core/rendering/measured_depth.hpp"
 
 namespace kintsugi::viewer {
 
 struct SplatConfig {
   double radius_vox = 1.0;      ///< of the disc drawn for a point; surfaces have no holes from 0.71
   double max_radius_px = 24.0;  ///< limit for points close to the camera
+  double min_radius_px = 0.5;   ///< of smaller discs only the pixel at their centre is drawn
   double near_m = 0.05;         ///< points nearer along V's z are not drawn
   bool cull_back_faces = true;  ///< skip points whose normal faces away from V
 
@@ -61,8 +63,10 @@ class VisibilityImage {
 /// and so are whole chunks outside the picture.
 ///
 /// Runs on all threads of oneTBB; the result does not depend on their number.
+/// @param measured nullptr, or of the picture's size: a point is then drawn only in pixels where it
+///   agrees with what is measured
 /// @throws std::length_error for more than 2^20 chunks
 VisibilityImage splat_points(std::span<const PointChunk> chunks, const VirtualCamera& camera,
-                             const SplatConfig& config);
+                             const SplatConfig& config, const MeasuredDepth* measured = nullptr);
 
 }  // namespace kintsugi::viewer
