@@ -199,8 +199,8 @@ BlockChange change_between(const BlockSurface& sent, const BlockSurface& now) {
       const unsigned before = sent.voxels[row] & kInside;
       const unsigned after = now.voxels[row] & kInside;
       change.num_in_all += std::popcount(before | after);
-      change.num_new += std::popcount(after & ~dilated(sent, y, z)) +
-                        std::popcount(before & ~dilated(now, y, z));
+      change.num_new +=
+          std::popcount(after & ~dilated(sent, y, z)) + std::popcount(before & ~dilated(now, y, z));
     }
   }
   // Where noise alone makes surface come and go, the number of its voxels is random: two standard

@@ -36,9 +36,9 @@ struct BlockSurface {
 
 /// How a block's surface differs from what was sent of it, in crossings.
 struct BlockChange {
-  int num_new = 0;      ///< that appeared or went
-  int num_better = 0;   ///< that moved by more than a quarter of a voxel, or were observed more
-  int num_in_all = 0;   ///< now or then
+  int num_new = 0;     ///< that appeared or went
+  int num_better = 0;  ///< that moved by more than a quarter of a voxel, or were observed more
+  int num_in_all = 0;  ///< now or then
 };
 BlockChange change_between(const BlockSurface& sent, const BlockSurface& now);
 

@@ -12,8 +12,7 @@ void PatchMaker::keep(const ExtractedSurface& left) {
   }
 }
 
-std::vector<CloudSlice> PatchMaker::make(const PatchBatch& batch,
-                                         const ExtractedSurface& in_volume,
+std::vector<CloudSlice> PatchMaker::make(const PatchBatch& batch, const ExtractedSurface& in_volume,
                                          const CloudSlice& header) {
   auto present_W = by_tile(in_volume);
   std::vector<CloudSlice> slices;

@@ -50,7 +50,8 @@ std::optional<PatchBatch> PatchSchedule::next(const TsdfVolume& volume, std::int
       block.sent = block.now;
       block.change = {.num_in_all = block.now.num_voxels()};
     }
-    std::erase_if(tile.blocks, [](const auto& entry) { return entry.second.sent.num_voxels() == 0; });
+    std::erase_if(tile.blocks,
+                  [](const auto& entry) { return entry.second.sent.num_voxels() == 0; });
     batch.patches.push_back({coord, true});
   }
   if (batch.patches.empty()) return std::nullopt;
@@ -68,7 +69,8 @@ void PatchSchedule::look_at(const TsdfVolume& volume) {
     const TileCoord tile_coord = grid_.tile_of(coord);
     if (seen.empty() || *seen.rbegin() != tile_coord) seen.insert(tile_coord);
     const auto tile = tiles_.find(tile_coord);
-    if (now.num_voxels() == 0 && (tile == tiles_.end() || !tile->second.blocks.contains(coord))) continue;
+    if (now.num_voxels() == 0 && (tile == tiles_.end() || !tile->second.blocks.contains(coord)))
+      continue;
     Block& block = tiles_[tile_coord].blocks[coord];
     block.now = now;
     block.change = change_between(block.sent, now);
@@ -106,9 +108,8 @@ double PatchSchedule::cost_of_waiting(const Tile& tile, double waited_s) const {
 
 bool PatchSchedule::is_in_volume(const TileCoord& tile, const TsdfVolume& volume) const {
   bool found = false;
-  grid_.for_each_block(tile, [&](const BlockCoord& coord) {
-    found = found || volume.find(coord) != kNoBlock;
-  });
+  grid_.for_each_block(
+      tile, [&](const BlockCoord& coord) { found = found || volume.find(coord) != kNoBlock; });
   return found;
 }
 

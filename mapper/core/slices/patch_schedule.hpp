@@ -17,10 +17,10 @@ namespace kintsugi::mapper {
 ///
 /// A patch is sent when waiting has cost more than sending costs. The cost of waiting grows with
 /// the time and with the share of the patch that is new: one that is all new goes out after
-/// new_surface_s, one of which a fifth is new after five times as long. Surface that was sent and has
-/// become better since, observed four times as often or moved by a quarter of a voxel, can wait
-/// longer: better_surface_s. So a patch that does not change is never sent, one that changes a little
-/// is sent rarely, and the number of times does not depend on how often the camera looks.
+/// new_surface_s, one of which a fifth is new after five times as long. Surface that was sent and
+/// has become better since, observed four times as often or moved by a quarter of a voxel, can wait
+/// longer: better_surface_s. So a patch that does not change is never sent, one that changes a
+/// little is sent rarely, and the number of times does not depend on how often the camera looks.
 ///
 /// The result depends on the frames alone.
 class PatchSchedule {

@@ -24,8 +24,8 @@ class TileGrid {
  public:
   /// Tiles have as many whole blocks along each axis as come nearest to `side_m`; at least one.
   TileGrid(double side_m, double resolution_m)
-      : side_blocks_(std::max(1, static_cast<int>(std::lround(
-                                     side_m / (kBlockSide * resolution_m))))) {}
+      : side_blocks_(
+            std::max(1, static_cast<int>(std::lround(side_m / (kBlockSide * resolution_m))))) {}
 
   int side_blocks() const { return side_blocks_; }
 
