@@ -34,7 +34,7 @@ while kill -0 "$mapper" 2>/dev/null; do
     break
   fi
 done
-((seen)) || echo "the surface in the middle of the view left the volume only at the end: $(cat pixel.txt)"
+((seen)) || echo "no segment in the middle of the view was told while it was mapped: $(cat pixel.txt pixel.json)"
 wait "$mapper" || fail "$(cat mapper.log)"
 wait_for_file live/segments.json
 

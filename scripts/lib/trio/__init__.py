@@ -5,6 +5,7 @@ log player instead of the mapper), watches them, and stops them. Python's standa
     network       can LCM work on this machine? if not: a private network
     run_folder    the folder of a run: lock, earlier runs, options for --resume
     process       one process: start, signals, exit code, CPU time, memory, log
+    map_name      the name of the map, which no other mapper on the bus may have
     status        what the processes say on the bus, through kintsugi-status
     supervisor    the rules: order, restarts, errors, end of a run
     summary       what a run took and wrote

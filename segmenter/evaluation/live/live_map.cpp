@@ -18,6 +18,7 @@ void for_each_place(const LabelRun& run, std::size_t size, const Visit& visit) {
 }  // namespace
 
 void LiveMap::add(CloudSlice slice, double now_s) {
+  if (slice.superseded) return;  // its points were not sent
   resolution_m_ = slice.resolution_m;
   points_sent_ += std::ssize(slice.points_W);
   ++revisions_sent_;

@@ -133,6 +133,15 @@ TEST_F(WatchedWall, ARevisionReplacesTheOneBeforeWhenItsLabelsHaveCome) {
   EXPECT_EQ(report.num_points, std::ssize(left_.points_W) + std::ssize(right_.points_W));
 }
 
+TEST_F(WatchedWall, ARevisionWhosePointsWereLeftOutChangesNothing) {
+  CloudSlice superseded = wall_slice(1, 3, 0.0, 0.0, kWall_m);
+  superseded.superseded = true;
+  events_.push_back({6.0, superseded});
+  const LiveReport report = evaluate(events_);
+  EXPECT_EQ(report.num_centre_covered, 58);
+  EXPECT_EQ(report.revisions_sent, 2);
+}
+
 TEST_F(WatchedWall, LabelsMayComeBeforeTheirSlice) {
   for (BusEvent& event : events_) {
     if (std::holds_alternative<SegmentUpdate>(event.message)) event.time_s -= 3.0;
