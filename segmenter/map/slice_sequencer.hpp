@@ -30,7 +30,7 @@ struct SliceGroup {
   bool is_correction = false;
   /// Chunks of older revisions that came and are not needed: with this group in the map, there is a
   /// newer one of each.
-  std::vector<SequenceRange> superseded;
+  std::vector<SequenceRange> superseded{};
 };
 
 /// What is known about the rest of a stream.
