@@ -109,7 +109,8 @@ FrameResult MapperPipeline::process(const RgbdFrame& measured) {
 }
 
 std::vector<CloudSlice> MapperPipeline::finish() {
-  slice_worker_.submit(volume_.detach_all(), utime_, X_WC_);
+  // After the last frame, at which a batch of patches may have ended.
+  slice_worker_.submit(volume_.detach_all(), patch_schedule_ ? utime_ + 1 : utime_, X_WC_);
   return slice_worker_.drain();
 }
 

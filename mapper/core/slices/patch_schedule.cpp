@@ -6,6 +6,11 @@
 #include "lcmtypes/base/argument_check.hpp"
 
 namespace kintsugi::mapper {
+namespace {
+
+constexpr double kEarly = 0.9;  // of a period: the times of frames are not quite even
+
+}  // namespace
 
 void PatchSchedule::Config::validate() const {
   check_range("period_s", period_s, 0.0, 60.0);
@@ -34,7 +39,7 @@ void PatchSchedule::note_left(const std::vector<BlockCoord>& left, const TsdfVol
 std::optional<PatchBatch> PatchSchedule::next(const TsdfVolume& volume, std::int64_t utime) {
   if (!last_utime_) last_utime_ = utime;
   const double waited_s = 1e-6 * static_cast<double>(utime - *last_utime_);
-  if (waited_s < config_.period_s) return std::nullopt;
+  if (waited_s < kEarly * config_.period_s) return std::nullopt;
   last_utime_ = utime;
   look_at(volume);
 

@@ -14,7 +14,8 @@ const BlockCoord kBlock = make_block_coord(0, 0, 0);
 BlockSurface surface_of_plane(double height_vox, int weight = 20,
                               const BlockCoord& block = kBlock) {
   const TsdfVolume volume = testing::exact_volume(
-      0.5, kVoxel_m, weight, [&](const Eigen::Vector3d& p_W) { return p_W.z() - height_vox * kVoxel_m; });
+      0.5, kVoxel_m, weight,
+      [&](const Eigen::Vector3d& p_W) { return p_W.z() - height_vox * kVoxel_m; });
   const CrossingRule rule(8, 4.0, volume.resolution_m(), volume.max_truncation_m());
   return {volume, volume.find(block), rule};
 }

@@ -17,7 +17,8 @@ struct Patches : ::testing::Test {
   static ExtractedSurface surface(const std::vector<std::pair<int, std::vector<float>>>& blocks) {
     ExtractedSurface surface;
     for (const auto& [x, weights] : blocks) {
-      surface.blocks.push_back({make_block_coord(x, 0, 0), surface.points_W.size(), weights.size()});
+      surface.blocks.push_back(
+          {make_block_coord(x, 0, 0), surface.points_W.size(), weights.size()});
       for (const float weight : weights) surface.points_W.emplace_back().weight = weight;
     }
     return surface;
@@ -68,8 +69,7 @@ TEST_F(Patches, HaveWhatLeftAndThenWhatIsInTheVolume) {
 TEST_F(Patches, ThatHaveLeftForGoodAreOtherPatchesWhenTheVolumeComesBack) {
   maker.make({{{kHere}}}, surface({{0, {1}}}), header());
   maker.keep(surface({{0, {2}}}));
-  const auto slices =
-      maker.make({{{kHere, false}, {kHere, true}}}, surface({{0, {3}}}), header());
+  const auto slices = maker.make({{{kHere, false}, {kHere, true}}}, surface({{0, {3}}}), header());
   ASSERT_EQ(slices.size(), 2U);
   EXPECT_FALSE(slices[0].in_volume);
   EXPECT_EQ(slices[0].id, 0);

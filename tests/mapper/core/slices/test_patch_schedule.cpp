@@ -17,9 +17,8 @@ class SchedulePlane : public ::testing::Test {
   SchedulePlane() { set_plane(0.303, 20); }
 
   void set_plane(double height_m, int weight) {
-    testing::set_exact_distances(volume_, weight, [&](const Eigen::Vector3d& p_W) {
-      return p_W.z() - height_m;
-    });
+    testing::set_exact_distances(volume_, weight,
+                                 [&](const Eigen::Vector3d& p_W) { return p_W.z() - height_m; });
   }
   std::optional<PatchBatch> frame() {
     volume_.shift_to(Eigen::Vector3d::Zero());
