@@ -29,8 +29,8 @@ class PatchSchedule {
     /// Of device time between two batches. They follow each other quickly enough that new surface
     /// waits for hardly more than it takes to segment it.
     double period_s = 0.2;
-    double new_surface_s = 0.2;
-    double better_surface_s = 5.0;
+    double new_surface_s = 0.1;
+    double better_surface_s = 10.0;
 
     /// @throws std::invalid_argument naming field, value and bound
     void validate() const;

@@ -28,9 +28,9 @@ class SchedulePlane : public ::testing::Test {
     utime_ += 100'000;
     return schedule_.next(volume_, utime_);
   }
-  /// The number of frames until the next batch; 0: none in 100 frames.
+  /// The number of frames until the next batch; 0: none in 200 frames.
   int frames_until_batch() {
-    for (int i = 1; i <= 100; ++i) {
+    for (int i = 1; i <= 200; ++i) {
       batch_ = frame();
       if (batch_) return i;
     }
@@ -64,8 +64,8 @@ TEST_F(SchedulePlane, SendsBetterSurfaceLaterThanNewSurface) {
   frames_until_batch();
   set_plane(0.303, 40);
   const int better = frames_until_batch();
-  EXPECT_GE(better, 48);
-  EXPECT_LE(better, 54);
+  EXPECT_GE(better, 98);
+  EXPECT_LE(better, 104);
   set_plane(0.353, 40);
   EXPECT_LE(frames_until_batch(), 2);
 }
