@@ -21,10 +21,10 @@ hostile_row() {
   process_stop 60 viewer
   finish_played 10
   figure[seconds]="$(since_s "$since")"
-  counted segmenter "$(sent CLOUD_SLICE HEARTBEAT RESEND_REQUEST SEGMENT_QUERY)"
-  # Each of the viewer's three streams counts a bad heartbeat.
-  counted viewer "$(sent CLOUD_SLICE SEGMENT_UPDATE SEGMENT_ANSWER CAMERA_POSE SEGMENTER_STATUS \
-    HEARTBEAT HEARTBEAT HEARTBEAT)"
+  # Each stream counts a bad heartbeat: two of the segmenter, four of the viewer.
+  counted segmenter "$(sent CLOUD_SLICE CAMERA_VIEW HEARTBEAT HEARTBEAT RESEND_REQUEST SEGMENT_QUERY)"
+  counted viewer "$(sent CLOUD_SLICE CAMERA_VIEW SEGMENT_UPDATE SEGMENT_ANSWER CAMERA_POSE SEGMENTER_STATUS \
+    HEARTBEAT HEARTBEAT HEARTBEAT HEARTBEAT)"
   counts_match mapper "$(json_number faulty/player.json requests_bad)" "$(sent RESEND_REQUEST)"
   no_growth segmenter "$allowed_mb"
   no_growth viewer "$allowed_mb"

@@ -183,13 +183,13 @@ peak_memory_mb() {
   fi
 }
 
-# same_map [RUN]: the map and the pictures of the run (default: the faulty one) have to be those of the reference, byte for
-# byte.
+# same_map [RUN]: the map of the run (default: the faulty one) has to be that of the reference: the same points in the same
+# segments, and the same picture. Only the ids of the segments may differ: they depend on the order in which patches came.
 same_map() {
-  local run="${1:-faulty}" file
-  for file in segments.ply map_final.png segments_final.png; do
-    must "$file differs from that of $reference" cmp -s "$reference/$file" "$run/$file"
-  done
+  local run="${1:-faulty}"
+  must "segments.ply has other points or segments than that of $reference" \
+    "$kintsugi_root/scripts/lib/same_partition.py" "$reference/segments.ply" "$run/segments.ply"
+  must "map_final.png differs from that of $reference" cmp -s "$reference/map_final.png" "$run/map_final.png"
   must "half-written files are left in $run" no_partial_files "$run"
 }
 no_partial_files() { ! compgen -G "$1/*.partial*" >/dev/null; }

@@ -48,6 +48,8 @@ vertices() { head -c 2000 "$1" | grep -a -m1 -oP 'element vertex \K\d+'; }
 
 expect_file() { [[ -s "$1" ]] || fail "$1 is missing or empty; there is: $(ls .)"; }
 expect_same() { cmp "$1" "$2" || fail "$1 and $2 differ"; }
+# The same points in the same segments, whose ids may differ.
+expect_same_partition() { "$root/scripts/lib/same_partition.py" "$1" "$2" || fail "$1 and $2 differ"; }
 expect_no_partial_files() { compgen -G "$1/*.partial*" && fail "half-written files are left" || true; }
 
 # hold_rows ROW...: runs rows of scripts/faults in their small form. Skipped if this machine does not permit one.

@@ -3,7 +3,7 @@
 # end with the map and the picture of the uncorrected run.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.sh"
 
-run_trio "${small_room[@]}" --replay --out live
+run_trio "${small_room[@]}" --replay --slices shift --out live
 "$KINTSUGI_TEST_BIN/trio_revise_slices" live/run.lcm revised.lcm >revise.txt 2>&1 || fail "$(cat revise.txt)"
 "$root/scripts/replay" revised.lcm --private --speed 2 --out replay >replay.txt 2>&1 || {
   cat replay.txt

@@ -12,7 +12,7 @@ run() {
   local out="$1" frames="$2"
   shift 2
   "$root/scripts/trio" --device 'synthetic://office?frames=200' --resolution 0.03 --volume-size 3.2 --no-log \
-    --max-frames "$frames" --out "$out" "$@" >"$out.txt" 2>&1
+    --max-frames "$frames" --mapper "--cloud $out.ply" --out "$out" "$@" >"$out.txt" 2>&1
 }
 
 run first 150 &
@@ -37,9 +37,9 @@ frames() { grep -oP '\d+(?= frames in )' "$1/mapper.log"; }
 [[ "$(frames other)" == 60 ]] || fail "the other run mapped $(frames other) of 60 frames"
 for out in first other; do
   [[ "$(ls "$out"/segments*.ply)" == "$out/segments.ply" ]] || fail "$out has more than its own map: $(ls "$out")"
-  published="$(grep -oP '\d+(?= points, \d+ messages published)' "$out/mapper.log")"
-  [[ "$(vertices "$out/segments.ply")" == "$published" ]] ||
-    fail "$out/segments.ply has $(vertices "$out/segments.ply") of $published points"
+  mapped="$(grep -oP 'cloud of \K\d+(?= points)' "$out/mapper.log")"
+  [[ "$(vertices "$out/segments.ply")" == "$mapped" ]] ||
+    fail "$out/segments.ply has $(vertices "$out/segments.ply") of $mapped points"
   expect_file "$out/final.png"
 done
 

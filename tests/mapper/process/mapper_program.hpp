@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <thread>
 #include <utility>
@@ -45,6 +46,14 @@ class MapperProgram : public kintsugi::testing::ChildProgram {
     return flags;
   }
 };
+
+/// Whether every id from 0 to that of the final slice is there, in any order and number of
+/// revisions.
+inline bool ids_have_no_gap(const std::vector<CloudSlice>& slices) {
+  std::set<std::int32_t> ids;
+  for (const CloudSlice& slice : slices) ids.insert(slice.id);
+  return !ids.empty() && *ids.begin() == 0 && *ids.rbegin() + 1 == std::ssize(ids);
+}
 
 /// Everything the mapper says, kept.
 class Listener {

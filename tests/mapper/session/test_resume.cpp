@@ -144,14 +144,11 @@ TEST_F(Resume, ServesASessionThatHasEndedToWhoComesLate) {
   EXPECT_EQ(run(late), 0) << said();
   ASSERT_TRUE(Listener::wait_until([&] { return listener.heard_the_end(); }));
   ASSERT_FALSE(listener.slices().empty());
-  std::vector<int> ids;
-  for (const CloudSlice& slice : listener.slices()) ids.push_back(slice.id);
-  std::ranges::sort(ids);
-  for (std::size_t i = 0; i < ids.size(); ++i) EXPECT_EQ(ids[i], static_cast<int>(i));
+  EXPECT_TRUE(testing::ids_have_no_gap(listener.slices()));
   EXPECT_EQ(listener.slices().back().session, 7);
   const MapperStatus status = listener.statuses().back();
   EXPECT_TRUE(status.lingering);
-  EXPECT_EQ(status.slices_published, static_cast<std::int64_t>(ids.size()));
+  EXPECT_EQ(status.slices_published, std::ssize(listener.slices()));
   EXPECT_GE(status.chunks_resent, static_cast<std::int64_t>(stored.slice_chunks.size()));
   EXPECT_EQ(read_stored_run(log_).slice_chunks, stored.slice_chunks);
 }
