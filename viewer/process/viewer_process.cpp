@@ -134,25 +134,27 @@ bool ViewerProcess::has_ended(const MapSession& session, double now_s, bool more
 
 void ViewerProcess::write_finals(double now_s, bool more_may_come) {
   bool all_written = true;
-  bool has_current_ended = false;
+  bool have_all_ended = !sessions_.all().empty();
   for (auto& [number, session] : sessions_.all()) {
-    if (!has_ended(session, now_s, more_may_come)) continue;
-    has_current_ended |= is_current(session);
+    if (!has_ended(session, now_s, more_may_come)) {
+      have_all_ended = false;  // a part before this one may still be missing something
+      continue;
+    }
     if (!session.final_is_due(final_suffix(session))) continue;
     all_written = finals_retry_.is_time(now_s) && write_final(session) && all_written;
   }
-  note_finals(now_s, all_written, has_current_ended);
+  note_finals(now_s, all_written, have_all_ended);
   const MapSession* const replaced = sessions_.replaced();
   if (replaced != nullptr && all_written && replaced->is_complete()) forget_oldest();
 }
 
-void ViewerProcess::note_finals(double now_s, bool all_written, bool has_current_ended) {
+void ViewerProcess::note_finals(double now_s, bool all_written, bool have_all_ended) {
   if (all_written) {
     finals_retry_.note_success();
   } else {
     finals_retry_.note_failure(now_s);
   }
-  finished_ = has_current_ended && (all_written || finals_retry_.has_given_up(now_s));
+  finished_ = have_all_ended && (all_written || finals_retry_.has_given_up(now_s));
 }
 
 /// False when not all pictures could be written; they remain due.

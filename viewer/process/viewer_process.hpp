@@ -78,7 +78,7 @@ class ViewerProcess {
   bool is_current(const MapSession& session) const { return &session == sessions_.current(); }
   std::string final_suffix(const MapSession& session) const;
   bool has_ended(const MapSession& session, double now_s, bool more_may_come) const;
-  void note_finals(double now_s, bool all_written, bool has_current_ended);
+  void note_finals(double now_s, bool all_written, bool have_all_ended);
   bool write_final(MapSession& session);
 
   void write_snapshot(MapSession& session, const cv::Mat3b& figure);
