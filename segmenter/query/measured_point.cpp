@@ -13,13 +13,13 @@ constexpr double kLeastRadius_vox = 2.0;
 
 /// The number of the sample nearest to a pixel, of `count` along one axis.
 int nearest_sample(double pixel, int step, int count) {
-  const double first = step / 2;  // in integers, as CameraView has it
+  const int first = step / 2;  // as CameraView has it
   const auto place = static_cast<int>(std::lround((pixel - first) / step));
   return std::clamp(place, 0, count - 1);
 }
 
 /// The pixel at which the sample was measured.
-double pixel_of_sample(int place, int step) { return place * step + step / 2; }
+int pixel_of_sample(int place, int step) { return place * step + step / 2; }
 
 }  // namespace
 

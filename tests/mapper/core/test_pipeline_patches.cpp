@@ -1,8 +1,9 @@
 // The map of a run in patches, against the same run in slices.
 
 #include <algorithm>
-#include <cstring>
+#include <iterator>
 #include <map>
+#include <tuple>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -43,9 +44,10 @@ std::vector<CloudSlice> map_walk(double patch_side_m, std::size_t threads = 2) {
 
 /// In an order that does not depend on the slices.
 std::vector<CloudPoint> sorted(std::vector<CloudPoint> points_W) {
-  std::ranges::sort(points_W, [](const CloudPoint& a, const CloudPoint& b) {
-    return std::memcmp(&a, &b, sizeof(a)) < 0;
-  });
+  const auto key = [](const CloudPoint& p) {
+    return std::tuple(p.x, p.y, p.z, p.nx, p.ny, p.nz, p.red, p.green, p.blue, p.weight);
+  };
+  std::ranges::sort(points_W, {}, key);
   return points_W;
 }
 

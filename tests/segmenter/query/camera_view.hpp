@@ -25,7 +25,9 @@ inline CameraView blind_view(std::int64_t session, const Pose& X_WC) {
 }
 
 inline std::uint16_t& depth_mm(CameraView& view, int i, int j) {
-  return view.depth_mm[static_cast<std::size_t>(j * view.depth_width() + i)];
+  return view.depth_mm.at(static_cast<std::size_t>(j) *
+                              static_cast<std::size_t>(view.depth_width()) +
+                          static_cast<std::size_t>(i));
 }
 
 /// The camera looks straight at a wall that it measures everywhere.

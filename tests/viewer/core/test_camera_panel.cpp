@@ -25,7 +25,8 @@ CameraView view_at(double depth_m) {
   view.state = TrackingState::kTracking;
   view.intrinsics = {.fx = 320, .fy = 320, .cx = 319.5, .cy = 239.5, .width = 640, .height = 480};
   view.depth_step = kStep;
-  view.depth_mm.assign(160 * 120, static_cast<std::uint16_t>(std::lround(1000.0 * depth_m)));
+  view.depth_mm.assign(std::size_t{160} * 120,
+                       static_cast<std::uint16_t>(std::lround(1000.0 * depth_m)));
   return view;
 }
 
@@ -78,7 +79,7 @@ TEST(SegmentsInView, DoNotShineThroughWhatIsNotSegmentedYet) {
   CameraView view = view_at(2.0);
   // Something new, 12 cm in front of the wall, in the left quarter of the picture.
   for (int v = 0; v < 120; ++v) {
-    for (int u = 0; u < 40; ++u) view.depth_mm[static_cast<std::size_t>(160 * v + u)] = 1'880;
+    for (int u = 0; u < 40; ++u) view.depth_mm[std::size_t{160} * v + u] = 1'880;
   }
   const IdImage ids = segments_in_view(map.chunks(), view, {160, 120}, {});
   EXPECT_EQ(0, cv::countNonZero(ids.colRange(0, 40)));
@@ -110,7 +111,7 @@ TEST(MeasuredDepth, IsExactOnASlantedPlaneAndHasNoDepthBetweenTwoSurfaces) {
   for (int v = 0; v < 120; ++v) {
     for (int u = 0; u < 160; ++u) {
       const double depth_m = v < 60 ? plane_m(u * kStep + 2.0) : 0.5;
-      view.depth_mm[static_cast<std::size_t>(160 * v + u)] =
+      view.depth_mm[std::size_t{160} * v + u] =
           static_cast<std::uint16_t>(std::lround(1000.0 * depth_m));
     }
   }

@@ -42,8 +42,9 @@ VirtualCamera camera_of(const Pose& X_WC, int step) {
   Intrinsics k = kCamera;
   k.fx /= step;
   k.fy /= step;
-  k.cx = (k.cx - step / 2) / step;
-  k.cy = (k.cy - step / 2) / step;
+  const int first = step / 2;
+  k.cx = (k.cx - first) / step;
+  k.cy = (k.cy - first) / step;
   k.width /= step;
   k.height /= step;
   return {k, X_WC};

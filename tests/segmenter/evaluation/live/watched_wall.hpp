@@ -73,8 +73,8 @@ inline std::vector<BusEvent> watch_wall() {
   std::vector<BusEvent> events;
   for (int i = 0; i <= 100; ++i) {
     CameraView view = view_of_wall(kWallSession, Pose::Identity(), kWall_m);
-    view.utime = 1 + 100'000 * i;
-    view.frame_index = 3 * i;
+    view.utime = 1 + std::int64_t{100'000} * i;
+    view.frame_index = std::int64_t{3} * i;
     events.push_back({0.1 * i, view});
   }
   return events;
