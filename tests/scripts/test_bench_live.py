@@ -32,8 +32,8 @@ class FakeRun:
         (self.folder / name / "mapper.log").write_text("500 frames in 16.7 s (1 ms each): 500 located, 2 dropped\n")
         return "  CPU: mapper 10.00 s, segmenter 2.00 s, viewer 1.00 s\n"
 
-    def kintsugi(self, name, *arguments):
-        assert (name, arguments[0]) == ("evaluate", "--live"), (name, arguments)
+    def kintsugi(self, name, *arguments, may_fail):
+        assert (name, arguments[0], may_fail) == ("evaluate", "--live", True), (name, arguments)
         Path(arguments[3]).write_text(json.dumps(self._told))
 
 

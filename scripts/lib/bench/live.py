@@ -3,6 +3,8 @@
 import json
 import re
 
+from trio.messages import Problem
+
 from .tables import fixed, markdown
 
 PROCESSES = ("mapper", "segmenter", "viewer")
@@ -31,9 +33,12 @@ def cost(printed, log):
 
 
 def measured(run, name):
-    """What kintsugi-evaluate measures of the log of the bus."""
+    """What kintsugi-evaluate measures of the log of the bus. Its exit code is 1 when lcm-logger, which asks for nothing
+    again, has missed a chunk: what that carried counts as not seen."""
     file = run.folder / name / "live.json"
-    run.kintsugi("evaluate", "--live", run.folder / name / "run.lcm", "--json", file)
+    run.kintsugi("evaluate", "--live", run.folder / name / "run.lcm", "--json", file, may_fail=True)
+    if not file.exists():
+        raise Problem(f"kintsugi-evaluate has measured nothing of {name}, see kintsugi-evaluate.log")
     return json.loads(file.read_text())
 
 
