@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <set>
+#include <unordered_map>
 
 #include "segmenter/query/measured_point.hpp"
 
@@ -41,7 +43,7 @@ void count(const std::optional<SegmentPoint>& answer, const MeasuredPoint& measu
 LiveEvaluation::LiveEvaluation(const LiveConfig& config)
     : config_(config),
       map_(config.radius_m, config.region_m),
-      sights_(config.region_m, config.min_frames) {}
+      sights_(config.radius_m, config.min_frames) {}
 
 void LiveEvaluation::add(const CameraView& view, double now_s) {
   if (num_views_++ == 0) first_s_ = now_s;
@@ -51,12 +53,9 @@ void LiveEvaluation::add(const CameraView& view, double now_s) {
     ++counts_.num_lost;
     return;
   }
-  const std::vector<MeasuredPoint> measured = measured_points(view);
-  std::vector<Eigen::Vector3d> points_W;
-  points_W.reserve(measured.size());
-  for (const MeasuredPoint& point : measured) points_W.push_back(point.point_W());
-  sights_.add(view.frame_index, now_s, points_W);
+  sights_.add(view, now_s);
   if (now_s - first_s_ < config_.skip_s) return;
+  const std::vector<MeasuredPoint> measured = measured_points(view);
   ++counts_.num_views;
   if (const auto share = covered_share(map_, measured, config_.radius_m)) {
     covered_.push_back(*share);
@@ -103,6 +102,7 @@ LiveReport LiveEvaluation::report() {
   report.points_sent = map_.points_sent();
   report.num_points = map_.num_points();
   report_centre(report);
+  report_delays(report);
   report_regions(report);
   return report;
 }
@@ -119,10 +119,35 @@ void LiveEvaluation::report_centre(LiveReport& report) const {
   }
 }
 
+// Of one point in each region of surface in the final map, the one nearest to its middle.
+void LiveEvaluation::report_delays(LiveReport& report) const {
+  struct Sample {
+    Eigen::Vector3d p_W = Eigen::Vector3d::Zero();
+    double distance_m = std::numeric_limits<double>::infinity();  ///< from the middle
+  };
+  std::unordered_map<CellKey, Sample, CellHash> samples;
+  map_.for_each_point([&](const Eigen::Vector3d& p_W) {
+    const Eigen::Vector3d in_region = (p_W / config_.region_m).array() - 0.5;
+    const double distance_m =
+        config_.region_m * (in_region.array() - in_region.array().round()).matrix().norm();
+    Sample& sample = samples[cell_at(p_W, config_.region_m)];
+    if (distance_m < sample.distance_m) sample = {p_W, distance_m};
+  });
+  std::vector<double> delays_s;
+  for (const auto& [region, sample] : samples) {
+    const Eigen::Vector3d& p_W = sample.p_W;
+    const auto seen_s = sights_.seen_s(p_W);
+    const auto label_s = map_.first_labels().label_s(p_W);
+    if (seen_s && label_s) delays_s.push_back(std::max(0.0, *label_s - *seen_s));
+  }
+  report.num_delays = std::ssize(delays_s);
+  report.delay_median_s = quantile(delays_s, 0.5);
+  report.delay_p99_s = quantile(delays_s, 0.99);
+}
+
 void LiveEvaluation::report_regions(LiveReport& report) const {
   const double side_vox = config_.region_m / std::max(map_.resolution_m(), 1e-6F);
   const double min_points = kMinFilling * side_vox * side_vox;
-  std::vector<double> delays_s;
   std::set<std::uint32_t> segments;
   for (const auto& [key, region] : map_.regions().regions()) {
     for (const auto& [id, num] : region.counts) segments.insert(id);
@@ -130,16 +155,10 @@ void LiveEvaluation::report_regions(LiveReport& report) const {
     ++report.num_regions;
     report.num_changes += region.num_changes;
     report.num_unchanged += region.num_changes == 0 ? 1 : 0;
-    if (const auto seen_s = sights_.seen_s(key)) {
-      delays_s.push_back(std::max(0.0, region.first_label_s - *seen_s));
-    }
   }
   report.num_segments = std::ssize(segments);
   report.num_changes_by_merge = map_.regions().num_changes_by_merge();
   report.num_handovers = map_.regions().num_handovers();
-  report.num_delays = std::ssize(delays_s);
-  report.delay_median_s = quantile(delays_s, 0.5);
-  report.delay_p99_s = quantile(delays_s, 0.99);
 }
 
 }  // namespace kintsugi::segmenter

@@ -7,7 +7,7 @@
 
 #include "lcmtypes/messages.hpp"
 #include "segmenter/evaluation/live/live_map.hpp"
-#include "segmenter/evaluation/live/region_sights.hpp"
+#include "segmenter/evaluation/live/surface_sights.hpp"
 #include "segmenter/evaluation/live/view_measures.hpp"
 
 namespace kintsugi::segmenter {
@@ -42,7 +42,7 @@ struct LiveReport {
   std::optional<double> covered_worst_tenth;  ///< a tenth of the views has less
 
   std::int64_t num_regions = 0;  ///< of surface in the final map
-  std::int64_t num_delays = 0;   ///< regions that were seen long enough
+  std::int64_t num_delays = 0;   ///< regions that were seen often enough
   std::optional<double> delay_median_s;
   std::optional<double> delay_p99_s;
 
@@ -79,11 +79,12 @@ class LiveEvaluation {
   void look_at_centre(const CameraView& view);
   void ask_pixels(const CameraView& view);
   void report_centre(LiveReport& report) const;
+  void report_delays(LiveReport& report) const;
   void report_regions(LiveReport& report) const;
 
   LiveConfig config_;
   LiveMap map_;
-  RegionSights sights_;
+  SurfaceSights sights_;
   LiveReport counts_;
   std::int64_t num_views_ = 0;
   double first_s_ = 0.0;  // of the first view

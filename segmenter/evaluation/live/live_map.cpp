@@ -89,6 +89,7 @@ void LiveMap::show(std::int32_t slice_id, Shown next, double now_s) {
     const CloudPoint& p = shown.points_W[i];
     grid_.insert({p.x, p.y, p.z, slice_id, static_cast<std::int32_t>(i)});
     regions_.add_point(position(p), shown.labels[i], now_s);
+    first_labels_.add(position(p), now_s);
     ++num_points_;
   }
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "lcmtypes/messages.hpp"
+#include "segmenter/evaluation/live/first_labels.hpp"
 #include "segmenter/evaluation/live/point_grid.hpp"
 #include "segmenter/evaluation/live/region_labels.hpp"
 
@@ -23,9 +24,10 @@ struct FoundPoints {
 /// until then the revision before it is.
 class LiveMap {
  public:
-  /// @param cell_m of the search for points, metres, > 0
+  /// @param radius_m within which points are looked for, metres, > 0
   /// @param region_m side of a region of RegionLabels, metres, > 0
-  LiveMap(double cell_m, double region_m) : grid_(cell_m), regions_(region_m) {}
+  LiveMap(double radius_m, double region_m)
+      : grid_(radius_m), regions_(region_m), first_labels_(radius_m) {}
 
   /// @param now_s wall clock, as below
   void add(CloudSlice slice, double now_s);
@@ -35,7 +37,18 @@ class LiveMap {
 
   const PointGrid& grid() const { return grid_; }
   const RegionLabels& regions() const { return regions_; }
+  const FirstLabels& first_labels() const { return first_labels_; }
   const Heirs& heirs() const { return heirs_; }
+  /// Calls visit(p_W) for each point of a segment.
+  template <class Visit>
+  void for_each_point(const Visit& visit) const {
+    for (const auto& [id, shown] : shown_) {
+      for (std::size_t i = 0; i < shown.points_W.size(); ++i) {
+        const CloudPoint& p = shown.points_W[i];
+        if (shown.labels[i] != kNoSegment) visit(Eigen::Vector3d(p.x, p.y, p.z));
+      }
+    }
+  }
   /// Appends a point of the grid.
   void take(const PlacedPoint& point, FoundPoints& found) const;
   std::uint32_t segment_of(const PlacedPoint& point) const;
@@ -60,6 +73,7 @@ class LiveMap {
 
   PointGrid grid_;
   RegionLabels regions_;
+  FirstLabels first_labels_;
   Heirs heirs_;
   std::unordered_map<std::int32_t, Shown> shown_;                // by slice id
   std::map<RevisionOfSlice, std::vector<CloudPoint>> points_W_;  // without labels yet
