@@ -15,6 +15,16 @@ namespace {
 // it does not wake for each. Limited below to the time in which the bucket fills by half.
 constexpr double kMinWait_s = 0.001;
 
+// A small message costs as much as one of this size. A subscriber of LCM holds 30 messages unless
+// it asks for more, which lcm-logger does not, and then drops what comes: with this a burst of the
+// default size has at most 15. The kernel, too, charges a receive buffer 800 to 2,500 bytes more
+// for a datagram than it has.
+constexpr std::size_t kLeastCost_bytes = 8'000;
+
+double cost_of(const Bytes& chunk) {
+  return static_cast<double>(std::max(chunk.size(), kLeastCost_bytes));
+}
+
 const StreamPublisherConfig& validated(const StreamPublisherConfig& config) {
   config.validate();
   return config;
@@ -92,7 +102,7 @@ double StreamSender::step(double now_s) {
       const bool is_idle = jobs_.empty() && resends_.empty();
       return is_idle ? next_heartbeat_s_ - now_s : 0.0;
     }
-    const double wait_s = bucket_.delay_s(static_cast<double>(prepared_->chunk.size()), now_s);
+    const double wait_s = bucket_.delay_s(cost_of(prepared_->chunk), now_s);
     if (wait_s > 0.0) return std::min(std::max(wait_s, min_wait_s_), next_heartbeat_s_ - now_s);
     send_prepared(now_s);
   }
@@ -140,7 +150,7 @@ void StreamSender::send_prepared(double now_s) {
   const Next next = *std::exchange(prepared_, std::nullopt);
   const std::size_t size = next.chunk.size();
   transmit_(channel_, next.chunk);
-  bucket_.take(static_cast<double>(size), now_s);
+  bucket_.take(cost_of(next.chunk), now_s);
   resends_.sent(next.sequence, now_s);
   (next.is_resend ? counts_.chunks_resent : counts_.chunks_sent) += 1;
   (next.is_resend ? counts_.bytes_resent : counts_.bytes_sent) += static_cast<std::int64_t>(size);

@@ -16,7 +16,9 @@
 namespace kintsugi {
 
 struct StreamPublisherConfig {
-  double rate_bytes_per_s = 10e6;  ///< of new data and resends together, > 0
+  /// Of new data and resends together, > 0. A small message counts as one of 8,000 bytes, so that
+  /// many of them are slowed down, too.
+  double rate_bytes_per_s = 10e6;
   /// Bytes that may be sent at once after a pause. By default two datagrams: a receive buffer of
   /// the kernel's default size holds three.
   std::size_t burst_bytes = 120'000;

@@ -143,8 +143,9 @@ TEST(StreamSender, SkipsChunksThatItsStoreHasLost) {
 TEST(StreamSender, LimitsTheRateOfNewChunksAndResendsTogether) {
   RecentChunks store(1'000'000);
   StreamPublisherConfig config;
-  config.rate_bytes_per_s = 50.0 * kChunkBytes;
-  config.burst_bytes = 2 * kChunkBytes;
+  constexpr std::size_t kCost = 8'000;  // of a small message
+  config.rate_bytes_per_s = 50.0 * kCost;
+  config.burst_bytes = 2 * kCost;
   Sending sending(&store, config);
   sending.push(200);
   sending.run_until(1.0);
@@ -156,6 +157,13 @@ TEST(StreamSender, LimitsTheRateOfNewChunksAndResendsTogether) {
   for (std::size_t i = 3; i < sending.times_s.size(); ++i) {
     ASSERT_GE(sending.times_s[i] - sending.times_s[i - 3], 0.019) << i;  // at most three in 20 ms
   }
+}
+
+TEST(StreamSender, SmallMessagesInABurstAreFewerThanASubscriberHolds) {
+  Sending sending(nullptr, {});
+  sending.push(1'000);
+  sending.run_until(0.0005);
+  EXPECT_EQ(sending.sequences.size(), 15U);  // of 30
 }
 
 TEST(StreamSender, ResumesAStoredSessionAndSendsNothingTwice) {
