@@ -99,7 +99,8 @@ void complete_volume(Options& options) {
 
 /// How the map is handed out.
 void complete_slices(Options& options) {
-  constexpr double kPatchSide_m = 0.5;  // a table top is a few patches, a wall some dozens
+  // A large patch is sent again for a small part that is new; many small ones are many messages.
+  constexpr double kPatchSide_m = 0.25;
   if (options.slices != "patch" && options.slices != "shift") {
     throw std::invalid_argument("--slices is '" + options.slices + "', must be patch or shift");
   }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <cstdlib>
 
 namespace kintsugi::mapper {
@@ -203,9 +202,6 @@ BlockChange change_between(const BlockSurface& sent, const BlockSurface& now) {
           std::popcount(after & ~dilated(sent, y, z)) + std::popcount(before & ~dilated(now, y, z));
     }
   }
-  // Where noise alone makes surface come and go, the number of its voxels is random: a standard
-  // deviation of it is no change.
-  if (change.num_new <= std::sqrt(change.num_in_all)) change.num_new = 0;
   if (now.level > sent.level || has_moved(sent, now)) change.num_better = change.num_in_all;
   return change;
 }

@@ -1,6 +1,7 @@
 #include "mapper/core/slices/patch_schedule.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "lcmtypes/base/argument_check.hpp"
@@ -15,6 +16,7 @@ constexpr double kEarly = 0.9;  // of a period: the times of frames are not quit
 void PatchSchedule::Config::validate() const {
   check_range("period_s", period_s, 0.0, 60.0);
   check_range("new_surface_s", new_surface_s, 1e-3, 1e3);
+  check_range("longest_wait_s", longest_wait_s, 1e-3, 1e3);
   check_range("better_surface_s", better_surface_s, 1e-3, 1e3);
 }
 
@@ -107,8 +109,13 @@ double PatchSchedule::cost_of_waiting(const Tile& tile, double waited_s) const {
     num_in_all += block.change.num_in_all;
   }
   if (num_in_all == 0) return 0.0;
-  return waited_s / num_in_all *
-         (num_new / config_.new_surface_s + num_better / config_.better_surface_s);
+  const double all = num_in_all;
+  double per_second = num_better / all / config_.better_surface_s;
+  if (num_new > std::sqrt(all)) {
+    per_second +=
+        std::max(num_new / all / config_.new_surface_s, 1.0 / config_.longest_wait_s);
+  }
+  return waited_s * per_second;
 }
 
 bool PatchSchedule::is_in_volume(const TileCoord& tile, const TsdfVolume& volume) const {

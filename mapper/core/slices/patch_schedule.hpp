@@ -17,10 +17,14 @@ namespace kintsugi::mapper {
 ///
 /// A patch is sent when waiting has cost more than sending costs. The cost of waiting grows with
 /// the time and with the share of the patch that is new: one that is all new goes out after
-/// new_surface_s, one of which a fifth is new after five times as long. Surface that was sent and
-/// has become better since, observed four times as often or moved by a quarter of a voxel, can wait
-/// longer: better_surface_s. So a patch that does not change is never sent, one that changes a
-/// little is sent rarely, and the number of times does not depend on how often the camera looks.
+/// new_surface_s, one of which half is new after twice as long. But no new surface waits for longer
+/// than longest_wait_s, so that a map is as new at the edge of what was seen before as in its
+/// middle. Surface that was sent and has become better since, observed four times as often or moved
+/// by a quarter of a voxel, can wait longer: better_surface_s. So a patch that does not change is
+/// never sent, and the number of times does not depend on how often the camera looks.
+///
+/// Where noise alone makes surface come and go, the number of its voxels is random: a standard
+/// deviation of it, the root of the patch's voxels, is not new.
 ///
 /// The result depends on the frames alone.
 class PatchSchedule {
@@ -29,7 +33,8 @@ class PatchSchedule {
     /// Of device time between two batches. They follow each other quickly enough that new surface
     /// waits for hardly more than it takes to segment it.
     double period_s = 0.2;
-    double new_surface_s = 0.1;
+    double new_surface_s = 0.15;
+    double longest_wait_s = 0.6;  ///< with a batch and the segmenter after it about a second
     double better_surface_s = 10.0;
 
     /// @throws std::invalid_argument naming field, value and bound

@@ -20,6 +20,14 @@ class SchedulePlane : public ::testing::Test {
     testing::set_exact_distances(volume_, weight,
                                  [&](const Eigen::Vector3d& p_W) { return p_W.z() - height_m; });
   }
+  /// A second surface, a square of `side` voxels 6 cm above the plane, in the middle of a patch.
+  void add_box(int side) {
+    testing::set_exact_distances(volume_, 20, [&](const Eigen::Vector3d& p_W) {
+      const Eigen::Vector2d from_middle = p_W.head<2>().array() - 0.24;
+      const bool is_above = from_middle.cwiseAbs().maxCoeff() < 0.005 * side && p_W.z() > 0.333;
+      return is_above ? p_W.z() - 0.363 : p_W.z() - 0.303;
+    });
+  }
   std::optional<PatchBatch> frame() {
     volume_.shift_to(Eigen::Vector3d::Zero());
     for (BlockSlot slot = 0; slot < volume_.slots_end(); ++slot) {
@@ -68,6 +76,18 @@ TEST_F(SchedulePlane, SendsBetterSurfaceLaterThanNewSurface) {
   EXPECT_LE(better, 104);
   set_plane(0.353, 40);
   EXPECT_LE(frames_until_batch(), 2);
+}
+
+// Of a patch of 48 x 48 voxels.
+TEST_F(SchedulePlane, SendsASmallPartThatIsNewWithinALimitAndNoiseNever) {
+  frames_until_batch();
+  add_box(6);
+  EXPECT_EQ(frames_until_batch(), 0) << "36 voxels are fewer than the root of 2,304";
+  add_box(8);
+  const int part = frames_until_batch();
+  EXPECT_GE(part, 6) << "64 voxels are 3 %: they would wait for 5 s";
+  EXPECT_LE(part, 7);
+  EXPECT_THAT(batch_->patches, SizeIs(1));
 }
 
 TEST_F(SchedulePlane, SendsAPatchALastTimeWhenItsTileHasLeft) {
