@@ -3,6 +3,7 @@
 // templates in simd/. All sets give the same bytes.
 
 #include "mapper/core/kernels/allocation.hpp"
+#include "mapper/core/kernels/block_sides.hpp"
 #include "mapper/core/kernels/integration.hpp"
 #include "mapper/core/kernels/linearization.hpp"
 #include "mapper/core/kernels/raycast.hpp"
@@ -14,6 +15,7 @@ enum class InstructionSet;
 
 struct Kernels {
   FindMissingBlocks find_missing_blocks = nullptr;
+  FindBlockSides find_block_sides = nullptr;
   IntegrateBlock integrate_block = nullptr;
   LinearizeRows linearize_rows = nullptr;
   SmoothDepthRow smooth_depth_row = nullptr;

@@ -2,6 +2,7 @@
 
 #include "mapper/core/kernels/kernels.hpp"
 #include "mapper/core/simd/allocation_kernel.hpp"
+#include "mapper/core/simd/block_sides_kernel.hpp"
 #include "mapper/core/simd/integration_kernel.hpp"
 #include "mapper/core/simd/linearization_kernel.hpp"
 #include "mapper/core/simd/pack_avx2.hpp"
@@ -12,6 +13,7 @@ namespace kintsugi::mapper {
 
 const Kernels kAvx2Kernels = {
     .find_missing_blocks = find_missing_blocks<Avx2Pack>,
+    .find_block_sides = find_block_sides<Avx2Pack>,
     .integrate_block = integrate_block<Avx2Pack>,
     .linearize_rows = linearize_rows<Avx2Pack>,
     .smooth_depth_row = SurfaceRows<Avx2Pack>::smooth_depth,

@@ -2,6 +2,7 @@
 
 #include "mapper/core/kernels/kernels.hpp"
 #include "mapper/core/simd/allocation_kernel.hpp"
+#include "mapper/core/simd/block_sides_kernel.hpp"
 #include "mapper/core/simd/integration_kernel.hpp"
 #include "mapper/core/simd/linearization_kernel.hpp"
 #include "mapper/core/simd/pack_avx512.hpp"
@@ -12,6 +13,7 @@ namespace kintsugi::mapper {
 
 const Kernels kAvx512Kernels = {
     .find_missing_blocks = find_missing_blocks<Avx512Pack>,
+    .find_block_sides = find_block_sides<Avx512Pack>,
     .integrate_block = integrate_block<Avx512Pack>,
     .linearize_rows = linearize_rows<Avx512Pack>,
     .smooth_depth_row = SurfaceRows<Avx512Pack>::smooth_depth,

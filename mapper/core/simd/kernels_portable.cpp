@@ -2,6 +2,7 @@
 
 #include "mapper/core/kernels/kernels.hpp"
 #include "mapper/core/simd/allocation_kernel.hpp"
+#include "mapper/core/simd/block_sides_kernel.hpp"
 #include "mapper/core/simd/integration_kernel.hpp"
 #include "mapper/core/simd/linearization_kernel.hpp"
 #include "mapper/core/simd/pack_portable.hpp"
@@ -12,6 +13,7 @@ namespace kintsugi::mapper {
 
 const Kernels kPortableKernels = {
     .find_missing_blocks = find_missing_blocks<PortablePack>,
+    .find_block_sides = find_block_sides<PortablePack>,
     .integrate_block = integrate_block<PortablePack>,
     .linearize_rows = linearize_rows<PortablePack>,
     .smooth_depth_row = SurfaceRows<PortablePack>::smooth_depth,

@@ -112,8 +112,7 @@ double PatchSchedule::cost_of_waiting(const Tile& tile, double waited_s) const {
   const double all = num_in_all;
   double per_second = num_better / all / config_.better_surface_s;
   if (num_new > std::sqrt(all)) {
-    per_second +=
-        std::max(num_new / all / config_.new_surface_s, 1.0 / config_.longest_wait_s);
+    per_second += std::max(num_new / all / config_.new_surface_s, 1.0 / config_.longest_wait_s);
   }
   return waited_s * per_second;
 }

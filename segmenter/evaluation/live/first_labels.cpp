@@ -8,7 +8,9 @@ std::optional<double> FirstLabels::label_s(const Eigen::Vector3d& p_W) const {
   std::optional<double> first_s;
   const auto low = [&](int axis) { return cell_of(p_W[axis] - radius_m_, cell_m_); };
   const auto high = [&](int axis) { return cell_of(p_W[axis] + radius_m_, cell_m_); };
-  const auto middle = [&](std::int64_t cell) { return cell_m_ * (static_cast<double>(cell) + 0.5); };
+  const auto middle = [&](std::int64_t cell) {
+    return cell_m_ * (static_cast<double>(cell) + 0.5);
+  };
   for (std::int64_t i = low(0); i <= high(0); ++i) {
     for (std::int64_t j = low(1); j <= high(1); ++j) {
       for (std::int64_t k = low(2); k <= high(2); ++k) {

@@ -18,8 +18,8 @@ bool SurfaceSights::is_in_sight(const CameraView& view, const Eigen::Vector3d& p
   if (p_C.z() <= 0.0) return false;
   const double u_px = camera.fx * p_C.x() / p_C.z() + camera.cx;
   const double v_px = camera.fy * p_C.y() / p_C.z() + camera.cy;
-  const bool is_in_image = u_px > -0.5 && u_px < camera.width - 0.5 && v_px > -0.5 &&
-                           v_px < camera.height - 0.5;
+  const bool is_in_image =
+      u_px > -0.5 && u_px < camera.width - 0.5 && v_px > -0.5 && v_px < camera.height - 0.5;
   if (!is_in_image) return false;
   const auto measured = measured_point(view, u_px, v_px);
   return measured && std::abs(measured->distance_m - p_C.norm()) <= radius_m_;
@@ -31,8 +31,7 @@ std::optional<double> SurfaceSights::seen_s(const Eigen::Vector3d& p_W) const {
   for (std::size_t i = 0; i < views_.size(); ++i) {
     const bool is_seen = is_in_sight(views_[i].view, p_W);
     if (is_seen) {
-      num_frames +=
-          was_in_sight ? views_[i].view.frame_index - views_[i - 1].view.frame_index : 1;
+      num_frames += was_in_sight ? views_[i].view.frame_index - views_[i - 1].view.frame_index : 1;
       if (num_frames >= min_frames_) return views_[i].time_s;
     }
     was_in_sight = is_seen;

@@ -1,3 +1,8 @@
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <random>
+
 #include <gtest/gtest.h>
 
 #include "mapper/core/slices/block_surface.hpp"
@@ -37,6 +42,87 @@ TEST(BlockSurface, HasALevelForEachFactorOfFourInObservations) {
   EXPECT_EQ(surface_of_plane(3.3, 32).level, 1);
   EXPECT_EQ(surface_of_plane(3.3, 127).level, 1);
   EXPECT_EQ(surface_of_plane(3.3, 128).level, 2);
+}
+
+/// The same from the definition: every pair of voxels side by side, one of which is in the block.
+class SlowBlockSurface : public BlockSurface {
+ public:
+  SlowBlockSurface(const TsdfVolume& volume, const BlockCoord& block, const CrossingRule& rule) {
+    const int first_level = 4 * rule.weight_threshold;
+    std::array<int, 3> num_at_level{};
+    for (int axis = 0; axis < 3; ++axis) {
+      for (int i = 0; i < kSide * kSide * kSide; ++i) {
+        std::array<int, 3> lower = {i % kSide - 1, i / kSide % kSide - 1, i / kSide / kSide - 1};
+        std::array<int, 3> upper = lower;
+        ++upper[axis];
+        if (num_outside(lower) + num_outside(upper) > 1 ||
+            (num_outside(lower) == 1 && lower[axis] != -1))
+          continue;
+        const auto a = voxel_at(volume, block, lower);
+        const auto b = voxel_at(volume, block, upper);
+        if (voxel_weight(a) <= rule.weight_threshold || voxel_weight(b) <= rule.weight_threshold)
+          continue;
+        if ((voxel_distance_raw(a) < 0) == (voxel_distance_raw(b) < 0)) continue;
+        const int own = std::abs(voxel_distance_raw(a));
+        const int other = std::abs(voxel_distance_raw(b));
+        if (own + other > rule.max_step_raw) continue;
+        const auto& nearer = own > other ? upper : lower;
+        voxels[(nearer[2] + 1) * kSide + nearer[1] + 1] |= 1U << (nearer[0] + 1);
+        const int weight = std::min(voxel_weight(a), voxel_weight(b));
+        ++num_at_level[weight >= 4 * first_level ? 2 : weight >= first_level ? 1 : 0];
+        const std::array<int, 2> column = axis == 0   ? std::array{lower[1], lower[2]}
+                                          : axis == 1 ? std::array{lower[0], lower[2]}
+                                                      : std::array{lower[0], lower[1]};
+        auto& place = places[(axis * kBlockSide + column[1]) * kBlockSide + column[0]];
+        if (place == kNone)
+          place =
+              (lower[axis] + 1) * kUnitsPerVoxel + kUnitsPerVoxel * own / std::max(1, own + other);
+      }
+    }
+    const int half = (num_at_level[0] + num_at_level[1] + num_at_level[2] + 1) / 2;
+    if (num_at_level[1] + num_at_level[2] >= half) level = num_at_level[2] >= half ? 2 : 1;
+  }
+
+ private:
+  static int num_outside(const std::array<int, 3>& place) {
+    return std::ranges::count_if(place, [](int i) { return i < 0 || i >= kBlockSide; });
+  }
+  static Voxel voxel_at(const TsdfVolume& volume, const BlockCoord& block,
+                        const std::array<int, 3>& place) {
+    const auto block_of = [](int i) { return i < 0 ? -1 : i / kBlockSide; };
+    const BlockSlot slot = volume.find(make_block_coord(
+        block.x + block_of(place[0]), block.y + block_of(place[1]), block.z + block_of(place[2])));
+    if (slot == kNoBlock) return 0;
+    return volume.voxels(slot).voxels[voxel_index(place[0] & 7, place[1] & 7, place[2] & 7)];
+  }
+};
+
+TEST(BlockSurface, IsWhatTheDefinitionSaysForRandomVoxels) {
+  std::mt19937 random(7);
+  TsdfVolume volume({.region = RegionShape::kCube, .volume_size_m = 0.5, .resolution_m = kVoxel_m});
+  const CrossingRule rule(8, 4.0, volume.resolution_m(), volume.max_truncation_m());
+  int num_voxels = 0;
+  for (int round = 0; round < 40; ++round) {
+    for (int i = 0; i < 27; ++i) {
+      const BlockCoord coord = make_block_coord(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
+      // Some of the blocks around are missing in some rounds.
+      if (volume.find(coord) == kNoBlock && (coord == kBlock || random() % 8 == 0))
+        volume.allocate(coord);
+      if (volume.find(coord) == kNoBlock) continue;
+      for (Voxel& voxel : volume.voxels(volume.find(coord)).voxels) {
+        const Voxel weight = random() % 4 == 0 ? random() % 10 : random() % 200;
+        const int raw = static_cast<int>(random() % 24'001) - 12'000;
+        voxel = weight << 16U | static_cast<std::uint16_t>(raw);
+      }
+    }
+    const BlockSurface fast(volume, volume.find(kBlock), rule);
+    const SlowBlockSurface slow(volume, kBlock, rule);
+    ASSERT_EQ(fast.voxels, slow.voxels) << round;
+    ASSERT_EQ(fast.places, slow.places) << round;
+    ASSERT_EQ(fast.level, slow.level) << round;
+    num_voxels += fast.num_voxels();
+  }
+  EXPECT_GT(num_voxels, 1'000);
 }
 
 TEST(BlockChange, IsNoneForAPlaneThatHardlyMoves) {
