@@ -3,10 +3,10 @@
 fault_row disk-full "disk full in the middle of a run, until all three have said so" disk_full_row
 fault_row disk-full-end "disk full from the middle of a run on; then space, and scripts/trio --resume" disk_full_end_row
 
-# small_disk: mounts a disk of 64 MB at the folder `faulty`. keep_disk copies its files to the folder `kept`.
+# small_disk: mounts a disk of 256 MB, twice what a run writes, at the folder `faulty`. keep_disk copies its files to the folder `kept`.
 small_disk() {
   mkdir faulty
-  mount -t tmpfs -o size=64m kintsugi-faults faulty 2>/dev/null || skip_row "mounting a tmpfs is not permitted"
+  mount -t tmpfs -o size=256m kintsugi-faults faulty 2>/dev/null || skip_row "mounting a tmpfs is not permitted"
 }
 keep_disk() { cp -r faulty kept; }
 

@@ -1,14 +1,14 @@
-# Three times the normal rate of slices, for a long time. KINTSUGI_SOAK_S: how many seconds.
+# Three times the normal rate of slices, as patches, for a long time. KINTSUGI_SOAK_S: how many seconds.
 
-fault_row soak "three times the normal rate of slices for ${KINTSUGI_SOAK_S:-1800} s" soak_row
+fault_row soak "three times the normal rate of slices, as patches, for ${KINTSUGI_SOAK_S:-1800} s" soak_row
 
-# The map grows to 4 million points in 170 s; then its slices are corrected, at the same rate.
+# The map grows to 4 million points in 170 s; then its patches are revised, at the same rate.
 soak_row() {
   local seconds="${KINTSUGI_SOAK_S:-1800}" process since
   if_quick && seconds=8
   choose_played
-  played=(--session=7 --points=4000000 --speed=3 "--seconds=$seconds")
-  if_quick && played=(--session=7 --points=60000 --slice-points=1500 --speed=12 "--seconds=$seconds")
+  played=(--session=7 --points=4000000 --speed=3 --batch=3 "--seconds=$seconds")
+  if_quick && played=(--session=7 --points=60000 --slice-points=1500 --speed=12 --batch=3 "--seconds=$seconds")
   out="$PWD/faulty"
   start_played log segmenter viewer mapper
   must "nothing was published" wait_for_points 1 # generating the map takes its time

@@ -28,6 +28,7 @@ constexpr std::size_t kMaxQueuedBytes = 32U << 20U;  // as in the mapper
 struct Options {
   std::string url;
   PlayedMap::Config map;
+  std::int64_t batch = 0;
   double speed = 1.0;
   double seconds = 0.0;
   double linger_s = 2.0;
@@ -50,6 +51,11 @@ void add_flags(CLI::App& app, Options& options) {
   app.add_option("--map-name", options.map.map_name, "Name of the map")->capture_default_str();
   app.add_option("--speed", options.speed,
                  "Times the normal rate, which is 0.8 slices a second; 0: as fast as can be sent")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  app.add_option("--batch", options.batch,
+                 "The slices are patches that stay in the volume, so many in a batch; a correction "
+                 "supersedes those that wait to be sent. 0: slices that have left")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   app.add_option("--seconds", options.seconds,
@@ -132,7 +138,17 @@ class SlicePlayer {
     points_ += static_cast<std::int64_t>(slice.points_W.size());
     ++slices_;
     most_queued_bytes_ = std::max(most_queued_bytes_, stream_.queued_bytes());
-    stream_.publish(std::move(slice));
+    revision_sum_ += revision > 0 ? 1 : 0;
+    if (slice.kind == SliceKind::kFinal) slice.revision_sum = revision_sum_;
+    if (options_.batch > 0 && slice.kind != SliceKind::kFinal) {
+      slice.kind = SliceKind::kPatch;
+      slice.in_volume = true;
+      // The last patch of the map ends its batch, so that none waits for the final slice.
+      slice.ends_batch = slices_ % options_.batch == 0 || id + 2 == map_.num_slices();
+      stream_.publish_patch(std::move(slice), true);
+    } else {
+      stream_.publish(std::move(slice));
+    }
     publish_status_when_due();
   }
 
@@ -207,7 +223,8 @@ class SlicePlayer {
   StreamPublisher stream_;
   Clock::time_point start_;
   Clock::time_point next_status_;
-  std::int64_t slices_ = 0;  // published, corrections too
+  std::int64_t slices_ = 0;        // published, corrections too
+  std::int64_t revision_sum_ = 0;  // of the newest revisions
   std::int64_t points_ = 0;
   std::size_t most_queued_bytes_ = 0;
   bool finished_ = false;
