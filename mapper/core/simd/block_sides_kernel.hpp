@@ -1,6 +1,8 @@
 #pragma once
 // The kernel of block_sides.hpp over any pack: two rows at a time.
 
+#include <cstddef>
+
 #include "mapper/core/kernels/block_sides.hpp"
 
 namespace kintsugi::mapper {
@@ -12,7 +14,7 @@ void find_block_sides(const std::uint32_t* voxels, int num_rows, int weight_thre
   constexpr int kSide = BlockLayout::kSide;
   static_assert(Pack::kNumLanes == 2 * kSide);
   for (int row = 0; row < num_rows; row += 2) {
-    const Int voxel = Int::load(voxels + row * kSide);
+    const Int voxel = Int::load(voxels + std::ptrdiff_t{row} * kSide);
     const auto weight = shift_right<16>(voxel);
     const std::uint32_t observed = (weight > Int(weight_threshold)).bits();
     const std::uint32_t behind = ((voxel & Int(0x8000)) != Int(0)).bits();
