@@ -14,6 +14,7 @@ find_package(nlohmann_json REQUIRED)
 find_package(TBB REQUIRED)
 find_package(ZLIB REQUIRED)
 find_package(flann REQUIRED CONFIG)
+find_package(Ceres 2.1 REQUIRED)
 find_library(LZ4_LIBRARY lz4 REQUIRED)  # FLANN's headers call it
 
 # OpenCV's own targets carry no SYSTEM includes before CMake 3.25; ours do.
