@@ -7,14 +7,15 @@
 #include <vector>
 
 #include "lcmtypes/geometry.hpp"
+#include "lcmtypes/patch_pose.hpp"
 #include "lcmtypes/segment_messages.hpp"
 #include "lcmtypes/statuses.hpp"
 #include "lcmtypes/tracking_state.hpp"
 
 namespace kintsugi {
 
-/// Version of CloudPoint as a packed record. Raise it with every change of its layout: the order,
-/// type or meaning of a field. A receiver refuses points of another version.
+/// Version of CloudPoint and PatchMotion as packed records. Raise it with every change of their
+/// layout: the order, type or meaning of a field. A receiver refuses records of another version.
 inline constexpr std::int16_t kCloudPointVersion = 1;
 
 /// One surface point of the map in frame W; this is also its layout on the bus and in files
@@ -46,7 +47,8 @@ enum class SliceKind : std::int8_t {
   kShiftMinusY = 4,
   kShiftPlusZ = 5,
   kShiftMinusZ = 6,
-  kPatch = 7,  ///< the surface in one tile of space, as it is at this moment
+  kPatch = 7,       ///< the surface in one tile of space, as it is at this moment
+  kCorrection = 8,  ///< no surface, but new poses of patches
 };
 
 /// A piece of the map: the surface that left the moving volume at one moment, or a patch.
@@ -57,6 +59,11 @@ enum class SliceKind : std::int8_t {
 ///
 /// A patch is sent while its surface is in the volume, and again when that has changed. Patches
 /// that are sent together are a batch: they have the same `utime`, and the last one ends it.
+///
+/// The points of a patch are in a frame P of its own, which is W until the map is corrected. A
+/// correction is a slice without points, with an id of its own like the others, that tells the new
+/// poses X_WP of the patches that it moves; patches that it does not list stay where they are. The
+/// poses are absolute: PatchMotions (patch_motions.hpp) has the rule which one counts.
 struct CloudSlice {
   std::int64_t utime = 0;    ///< device time of the frame at which it left or was so, microseconds
   std::int64_t session = 0;  ///< one part of one run of a mapper; > 0
@@ -69,7 +76,7 @@ struct CloudSlice {
   std::int32_t revision = 0;
   SliceKind kind = SliceKind::kFinal;
   bool in_volume = false;   ///< of a patch: it may still change
-  bool ends_batch = false;  ///< of a patch: the last one of its batch
+  bool ends_batch = false;  ///< the last patch of its batch, or a correction
   /// Of a patch: a newer revision followed while this one waited to be sent, so that its points
   /// were left out. Receivers ignore it.
   bool superseded = false;
@@ -81,7 +88,15 @@ struct CloudSlice {
   bool part_follows = false;  ///< of the final slice: the run goes on with another part
   float resolution_m = 0.0F;  ///< voxel size, > 0
   Pose X_WC = Pose::Identity();
-  std::vector<CloudPoint> points_W;
+  /// Of a patch: the pose of its frame P as of correction number `correction`. Of a correction:
+  /// that of the mapper's odometry frame. Of other slices the identity.
+  PatchPose X_WP;
+  /// The number of corrections of the map so far that X_WP takes into account; of a correction its
+  /// own number, from 1, ascending in the session.
+  std::int32_t correction = 0;
+  std::vector<CloudPoint> points_W;  ///< of a patch in P
+  /// Of a correction: the patches that it moves, by ascending id. Of other slices none.
+  std::vector<PatchMotion> motions;
 };
 
 /// The pose of the depth camera at one frame.

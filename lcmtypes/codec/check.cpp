@@ -28,6 +28,10 @@ void Check::finite(const char* field, double value) const {
   if (!std::isfinite(value)) fail(field, value, "a finite number");
 }
 
+void Check::position(const char* field, double value) const {
+  range(field, value, -kMaxPosition_m, kMaxPosition_m);
+}
+
 void Check::text(const char* field, const std::string& value) const {
   if (value.size() > kMaxStringBytes) {
     fail(field, std::to_string(value.size()) + " bytes long",
@@ -41,9 +45,8 @@ void Check::text(const char* field, const std::string& value) const {
 }
 
 void Check::pose(const char* field, const Pose& value) const {
-  const Eigen::Vector3d position = value.translation();
-  for (const double coordinate : position)
-    range(field, coordinate, -kMaxPosition_m, kMaxPosition_m);
+  const Eigen::Vector3d t = value.translation();
+  for (const double coordinate : t) position(field, coordinate);
   const Eigen::Matrix3d R = value.linear();
   const double error = (R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
   // Written so that NaN fails.

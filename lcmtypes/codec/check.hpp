@@ -38,6 +38,8 @@ class Check {
     if (value <= 0) fail(field, value, "> 0");
   }
   void finite(const char* field, double value) const;
+  /// A coordinate of a pose, metres.
+  void position(const char* field, double value) const;
 
   /// At most kMaxStringBytes long and without control characters, because texts are printed in
   /// terminals.

@@ -41,6 +41,8 @@ Seeds message_seeds() {
           {"heartbeat", encode(example_heartbeat())},
           {"resend_request", encode(example_resend_request())},
           {"cloud_slice", encode_chunk(example_slice(10), 0, 0, kDefaultMaxChunkBytes)},
+          {"patch", encode_chunk(example_patch(5), 0, 0, kDefaultMaxChunkBytes)},
+          {"correction", encode_chunk(example_correction(6), 0, 0, kDefaultMaxChunkBytes)},
           {"segment_update", encode_chunk(example_update(12), 0, 0, kDefaultMaxChunkBytes)},
           {"segment_query", encode(example_query())},
           {"segment_answer", encode_chunk(example_answer(3), 0, 0, kDefaultMaxChunkBytes)},
@@ -53,6 +55,8 @@ Seeds log_seeds() {
   using namespace testing;  // NOLINT(google-build-using-namespace): the examples
   return {
       {"slices", log_of(channels::kCloudSlice, example_slice(90, 0), example_slice(50, 1))},
+      {"corrections",
+       log_of(channels::kCloudSlice, example_correction(90, 0), example_correction(50, 1))},
       {"updates", log_of(channels::kSegmentUpdate, example_update(200, 0), example_update(9, 1))},
       {"answers", log_of(channels::kSegmentAnswer, example_answer(20), example_answer(0))},
       {"frames", log_of(channels::kRgbdFrame, example_frame(1'500, 900), example_frame(40, 0))},

@@ -35,6 +35,7 @@ inline CloudSlice example_slice(int num_points, std::int32_t id = 7) {
   slice.part_follows = true;
   slice.resolution_m = 0.01F;
   slice.X_WC = example_pose();
+  slice.correction = 3;
   for (int i = 0; i < num_points; ++i) {
     CloudPoint point;
     point.x = coordinate(random);
@@ -47,6 +48,27 @@ inline CloudSlice example_slice(int num_points, std::int32_t id = 7) {
     slice.points_W.push_back(point);
   }
   return slice;
+}
+
+inline CloudSlice example_patch(int num_points, std::int32_t id = 7) {
+  CloudSlice patch = example_slice(num_points, id);
+  patch.kind = SliceKind::kPatch;
+  patch.X_WP = example_pose();
+  return patch;
+}
+
+/// Moves the patches 3, 8, 13, ...
+inline CloudSlice example_correction(int num_motions, std::int32_t id = 7) {
+  CloudSlice correction = example_slice(0, id);
+  correction.kind = SliceKind::kCorrection;
+  correction.revision = 0;
+  correction.X_WP = example_pose();
+  for (int i = 0; i < num_motions; ++i) {
+    Pose X_WP = example_pose();
+    X_WP.translation().x() += i;
+    correction.motions.push_back({3 + 5 * i, X_WP});
+  }
+  return correction;
 }
 
 /// Gives each field of the statistics a valid value of its own, other than its default.

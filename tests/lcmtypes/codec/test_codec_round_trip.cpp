@@ -55,6 +55,11 @@ TEST(CodecRoundTrip, BulkMessagesKeepEveryFieldWhateverTheChunkSize) {
   expect_round_trip(example_slice(0));
   expect_round_trip(example_slice(1));
   expect_round_trip(example_slice(5'000));
+  expect_round_trip(example_patch(0));
+  expect_round_trip(example_patch(301));
+  expect_round_trip(example_correction(0));
+  expect_round_trip(example_correction(1));
+  expect_round_trip(example_correction(5'000));
   expect_round_trip(example_update(0));
   expect_round_trip(example_update(3'001));
   expect_round_trip(example_answer(0));

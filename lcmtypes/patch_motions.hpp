@@ -1,0 +1,47 @@
+#pragma once
+// Corrections of the map, as every receiver applies them.
+
+#include <cstdint>
+#include <map>
+#include <span>
+#include <vector>
+
+#include "lcmtypes/messages.hpp"
+
+namespace kintsugi {
+
+/// Points of a patch from its frame P to W: R p + t in double precision, rounded to float; normals
+/// R n likewise. The identity leaves the bits as they are.
+std::vector<CloudPoint> moved(std::span<const CloudPoint> points_P, const PatchPose& X_WP);
+
+/// A pose of a patch, and the number of the correction as of which it holds.
+struct PatchPlace {
+  PatchPose X_WP;
+  std::int32_t correction = 0;  ///< 0: none
+
+  bool operator==(const PatchPlace&) const = default;
+};
+
+/// The newest pose that corrections have given each patch, and the rule which pose counts: of the
+/// corrections that name a patch and of the header of its newest revision, the one with the highest
+/// number of corrections. So the place of a patch depends neither on the order of arrival nor on
+/// what was lost before.
+class PatchMotions {
+ public:
+  /// Takes the motions of `correction`, of kind kCorrection. Returns those that are newer than what
+  /// earlier calls gave for their patches: the ones that may move a patch.
+  std::vector<PatchMotion> learn(const CloudSlice& correction);
+  /// Takes a place that places() once had.
+  void learn(std::int32_t patch_id, const PatchPlace& place);
+
+  /// Where the points of a slice are: that of its header, or of a newer correction.
+  [[nodiscard]] PatchPlace place_of(const CloudSlice& slice) const;
+
+  /// Of each patch that a correction has named, by id.
+  [[nodiscard]] const std::map<std::int32_t, PatchPlace>& places() const { return places_; }
+
+ private:
+  std::map<std::int32_t, PatchPlace> places_;
+};
+
+}  // namespace kintsugi

@@ -1,0 +1,38 @@
+#pragma once
+// Where a patch is in the corrected map, in the numbers that go over the bus.
+
+#include <cstdint>
+
+#include "lcmtypes/geometry.hpp"
+
+namespace kintsugi {
+
+/// X_WP, the pose of the frame P of a patch in W, in the numbers that go over the bus: whoever
+/// computes with it, before or behind the bus, has the same bits.
+struct PatchPose {
+  float t_WP[3] = {};                        ///< metres
+  float q_WP[4] = {0.0F, 0.0F, 0.0F, 1.0F};  ///< x y z w; of unit length within 1e-5
+
+  PatchPose() = default;
+  /// Rounds. Implicit, so that a pose can be assigned.
+  PatchPose(const Pose& X_WP);  // NOLINT(google-explicit-constructor)
+
+  /// In double precision, the quaternion normalised there.
+  [[nodiscard]] Pose pose() const;
+  /// Exactly: then P is W, and points keep their bits.
+  [[nodiscard]] bool is_identity() const;
+
+  bool operator==(const PatchPose&) const = default;
+};
+
+/// The pose that a correction of the map gives a patch; also its layout on the bus (32 bytes,
+/// little-endian, no padding).
+struct PatchMotion {
+  std::int32_t id = 0;  ///< of the patch: CloudSlice::id, >= 0
+  PatchPose X_WP;
+
+  bool operator==(const PatchMotion&) const = default;
+};
+static_assert(sizeof(PatchMotion) == 32, "another layout: raise kCloudPointVersion");
+
+}  // namespace kintsugi
