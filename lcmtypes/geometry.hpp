@@ -11,6 +11,9 @@ namespace kintsugi {
 
 using Pose = Eigen::Isometry3d;
 
+/// Coordinates of a pose may be as large as this: a map of the whole of a country.
+inline constexpr double kMaxPosition_m = 1e6;
+
 /// A calibrated camera: a pinhole with the Brown-Conrady lens distortion of OpenCV.
 ///
 /// A pixel (u, v) with depth z (metres along C's z) is the point

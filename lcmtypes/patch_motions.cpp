@@ -47,11 +47,9 @@ void PatchMotions::learn(std::int32_t patch_id, const PatchPlace& place) {
 }
 
 PatchPlace PatchMotions::place_of(const CloudSlice& slice) const {
+  if (slice.kind != SliceKind::kPatch) return {};
   const auto known = places_.find(slice.id);
-  if (slice.kind == SliceKind::kPatch && known != places_.end() &&
-      known->second.correction > slice.correction) {
-    return known->second;
-  }
+  if (known != places_.end() && known->second.correction > slice.correction) return known->second;
   return {slice.X_WP, slice.correction};
 }
 

@@ -34,7 +34,8 @@ class PatchMotions {
   /// Takes a place that places() once had.
   void learn(std::int32_t patch_id, const PatchPlace& place);
 
-  /// Where the points of a slice are: that of its header, or of a newer correction.
+  /// Where the points of a slice are: of a patch what its header says, or a newer correction; other
+  /// slices are in W.
   [[nodiscard]] PatchPlace place_of(const CloudSlice& slice) const;
 
   /// Of each patch that a correction has named, by id.

@@ -22,7 +22,15 @@ struct PatchPose {
   /// Exactly: then P is W, and points keep their bits.
   [[nodiscard]] bool is_identity() const;
 
+  /// Of the quaternion.
+  [[nodiscard]] double length() const;
+  /// Within the bounds of the contract.
+  [[nodiscard]] bool is_valid() const;
+
   bool operator==(const PatchPose&) const = default;
+
+  /// Of the length: rounding to float changes it by 1e-7 at most.
+  static constexpr double kUnitTolerance = 1e-5;
 };
 
 /// The pose that a correction of the map gives a patch; also its layout on the bus (32 bytes,

@@ -10,7 +10,6 @@ namespace {
 // A rotation normalised in double precision is orthonormal to 1e-15. An error of 1e-6 moves a point
 // at 10 m by a hundredth of a millimetre.
 constexpr double kRotationTolerance = 1e-6;
-constexpr double kMaxPosition_m = 1e6;
 
 bool is_control(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; }
 
