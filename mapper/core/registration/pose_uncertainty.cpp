@@ -26,4 +26,11 @@ double pose_sigma_m(const Matrix6d& A, const Pose& X_VC, int num_pixels) {
   return std::sqrt(worst_m2 * static_cast<double>(num_pixels) / kIndependentPatches);
 }
 
+Matrix6d information_of_pose(const Matrix6d& A, const Pose& X_VC, int num_pixels) {
+  const Matrix6d to_V = adjoint(X_VC);
+  const Matrix6d information = to_V.transpose() * A * to_V;
+  // Symmetric but for rounding.
+  return (0.5 * kIndependentPatches / num_pixels) * (information + information.transpose());
+}
+
 }  // namespace kintsugi::mapper

@@ -15,6 +15,9 @@ namespace kintsugi::mapper {
 /// `kIndependentPatches` independent measurements, whatever its number of pixels.
 double pose_sigma_m(const Matrix6d& A, const Pose& X_VC, int num_pixels);
 
+/// The inverse of the covariance of pose_sigma_m(), of a right increment of X_VC: a twist in C.
+Matrix6d information_of_pose(const Matrix6d& A, const Pose& X_VC, int num_pixels);
+
 /// The errors of poses, measured on views reduced to a quarter, were 10 to 30 times the estimate of
 /// A at 320x240: as if each patch of 20x20 pixels were one measurement.
 inline constexpr double kIndependentPatches = 192.0;

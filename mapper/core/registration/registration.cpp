@@ -103,8 +103,9 @@ class CoarseToFine {
     quality.solved = solved;
     quality.voxel_m = model_.voxel_m;
     quality.covered_share = covered_share(frame_C_.front(), registration.X_WC, model_.region_W);
-    quality.sigma_m =
-        pose_sigma_m(equations_.A + step_.further_information, X_VC_, static_cast<int>(num_pixels));
+    const Matrix6d A = equations_.A + step_.further_information;
+    quality.sigma_m = pose_sigma_m(A, X_VC_, static_cast<int>(num_pixels));
+    registration.information_C = information_of_pose(A, X_VC_, static_cast<int>(num_pixels));
     quality.undetermined = static_cast<int>(step_.undetermined.cols());
     const Matrix6d to_C = adjoint(X_VC_.inverse());
     registration.open_to_depth_C = to_C * solver_.open_to_depth();

@@ -32,6 +32,9 @@ struct Registration {
   Pose X_WC = Pose::Identity();
   RegistrationQuality quality;
   int iterations = 0;
+  /// Inverse covariance of a right increment of X_WC, a twist in C (1/m^2, 1/rad^2); see
+  /// pose_uncertainty.hpp.
+  Matrix6d information_C = Matrix6d::Zero();
   TwistBasis open_to_depth_C = TwistBasis(6, 0);  ///< directions that depth does not determine
   TwistBasis undetermined_C = TwistBasis(6, 0);   ///< of these, the ones that colour leaves open
   double compared_share = 1.0;                    ///< see Step, as of the last step

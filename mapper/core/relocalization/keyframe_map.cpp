@@ -12,13 +12,11 @@
 namespace kintsugi::mapper {
 namespace {
 
-constexpr double kRawPerMetre = 4000.0;
-
 cv::Mat_<std::uint16_t> raw_from(cv::Mat_<float> depth_m) {
   depth_m = depth_m.clone();
   cv::patchNaNs(depth_m, 0.0);
   cv::Mat_<std::uint16_t> raw;
-  depth_m.convertTo(raw, CV_16U, kRawPerMetre);  // saturates at 16.4 m
+  depth_m.convertTo(raw, CV_16U, Keyframe::kRawPerMetre);  // saturates at 16.4 m
   return raw;
 }
 
@@ -52,26 +50,42 @@ void KeyframeMap::Config::validate() const {
 
 KeyframeMap::KeyframeMap(const Config& config) : config_((config.validate(), config)) {}
 
-bool KeyframeMap::is_due(const Pose& X_WC) const {
-  return std::none_of(keyframes_.begin(), keyframes_.end(), [&](const Keyframe& keyframe) {
-    const Pose X_KC = keyframe.X_WC.inverse() * X_WC;
-    return X_KC.translation().norm() < config_.spacing_m &&
-           rotation_angle_rad(X_KC) < config_.spacing_rad;
-  });
+std::optional<int> KeyframeMap::find_near(const Pose& X_WC) const {
+  std::optional<int> nearest;
+  double least = 1.0;  // the larger of both distances, in units of the spacing
+  for (int i = 0; i < size(); ++i) {
+    if (is_released_[i]) continue;
+    const Pose X_KC = keyframes_[i]->X_WC.inverse() * X_WC;
+    const double distance = std::max(X_KC.translation().norm() / config_.spacing_m,
+                                     rotation_angle_rad(X_KC) / config_.spacing_rad);
+    if (!(distance < least)) continue;
+    least = distance;
+    nearest = i;
+  }
+  return nearest;
+}
+
+void KeyframeMap::release_if(const std::function<bool(const Keyframe&)>& has_left) {
+  for (int i = 0; i < size(); ++i) {
+    if (!is_released_[i]) is_released_[i] = has_left(*keyframes_[i]);
+  }
 }
 
 void KeyframeMap::add(const Pose& X_WC, const TrackingInput& frame, const SurfaceMap& surface_C) {
   finish_last();
-  keyframes_.push_back({X_WC, {}, surface_C.intrinsics, raw_from(surface_C.depth_m)});
+  keyframes_.push_back(std::make_shared<Keyframe>(
+      Keyframe{X_WC, {}, surface_C.intrinsics, raw_from(surface_C.depth_m)}));
+  is_released_.push_back(false);
   appearance_of_last_ = std::async(
       std::launch::async,
       [frame, max_features = config_.max_features] { return appearance_of(frame, max_features); });
 }
 
-std::vector<int> KeyframeMap::similar_to(const KeyframeAppearance& appearance) {
+std::vector<int> KeyframeMap::similar_to(const KeyframeAppearance& appearance,
+                                         const std::function<bool(int)>& is_candidate) {
   finish_last();
-  std::vector<int> numbers = by_features(appearance);
-  for (const int number : by_depth(appearance)) {
+  std::vector<int> numbers = by_features(appearance, is_candidate);
+  for (const int number : by_depth(appearance, is_candidate)) {
     if (std::find(numbers.begin(), numbers.end(), number) == numbers.end()) {
       numbers.push_back(number);
     }
@@ -79,26 +93,35 @@ std::vector<int> KeyframeMap::similar_to(const KeyframeAppearance& appearance) {
   return numbers;
 }
 
-void KeyframeMap::finish_last() {
-  if (!appearance_of_last_.valid()) return;
-  keyframes_.back().appearance = appearance_of_last_.get();
-  index_.add(keyframes_.back().appearance.features.descriptors);
+std::vector<int> KeyframeMap::similar_to(int number, const std::function<bool(int)>& is_candidate) {
+  finish_last();
+  return similar_to(keyframes_[number]->appearance, is_candidate);
 }
 
-std::vector<int> KeyframeMap::by_features(const KeyframeAppearance& appearance) const {
+void KeyframeMap::finish_last() {
+  if (!appearance_of_last_.valid()) return;
+  keyframes_.back()->appearance = appearance_of_last_.get();
+  index_.add(keyframes_.back()->appearance.features.descriptors);
+}
+
+std::vector<int> KeyframeMap::by_features(const KeyframeAppearance& appearance,
+                                          const std::function<bool(int)>& is_candidate) const {
   const std::vector<int> shared = index_.count_matches(appearance.features.descriptors);
   std::vector<std::pair<double, int>> keys;
   for (int i = 0; i < size(); ++i) {
-    if (shared[i] >= config_.min_shared_features) keys.emplace_back(-shared[i], i);
+    if (shared[i] >= config_.min_shared_features && is_candidate(i))
+      keys.emplace_back(-shared[i], i);
   }
   return smallest(std::move(keys), config_.max_by_features);
 }
 
-std::vector<int> KeyframeMap::by_depth(const KeyframeAppearance& appearance) const {
+std::vector<int> KeyframeMap::by_depth(const KeyframeAppearance& appearance,
+                                       const std::function<bool(int)>& is_candidate) const {
   std::vector<std::pair<double, int>> keys;
   for (int i = 0; i < size(); ++i) {
+    if (!is_candidate(i)) continue;
     const double difference =
-        thumbnail_difference(appearance.thumbnail_m, keyframes_[i].appearance.thumbnail_m);
+        thumbnail_difference(appearance.thumbnail_m, keyframes_[i]->appearance.thumbnail_m);
     if (std::isfinite(difference)) keys.emplace_back(difference, i);
   }
   return smallest(std::move(keys), config_.max_by_depth);

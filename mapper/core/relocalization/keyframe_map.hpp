@@ -2,7 +2,10 @@
 // The keyframes of relocalisation, and the search for those that look like a frame.
 
 #include <cstdint>
+#include <functional>
 #include <future>
+#include <memory>
+#include <optional>
 #include <vector>
 
 #include <opencv2/core.hpp>
@@ -21,8 +24,17 @@ struct Keyframe {
   Intrinsics camera;                  ///< of the surface: 160x120 where frames are 640x480
   cv::Mat_<std::uint16_t> depth_raw;  ///< in quarters of a millimetre; 0 is invalid
 
+  /// Of a pixel, along the camera's z, metres; 0 where it is invalid.
+  double depth_m(int v, int u) const { return depth_raw(v, u) / kRawPerMetre; }
+  /// The point of a pixel in K, metres; the origin where it is invalid.
+  Eigen::Vector3d point(int v, int u) const {
+    return depth_m(v, u) *
+           Eigen::Vector3d((u - camera.cx) / camera.fx, (v - camera.cy) / camera.fy, 1.0);
+  }
   /// Depth, and the normals computed from it.
   SurfaceMap surface() const;
+
+  static constexpr double kRawPerMetre = 4000.0;  ///< of depth_raw
 };
 
 /// Keyframes at a minimum spacing, so that memory grows with the space that was seen and not with
@@ -49,27 +61,45 @@ class KeyframeMap {
   /// @throws std::invalid_argument if the configuration is not valid
   explicit KeyframeMap(const Config& config);
 
-  /// Whether no keyframe is near this pose.
-  bool is_due(const Pose& X_WC) const;
+  /// The nearest to this pose of the keyframes that are within the spacing and were not released;
+  /// nothing: a keyframe is due.
+  std::optional<int> find_near(const Pose& X_WC) const;
 
   /// Adds the frame at X_WC as a keyframe, with the map's surface as seen from there.
   void add(const Pose& X_WC, const TrackingInput& frame, const SurfaceMap& surface_C);
 
+  /// Releases the keyframes of which this is true. A pose near them may become a keyframe again:
+  /// their surface is in the volume no more, so a new one says where the camera is now.
+  void release_if(const std::function<bool(const Keyframe&)>& has_left);
+  void release(int number) { is_released_[number] = true; }
+  const std::vector<bool>& is_released() const { return is_released_; }  ///< by number
+
   /// Numbers of the most similar keyframes, without duplicates: first by the number of shared
-  /// features, most first, then by depth thumbnail, most similar first.
-  std::vector<int> similar_to(const KeyframeAppearance& appearance);
+  /// features, most first, then by depth thumbnail, most similar first. Only those of which
+  /// `is_candidate` is true.
+  std::vector<int> similar_to(const KeyframeAppearance& appearance,
+                              const std::function<bool(int)>& is_candidate = any_keyframe);
+
+  /// The same for keyframe `number`.
+  std::vector<int> similar_to(int number, const std::function<bool(int)>& is_candidate);
 
   int size() const { return static_cast<int>(keyframes_.size()); }
   /// @pre similar_to() was called since the last add().
-  const Keyframe& operator[](int number) const { return keyframes_[number]; }
+  const Keyframe& operator[](int number) const { return *keyframes_[number]; }
+  /// The same, for other threads.
+  std::shared_ptr<const Keyframe> share(int number) const { return keyframes_[number]; }
 
  private:
+  static bool any_keyframe(int /*number*/) { return true; }
   void finish_last();
-  std::vector<int> by_features(const KeyframeAppearance& appearance) const;
-  std::vector<int> by_depth(const KeyframeAppearance& appearance) const;
+  std::vector<int> by_features(const KeyframeAppearance& appearance,
+                               const std::function<bool(int)>& is_candidate) const;
+  std::vector<int> by_depth(const KeyframeAppearance& appearance,
+                            const std::function<bool(int)>& is_candidate) const;
 
   Config config_;
-  std::vector<Keyframe> keyframes_;
+  std::vector<std::shared_ptr<Keyframe>> keyframes_;
+  std::vector<bool> is_released_;
   DescriptorIndex index_;
   /// Of the last keyframe; valid until it is stored there.
   std::future<KeyframeAppearance> appearance_of_last_;

@@ -37,9 +37,11 @@ void Relocalizer::Config::validate() const {
 Relocalizer::Relocalizer(const Config& config)
     : config_((config.validate(), config)), keyframes_(config.keyframes) {}
 
-void Relocalizer::remember(const TrackingInput& frame, const Model& model) {
+bool Relocalizer::remember(const TrackingInput& frame, const Model& model) {
   turn_ = 0;
-  if (keyframes_.is_due(model.X_WV)) keyframes_.add(model.X_WV, frame, coarse(model.surface_V));
+  if (keyframes_.find_near(model.X_WV)) return false;
+  keyframes_.add(model.X_WV, frame, coarse(model.surface_V));
+  return true;
 }
 
 std::optional<TrackingResult> Relocalizer::find(const TrackingInput& frame, const Tracker& tracker,
@@ -47,19 +49,20 @@ std::optional<TrackingResult> Relocalizer::find(const TrackingInput& frame, cons
   const KeyframeAppearance appearance = appearance_of(frame, config_.keyframes.max_features);
   const std::vector<int> candidates = keyframes_.similar_to(appearance);
   if (candidates.empty()) return std::nullopt;
-  auto found = try_keyframe(keyframes_[candidates.front()], appearance, frame, tracker, model_from);
+  auto found = try_keyframe(candidates.front(), appearance, frame, tracker, model_from);
   if (!found && candidates.size() > 1) {
     const int other = candidates[1 + turn_++ % (candidates.size() - 1)];
-    found = try_keyframe(keyframes_[other], appearance, frame, tracker, model_from);
+    found = try_keyframe(other, appearance, frame, tracker, model_from);
   }
   return found;
 }
 
-std::optional<TrackingResult> Relocalizer::try_keyframe(const Keyframe& keyframe,
+std::optional<TrackingResult> Relocalizer::try_keyframe(int number,
                                                         const KeyframeAppearance& appearance,
                                                         const TrackingInput& frame,
                                                         const Tracker& tracker,
                                                         const ModelFrom& model_from) const {
+  const Keyframe& keyframe = keyframes_[number];
   std::optional<Pose> X_WC_features;
   if (const auto X_KC = pose_from_features(keyframe.appearance.features, appearance.features)) {
     X_WC_features = keyframe.X_WC * *X_KC;
@@ -69,6 +72,7 @@ std::optional<TrackingResult> Relocalizer::try_keyframe(const Keyframe& keyframe
   const TrackingResult near =
       tracker.register_anew(frame, seen_then, X_WC_features.value_or(keyframe.X_WC));
   if (near.quality.overlap_share < config_.min_overlap_share) return std::nullopt;
+  if (!tracker.can_be_at(near.X_WC, frame.utime)) return std::nullopt;
 
   const TrackingResult in_map = tracker.register_anew(frame, model_from(near.X_WC), near.X_WC);
   const bool map_reaches = in_map.quality.overlap_share >= config_.min_overlap_share;
@@ -81,6 +85,7 @@ std::optional<TrackingResult> Relocalizer::try_keyframe(const Keyframe& keyframe
   }
   result.state = TrackingState::kTracking;
   result.loss_reason.reset();
+  result.found_by_keyframe = number;
   return result;
 }
 

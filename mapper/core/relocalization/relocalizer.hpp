@@ -54,18 +54,19 @@ class Relocalizer {
   explicit Relocalizer(const Config& config);
 
   /// To be called after each fused frame. `model` is the map's surface as seen from its pose.
-  void remember(const TrackingInput& frame, const Model& model);
+  /// @returns whether the frame became a keyframe
+  bool remember(const TrackingInput& frame, const Model& model);
 
   /// The camera's pose, if the frame can be registered with one of the keyframes that are tried
   /// now. `tracker` does not change.
   std::optional<TrackingResult> find(const TrackingInput& frame, const Tracker& tracker,
                                      const ModelFrom& model_from);
 
+  KeyframeMap& keyframes() { return keyframes_; }
   int num_keyframes() const { return keyframes_.size(); }
 
  private:
-  std::optional<TrackingResult> try_keyframe(const Keyframe& keyframe,
-                                             const KeyframeAppearance& appearance,
+  std::optional<TrackingResult> try_keyframe(int number, const KeyframeAppearance& appearance,
                                              const TrackingInput& frame, const Tracker& tracker,
                                              const ModelFrom& model_from) const;
   /// `X_WC_features`: the pose from features, if there is one.

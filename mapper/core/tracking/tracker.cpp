@@ -34,6 +34,7 @@ TrackingResult result_of(const Registration& registration) {
   result.X_WC = registration.X_WC;
   result.quality = registration.quality;
   result.iterations = registration.iterations;
+  result.information_C = registration.information_C;
   result.open_to_depth_C = registration.open_to_depth_C;
   result.undetermined_C = registration.undetermined_C;
   return result;
@@ -47,6 +48,8 @@ void Tracker::Config::validate() const {
   check_range<std::int64_t>("coast_us", coast_us, 0, 60'000'000);
   check_range<std::int64_t>("coast_partly_us", coast_partly_us, 0, 60'000'000);
   check_range("max_acceleration", max_acceleration, 0.0, 1e6);
+  check_range("max_speed", max_speed, 0.0, 1e6);
+  check_range("max_drift_share", max_drift_share, 0.0, 1.0);
   check_range("min_reference_overlap", min_reference_overlap, 0.0, 1.0);
   check_range("min_reference_reliability", min_reference_reliability, 0.0, 1.0);
   loss.validate();
@@ -58,6 +61,7 @@ Tracker::Tracker(const Config& config) : config_(config), loss_rule_(config.loss
 
 void Tracker::start_at(const Pose& X_WC, const TrackingInput& frame, double covered_share) {
   X_WC_ = X_WC;
+  has_pose_ = true;
   utime_ = frame.utime;
   X_WC_followed_ = X_WC_;
   utime_followed_ = utime_;
@@ -119,6 +123,14 @@ TrackingResult Tracker::register_anew(const TrackingInput& frame, const Model& m
   return result;
 }
 
+bool Tracker::can_be_at(const Pose& X_WC, std::int64_t utime) const {
+  if (!has_pose_) return true;
+  const double distance_m = (X_WC.translation() - X_WC_.translation()).norm();
+  const double seconds = 1e-6 * static_cast<double>(utime - utime_);
+  return distance_m <=
+         kPoseNoise_m + config_.max_speed * seconds + config_.max_drift_share * path_m_;
+}
+
 bool Tracker::follows_motion(const Registration& registration, std::int64_t utime) const {
   if (!motion_continues(utime)) return false;
   if (!motion_known_) return true;
@@ -150,6 +162,8 @@ TrackingResult Tracker::accept(const Registration& registration, const TrackingI
   const bool continuous = motion_continues(frame.utime) && seconds > 0.0;
   velocity_C_ = continuous ? velocity_between(X_WC_, registration.X_WC, seconds) : Vector6d::Zero();
   motion_known_ = continuous;
+  has_pose_ = true;
+  path_m_ += (registration.X_WC.translation() - X_WC_.translation()).norm();
   X_WC_ = registration.X_WC;
   utime_ = frame.utime;
   X_WC_followed_ = X_WC_;

@@ -37,6 +37,12 @@ class Tracker {
     /// m/s^2 (and rad/s^2), of a hand-held camera: a pose farther from the prediction than this
     /// explains is judged as one found anew.
     double max_acceleration = 30.0;
+    /// m/s, of whatever carries the camera; a person who runs. Where tracking was lost for a
+    /// moment, the camera cannot be in another room, however much that looks like this one.
+    double max_speed = 10.0;
+    /// Largest drift, as a share of the path: dense tracking drifts by about a hundredth. A place
+    /// that is found again may be so far from where the map has it.
+    double max_drift_share = 0.02;
     /// Share of a frame's pixels that are compared with the photometric reference; below it, the
     /// frame becomes the next reference.
     double min_reference_overlap = 0.6;
@@ -68,6 +74,10 @@ class Tracker {
   /// The pose at this device time (microseconds) with constant velocity.
   Pose predict(std::int64_t utime) const;
 
+  /// Whether the camera, which was at the last good pose, can be here at this device time
+  /// (microseconds). Before the first pose it can be anywhere.
+  bool can_be_at(const Pose& X_WC, std::int64_t utime) const;
+
   /// Whether the last frame was lost, but the camera is still expected near predict(): its model
   /// should be the map as seen from there.
   bool is_coasting(std::int64_t utime) const { return lost_ && motion_continues(utime); }
@@ -85,7 +95,9 @@ class Tracker {
   Config config_;
   LossRule loss_rule_;
   Pose X_WC_ = Pose::Identity();  ///< last good
-  std::int64_t utime_ = 0;        ///< of the last good pose
+  bool has_pose_ = false;
+  double path_m_ = 0.0;     ///< length of the path to it, without jumps
+  std::int64_t utime_ = 0;  ///< of the last good pose
   /// From which predict() goes on: the last good pose or, after it, one that was determined but for
   /// some directions, in which it is predicted.
   Pose X_WC_followed_ = Pose::Identity();

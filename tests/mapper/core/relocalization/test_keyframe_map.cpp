@@ -33,23 +33,36 @@ void add(KeyframeMap& map, const Pose& X_WC, float depth_m) {
   map.add(X_WC, frame, frame.surface_C[1]);
 }
 
-TEST(KeyframeMap, IsDueAwayFromEveryKeyframe) {
+TEST(KeyframeMap, FindsTheNearestKeyframeWithinTheSpacing) {
   KeyframeMap map({});
-  EXPECT_TRUE(map.is_due(Pose::Identity()));
+  EXPECT_EQ(map.find_near(Pose::Identity()), std::nullopt);
   add(map, Pose::Identity(), 1.0F);
-  add(map, moved(0.5), 1.0F);
-  EXPECT_FALSE(map.is_due(moved(0.14)));
-  EXPECT_TRUE(map.is_due(moved(0.16)));
-  EXPECT_FALSE(map.is_due(moved(0.4)));
-  EXPECT_TRUE(map.is_due(moved(0.0, 0.18)));
-  EXPECT_FALSE(map.is_due(moved(0.0, 0.16)));
+  add(map, moved(0.2), 1.0F);
+  EXPECT_EQ(map.find_near(moved(-0.14)), 0);
+  EXPECT_EQ(map.find_near(moved(0.09)), 0);
+  EXPECT_EQ(map.find_near(moved(0.11)), 1);
+  EXPECT_EQ(map.find_near(moved(0.36)), std::nullopt);
+  EXPECT_EQ(map.find_near(moved(0.0, 0.16)), 0);
+  EXPECT_EQ(map.find_near(moved(0.0, 0.18)), std::nullopt);
+}
+
+TEST(KeyframeMap, APoseNearAReleasedKeyframeMayBecomeOneAgain) {
+  KeyframeMap map({});
+  add(map, Pose::Identity(), 1.0F);
+  add(map, moved(0.2), 1.0F);
+  map.release_if([](const Keyframe& keyframe) { return keyframe.X_WC.translation().x() > 0.1; });
+  EXPECT_THAT(map.is_released(), ::testing::ElementsAre(false, true));
+  EXPECT_EQ(map.find_near(moved(0.12)), 0);
+  EXPECT_EQ(map.find_near(moved(0.2)), std::nullopt);
+  map.release_if([](const Keyframe&) { return false; });
+  EXPECT_TRUE(map.is_released()[1]) << "what has left does not come back";
 }
 
 TEST(KeyframeMap, StaysSmallWhileTheCameraStaysInOnePlace) {
   KeyframeMap map({});
   for (int i = 0; i < 1000; ++i) {
     const Pose X_WC = moved(0.1 * std::sin(0.1 * i), 0.1 * std::cos(0.07 * i));
-    if (map.is_due(X_WC)) add(map, X_WC, 1.0F);
+    if (!map.find_near(X_WC)) add(map, X_WC, 1.0F);
   }
   // 0.2 m by 0.2 rad at a spacing of 0.15 m and 0.17 rad, wherever the first one is.
   EXPECT_LE(map.size(), 9);

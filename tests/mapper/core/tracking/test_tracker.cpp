@@ -74,6 +74,17 @@ TEST(Tracker, PredictsConstantVelocityAcrossMissingFrames) {
   EXPECT_LT(distance_m(tracker.predict(100 * kFrame_us), X_W1), kExactData_m);
 }
 
+TEST(Tracker, KnowsWhereTheCameraCanHaveGot) {
+  const Pose X_W0 = testing::looking_at_the_crate();
+  const auto metres_away = [&](double x) { return X_W0 * se3_retract(twist(x, 0, 0, 0, 0, 0)); };
+  Tracker tracker({});
+  EXPECT_TRUE(tracker.can_be_at(metres_away(1000.0), 0)) << "before the first pose";
+  tracker.start_at(X_W0, frame_at(X_W0, 0), 1.0);
+  EXPECT_TRUE(tracker.can_be_at(metres_away(0.9), 100'000)) << "at 10 m/s";
+  EXPECT_FALSE(tracker.can_be_at(metres_away(1.2), 100'000));
+  EXPECT_TRUE(tracker.can_be_at(metres_away(1.2), 200'000));
+}
+
 TEST(Tracker, IsLostOnABlankFrameAndRecoversWhenTheViewReturns) {
   const Pose X_WV = testing::looking_at_the_crate();
   const Model model = model_at(X_WV);
