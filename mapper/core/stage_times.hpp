@@ -13,6 +13,7 @@ struct StageTimes {
   double shift_ms = 0.0;      ///< shift of the cube; queues slices for extraction
   double integrate_ms = 0.0;  ///< allocation and fusion
   double raycast_ms = 0.0;    ///< raycast of the model for the next frame
+  double loops_ms = 0.0;      ///< waits for a correction that is due
   double patches_ms = 0.0;    ///< decides which patches are due, and copies their blocks
 
   StageTimes& operator+=(const StageTimes& other);
@@ -29,7 +30,8 @@ struct Stage {
 inline constexpr std::array kStages = {
     Stage{"prepare_ms", &StageTimes::prepare_ms}, Stage{"track_ms", &StageTimes::track_ms},
     Stage{"shift_ms", &StageTimes::shift_ms},     Stage{"integrate_ms", &StageTimes::integrate_ms},
-    Stage{"raycast_ms", &StageTimes::raycast_ms}, Stage{"patches_ms", &StageTimes::patches_ms}};
+    Stage{"raycast_ms", &StageTimes::raycast_ms}, Stage{"loops_ms", &StageTimes::loops_ms},
+    Stage{"patches_ms", &StageTimes::patches_ms}};
 
 inline StageTimes& StageTimes::operator+=(const StageTimes& other) {
   for (const Stage& stage : kStages) this->*stage.ms += other.*stage.ms;

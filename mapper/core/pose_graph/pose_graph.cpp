@@ -1,14 +1,14 @@
 #include "mapper/core/pose_graph/pose_graph.hpp"
 
-#include <ceres/ceres.h>
-#include <ceres/rotation.h>
-
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <array>
 #include <cmath>
 #include <stdexcept>
 #include <string>
+
+#include <ceres/ceres.h>
+#include <ceres/rotation.h>
 
 #include "lcmtypes/base/argument_check.hpp"
 
@@ -17,7 +17,9 @@ namespace {
 
 constexpr int kNumParameters = 7;  // translation, and the quaternion x y z w
 
-[[noreturn]] void refuse(const std::string& what) { throw std::invalid_argument("PoseGraph: " + what); }
+[[noreturn]] void refuse(const std::string& what) {
+  throw std::invalid_argument("PoseGraph: " + what);
+}
 
 /// S with S^T S = information, also where that is not of full rank.
 Matrix6d square_root(const Matrix6d& information) {
@@ -104,7 +106,8 @@ void PoseGraph::validate() const {
     if (!information.allFinite() || !information.isApprox(information.transpose(), 1e-9)) {
       refuse(name + " has an information that is not finite and symmetric");
     }
-    const double least = Eigen::SelfAdjointEigenSolver<Matrix6d>(information).eigenvalues().minCoeff();
+    const double least =
+        Eigen::SelfAdjointEigenSolver<Matrix6d>(information).eigenvalues().minCoeff();
     if (least < -1e-9 * most) {
       refuse(name + " has an information with the eigenvalue " + std::to_string(least) +
              ", expected none below 0");

@@ -48,10 +48,10 @@ struct PoseGraphConfig {
 };
 
 struct OptimizedPoses {
-  std::vector<Pose> X_WN;             ///< of the nodes
-  std::vector<double> error_sigmas;   ///< of each edge: standard deviations from its measurement
-  std::vector<int> contradicted;      ///< loops, numbers of edges, ascending
-  bool converged = false;             ///< otherwise the best poses after max_iterations
+  std::vector<Pose> X_WN;            ///< of the nodes
+  std::vector<double> error_sigmas;  ///< of each edge: standard deviations from its measurement
+  std::vector<int> contradicted;     ///< loops, numbers of edges, ascending
+  bool converged = false;            ///< otherwise the best poses after max_iterations
   int num_iterations = 0;
 };
 

@@ -1,10 +1,10 @@
 // The optimised poses of graphs whose optimum is known in closed form.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <random>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 #include "mapper/core/pose_graph/pose_graph.hpp"
 
@@ -138,8 +138,8 @@ class TwoRounds : public ::testing::Test {
     const auto measured = [&](const Pose& X_FT) {
       Eigen::Vector3d axis(noise(random), noise(random), noise(random));
       const double angle_rad = 0.2 * kSigma_rad * axis.norm();
-      return X_FT * shifted(kSigma_m * noise(random), kSigma_m * noise(random),
-                            kSigma_m * noise(random)) *
+      return X_FT *
+             shifted(kSigma_m * noise(random), kSigma_m * noise(random), kSigma_m * noise(random)) *
              turned(angle_rad, axis.normalized());
     };
     for (int i = 0; i < 2 * kPerRound; ++i) {

@@ -1,0 +1,138 @@
+#include "mapper/core/loop_closure/keyframe_graph.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "lcmtypes/base/argument_check.hpp"
+#include "lcmtypes/trajectory.hpp"
+
+namespace kintsugi::mapper {
+namespace {
+
+/// Registrations have errors that are alike for all pixels, and so not in their information: of the
+/// surfaces that voxels describe.
+constexpr double kSurfaceError_vox = 0.25;
+
+/// The larger of the distance (m) and of the angle (rad), which are about the same for what is a
+/// metre away.
+double size_of(const Pose& X) { return std::max(X.translation().norm(), rotation_angle_rad(X)); }
+
+/// A further error, independent in each direction, m and rad.
+Matrix6d with_error(const Matrix6d& information, double sigma) {
+  // (S^-1 + sigma^2 I)^-1, also where the information is not of full rank
+  const Matrix6d sum =
+      (Matrix6d::Identity() + sigma * sigma * information).partialPivLu().solve(information);
+  return 0.5 * (sum + sum.transpose());  // symmetric but for rounding
+}
+
+
+}  // namespace
+
+void KeyframeGraph::Config::validate() const {
+  check_range("near_m", near_m, 0.0, 1e6);
+  check_range("max_drift_share", max_drift_share, 0.0, 1.0);
+  check_range("voxel_m", voxel_m, 1e-4, 1.0);
+  optimizer.validate();
+}
+
+KeyframeGraph::KeyframeGraph(const Config& config) : config_((config.validate(), config)) {}
+
+void KeyframeGraph::add(const Pose& X_UK, double path_m, std::optional<int> from) {
+  Pose X_WU = Pose::Identity();
+  if (from) {
+    check_number(*from);
+    X_WU = X_WK_[*from] * nodes_[*from].X_UK.inverse(Eigen::Isometry);
+  }
+  nodes_.push_back({X_UK, path_m});
+  X_WK_.push_back(X_WU * X_UK);
+}
+
+void KeyframeGraph::add_tracked(int from, int to, const Matrix6d& information_T) {
+  check_number(from);
+  check_number(to);
+  if (from == to) throw std::invalid_argument("KeyframeGraph: a motion needs two keyframes");
+  const Pose X_FT = nodes_[from].X_UK.inverse(Eigen::Isometry) * nodes_[to].X_UK;
+  // Both keyframes were registered with the volume.
+  tracked_.push_back({from, to, X_FT, with_error(0.5 * information_T, kSurfaceError_vox * config_.voxel_m), false});
+}
+
+void KeyframeGraph::check_number(int number) const {
+  if (number >= 0 && number < size()) return;
+  throw std::invalid_argument("KeyframeGraph: there is no keyframe " + std::to_string(number));
+}
+
+int KeyframeGraph::offer(const Loop& loop) {
+  if (!is_plausible(loop)) return 0;
+  const auto agrees = [&](const Loop& other) { return agree(loop, other); };
+  int num_confirmed = 0;
+  const auto found = std::stable_partition(pending_.begin(), pending_.end(),
+                                           [&](const Loop& other) { return !agrees(other); });
+  num_confirmed += static_cast<int>(pending_.end() - found);
+  const bool is_confirmed =
+      num_confirmed > 0 || std::any_of(confirmed_.begin(), confirmed_.end(), agrees);
+  confirmed_.insert(confirmed_.end(), found, pending_.end());
+  pending_.erase(found, pending_.end());
+  (is_confirmed ? confirmed_ : pending_).push_back(loop);
+  return num_confirmed + (is_confirmed ? 1 : 0);
+}
+
+bool KeyframeGraph::is_plausible(const Loop& loop) const {
+  const Pose X_EL = X_WK_[loop.earlier].inverse(Eigen::Isometry) * X_WK_[loop.later];
+  const double drift_m = size_of(loop.X_EL.inverse(Eigen::Isometry) * X_EL);
+  const double path_m = nodes_[loop.later].path_m - nodes_[loop.earlier].path_m;
+  return drift_m <= config_.max_drift_share * path_m + config_.voxel_m;
+}
+
+bool KeyframeGraph::agree(const Loop& a, const Loop& b) const {
+  if (a.later == b.later) return false;  // one view may look like another place as a whole
+  const auto distance_m = [&](int i, int j) {
+    return std::abs(nodes_[i].path_m - nodes_[j].path_m);
+  };
+  if (distance_m(a.later, b.later) > config_.near_m) return false;
+  if (distance_m(a.earlier, b.earlier) > config_.near_m) return false;
+  const Pose X_LaLb_tracked =
+      nodes_[a.later].X_UK.inverse(Eigen::Isometry) * nodes_[b.later].X_UK;
+  const Pose X_EaEb = nodes_[a.earlier].X_UK.inverse(Eigen::Isometry) * nodes_[b.earlier].X_UK;
+  const Pose X_LaLb = a.X_EL.inverse(Eigen::Isometry) * X_EaEb * b.X_EL;
+  // The uncertainty of a rotation moves what is as far away as both keyframes are from each other.
+  const double lever = 1.0 + X_LaLb.translation().norm();
+  const double sigma_m = lever * std::hypot(a.sigma_m, b.sigma_m);
+  return size_of(X_LaLb_tracked.inverse(Eigen::Isometry) * X_LaLb) <=
+         config_.optimizer.contradicted_sigmas * sigma_m + config_.voxel_m;
+}
+
+double KeyframeGraph::optimize() {
+  while (true) {
+    const OptimizedPoses optimized = kintsugi::mapper::optimize(pose_graph(), config_.optimizer);
+    if (optimized.contradicted.empty()) {
+      double largest_motion_m = 0.0;
+      for (std::size_t i = 0; i < X_WK_.size(); ++i) {
+        const Eigen::Vector3d motion =
+            optimized.X_WN[i].translation() - X_WK_[i].translation();
+        largest_motion_m = std::max(largest_motion_m, motion.norm());
+      }
+      X_WK_ = optimized.X_WN;
+      return largest_motion_m;
+    }
+    const int worst = *std::max_element(
+        optimized.contradicted.begin(), optimized.contradicted.end(), [&](int i, int j) {
+          return optimized.error_sigmas[i] < optimized.error_sigmas[j];
+        });
+    confirmed_.erase(confirmed_.begin() + (worst - static_cast<std::ptrdiff_t>(tracked_.size())));
+    ++num_contradicted_;
+  }
+}
+
+PoseGraph KeyframeGraph::pose_graph() const {
+  PoseGraph graph{X_WK_, tracked_};
+  for (const Loop& loop : confirmed_) {
+    // Two surfaces were compared.
+    graph.edges.push_back({loop.earlier, loop.later, loop.X_EL,
+                           with_error(loop.information_L, 2.0 * kSurfaceError_vox * config_.voxel_m), true});
+  }
+  return graph;
+}
+
+}  // namespace kintsugi::mapper

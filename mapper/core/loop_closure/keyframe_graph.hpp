@@ -1,0 +1,84 @@
+#pragma once
+// The keyframes of a map, the motions between them, and the loops that were found.
+
+#include <optional>
+#include <vector>
+
+#include "mapper/core/loop_closure/loop.hpp"
+#include "mapper/core/pose_graph/pose_graph.hpp"
+
+namespace kintsugi::mapper {
+
+/// Where keyframes are, according to tracking and loops.
+///
+/// U is the uncorrected map, in which the camera is tracked; W the corrected one, the same at first.
+///
+/// A loop counts only when it is confirmed: when another loop, from another later keyframe, agrees
+/// with it. For that both later keyframes must have been near each other on the camera's path, and
+/// both earlier ones, too, so that the poses between them are as precise as tracking in one volume;
+/// then the way from one later keyframe to the other over both loops is where tracking has it, but
+/// for the uncertainty of the loops. Loops that lead farther than tracking can drift are refused.
+class KeyframeGraph {
+ public:
+  struct Config {
+    /// Keyframes are near each other when the camera's path between them is not longer than this:
+    /// what one saw was still in the volume at the other.
+    double near_m = 5.0;
+    double max_drift_share = 0.02;  ///< of tracking, see Tracker
+    double voxel_m = 4.5 / 512;
+    PoseGraphConfig optimizer;
+
+    /// @throws std::invalid_argument naming field, value and bound
+    void validate() const;
+  };
+
+  /// @throws std::invalid_argument if the configuration is not valid
+  explicit KeyframeGraph(const Config& config);
+
+  /// Adds keyframe number size(). `path_m` is the length of the camera's path up to it; `from` the
+  /// keyframe from which the camera came, with which it is corrected until loops say more.
+  /// @throws std::invalid_argument when there is no keyframe `from`
+  void add(const Pose& X_UK, double path_m, std::optional<int> from);
+
+  /// Adds a motion that was tracked; X_FT is taken from the poses in U.
+  /// @throws std::invalid_argument when a keyframe does not exist, or both are the same
+  void add_tracked(int from, int to, const Matrix6d& information_T);
+
+  /// Takes a loop, and returns how many are confirmed by it, itself among them: 0, 2 or more, or 1
+  /// when it agrees with confirmed ones.
+  int offer(const Loop& loop);
+
+  /// Moves the keyframes to where motions and confirmed loops want them. Loops that are
+  /// contradicted are removed first, one after the other, the worst one first.
+  /// @returns the largest distance that a keyframe moved, metres
+  double optimize();
+
+  int size() const { return static_cast<int>(nodes_.size()); }
+  const Pose& X_UK(int number) const { return nodes_[number].X_UK; }
+  const Pose& X_WK(int number) const { return X_WK_[number]; }
+  const std::vector<Pose>& poses_W() const { return X_WK_; }
+  double path_m(int number) const { return nodes_[number].path_m; }
+  const std::vector<Loop>& loops() const { return confirmed_; }  ///< confirmed
+  int num_contradicted() const { return num_contradicted_; }     ///< so far
+
+ private:
+  struct Node {
+    Pose X_UK;
+    double path_m;
+  };
+
+  void check_number(int number) const;
+  bool is_plausible(const Loop& loop) const;
+  bool agree(const Loop& a, const Loop& b) const;
+  PoseGraph pose_graph() const;
+
+  Config config_;
+  std::vector<Node> nodes_;
+  std::vector<Pose> X_WK_;
+  std::vector<PoseEdge> tracked_;
+  std::vector<Loop> confirmed_;
+  std::vector<Loop> pending_;
+  int num_contradicted_ = 0;
+};
+
+}  // namespace kintsugi::mapper

@@ -1,0 +1,192 @@
+#include "mapper/core/loop_closure/loop_closer.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "lcmtypes/base/argument_check.hpp"
+#include "lcmtypes/base/stopwatch.hpp"
+#include "lcmtypes/base/thread_priority.hpp"
+
+namespace kintsugi::mapper {
+namespace {
+
+constexpr int kSampleStep_px = 8;  // of a keyframe's surface, to see what two have in common
+
+}  // namespace
+
+void LoopCloser::Config::validate() const {
+  verifier.validate();
+  graph.validate();
+  check_range("delay_s", delay_s, 0.0, 3600.0);
+  check_range("max_by_position", max_by_position, 0, 1000);
+  check_range("max_matches", max_matches, 1, 1000);
+  check_range("min_common_share", min_common_share, 0.0, 1.0);
+}
+
+LoopCloser::LoopCloser(const Config& config)
+    : config_((config.validate(), config)),
+      verifier_(config.verifier),
+      graph_(config.graph),
+      thread_([this] { run(); }) {}
+
+LoopCloser::~LoopCloser() {
+  {
+    const std::scoped_lock lock(mutex_);
+    stop_ = true;
+  }
+  work_.notify_all();
+  thread_.join();
+}
+
+void LoopCloser::add(NewKeyframe added, std::int64_t utime) {
+  const std::scoped_lock lock(mutex_);
+  queue_.push_back({std::move(added), utime + std::llround(1e6 * config_.delay_s)});
+  work_.notify_one();
+}
+
+std::optional<MapCorrection> LoopCloser::take_due(std::int64_t utime) {
+  std::unique_lock lock(mutex_);
+  done_.wait(lock, [&] {
+    return failure_ || queue_.empty() || queue_.front().due_utime > utime;
+  });
+  if (failure_) std::rethrow_exception(failure_);
+  std::optional<MapCorrection> newest;
+  while (!finished_.empty() && finished_.front().first <= utime) {
+    newest = std::move(finished_.front().second);
+    finished_.pop_front();
+  }
+  return newest;
+}
+
+std::optional<MapCorrection> LoopCloser::drain() { return take_due(INT64_MAX); }
+
+double LoopCloser::busy_ms() const {
+  const std::scoped_lock lock(mutex_);
+  return busy_ms_;
+}
+
+void LoopCloser::run() {
+  lower_priority_of_thread();
+  std::unique_lock lock(mutex_);
+  while (true) {
+    work_.wait(lock, [this] { return stop_ || !queue_.empty(); });
+    if (stop_) return;
+    const Job& job = queue_.front();  // stays valid: other threads only append
+    lock.unlock();
+    const Stopwatch stopwatch;
+    std::exception_ptr failure;
+    std::optional<MapCorrection> correction;
+    try {
+      correction = work_on(job.added);
+    } catch (...) {
+      failure = std::current_exception();
+    }
+    const double elapsed_ms = stopwatch.elapsed_ms();
+    lock.lock();
+    busy_ms_ += elapsed_ms;
+    failure_ = failure;
+    if (correction) finished_.emplace_back(job.due_utime, *std::move(correction));
+    queue_.pop_front();
+    done_.notify_all();
+    if (failure_) return;
+  }
+}
+
+std::optional<MapCorrection> LoopCloser::work_on(const NewKeyframe& added) {
+  keyframes_.push_back(added.keyframe);
+  graph_.add(added.keyframe->X_WC, added.path_m, added.from);
+  add_tracked(added);
+  int num_confirmed = 0;
+  for (const Loop& loop : matches_of(added)) num_confirmed += graph_.offer(loop);
+  if (num_confirmed == 0) return std::nullopt;
+  const double largest_motion_m = graph_.optimize();
+  return MapCorrection{graph_.poses_W(), graph_.loops(), graph_.num_contradicted(),
+                       largest_motion_m};
+}
+
+void LoopCloser::add_tracked(const NewKeyframe& added) {
+  std::optional<int> oldest;
+  std::optional<int> nearest;
+  double most = 0.0;
+  for (int i = 0; i < added.number; ++i) {
+    if (added.is_released[i]) continue;
+    const Pose X_IN = graph_.X_UK(i).inverse(Eigen::Isometry) * graph_.X_UK(added.number);
+    const double share = common_share(added.number, i, X_IN);
+    if (share < config_.min_common_share) continue;
+    if (!oldest) oldest = i;
+    if (share > most) nearest = i;
+    most = std::max(most, share);
+  }
+  std::vector<int> from;
+  for (const std::optional<int>& number : {added.from, oldest, nearest}) {
+    if (number && std::ranges::find(from, *number) == from.end()) from.push_back(*number);
+  }
+  for (const int number : from) graph_.add_tracked(number, added.number, added.information);
+}
+
+std::vector<Loop> LoopCloser::matches_of(const NewKeyframe& added) const {
+  std::vector<Loop> loops;
+  const int later = added.number;
+  for (const int earlier : candidates_for(added)) {
+    const Pose X_EL_believed =
+        graph_.X_WK(earlier).inverse(Eigen::Isometry) * graph_.X_WK(later);
+    const bool sees_same = common_share(later, earlier, X_EL_believed) >=
+                           config_.verifier.evidence.min_overlap_share;
+    const auto match = verifier_.match(*added.keyframe, *keyframes_[earlier],
+                                       sees_same ? X_EL_believed : Pose::Identity(), added.noise);
+    if (match) {
+      loops.push_back({later, earlier, match->X_EL, match->information_L, match->sigma_m});
+    }
+  }
+  std::ranges::stable_sort(loops, {}, &Loop::sigma_m);
+  if (loops.size() > static_cast<std::size_t>(config_.max_matches)) {
+    loops.resize(config_.max_matches);
+  }
+  return loops;
+}
+
+std::vector<int> LoopCloser::candidates_for(const NewKeyframe& added) const {
+  std::vector<int> candidates = added.similar;
+  std::vector<std::pair<double, int>> by_position;
+  for (int i = 0; i < added.number; ++i) {
+    if (!added.is_released[i]) continue;
+    const Pose X_IN = graph_.X_WK(i).inverse(Eigen::Isometry) * graph_.X_WK(added.number);
+    const double share = common_share(added.number, i, X_IN);
+    if (share >= config_.verifier.evidence.min_overlap_share) by_position.emplace_back(-share, i);
+  }
+  std::ranges::sort(by_position);
+  if (by_position.size() > static_cast<std::size_t>(config_.max_by_position)) {
+    by_position.resize(config_.max_by_position);
+  }
+  for (const auto& [share, number] : by_position) {
+    if (std::ranges::find(candidates, number) == candidates.end()) candidates.push_back(number);
+  }
+  return candidates;
+}
+
+double LoopCloser::common_share(int later, int earlier, const Pose& X_EL) const {
+  const Keyframe& L = *keyframes_[later];
+  const Keyframe& E = *keyframes_[earlier];
+  // Views in opposite directions have no surface in common; most pairs end here.
+  if (X_EL.linear()(2, 2) <= 0.0) return 0.0;
+  int num_points = 0;
+  int num_common = 0;
+  for (int v = kSampleStep_px / 2; v < L.camera.height; v += kSampleStep_px) {
+    for (int u = kSampleStep_px / 2; u < L.camera.width; u += kSampleStep_px) {
+      if (!(L.depth_m(v, u) > 0.0)) continue;
+      ++num_points;
+      const Eigen::Vector3d p_E = X_EL * L.point(v, u);
+      if (!(p_E.z() > 0.0)) continue;
+      const double u_E = E.camera.fx * p_E.x() / p_E.z() + E.camera.cx;
+      const double v_E = E.camera.fy * p_E.y() / p_E.z() + E.camera.cy;
+      if (!(u_E >= 0.0 && v_E >= 0.0 && u_E < E.camera.width && v_E < E.camera.height)) continue;
+      const double seen_m = E.depth_m(static_cast<int>(v_E), static_cast<int>(u_E));
+      // Half and double: the rest is for the registration to find out.
+      if (seen_m > 0.5 * p_E.z() && seen_m < 2.0 * p_E.z()) ++num_common;
+    }
+  }
+  return num_points == 0 ? 0.0 : static_cast<double>(num_common) / num_points;
+}
+
+}  // namespace kintsugi::mapper

@@ -1,0 +1,134 @@
+#include "mapper/core/loop_closure/loop_closure.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "lcmtypes/base/argument_check.hpp"
+#include "lcmtypes/trajectory.hpp"
+
+namespace kintsugi::mapper {
+namespace {
+
+constexpr int kSampleStep_px = 16;  // of a keyframe's surface
+
+/// Whether most of what it saw is not in the volume any more.
+bool has_left(const Keyframe& keyframe, const TsdfVolume& volume) {
+  const double block_m = kBlockSide * volume.config().resolution_m;
+  int num_points = 0;
+  int num_there = 0;
+  for (int v = kSampleStep_px / 2; v < keyframe.camera.height; v += kSampleStep_px) {
+    for (int u = kSampleStep_px / 2; u < keyframe.camera.width; u += kSampleStep_px) {
+      if (!(keyframe.depth_m(v, u) > 0.0)) continue;
+      const Eigen::Vector3d p_U = keyframe.X_WC * keyframe.point(v, u);
+      const Eigen::Vector3i block = (p_U / block_m).array().floor().cast<int>();
+      ++num_points;
+      if (volume.find(make_block_coord(block.x(), block.y(), block.z())) != kNoBlock) ++num_there;
+    }
+  }
+  return 2 * num_there < num_points;
+}
+
+}  // namespace
+
+void LoopClosure::Config::validate() const {
+  closer.validate();
+  check_range("period_s", period_s, 0.0, 1e6);
+  check_range("large_motion_vox", large_motion_vox, 0.0, 1e3);
+  check_range("least_motion_vox", least_motion_vox, 0.0, 1e3);
+  check_range("reach_m", reach_m, 0.0, 1e3);
+  check_range("voxel_m", voxel_m, 1e-4, 1.0);
+  check_range("max_similar", max_similar, 0, 1000);
+}
+
+LoopClosure::LoopClosure(const Config& config, KeyframeMap& keyframes)
+    : config_((config.validate(), config)), keyframes_(keyframes), closer_(config.closer) {}
+
+void LoopClosure::release_left(const TsdfVolume& volume, const Pose& X_UC) {
+  const auto near = keyframes_.find_near(X_UC);
+  if (near && !has_left(keyframes_[*near], volume)) return;
+  keyframes_.release_if([&](const Keyframe& keyframe) { return has_left(keyframe, volume); });
+}
+
+void LoopClosure::follow(const TrackingResult& located, bool is_keyframe, std::int64_t utime,
+                         const DepthNoise& noise) {
+  const Pose& X_UC = located.X_WC;
+  const bool jumped = located.found_by_keyframe.has_value();
+  if (jumped) last_at_ = *located.found_by_keyframe;
+  if (is_keyframe) {
+    compare_newest();
+    const int number = keyframes_.size() - 1;
+    path_.add(utime, X_UC, number, jumped);
+    newest_ = NewKeyframe{.number = number,
+                          .keyframe = keyframes_.share(number),
+                          .path_m = path_.length_m(),
+                          .from = number == 0 ? std::nullopt : std::optional(last_at_),
+                          .information = located.information_C,
+                          .similar = {},
+                          .is_released = keyframes_.is_released(),
+                          .noise = noise};
+    newest_utime_ = utime;
+    from_.push_back(number == 0 ? 0 : last_at_);
+    deformation_.add(deformation_.at(from_.back()));
+    last_at_ = number;
+    return;
+  }
+  last_at_ = keyframes_.find_near(X_UC).value_or(last_at_);
+  path_.add(utime, X_UC, last_at_, jumped);
+}
+
+void LoopClosure::compare_newest() {
+  if (!newest_) return;
+  NewKeyframe added = *std::exchange(newest_, std::nullopt);
+  added.similar = keyframes_.similar_to(
+      added.number, [&](int number) { return number < added.number && added.is_released[number]; });
+  if (added.similar.size() > static_cast<std::size_t>(config_.max_similar)) {
+    added.similar.resize(config_.max_similar);
+  }
+  closer_.add(std::move(added), newest_utime_);
+}
+
+std::optional<MapCorrection> LoopClosure::take_due(std::int64_t utime) {
+  if (auto due = closer_.take_due(utime)) waiting_ = std::move(due);
+  if (!waiting_) return std::nullopt;
+  const bool may_be_small = 1e-6 * static_cast<double>(utime - applied_utime_) >= config_.period_s;
+  auto correction =
+      apply_if_above(may_be_small ? config_.least_motion_vox : config_.large_motion_vox);
+  if (correction) applied_utime_ = utime;
+  return correction;
+}
+
+std::optional<MapCorrection> LoopClosure::finish() {
+  compare_newest();
+  if (auto last = closer_.drain()) waiting_ = std::move(last);
+  return apply_if_above(config_.least_motion_vox);
+}
+
+std::optional<MapCorrection> LoopClosure::apply_if_above(double least_motion_vox) {
+  if (!waiting_ || motion_m(*waiting_) <= least_motion_vox * config_.voxel_m) return std::nullopt;
+  std::vector<Pose> X_WU;
+  for (std::size_t k = 0; k < from_.size(); ++k) {
+    if (k < waiting_->X_WK.size()) {
+      const Pose& X_UK = keyframes_[static_cast<int>(k)].X_WC;
+      X_WU.push_back(waiting_->X_WK[k] * X_UK.inverse(Eigen::Isometry));
+    } else {
+      X_WU.push_back(Pose(X_WU[from_[k]]));
+    }
+  }
+  deformation_ = MapDeformation(deformation_.number() + 1, std::move(X_WU));
+  return std::exchange(waiting_, std::nullopt);
+}
+
+/// The largest distance that surface of a keyframe would move.
+double LoopClosure::motion_m(const MapCorrection& correction) const {
+  double largest_m = 0.0;
+  for (std::size_t k = 0; k < correction.X_WK.size(); ++k) {
+    const int number = static_cast<int>(k);
+    const Pose X_WK_before = deformation_.at(number) * keyframes_[number].X_WC;
+    const Pose moved = X_WK_before.inverse(Eigen::Isometry) * correction.X_WK[k];
+    largest_m = std::max(largest_m,
+                         moved.translation().norm() + config_.reach_m * rotation_angle_rad(moved));
+  }
+  return largest_m;
+}
+
+}  // namespace kintsugi::mapper

@@ -1,0 +1,85 @@
+#pragma once
+// Loop closure of one run: from located frames to corrections.
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "mapper/core/loop_closure/camera_path.hpp"
+#include "mapper/core/loop_closure/loop_closer.hpp"
+#include "mapper/core/relocalization/keyframe_map.hpp"
+#include "mapper/core/tracking/tracking_result.hpp"
+#include "mapper/core/volume/tsdf_volume.hpp"
+
+namespace kintsugi::mapper {
+
+/// Follows the camera from keyframe to keyframe, and closes loops.
+///
+/// U is the uncorrected map, in which the camera is tracked and the volume is; W the corrected one.
+class LoopClosure {
+ public:
+  struct Config {
+    LoopCloser::Config closer;
+    /// A correction costs receivers a run over all that moves. So one that moves nothing by more
+    /// than a voxel waits until this long after the last one, s of device time; one that moves
+    /// nothing by a tenth of a voxel is no correction.
+    double period_s = 10.0;
+    double large_motion_vox = 1.0;
+    double least_motion_vox = 0.1;
+    double reach_m = 5.0;  ///< how far a keyframe's surface is from it, m
+    double voxel_m = 4.5 / 512;
+    int max_similar = 6;  ///< keyframes that look alike, for each new one
+
+    /// @throws std::invalid_argument naming field, value and bound
+    void validate() const;
+  };
+
+  /// `keyframes` outlives this object.
+  /// @throws std::invalid_argument if the configuration is not valid
+  LoopClosure(const Config& config, KeyframeMap& keyframes);
+
+  /// To be called before a located frame may become a keyframe: releases the keyframes whose surface
+  /// is not in the volume any more, so that the camera gets a new one where it comes back to them.
+  void release_left(const TsdfVolume& volume, const Pose& X_UC);
+
+  /// To be called after each located frame; `is_keyframe`: it has become the newest keyframe.
+  void follow(const TrackingResult& located, bool is_keyframe, std::int64_t utime,
+              const DepthNoise& noise);
+
+  /// A correction that is due at this time; waits for it.
+  /// @throws what closing a loop threw
+  std::optional<MapCorrection> take_due(std::int64_t utime);
+
+  /// The end of the run: compares the last keyframe, too, and waits for all corrections.
+  /// @throws as take_due()
+  std::optional<MapCorrection> finish();
+
+  /// By the corrections that were taken so far.
+  const MapDeformation& deformation() const { return deformation_; }
+  Trajectory corrected_path() const { return path_.corrected(deformation_); }
+
+  /// The keyframe at which the camera is, or was last; 0 before the first.
+  int keyframe() const { return last_at_; }
+
+  double busy_ms() const { return closer_.busy_ms(); }
+
+ private:
+  void compare_newest();
+  std::optional<MapCorrection> apply_if_above(double least_motion_vox);
+  double motion_m(const MapCorrection& correction) const;
+
+  const Config config_;
+  KeyframeMap& keyframes_;
+  LoopCloser closer_;
+  CameraPath path_;
+  /// The newest keyframe, until its appearance is known: when the next one comes.
+  std::optional<NewKeyframe> newest_;
+  std::int64_t newest_utime_ = 0;
+  int last_at_ = 0;  ///< the keyframe near which the camera is, or was
+  MapDeformation deformation_;
+  std::vector<int> from_;  ///< by keyframe: that from which the camera came; itself for the first
+  std::optional<MapCorrection> waiting_;  ///< the newest, not applied yet
+  std::int64_t applied_utime_ = INT64_MIN / 2;  ///< of the last one
+};
+
+}  // namespace kintsugi::mapper

@@ -1,0 +1,48 @@
+#include <gtest/gtest.h>
+
+#include "mapper/core/loop_closure/camera_path.hpp"
+
+namespace kintsugi::mapper {
+namespace {
+
+Pose at(double x, double y = 0.0) {
+  Pose pose = Pose::Identity();
+  pose.translation() = Eigen::Vector3d(x, y, 0.0);
+  return pose;
+}
+
+/// Ten frames along x, 0.1 m apart; at keyframe 0 and, from frame 5 on, at keyframe 1.
+CameraPath two_stays(bool jumped) {
+  CameraPath path;
+  for (int i = 0; i < 10; ++i) path.add(1000 * i, at(0.1 * i), i < 5 ? 0 : 1, jumped && i == 5);
+  return path;
+}
+
+TEST(CameraPath, StaysAsTrackedWithoutACorrection) {
+  const Trajectory path = two_stays(false).corrected(MapDeformation());
+  ASSERT_EQ(path.size(), 10U);
+  for (int i = 0; i < 10; ++i) {
+    EXPECT_EQ(path[i].utime, 1000 * i);
+    EXPECT_TRUE(path[i].X_WC.isApprox(at(0.1 * i), 1e-12));
+  }
+}
+
+TEST(CameraPath, GoesOverFromOneCorrectionToTheNextLinearly) {
+  const Trajectory path = two_stays(false).corrected({1, {at(0.0), at(0.0, 0.5)}});
+  for (int i = 0; i < 10; ++i) {
+    EXPECT_NEAR(path[i].X_WC.translation().y(), i < 5 ? 0.1 * i : 0.5, 1e-12) << "frame " << i;
+  }
+}
+
+TEST(CameraPath, JumpsWhereTheCameraDid) {
+  const CameraPath jump = two_stays(true);
+  const Trajectory path = jump.corrected({1, {at(0.0), at(0.0, 0.5)}});
+  for (int i = 0; i < 10; ++i) {
+    EXPECT_NEAR(path[i].X_WC.translation().y(), i < 5 ? 0.0 : 0.5, 1e-12) << "frame " << i;
+  }
+  EXPECT_NEAR(two_stays(false).length_m(), 0.9, 1e-12);
+  EXPECT_NEAR(jump.length_m(), 0.8, 1e-12) << "without the jump";
+}
+
+}  // namespace
+}  // namespace kintsugi::mapper

@@ -1,0 +1,111 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+
+#include "mapper/core/loop_closure/keyframe_graph.hpp"
+
+namespace kintsugi::mapper {
+namespace {
+
+constexpr double kStep_m = 0.5;
+constexpr double kSigma_m = 0.002;
+
+Matrix6d precise() { return Matrix6d::Identity() / (kSigma_m * kSigma_m); }
+
+Pose at(double x, double y = 0.0) {
+  Pose pose = Pose::Identity();
+  pose.translation() = Eigen::Vector3d(x, y, 0.0);
+  return pose;
+}
+
+/// Out along x and back: keyframe 2 n - i is where keyframe i was, but for a drift along y that
+/// grows with the path.
+class OutAndBack : public ::testing::Test {
+ protected:
+  static constexpr int kHalf = 20;
+
+  OutAndBack() {
+    for (int i = 0; i <= 2 * kHalf; ++i) {
+      graph.add(drifted(i), kStep_m * i, i == 0 ? std::nullopt : std::optional(i - 1));
+      if (i > 0) graph.add_tracked(i - 1, i, precise());
+    }
+  }
+  static Pose truth(int i) { return at(kStep_m * (i <= kHalf ? i : 2 * kHalf - i)); }
+  static Pose drifted(int i) { return at(truth(i).translation().x(), 0.005 * kStep_m * i); }
+  static Loop loop(int later, const Pose& error = Pose::Identity()) {
+    const int earlier = 2 * kHalf - later;
+    return {later, earlier, truth(earlier).inverse() * truth(later) * error, precise(), kSigma_m};
+  }
+
+  KeyframeGraph graph{{}};
+};
+
+TEST_F(OutAndBack, ALoopCountsWhenAnotherOneAgreesWithIt) {
+  EXPECT_EQ(graph.offer(loop(38)), 0);
+  EXPECT_EQ(graph.offer(loop(40)), 2);
+  EXPECT_EQ(graph.offer(loop(39)), 1);
+  EXPECT_EQ(graph.loops().size(), 3U);
+}
+
+TEST_F(OutAndBack, ALoopFromTheSameKeyframeOrFarAwayConfirmsNothing) {
+  graph.offer(loop(38));
+  EXPECT_EQ(graph.offer(loop(38)), 0) << "one view may look like another place";
+  EXPECT_EQ(graph.offer(loop(26)), 0) << "6 m of path away";
+}
+
+TEST_F(OutAndBack, LoopsThatContradictEachOtherConfirmNothing) {
+  graph.offer(loop(38));
+  EXPECT_EQ(graph.offer(loop(40, at(0.05))), 0);
+  EXPECT_TRUE(graph.loops().empty());
+}
+
+TEST_F(OutAndBack, ALoopThatLeadsFartherThanTrackingDriftsIsRefused) {
+  // The path between the keyframes is 18 and 20 m long: 2 % of it are 0.36 and 0.4 m.
+  EXPECT_EQ(graph.offer(loop(38, at(0.6))), 0);
+  EXPECT_EQ(graph.offer(loop(40, at(0.6))), 0);
+  EXPECT_EQ(graph.offer(loop(38, at(0.2))), 0);
+  EXPECT_EQ(graph.offer(loop(40, at(0.2))), 2);
+}
+
+TEST_F(OutAndBack, IsCorrectedByItsLoops) {
+  for (const int later : {36, 38, 40}) graph.offer(loop(later));
+  const double moved_m = graph.optimize();
+  EXPECT_NEAR(moved_m, 0.1, 0.01) << "the drift at the end of 20 m";
+  EXPECT_EQ(graph.num_contradicted(), 0);
+  EXPECT_EQ(graph.X_WK(0).matrix(), Pose::Identity().matrix());
+  for (const int back : {36, 38, 40}) {
+    const Pose X_EL = graph.X_WK(2 * kHalf - back).inverse() * graph.X_WK(back);
+    EXPECT_LT((X_EL.translation()).norm(), 0.005) << "keyframe " << back;
+  }
+  EXPECT_EQ(graph.X_UK(40).matrix(), drifted(40).matrix()) << "what was tracked stays";
+}
+
+TEST_F(OutAndBack, ALoopThatTheOthersContradictIsGivenUpAndCounted) {
+  for (const int later : {34, 35, 36, 37, 38, 39, 40}) graph.offer(loop(later));
+  const Pose wrong = at(0.0, 0.3);
+  graph.offer(loop(32, wrong));
+  graph.offer(loop(30, wrong));
+  ASSERT_EQ(graph.loops().size(), 9U) << "the wrong ones agree with each other";
+  graph.optimize();
+  EXPECT_EQ(graph.num_contradicted(), 2);
+  EXPECT_EQ(graph.loops().size(), 7U);
+  EXPECT_NEAR(graph.X_WK(40).translation().y(), 0.0, 0.005);
+}
+
+TEST_F(OutAndBack, WhatComesAfterACorrectionMovesWithTheKeyframeItComesFrom) {
+  for (const int later : {38, 40}) graph.offer(loop(later));
+  graph.optimize();
+  graph.add(drifted(40) * at(0.0, 0.25), 20.25, 40);
+  EXPECT_TRUE((graph.X_WK(40) * at(0.0, 0.25)).isApprox(graph.X_WK(41), 1e-9));
+}
+
+TEST_F(OutAndBack, RefusesMotionsOfKeyframesThatAreNotThere) {
+  EXPECT_THROW(graph.add_tracked(3, 99, precise()), std::invalid_argument);
+  EXPECT_THROW(graph.add_tracked(-1, 3, precise()), std::invalid_argument);
+  EXPECT_THROW(graph.add_tracked(3, 3, precise()), std::invalid_argument);
+  EXPECT_THROW(graph.add(at(0.0), 1.0, 41), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace kintsugi::mapper
