@@ -14,11 +14,12 @@ namespace kintsugi::segmenter {
 namespace {
 
 // The file: Start, Header; the mode and the name of the map as text; then for all slices one after
-// another SliceHeader, the indices of rejected points (int32), accepted points (CloudPoint), their
-// segment ids (uint32); the last change of each segment (LastChange); thetas (double); the chunks
-// that are in the map (SequenceRange); the checksum. A change of any of this is a new version.
+// another SliceHeader, the indices of rejected points (int32), accepted points as received
+// (CloudPoint), their segment ids (uint32); the last change of each segment (LastChange); thetas
+// (double); the chunks that are in the map (SequenceRange); where corrections have put patches
+// (Place); the checksum. A change of any of this is a new version.
 constexpr std::array<char, 8> kMagic = {'K', 'S', 'E', 'G', 'M', 'A', 'P', '\n'};
-constexpr std::uint32_t kVersion = 5;
+constexpr std::uint32_t kVersion = 6;
 static_assert(kMapParameters.size() == 7, "other parameters are a new version of the file");
 
 struct Start {
@@ -44,6 +45,14 @@ struct Header {
   std::uint32_t num_thetas = 0;
   std::uint32_t num_chunk_ranges = 0;
   std::uint32_t num_segments = 0;
+  std::uint32_t num_places = 0;
+  std::uint32_t reserved = 0;  ///< zero
+};
+
+/// Of a patch, as a correction tells it.
+struct Place {
+  std::int32_t slice_id = 0;
+  PatchPlace place;
 };
 
 struct SliceHeader {
@@ -52,8 +61,10 @@ struct SliceHeader {
   std::int32_t num_points = 0;
   std::uint32_t num_rejected = 0;
   std::uint32_t patch = 0;  ///< PatchState
+  PatchPlace place;
 };
-static_assert(sizeof(Start) == 16 && sizeof(Header) == 128 && sizeof(SliceHeader) == 20,
+static_assert(sizeof(Start) == 16 && sizeof(Header) == 136 && sizeof(SliceHeader) == 52 &&
+                  sizeof(Place) == 36,
               "no padding, which would be written with whatever is in it");
 
 Header header_of(const SegmentMapState& state) {
@@ -77,6 +88,7 @@ Header header_of(const SegmentMapState& state) {
   header.num_points = static_cast<std::uint32_t>(state.points_W.size());
   header.num_segments = static_cast<std::uint32_t>(state.last_changes.size());
   header.num_thetas = static_cast<std::uint32_t>(state.thetas.size());
+  header.num_places = static_cast<std::uint32_t>(state.motions.places().size());
   header.num_chunk_ranges = static_cast<std::uint32_t>(state.chunks.size());
   return header;
 }
@@ -87,7 +99,7 @@ std::uint64_t num_bytes_after(const Header& header) {
          header.num_slices * sizeof(SliceHeader) + header.num_rejected * sizeof(std::int32_t) +
          header.num_points * kPointBytes + header.num_segments * sizeof(LastChange) +
          header.num_thetas * sizeof(double) + header.num_chunk_ranges * sizeof(SequenceRange) +
-         sizeof(std::uint32_t);
+         header.num_places * sizeof(Place) + sizeof(std::uint32_t);
 }
 
 /// Everything that can be told from the first bytes and the size of the file.
@@ -142,6 +154,22 @@ void append(RecordReader& file, std::uint64_t count, std::vector<Record>& record
   records.insert(records.end(), more.begin(), more.end());
 }
 
+void check_place(RecordReader& file, std::int32_t slice_id, const PatchPlace& place) {
+  if (place.correction >= 0 && place.X_WP.is_valid()) return;
+  file.fail("slice " + std::to_string(slice_id) + " is at a place of correction " +
+            std::to_string(place.correction) + ", expected >= 0 and a pose");
+}
+
+/// Reads the accepted points of a slice, and moves them.
+void read_points(RecordReader& file, SliceRecord& slice, std::vector<CloudPoint>& points_W) {
+  if (slice.count == 0 || slice.place.X_WP.is_identity())
+    return append(file, slice.count, points_W);
+  slice.points_P =
+      std::make_shared<std::vector<CloudPoint>>(file.read_all<CloudPoint>(slice.count));
+  const std::vector<CloudPoint> more_W = moved(*slice.points_P, slice.place.X_WP);
+  points_W.insert(points_W.end(), more_W.begin(), more_W.end());
+}
+
 void read_slice(RecordReader& file, SegmentMapState& state) {
   const auto header = file.read<SliceHeader>();
   if (header.num_points < 0 || std::int64_t{header.num_rejected} > header.num_points) {
@@ -153,15 +181,17 @@ void read_slice(RecordReader& file, SegmentMapState& state) {
     file.fail("slice " + std::to_string(header.slice_id) + " has the patch state " +
               std::to_string(header.patch) + ", expected 0 to 2");
   }
+  check_place(file, header.slice_id, header.place);
   SliceRecord slice;
   slice.slice_id = header.slice_id;
+  slice.place = header.place;
   slice.patch = static_cast<PatchState>(header.patch);
   slice.revision = header.revision;
   slice.num_points = header.num_points;
   slice.first = static_cast<PointIndex>(state.points_W.size());
   slice.count = static_cast<PointIndex>(header.num_points) - header.num_rejected;
   slice.rejected = file.read_all<std::int32_t>(header.num_rejected);
-  append(file, slice.count, state.points_W);
+  read_points(file, slice, state.points_W);
   append(file, slice.count, state.segment_ids);
   state.slices.push_back(std::move(slice));
 }
@@ -180,14 +210,16 @@ void write_map_state(const SegmentMapState& state, const std::filesystem::path& 
   for (const SliceRecord& slice : state.slices) {
     out.write(SliceHeader{slice.slice_id, slice.revision, slice.num_points,
                           static_cast<std::uint32_t>(slice.rejected.size()),
-                          static_cast<std::uint32_t>(slice.patch)});
+                          static_cast<std::uint32_t>(slice.patch), slice.place});
     out.write_all(std::span(slice.rejected));
-    out.write_all(std::span(state.points_W).subspan(slice.first, slice.count));
+    out.write_all(slice.points_P ? std::span(*slice.points_P)
+                                 : std::span(state.points_W).subspan(slice.first, slice.count));
     out.write_all(std::span(state.segment_ids).subspan(slice.first, slice.count));
   }
   out.write_all(std::span(state.last_changes));
   out.write_all(std::span(state.thetas));
   out.write_all(std::span(state.chunks));
+  for (const auto& [id, place] : state.motions.places()) out.write(Place{id, place});
   out.write_checksum();
   file.commit();
 }
@@ -214,6 +246,10 @@ SegmentMapState read_map_state(const std::filesystem::path& path) {
   state.last_changes = file.read_all<LastChange>(header.num_segments);
   state.thetas = file.read_all<double>(header.num_thetas);
   state.chunks = file.read_all<SequenceRange>(header.num_chunk_ranges);
+  for (const Place& place : file.read_all<Place>(header.num_places)) {
+    check_place(file, place.slice_id, place.place);
+    state.motions.learn(place.slice_id, place.place);
+  }
   if (file.left() != sizeof(std::uint32_t)) {
     file.fail("expected the checksum here: the slices have not the points the header tells");
   }

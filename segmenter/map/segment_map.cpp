@@ -56,7 +56,7 @@ std::vector<SegmentUpdate> SegmentMap::add(std::span<const CloudSlice> slices) {
   }
   SegmentUpdate& last = updates.back();
   last.is_final = ends_run();
-  last.runs = label_runs(cloud_, id_update.changes);
+  last.runs = label_runs(cloud_, id_update.changes, change.moved, ids_.ids());
   const LastChange now{last.utime, last.slice_id};
   for (const std::uint32_t id : statistics_.apply(cloud_, ids_, id_update.changes, now)) {
     last.statistics.push_back(statistics_(id));
@@ -66,14 +66,16 @@ std::vector<SegmentUpdate> SegmentMap::add(std::span<const CloudSlice> slices) {
 }
 
 void SegmentMap::store(const CloudSlice& slice) {
+  if (slice.kind == SliceKind::kCorrection) move_patches(slice);
   const PatchState patch = patch_state_of(slice);
+  const PatchPlace place = motions_.place_of(slice);
   revision_sum_ += slice.revision;
   if (const SliceRecord* const before = cloud_.find_slice(slice.id); before == nullptr) {
-    cloud_.add_slice(slice.id, slice.points_W, slice.revision, patch);
+    cloud_.add_slice(slice.id, slice.points_W, slice.revision, patch, place);
     slice_ids_.insert(slice.id);
   } else {
     revision_sum_ -= before->revision;
-    cloud_.replace_slice(slice.id, slice.points_W, slice.revision, patch);
+    cloud_.replace_slice(slice.id, slice.points_W, slice.revision, patch, place);
   }
   if (slice.kind == SliceKind::kFinal) {
     final_slice_id_ = slice.id;
@@ -82,6 +84,16 @@ void SegmentMap::store(const CloudSlice& slice) {
   }
   if (slice.num_chunks > 0) {
     chunks_.insert({slice.sequence, slice.sequence + slice.num_chunks - 1});
+  }
+}
+
+/// Moves the patches that are in the map, unless they are where a newer correction has put them.
+void SegmentMap::move_patches(const CloudSlice& correction) {
+  for (const PatchMotion& motion : motions_.learn(correction)) {
+    const SliceRecord* const record = cloud_.find_slice(motion.id);
+    if (record == nullptr || record->patch == PatchState::kNoPatch) continue;
+    if (record->place.correction >= correction.correction) continue;
+    cloud_.move_slice(motion.id, {motion.X_WP, correction.correction});
   }
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "lcmtypes/messages.hpp"
+#include "lcmtypes/patch_motions.hpp"
 #include "lcmtypes/stream/sequence_set.hpp"
 #include "segmenter/core/engine/engine.hpp"
 #include "segmenter/core/ids/segment_ids.hpp"
@@ -36,9 +37,10 @@ class SegmentMap {
   SegmentMap& operator=(const SegmentMap&) = delete;
 
   /// Adds slices and runs the engine once for all of them. A slice that is in the map with a lower
-  /// revision is replaced: its points move. Returns one update for each slice, in order. Each has
-  /// the labels of its own points after all slices were added. The last one also has the relabelled
-  /// points of other slices, the events and the statistics.
+  /// revision is replaced: its points move. A correction moves the patches that it names, now or
+  /// when they come (PatchMotions). Returns one update for each slice, in order. Each has the
+  /// labels of its own points after all slices were added. The last one also has the relabelled
+  /// points of other slices, moved ones included, the events and the statistics.
   ///
   /// @throws std::invalid_argument, and adds nothing, when a slice has another session or
   ///   resolution, is in the map with this or a higher revision, or comes twice
@@ -103,6 +105,7 @@ class SegmentMap {
   [[nodiscard]] bool ends_run() const { return is_complete() && !part_follows_; }
   void check(const CloudSlice& slice) const;
   void store(const CloudSlice& slice);
+  void move_patches(const CloudSlice& correction);
   [[nodiscard]] SegmentUpdate begin_update(const CloudSlice& slice) const;
 
   SegmentMapConfig config_;
@@ -115,6 +118,7 @@ class SegmentMap {
   std::unique_ptr<SegmentationEngine> engine_;
   SegmentIds ids_;
   SegmentStatisticsTable statistics_;
+  PatchMotions motions_;
   std::set<std::int32_t> slice_ids_;
   std::int64_t revision_sum_ = 0;        // of all slices in the map
   std::int32_t final_slice_id_ = -1;     // -1: not seen

@@ -19,14 +19,14 @@ std::string name_of(const SliceRecord& slice) { return "slice " + std::to_string
 
 /// The points of a slice as received, with inadmissible ones in place of those that were rejected.
 std::vector<CloudPoint> as_received(const SliceRecord& slice,
-                                    std::span<const CloudPoint> accepted_W) {
+                                    std::span<const CloudPoint> accepted_P) {
   CloudPoint inadmissible;
   inadmissible.x = std::numeric_limits<float>::quiet_NaN();
-  std::vector<CloudPoint> points_W(static_cast<std::size_t>(slice.num_points), inadmissible);
+  std::vector<CloudPoint> points_P(static_cast<std::size_t>(slice.num_points), inadmissible);
   for (PointIndex k = 0; k < slice.count; ++k) {
-    points_W[static_cast<std::size_t>(slice.index_of(k))] = accepted_W[k];
+    points_P[static_cast<std::size_t>(slice.index_of(k))] = accepted_P[k];
   }
-  return points_W;
+  return points_P;
 }
 
 SequenceSet set_of(const std::vector<SequenceRange>& chunks) {
@@ -74,6 +74,11 @@ void check_counts(const SegmentMapState& state) {
           name_of(slice) + " has " + std::to_string(slice.num_points) +
           " points, which is not the sum of its accepted and rejected ones");
     }
+    const bool is_moved = !slice.place.X_WP.is_identity() && slice.count > 0;
+    if ((slice.points_P != nullptr) != is_moved ||
+        (is_moved && slice.points_P->size() != slice.count)) {
+      throw std::invalid_argument(name_of(slice) + " is moved, but not all its points, or none");
+    }
     if (slice.first != num_points) {
       throw std::invalid_argument(name_of(slice) + " does not follow the slice before it");
     }
@@ -98,8 +103,9 @@ void check_last_changes(const SegmentMapState& state, const std::set<std::int32_
 void restore_cloud(const SegmentMapState& state, PointCloud& cloud) {
   for (const SliceRecord& slice : state.slices) {
     const auto accepted_W = std::span(state.points_W).subspan(slice.first, slice.count);
-    const SliceRecord& stored = cloud.add_slice(slice.slice_id, as_received(slice, accepted_W),
-                                                slice.revision, slice.patch);
+    const auto accepted_P = slice.points_P ? std::span(*slice.points_P) : accepted_W;
+    const SliceRecord& stored = cloud.add_slice(slice.slice_id, as_received(slice, accepted_P),
+                                                slice.revision, slice.patch, slice.place);
     if (stored.rejected != slice.rejected) {
       throw std::invalid_argument(name_of(slice) + " has an accepted point that is inadmissible");
     }
@@ -146,6 +152,7 @@ SegmentMap::SegmentMap(const SegmentMapState& state)
       cloud_(config_.engine.resolution_m),
       engine_(make_engine(config_.mode, cloud_, config_.engine)),
       statistics_(static_cast<float>(config_.engine.resolution_m)),
+      motions_(state.motions),
       final_slice_id_(state.final_slice_id),
       final_revision_sum_(state.final_revision_sum),
       chunks_(set_of(state.chunks)) {
@@ -191,6 +198,7 @@ void SegmentMap::copy_state(SegmentMapState& state) const {
   state.final_slice_id = final_slice_id_;
   state.final_revision_sum = final_revision_sum_;
   state.next_id = ids_.next_id();
+  state.motions = motions_;
   state.chunks = chunks_.ranges();
   state.last_changes = statistics_.last_changes();
   state.slices.clear();

@@ -39,6 +39,8 @@ struct SegmentMapState {
   /// and need not be sent again; ascending.
   std::vector<SequenceRange> chunks;
 
+  PatchMotions motions;  ///< what corrections have told, also of patches that are not in the map
+
   std::vector<SliceRecord> slices;   ///< in order of arrival; `first` is an index into points_W
   std::vector<CloudPoint> points_W;  ///< accepted points, slice after slice
   std::vector<std::uint32_t> segment_ids;  ///< of each of points_W

@@ -43,6 +43,9 @@ SliceSequencer::Verdict SliceSequencer::offer(CloudSlice slice, Clock::time_poin
   if (slice.kind == SliceKind::kPatch && !waiting_.contains(slice.id)) {
     return take_patch(std::move(slice), now);
   }
+  if (slice.kind == SliceKind::kCorrection && known == known_.end()) {
+    return take_motions(std::move(slice));
+  }
   return known != known_.end() ? correct(std::move(slice), now) : wait(std::move(slice), now);
 }
 
@@ -61,6 +64,15 @@ SliceSequencer::Verdict SliceSequencer::take_patch(CloudSlice slice, Clock::time
   group.is_closed = is_late || ends_batch;
   take_turns();
   return is_new ? Verdict::kTaken : Verdict::kCorrected;
+}
+
+SliceSequencer::Verdict SliceSequencer::take_motions(CloudSlice slice) {
+  if (!ready_.empty()) ready_.back().is_closed = true;
+  ready_.push_back({.kind = Kind::kMotions});
+  learn(slice);
+  put(ready_.back(), std::move(slice));
+  take_turns();
+  return Verdict::kTaken;
 }
 
 SliceSequencer::Verdict SliceSequencer::correct(CloudSlice slice, Clock::time_point now) {

@@ -26,7 +26,8 @@ struct SliceGap {
 
 /// Slices for one run of the engine.
 struct SliceGroup {
-  std::vector<CloudSlice> slices;  ///< one new slice, or corrections or patches by ascending id
+  /// One new slice, or a correction of the map, or revisions or patches by ascending id.
+  std::vector<CloudSlice> slices;
   bool is_correction = false;
   /// Chunks of older revisions that came and are not needed: with this group in the map, there is a
   /// newer one of each.
@@ -42,7 +43,8 @@ enum class Outlook {
 
 /// Memory of a slice.
 inline std::size_t bytes_of(const CloudSlice& slice) {
-  return sizeof(slice) + slice.points_W.size() * sizeof(CloudPoint);
+  return sizeof(slice) + slice.points_W.size() * sizeof(CloudPoint) +
+         slice.motions.size() * sizeof(PatchMotion);
 }
 
 /// Returns the slices of one session in groups for the engine: slices in the order of their ids,
@@ -66,6 +68,8 @@ inline std::size_t bytes_of(const CloudSlice& slice) {
 /// newest revisions. Where the end was lost, the next end counts, or the final slice, or a pause of
 /// `correction_quiet` (where `is_live`; else of `gap_timeout`). A patch that comes after the end
 /// of its own batch, known by its time, is a group of its own and waits for nothing.
+///
+/// A correction of the map is a group of its own that waits for nothing either.
 ///
 /// So the groups and their order depend only on the order of arrival, unless a timeout ends or
 /// `is_live`.
@@ -130,7 +134,7 @@ class SliceSequencer {
   [[nodiscard]] std::int64_t num_given_up() const;
 
  private:
-  enum class Kind : std::uint8_t { kNewSlice, kCorrections, kPatches };
+  enum class Kind : std::uint8_t { kNewSlice, kCorrections, kPatches, kMotions };
   struct Group {
     Kind kind = Kind::kNewSlice;
     bool is_closed = true;  ///< nothing is added any more
@@ -139,6 +143,7 @@ class SliceSequencer {
   };
 
   Verdict take_patch(CloudSlice slice, Clock::time_point now);
+  Verdict take_motions(CloudSlice slice);
   Verdict correct(CloudSlice slice, Clock::time_point now);
   Verdict wait(CloudSlice slice, Clock::time_point now);
   Group& open_group(Kind kind, Clock::time_point now);

@@ -6,6 +6,31 @@
 #include "segmenter/core/ids/succession.hpp"
 
 namespace kintsugi::segmenter {
+namespace {
+
+/// Points with their new ids.
+using Relabelled = std::vector<std::pair<PointRank, std::uint32_t>>;
+
+/// Appends the points of slices that were moved as they were. Who has their labels has them still.
+void append_moved(const PointCloud& cloud, std::span<const IdChange> changes,
+                  std::span<const MovedPoint> moved, std::span<const std::uint32_t> ids,
+                  Relabelled& relabelled) {
+  SliceFinder slice_before(cloud);
+  SliceFinder slice_after(cloud);
+  auto change = changes.begin();  // of the point where it was; mostly the next one
+  for (const MovedPoint& point : moved) {
+    const SliceRecord& after = slice_after(point.to);
+    if (slice_before(point.from).revision != after.revision) continue;
+    if (change == changes.end() || change->point != point.from) {
+      change = std::ranges::lower_bound(changes, point.from, {}, &IdChange::point);
+    }
+    const std::uint32_t new_id = ids[point.to];
+    if (change->old_id != new_id) relabelled.push_back({{after.slice_id, point.to}, new_id});
+    ++change;
+  }
+}
+
+}  // namespace
 
 std::vector<std::uint32_t> slice_labels(const SliceRecord& slice,
                                         std::span<const std::uint32_t> ids) {
@@ -22,14 +47,17 @@ std::vector<std::uint32_t> slice_labels(const SliceRecord& slice,
   return labels;
 }
 
-std::vector<LabelRun> label_runs(const PointCloud& cloud, std::span<const IdChange> changes) {
-  std::vector<std::pair<PointRank, std::uint32_t>> relabelled;
+std::vector<LabelRun> label_runs(const PointCloud& cloud, std::span<const IdChange> changes,
+                                 std::span<const MovedPoint> moved,
+                                 std::span<const std::uint32_t> ids) {
+  Relabelled relabelled;
   SliceFinder slice_of(cloud);
   for (const IdChange& change : changes) {
     if (change.old_id == kNoSegment || change.new_id == kNoSegment) continue;
     relabelled.emplace_back(PointRank{slice_of(change.point).slice_id, change.point},
                             change.new_id);
   }
+  append_moved(cloud, changes, moved, ids, relabelled);
   std::sort(relabelled.begin(), relabelled.end());
 
   std::vector<LabelRun> runs;

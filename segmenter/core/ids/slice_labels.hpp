@@ -15,8 +15,11 @@ namespace kintsugi::segmenter {
 std::vector<std::uint32_t> slice_labels(const SliceRecord& slice,
                                         std::span<const std::uint32_t> ids);
 
-/// The changes of points that existed before and still exist, as runs: consecutive points of one
-/// slice that have the same new id. By slice, then index in the slice.
-std::vector<LabelRun> label_runs(const PointCloud& cloud, std::span<const IdChange> changes);
+/// The changes of points that existed before and still exist, in the same revision of their slice,
+/// as runs: consecutive points of one slice that have the same new id. By slice, then index in the
+/// slice. `changes` are those of the last update of `ids`, and `moved` those of its CloudChange.
+std::vector<LabelRun> label_runs(const PointCloud& cloud, std::span<const IdChange> changes,
+                                 std::span<const MovedPoint> moved = {},
+                                 std::span<const std::uint32_t> ids = {});
 
 }  // namespace kintsugi::segmenter

@@ -27,6 +27,10 @@ void append_moved_by_index(const SliceRecord& before, const SliceRecord& after,
   }
 }
 
+std::size_t bytes_P(const SliceRecord& slice) {
+  return slice.points_P == nullptr ? 0 : slice.points_P->size() * sizeof(CloudPoint);
+}
+
 void append_indices(const SliceRecord& slice, std::vector<PointIndex>& points) {
   for (PointIndex k = 0; k < slice.count; ++k) points.push_back(slice.first + k);
 }
@@ -44,8 +48,9 @@ std::int32_t SliceRecord::index_of(PointIndex k) const {
 }
 
 const SliceRecord& PointCloud::add_slice(std::int32_t slice_id,
-                                         std::span<const CloudPoint> points_W,
-                                         std::int32_t revision, PatchState patch) {
+                                         std::span<const CloudPoint> points_P,
+                                         std::int32_t revision, PatchState patch,
+                                         const PatchPlace& place) {
   if (slice_id < 0) {
     throw std::invalid_argument("slice_id is " + std::to_string(slice_id) + ", must be >= 0");
   }
@@ -53,7 +58,8 @@ const SliceRecord& PointCloud::add_slice(std::int32_t slice_id,
     throw std::invalid_argument("slice_id " + std::to_string(slice_id) +
                                 " is in the cloud already");
   }
-  SliceRecord record = place(slice_id, revision, patch, points_W);
+  SliceRecord record =
+      store({.slice_id = slice_id, .revision = revision, .patch = patch, .place = place}, points_P);
   const auto position = static_cast<std::uint32_t>(slices_.size());
   slices_.emplace_back();
   position_[slice_id] = position;
@@ -62,9 +68,9 @@ const SliceRecord& PointCloud::add_slice(std::int32_t slice_id,
 }
 
 const SliceRecord& PointCloud::replace_slice(std::int32_t slice_id,
-                                             std::span<const CloudPoint> points_W,
-                                             std::optional<std::int32_t> revision,
-                                             PatchState patch) {
+                                             std::span<const CloudPoint> points_P,
+                                             std::optional<std::int32_t> revision, PatchState patch,
+                                             const PatchPlace& place) {
   const std::uint32_t position = position_of(slice_id);
   const std::int32_t old_revision = slices_[position].revision;
   if (revision.value_or(old_revision + 1) <= old_revision) {
@@ -72,10 +78,42 @@ const SliceRecord& PointCloud::replace_slice(std::int32_t slice_id,
                                 std::to_string(*revision) + ", must be above " +
                                 std::to_string(old_revision) + ", which is in the cloud");
   }
-  SliceRecord record = place(slice_id, revision.value_or(old_revision + 1), patch, points_W);
+  SliceRecord record = store({.slice_id = slice_id,
+                              .revision = revision.value_or(old_revision + 1),
+                              .patch = patch,
+                              .place = place},
+                             points_P);
   retire(position);
   make_live(position, std::move(record));
   return slices_[position];
+}
+
+const SliceRecord& PointCloud::move_slice(std::int32_t slice_id, const PatchPlace& place) {
+  const std::uint32_t position = position_of(slice_id);
+  SliceRecord& before = slices_[position];
+  if (before.place.X_WP == place.X_WP) {
+    before.place = place;
+    return before;
+  }
+  check_size(slice_id, before.count);
+  begin_change();
+  SliceRecord record = before;
+  record.place = place;
+  PointsInPatch accepted_P = before.points_P;
+  if (accepted_P == nullptr) {
+    const std::span<const CloudPoint> points = points_P(before);
+    accepted_P = std::make_shared<std::vector<CloudPoint>>(points.begin(), points.end());
+  }
+  this->place(record, std::move(accepted_P));
+  retire(position);
+  make_live(position, std::move(record));
+  return slices_[position];
+}
+
+/// The accepted points of a slice as received.
+std::span<const CloudPoint> PointCloud::points_P(const SliceRecord& slice) const {
+  if (slice.points_P != nullptr) return *slice.points_P;
+  return points_W().subspan(slice.first, slice.count);
 }
 
 CloudChange PointCloud::take_change() {
@@ -102,13 +140,11 @@ CloudChange PointCloud::take_change() {
 
 void PointCloud::append_moved(const SliceRecord& before, const SliceRecord& after,
                               std::vector<MovedPoint>& moved) const {
-  if (after.patch == PatchState::kNoPatch || voxel_m_ <= 0.0) {
+  const bool is_same_revision = before.revision == after.revision;
+  if (after.patch == PatchState::kNoPatch || voxel_m_ <= 0.0 || is_same_revision) {
     return append_moved_by_index(before, after, moved);
   }
-  const auto points_of = [this](const SliceRecord& slice) {
-    return points_W().subspan(slice.first, slice.count);
-  };
-  for (const PointPair& pair : pair_by_voxel(points_of(before), points_of(after), voxel_m_)) {
+  for (const PointPair& pair : pair_by_voxel(points_P(before), points_P(after), voxel_m_)) {
     moved.push_back({before.first + pair.before, after.first + pair.after});
   }
 }
@@ -162,49 +198,53 @@ void PointCloud::begin_change() {
   retired_.clear();
 }
 
-/// Stores the accepted points in the first free range that holds them all, or at the end.
-SliceRecord PointCloud::place(std::int32_t slice_id, std::int32_t revision, PatchState patch,
-                              std::span<const CloudPoint> points_W) {
+void PointCloud::check_size(std::int32_t slice_id, std::size_t num_points) const {
   // LabelRun addresses a point in its slice by an int32.
   constexpr auto kMaxSlicePoints = std::numeric_limits<std::int32_t>::max();
   constexpr auto kMaxPoints = std::numeric_limits<PointIndex>::max() - 1;
-  if (points_W.size() > kMaxSlicePoints || points_W.size() > kMaxPoints - points_W_.size()) {
+  if (num_points > kMaxSlicePoints || num_points > kMaxPoints - points_W_.size()) {
     throw std::length_error("slice " + std::to_string(slice_id) + " of " +
-                            std::to_string(points_W.size()) +
+                            std::to_string(num_points) +
                             " points: the cloud would outgrow its 32-bit indices");
   }
-  begin_change();
-  SliceRecord slice;
-  slice.slice_id = slice_id;
-  slice.revision = revision;
-  slice.patch = patch;
-  slice.num_points = static_cast<std::int32_t>(points_W.size());
-  for (std::int32_t index = 0; index < slice.num_points; ++index) {
-    if (reason_to_reject(points_W[static_cast<std::size_t>(index)])) {
-      slice.rejected.push_back(index);
-    }
-  }
-  slice.count = static_cast<PointIndex>(points_W.size() - slice.rejected.size());
-  if (slice.count == 0) return slice;
+}
 
+/// Stores the points of a slice that are accepted.
+SliceRecord PointCloud::store(SliceRecord slice, std::span<const CloudPoint> points_P) {
+  check_size(slice.slice_id, points_P.size());
+  begin_change();
+  slice.num_points = static_cast<std::int32_t>(points_P.size());
+  std::vector<CloudPoint> accepted_P;
+  accepted_P.reserve(points_P.size());
+  for (std::int32_t index = 0; const CloudPoint& point : points_P) {
+    if (reason_to_reject(point)) {
+      slice.rejected.push_back(index);
+    } else {
+      accepted_P.push_back(point);
+    }
+    ++index;
+  }
+  place(slice, std::make_shared<std::vector<CloudPoint>>(std::move(accepted_P)));
+  return slice;
+}
+
+/// Stores accepted points in W, in the first free range that holds them all, or at the end.
+void PointCloud::place(SliceRecord& slice, PointsInPatch accepted_P) {
+  slice.count = static_cast<PointIndex>(accepted_P->size());
+  slice.first = 0;
+  slice.points_P = nullptr;
+  if (slice.count == 0) return;
   const auto free = free_.take(slice.count);
   slice.first = free.value_or(size());
   if (!free) points_W_.resize(size() + slice.count);
-  auto rejected = slice.rejected.begin();
-  PointIndex next = slice.first;
-  for (std::int32_t index = 0; index < slice.num_points; ++index) {
-    if (rejected != slice.rejected.end() && *rejected == index) {
-      ++rejected;
-    } else {
-      points_W_[next++] = points_W[static_cast<std::size_t>(index)];
-    }
-  }
-  return slice;
+  std::ranges::copy(moved(*accepted_P, slice.place.X_WP), points_W_.begin() + slice.first);
+  if (!slice.place.X_WP.is_identity()) slice.points_P = std::move(accepted_P);
 }
 
 void PointCloud::make_live(std::uint32_t slice, SliceRecord record) {
   unreported_.insert(record.slice_id);
   num_live_ += record.count;
+  bytes_P_ += bytes_P(record);
   num_rejected_ += static_cast<std::int64_t>(record.rejected.size());
   if (record.count > 0) {
     const auto after =
@@ -219,6 +259,7 @@ void PointCloud::retire(std::uint32_t slice) {
   SliceRecord& record = slices_[slice];
   const bool was_reported = unreported_.erase(record.slice_id) == 0;
   num_live_ -= record.count;
+  bytes_P_ -= bytes_P(record);
   num_rejected_ -= static_cast<std::int64_t>(record.rejected.size());
   if (record.count == 0) return;
   const auto range =

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <set>
 #include <span>
@@ -10,6 +11,7 @@
 
 #include "lcmtypes/base/growing_array.hpp"
 #include "lcmtypes/messages.hpp"
+#include "lcmtypes/patch_motions.hpp"
 #include "segmenter/core/points/free_ranges.hpp"
 
 namespace kintsugi::segmenter {
@@ -59,15 +61,21 @@ inline PatchState patch_state_of(const CloudSlice& slice) {
   return slice.in_volume ? PatchState::kInVolume : PatchState::kLeft;
 }
 
+/// Points that are kept as received, in the frame P of their patch. They never change: copies of a
+/// cloud's records share them.
+using PointsInPatch = std::shared_ptr<const std::vector<CloudPoint>>;
+
 /// A slice in the cloud. Its accepted points are `[first, first + count)`.
 struct SliceRecord {
   std::int32_t slice_id = 0;
   std::int32_t revision = 0;
   PatchState patch = PatchState::kNoPatch;
-  std::int32_t num_points = 0;         ///< as received
-  PointIndex first = 0;                ///< of its accepted points
-  PointIndex count = 0;                ///< accepted points
-  std::vector<std::int32_t> rejected;  ///< indices in the slice of rejected points, ascending
+  std::int32_t num_points = 0;           ///< as received
+  PointIndex first = 0;                  ///< of its accepted points
+  PointIndex count = 0;                  ///< accepted points
+  std::vector<std::int32_t> rejected{};  ///< indices in the slice of rejected points, ascending
+  PatchPlace place;                      ///< of a patch: where P is
+  PointsInPatch points_P{};              ///< the accepted points; null where P is W
 
   bool is_in_volume() const { return patch == PatchState::kInVolume; }
   /// The index in the slice of its accepted point number `k` < count.
@@ -77,32 +85,42 @@ struct SliceRecord {
 /// All points of the map that can be segmented, by slice, frame W.
 ///
 /// A point that reason_to_reject() (admission.hpp) rejects, for instance one that is not finite, is
-/// recorded in its slice and never gets a PointIndex.
+/// recorded in its slice and never gets a PointIndex. It is rejected as it was received: a motion
+/// of its patch changes nothing about that.
 ///
 /// A slice that is replaced gets new indices. Its old points stay readable after take_change()
 /// until the cloud changes again. Later slices then use their indices, so that corrections do not
 /// make the cloud grow without limit. Which new point is which old one: in a slice that is
-/// corrected, the one with the same index in the slice; in a patch, the one in the same voxel
+/// corrected, the one with the same index in the slice; in a patch, the one in the same voxel of P
 /// (pair_by_voxel()), since its points come in other places of the list.
+///
+/// A patch that moves gets new indices in the same way, in the same revision. Its points are moved
+/// from where they were received, so that they do not depend on earlier motions.
 class PointCloud {
  public:
   /// @param voxel_m voxel size, for patches; 0: their points are paired as those of other slices
   explicit PointCloud(double voxel_m = 0.0) : voxel_m_(voxel_m) {}
 
-  /// Adds the points of a slice and returns its record, which is valid until the next change.
+  /// Adds the points of a slice, which is at `place`, and returns its record, which is valid until
+  /// the next change. For all slices but patches P is W.
   /// @throws std::invalid_argument when `slice_id` is negative or already present,
   ///   std::length_error when the cloud would outgrow PointIndex; then nothing has changed
-  const SliceRecord& add_slice(std::int32_t slice_id, std::span<const CloudPoint> points_W,
-                               std::int32_t revision = 0, PatchState patch = PatchState::kNoPatch);
+  const SliceRecord& add_slice(std::int32_t slice_id, std::span<const CloudPoint> points_P,
+                               std::int32_t revision = 0, PatchState patch = PatchState::kNoPatch,
+                               const PatchPlace& place = {});
 
   /// Replaces the points of a slice. There may be fewer points, or none. `revision` is one more
   /// than before by default.
-  /// @throws as add_slice(); std::invalid_argument also when there is no such slice or `revision`
-  /// is
-  ///   not above the old one
-  const SliceRecord& replace_slice(std::int32_t slice_id, std::span<const CloudPoint> points_W,
+  /// @throws as add_slice(); std::invalid_argument also when there is no such slice, or `revision`
+  ///   is not above the old one
+  const SliceRecord& replace_slice(std::int32_t slice_id, std::span<const CloudPoint> points_P,
                                    std::optional<std::int32_t> revision = std::nullopt,
-                                   PatchState patch = PatchState::kNoPatch);
+                                   PatchState patch = PatchState::kNoPatch,
+                                   const PatchPlace& place = {});
+
+  /// Moves a slice to `place`.
+  /// @throws as replace_slice()
+  const SliceRecord& move_slice(std::int32_t slice_id, const PatchPlace& place);
 
   /// What changed since the last call.
   CloudChange take_change();
@@ -130,7 +148,7 @@ class PointCloud {
   PointId id_of(PointIndex i) const;
   std::int64_t num_rejected() const { return num_rejected_; }
   /// Memory of the points.
-  std::size_t bytes() const { return points_W_.bytes(); }
+  std::size_t bytes() const { return points_W_.bytes() + bytes_P_; }
 
  private:
   /// Where the accepted points of slices_[slice] begin.
@@ -146,8 +164,10 @@ class PointCloud {
   std::uint32_t position_of(std::int32_t slice_id) const;
   const SliceRecord* find_live(PointIndex i) const;
   void begin_change();
-  SliceRecord place(std::int32_t slice_id, std::int32_t revision, PatchState patch,
-                    std::span<const CloudPoint> points_W);
+  SliceRecord store(SliceRecord slice, std::span<const CloudPoint> points_P);
+  void place(SliceRecord& slice, PointsInPatch accepted_P);
+  void check_size(std::int32_t slice_id, std::size_t num_points) const;
+  [[nodiscard]] std::span<const CloudPoint> points_P(const SliceRecord& slice) const;
   void append_moved(const SliceRecord& before, const SliceRecord& after,
                     std::vector<MovedPoint>& moved) const;
   void make_live(std::uint32_t slice, SliceRecord record);
@@ -155,6 +175,7 @@ class PointCloud {
 
   double voxel_m_;
   GrowingArray<CloudPoint> points_W_;
+  std::size_t bytes_P_ = 0;  ///< of the points that are kept in P, too
   std::vector<SliceRecord> slices_;
   std::map<std::int32_t, std::uint32_t> position_;  ///< in slices_, by slice id
   std::vector<Range> ranges_;                       ///< of slices that have points, ascending

@@ -227,11 +227,11 @@ TEST_F(SavedMapFile, ReasonsSayWhatWasExpected) {
   EXPECT_THAT(reason("ply\nformat ascii 1.0\nand so on"),
               AllOf(HasSubstr("no saved segment map"), HasSubstr("KSEGMAP")));
   std::string newer = bytes_;
-  newer[8] = 6;
-  EXPECT_THAT(reason(newer), AllOf(HasSubstr("version 6"), HasSubstr("expected 5")));
+  newer[8] = 7;
+  EXPECT_THAT(reason(newer), AllOf(HasSubstr("version 7"), HasSubstr("expected 6")));
   std::string older = bytes_;
-  older[8] = 4;
-  EXPECT_THAT(reason(older), AllOf(HasSubstr("version 4"), HasSubstr("expected 5")));
+  older[8] = 5;
+  EXPECT_THAT(reason(older), AllOf(HasSubstr("version 5"), HasSubstr("expected 6")));
   EXPECT_THAT(reason(bytes_.substr(0, bytes_.size() - 3)), HasSubstr("cut off"));
   std::string damaged = bytes_;
   damaged[200] ^= 1;
@@ -246,14 +246,14 @@ TEST_F(SavedMapFile, ReasonsSayWhatWasExpected) {
 }
 
 TEST_F(SavedMapFile, ClaimsAreHeldAgainstItsSizeBeforeMemoryIsTaken) {
-  // Each count of the header, which ends at byte 144, claims two billion.
-  for (std::size_t at = 112; at < 144; at += 4) {
+  // Each count of the header, which ends at byte 152, claims two billion.
+  for (std::size_t at = 112; at < 148; at += 4) {
     std::string hostile = bytes_;
     const std::uint32_t count = 2'000'000'000;
     std::memcpy(hostile.data() + at, &count, sizeof(count));
     write(path_, hostile);
     EXPECT_LT(allocated_by([&] { EXPECT_THROW(load_map(path_), std::runtime_error); }), 100'000U);
-    write(path_, hostile.substr(0, 144));
+    write(path_, hostile.substr(0, 152));
     EXPECT_LT(allocated_by([&] { EXPECT_THROW(load_map(path_), std::runtime_error); }), 100'000U);
   }
 }

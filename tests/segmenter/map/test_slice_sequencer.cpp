@@ -419,6 +419,26 @@ TEST_F(PatchBatches, TellWhichChunksNeedNotBeSentAgain) {
   EXPECT_EQ(sequencer_.pop(now_, Outlook::kSilent)->superseded, (Ranges{{10, 11}}));
 }
 
+TEST_F(PatchBatches, ACorrectionOfTheMapIsAGroupOfItsOwnThatWaitsForNothing) {
+  const auto correction = [](std::int32_t id) {
+    CloudSlice slice = patch(1, id, 0);
+    slice.kind = SliceKind::kCorrection;
+    slice.correction = 1;
+    slice.ends_batch = true;
+    return slice;
+  };
+  EXPECT_EQ(sequencer_.offer(patch(1, 0, 0), now_), SliceSequencer::Verdict::kTaken);
+  EXPECT_EQ(sequencer_.offer(correction(7), now_), SliceSequencer::Verdict::kTaken);
+  EXPECT_EQ(sequencer_.offer(correction(7), now_), SliceSequencer::Verdict::kDuplicate);
+  EXPECT_EQ(sequencer_.offer(patch(1, 1, 0), now_), SliceSequencer::Verdict::kTaken);
+  EXPECT_EQ(sequencer_.pop(now_, Outlook::kLive)->slices.front().id, 0) << "as it was before it";
+  const auto group = sequencer_.pop(now_, Outlook::kLive);
+  ASSERT_TRUE(group);
+  ASSERT_EQ(group->slices.size(), 1U);
+  EXPECT_EQ(group->slices.front().kind, SliceKind::kCorrection);
+  EXPECT_FALSE(sequencer_.pop(now_, Outlook::kLive)) << "the batch after it is not complete";
+}
+
 // A stream in which messages are lost and sent again, doubled and out of order: every patch comes
 // out in its newest revision, none goes back to an older one, and the final slice comes last.
 TEST_F(PatchBatches, ComeOutInTheirNewestRevisionsWhateverTheOrder) {
