@@ -53,4 +53,16 @@ PatchPlace PatchMotions::place_of(const CloudSlice& slice) const {
   return {slice.X_WP, slice.correction};
 }
 
+void apply_corrections(std::span<CloudSlice* const> slices) {
+  PatchMotions motions;
+  for (const CloudSlice* const slice : slices) motions.learn(*slice);
+  for (CloudSlice* const slice : slices) {
+    if (slice->kind != SliceKind::kPatch) continue;
+    const PatchPose X_WP = motions.place_of(*slice).X_WP;
+    slice->X_WP = PatchPose();
+    slice->correction = 0;
+    if (!X_WP.is_identity()) slice->points_W = moved(slice->points_W, X_WP);
+  }
+}
+
 }  // namespace kintsugi

@@ -28,8 +28,8 @@ struct PatchPlace {
 /// what was lost before.
 class PatchMotions {
  public:
-  /// Takes the motions of `correction`, of kind kCorrection. Returns those that are newer than what
-  /// earlier calls gave for their patches: the ones that may move a patch.
+  /// Takes the motions of `correction`; slices of other kinds have none. Returns those that are
+  /// newer than what earlier calls gave for their patches: the ones that may move a patch.
   std::vector<PatchMotion> learn(const CloudSlice& correction);
   /// Takes a place that places() once had.
   void learn(std::int32_t patch_id, const PatchPlace& place);
@@ -44,5 +44,9 @@ class PatchMotions {
  private:
   std::map<std::int32_t, PatchPlace> places_;
 };
+
+/// Of slices that were read together: moves the points of each patch to where all corrections among
+/// them put it. Their frames P are W then.
+void apply_corrections(std::span<CloudSlice* const> slices);
 
 }  // namespace kintsugi

@@ -13,6 +13,7 @@
 
 #include "lcmtypes/channels.hpp"
 #include "lcmtypes/log/log_reader.hpp"
+#include "lcmtypes/patch_motions.hpp"
 #include "lcmtypes/stream/stream_subscriber.hpp"
 
 namespace kintsugi::mapper {
@@ -92,6 +93,9 @@ std::vector<CloudPoint> read_log(const std::filesystem::path& path) {
   });
   LogReader log(path);
   while (const auto event = log.next()) subscriber.handle(event->channel, event->data);
+  std::vector<CloudSlice*> slices;
+  for (auto& [id, slice] : sessions[last_session]) slices.push_back(&slice);
+  apply_corrections(slices);
   std::vector<CloudPoint> points;
   for (const auto& [id, slice] : sessions[last_session]) {
     points.insert(points.end(), slice.points_W.begin(), slice.points_W.end());

@@ -23,7 +23,11 @@ void LiveMap::add(CloudSlice slice, double now_s) {
   points_sent_ += std::ssize(slice.points_W);
   ++revisions_sent_;
   const RevisionOfSlice which(slice.id, slice.revision);
-  points_W_[which] = std::move(slice.points_W);
+  for (const PatchMotion& motion : motions_.learn(slice)) {
+    const auto shown = shown_.find(motion.id);
+    if (shown != shown_.end()) show(CloudSlice(shown->second.slice), shown->second.labels, now_s);
+  }
+  slices_[which] = std::move(slice);
   show_if_complete(which, now_s);
 }
 
@@ -35,7 +39,7 @@ void LiveMap::add(const SegmentUpdate& update, double now_s) {
   const auto shown = shown_.find(update.slice_id);
   if (shown != shown_.end() && shown->second.revision == update.slice_revision) {
     // A full state: labels of what is shown already.
-    show(update.slice_id, {update.slice_revision, shown->second.points_W, update.labels}, now_s);
+    show(CloudSlice(shown->second.slice), update.labels, now_s);
   } else {
     labels_[which] = update.labels;
     show_if_complete(which, now_s);
@@ -62,28 +66,30 @@ void LiveMap::relabel(const LabelRun& run, double now_s) {
 }
 
 void LiveMap::show_if_complete(const RevisionOfSlice& which, double now_s) {
-  const auto points = points_W_.find(which);
+  const auto slice = slices_.find(which);
   const auto labels = labels_.find(which);
-  if (points == points_W_.end() || labels == labels_.end()) return;
-  if (points->second.size() == labels->second.size()) {
-    show(which.first, {which.second, std::move(points->second), std::move(labels->second)}, now_s);
-  }
+  if (slice == slices_.end() || labels == labels_.end()) return;
+  show(std::move(slice->second), std::move(labels->second), now_s);
   // What waits of lower revisions will not be shown any more.
   const RevisionOfSlice lowest(which.first, 0);
-  points_W_.erase(points_W_.lower_bound(lowest), std::next(points));
+  slices_.erase(slices_.lower_bound(lowest), std::next(slice));
   labels_.erase(labels_.lower_bound(lowest), std::next(labels));
 }
 
-void LiveMap::show(std::int32_t slice_id, Shown next, double now_s) {
+void LiveMap::show(CloudSlice slice, Labels labels, double now_s) {
+  const std::int32_t slice_id = slice.id;
   Shown& shown = shown_[slice_id];
-  if (next.revision < shown.revision || next.points_W.size() != next.labels.size()) return;
+  if (slice.revision < shown.revision || slice.points_W.size() != labels.size()) return;
   grid_.erase(slice_id, shown.points_W);
   for (std::size_t i = 0; i < shown.points_W.size(); ++i) {
     if (shown.labels[i] == kNoSegment) continue;
     regions_.remove_point(position(shown.points_W[i]), shown.labels[i]);
     --num_points_;
   }
-  shown = std::move(next);
+  shown.revision = slice.revision;
+  shown.points_W = moved(slice.points_W, motions_.place_of(slice).X_WP);
+  shown.slice = std::move(slice);
+  shown.labels = std::move(labels);
   for (std::size_t i = 0; i < shown.points_W.size(); ++i) {
     if (shown.labels[i] == kNoSegment) continue;
     const CloudPoint& p = shown.points_W[i];

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "lcmtypes/messages.hpp"
+#include "lcmtypes/patch_motions.hpp"
 #include "segmenter/evaluation/live/first_labels.hpp"
 #include "segmenter/evaluation/live/point_grid.hpp"
 #include "segmenter/evaluation/live/region_labels.hpp"
@@ -61,7 +62,8 @@ class LiveMap {
  private:
   struct Shown {
     std::int32_t revision = -1;
-    std::vector<CloudPoint> points_W;
+    CloudSlice slice;                  ///< as received
+    std::vector<CloudPoint> points_W;  ///< where corrections have put them
     std::vector<std::uint32_t> labels;
   };
   using RevisionOfSlice = std::pair<std::int32_t, std::int32_t>;  // slice, revision
@@ -69,15 +71,16 @@ class LiveMap {
 
   void relabel(const LabelRun& run, double now_s);
   void show_if_complete(const RevisionOfSlice& which, double now_s);
-  void show(std::int32_t slice_id, Shown next, double now_s);
+  void show(CloudSlice slice, Labels labels, double now_s);
 
   PointGrid grid_;
   RegionLabels regions_;
   FirstLabels first_labels_;
   Heirs heirs_;
-  std::unordered_map<std::int32_t, Shown> shown_;                // by slice id
-  std::map<RevisionOfSlice, std::vector<CloudPoint>> points_W_;  // without labels yet
-  std::map<RevisionOfSlice, Labels> labels_;                     // without points yet
+  std::unordered_map<std::int32_t, Shown> shown_;  // by slice id
+  std::map<RevisionOfSlice, CloudSlice> slices_;   // without labels yet
+  std::map<RevisionOfSlice, Labels> labels_;       // without points yet
+  PatchMotions motions_;
   std::int64_t num_points_ = 0;
   std::int64_t points_sent_ = 0;
   std::int64_t revisions_sent_ = 0;

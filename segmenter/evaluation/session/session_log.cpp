@@ -7,6 +7,7 @@
 
 #include "lcmtypes/channels.hpp"
 #include "lcmtypes/log/log_reader.hpp"
+#include "lcmtypes/patch_motions.hpp"
 #include "lcmtypes/stream/stream_subscriber.hpp"
 
 namespace kintsugi::segmenter {
@@ -116,6 +117,24 @@ void measure_path(const LoggedSession& logged, RecordedSession& session) {
   session.path_length_m = path_length_m(path);
 }
 
+/// Every surface is evaluated where the last correction of the map has put it.
+void apply_corrections_of(RecordedSession& session) {
+  std::vector<CloudSlice*> slices;
+  bool is_corrected = false;
+  for (SliceGroup& step : session.steps) {
+    for (CloudSlice& slice : step.slices) {
+      slices.push_back(&slice);
+      is_corrected = is_corrected || slice.kind == SliceKind::kCorrection;
+    }
+  }
+  apply_corrections(slices);
+  if (is_corrected) {
+    session.remarks.push_back(
+        "The mapper corrected the map: patches were segmented where the last correction has put "
+        "them.");
+  }
+}
+
 /// Adds remarks about what is missing, was left out or was corrected.
 void add_remarks(const LoggedSession& logged, RecordedSession& session) {
   if (const auto num_missing = logged.order.num_missing(); num_missing > 0) {
@@ -158,6 +177,7 @@ RecordedSession read_session_log(const std::filesystem::path& path) {
   logged.end();
   session.steps = std::move(logged.steps);
   session.num_slices = logged.num_slices;
+  apply_corrections_of(session);
   if (session.num_points() == 0) {
     throw std::runtime_error(path.string() + ": its slices hold no points" + damage);
   }

@@ -526,5 +526,47 @@ TEST(PendingUpdates, KeepsNoMoreThanItsBoundWhateverSlicesAreNamed) {
   EXPECT_EQ(0U, pending.bytes());
 }
 
+CloudSlice correction_of(std::int32_t id, std::int32_t number, std::int32_t patch, double x) {
+  CloudSlice slice = slice_of(id, 0);
+  slice.kind = SliceKind::kCorrection;
+  slice.correction = number;
+  Pose X_WP = Pose::Identity();
+  X_WP.translation().x() = x;
+  slice.motions = {{patch, X_WP}};
+  return slice;
+}
+
+TEST(ReceivedMap, PutsPatchesWhereTheLastCorrectionDoesInWhateverOrder) {
+  std::vector<CloudSlice> stream = {slice_of(0, 3),
+                                    slice_of(0, 5, 1),
+                                    slice_of(1, 2),
+                                    correction_of(2, 1, 0, 0.5),
+                                    correction_of(3, 2, 0, 1.5),
+                                    correction_of(4, 3, 1, 2.5)};
+  stream[1].correction = 1;
+  std::mt19937 random(2);
+  for (int round = 0; round < 50; ++round) {
+    std::ranges::shuffle(stream, random);
+    ReceivedMap map(kMapSession);
+    for (const CloudSlice& slice : stream) map.add_slice(slice);
+    ASSERT_EQ(map.slice(0)->points_W().size(), 5U);
+    EXPECT_EQ(map.slice(0)->points_W()[0].x, 1.5F);
+    EXPECT_EQ(map.slice(1)->points_W()[0].x, 1.0F + 2.5F);
+    EXPECT_EQ(map.counts().points, 7);
+    for (const PointChunk& chunk : map.chunks()) {
+      EXPECT_EQ(chunk.box_W.min().x(), chunk.points_W[0].x) << "it is drawn where it is";
+    }
+  }
+}
+
+TEST(ReceivedMap, MovedPatchesKeepTheirLabels) {
+  ReceivedMap map(kMapSession);
+  map.add_slice(slice_of(0, 3));
+  apply(map, update_of(0, {1, 2, 2}), 0);
+  map.add_slice(correction_of(1, 1, 0, 0.5));
+  EXPECT_EQ(Labels({1, 2, 2}), labels_of(map, 0));
+  EXPECT_EQ(map.slice(0)->points_W()[0].x, 0.5F);
+}
+
 }  // namespace
 }  // namespace kintsugi::viewer

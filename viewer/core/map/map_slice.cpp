@@ -6,17 +6,33 @@
 
 namespace kintsugi::viewer {
 
-MapSlice::MapSlice(CloudSlice slice)
+MapSlice::MapSlice(CloudSlice slice, const PatchPlace& place)
     : utime_(slice.utime),
       id_(slice.id),
       revision_(slice.revision),
       in_volume_(slice.in_volume),
       resolution_m_(slice.resolution_m),
       X_WC_(slice.X_WC),
+      is_patch_(slice.kind == SliceKind::kPatch),
       points_W_(std::move(slice.points_W)),
       labels_(points_W_.size(), kNoSegment),
       label_updates_(points_W_.size(), 0U),
-      chunk_boxes_W_(chunk_boxes_of(points_W_)) {}
+      chunk_boxes_W_(chunk_boxes_of(points_W_)) {
+  if (is_patch_) put(place);
+}
+
+void MapSlice::move_to(const PatchPlace& place) {
+  if (is_patch_ && place.correction > place_.correction) put(place);
+}
+
+void MapSlice::put(const PatchPlace& place) {
+  const bool stays = place.X_WP == place_.X_WP;
+  place_ = place;
+  if (stays) return;
+  if (points_P_.empty()) points_P_ = std::move(points_W_);
+  points_W_ = moved(points_P_, place_.X_WP);
+  chunk_boxes_W_ = chunk_boxes_of(points_W_);
+}
 
 void MapSlice::append_chunks(std::vector<PointChunk>& chunks) const {
   const std::span points_W(points_W_);

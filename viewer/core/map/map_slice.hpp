@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "lcmtypes/messages.hpp"
+#include "lcmtypes/patch_motions.hpp"
 #include "viewer/core/map/label_update.hpp"
 #include "viewer/core/map/point_chunk.hpp"
 
@@ -15,7 +16,12 @@ namespace kintsugi::viewer {
 /// do not depend on the order in which updates arrive.
 class MapSlice {
  public:
-  explicit MapSlice(CloudSlice slice);
+  /// `place`: of a patch, where its frame P is (PatchMotions).
+  explicit MapSlice(CloudSlice slice, const PatchPlace& place = {});
+
+  /// Moves the points of a patch, unless it is where a newer correction has put it. The same in
+  /// every order of corrections.
+  void move_to(const PatchPlace& place);
 
   std::int64_t utime() const { return utime_; }
   std::int32_t id() const { return id_; }
@@ -43,6 +49,7 @@ class MapSlice {
   void discard_old_labels();
 
  private:
+  void put(const PatchPlace& place);
   bool set_label(std::size_t point, std::uint32_t segment_id, std::uint32_t update_number);
 
   std::int64_t utime_;
@@ -51,6 +58,9 @@ class MapSlice {
   bool in_volume_;
   float resolution_m_;
   Pose X_WC_;
+  bool is_patch_;
+  PatchPlace place_;
+  std::vector<CloudPoint> points_P_;  // as received; empty where P is W
   std::vector<CloudPoint> points_W_;
   std::vector<std::uint32_t> labels_;
   std::vector<std::uint32_t> label_updates_;  // 1 + number of the update behind each label; 0: none

@@ -13,12 +13,15 @@ bool ReceivedMap::add_slice(CloudSlice message) {
     return false;
   }
   if (message.kind == SliceKind::kFinal) note_final(message);
+  if (message.kind == SliceKind::kCorrection) move_patches(message);
+  const PatchPlace place = motions_.place_of(message);
   note_time(message.utime);
   revision_sum_ += message.revision;
   if (held == slices_.end()) {
     ++counts_.slices;
     const std::int32_t id = message.id;
-    SliceRevisions& added = slices_.try_emplace(id, MapSlice(std::move(message))).first->second;
+    SliceRevisions& added =
+        slices_.try_emplace(id, MapSlice(std::move(message), place)).first->second;
     apply_pending(added.newest());
     note_shown(added.shown());
     return true;
@@ -26,10 +29,22 @@ bool ReceivedMap::add_slice(CloudSlice message) {
   SliceRevisions& slice = held->second;
   revision_sum_ -= slice.newest().revision();
   if (slice.newest().is_labelled()) --counts_.labelled_slices;
-  slice.add(MapSlice(std::move(message)));
+  slice.add(MapSlice(std::move(message), place));
   apply_pending(slice.newest());
   advance(slice);
   return true;
+}
+
+void ReceivedMap::move_patches(const CloudSlice& correction) {
+  for (const PatchMotion& motion : motions_.learn(correction)) {
+    const auto found = slices_.find(motion.id);
+    if (found == slices_.end()) continue;
+    up_.remove(found->second.shown().points_W());
+    found->second.for_each([&](MapSlice& slice) {
+      slice.move_to({motion.X_WP, correction.correction});
+    });
+    up_.add(found->second.shown().points_W());
+  }
 }
 
 void ReceivedMap::note_final(const CloudSlice& slice) {

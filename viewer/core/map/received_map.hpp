@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "lcmtypes/messages.hpp"
+#include "lcmtypes/patch_motions.hpp"
 #include "viewer/core/map/camera_track.hpp"
 #include "viewer/core/map/label_update.hpp"
 #include "viewer/core/map/map_slice.hpp"
@@ -32,7 +33,8 @@ struct MapCounts {
   std::int64_t ignored_runs = 0;      ///< outside their slice, or no memory to keep them
 };
 
-/// The slices of one map session, their labels and the camera's path, as far as they have arrived.
+/// The slices of one map session, where corrections have moved them, their labels and the camera's
+/// path, as far as they have arrived.
 ///
 /// Slices and updates may arrive in any order and more than once; the result is the same. A higher
 /// revision of a slice replaces points and labels of the one held: if that has labels, not before
@@ -114,11 +116,13 @@ class ReceivedMap {
   void note_shown(const MapSlice& slice);
   void note_hidden(const MapSlice& slice);
   void note_final(const CloudSlice& slice);
+  void move_patches(const CloudSlice& correction);
   std::vector<TimedPose> slice_poses() const;
 
   std::int64_t map_session_;
   std::int64_t segmenter_session_ = 0;
   std::map<std::int32_t, SliceRevisions> slices_;
+  PatchMotions motions_;
   PendingUpdates pending_{kMaxPendingBytes};
   std::optional<std::uint32_t> newest_update_;
   std::int64_t announced_slices_ = 0;  ///< slices in the map, according to the segmenter
