@@ -51,6 +51,9 @@ struct MapperStatus {
   std::int64_t frames_dropped = 0;
   std::int64_t frames_resumed = 0;
   std::int64_t keyframes = 0;
+  std::int64_t loops = 0;
+  std::int64_t loops_contradicted = 0;
+  std::int64_t corrections = 0;
   std::int32_t undetermined = 0;
   std::int64_t slices_published = 0;
   std::int64_t points_published = 0;
@@ -106,6 +109,9 @@ struct MapperStatus {
     visit("frames_dropped", s.frames_dropped...);
     visit("frames_resumed", s.frames_resumed...);
     visit("keyframes", s.keyframes...);
+    visit("loops", s.loops...);
+    visit("loops_contradicted", s.loops_contradicted...);
+    visit("corrections", s.corrections...);
     visit({"undetermined", 0, 6}, s.undetermined...);
     visit("slices_published", s.slices_published...);
     visit("points_published", s.points_published...);

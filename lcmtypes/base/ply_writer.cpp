@@ -21,10 +21,14 @@ std::filesystem::path temporary_name(std::filesystem::path path, const std::stri
   return path;
 }
 
-void copy(const std::filesystem::path& from, std::ostream& to) {
+/// Copies records of this size; `visit` is called with the bytes of some, before they are written.
+void copy(const std::filesystem::path& from, std::size_t record_bytes, std::ostream& to,
+          const std::function<void(std::span<char>)>& visit) {
+  constexpr std::size_t kRecords = 4096;
   std::ifstream in(from, std::ios::binary);
-  std::vector<char> buffer(std::size_t{1} << 16U);
+  std::vector<char> buffer(kRecords * record_bytes);
   while (in.read(buffer.data(), static_cast<std::streamsize>(buffer.size())), in.gcount() > 0) {
+    visit(std::span(buffer).first(static_cast<std::size_t>(in.gcount())));
     to.write(buffer.data(), in.gcount());
   }
   if (!in.eof()) throw std::system_error(errno, std::generic_category(), from.string());
@@ -42,7 +46,7 @@ PlyWriter::PlyWriter(const std::filesystem::path& path, std::vector<PlyElement> 
   const bool counts_are_known =
       std::ranges::all_of(elements, [](const PlyElement& e) { return e.count.has_value(); });
   for (PlyElement& element : elements) {
-    List& list = lists_.emplace_back(List{std::move(element), 0, nullptr});
+    List& list = lists_.emplace_back(List{std::move(element), 0, 0, nullptr});
     if (counts_are_known) {
       continue;
     }
@@ -59,6 +63,7 @@ void PlyWriter::write_record(std::size_t element, const char* record, std::size_
   AtomicFile& file = list.temporary ? *list.temporary : file_;
   file.stream().write(record, static_cast<std::streamsize>(size));
   ++list.count;
+  list.record_bytes = size;
 }
 
 void PlyWriter::write_header() {
@@ -75,7 +80,7 @@ void PlyWriter::write_header() {
   out << "end_header\n";
 }
 
-void PlyWriter::commit() {
+void PlyWriter::commit(const Rewrite& rewrite) {
   for (const List& list : lists_) {
     if (list.count == list.element.count.value_or(list.count)) continue;
     throw std::logic_error("PlyWriter: " + std::to_string(list.count) + " records of element " +
@@ -84,9 +89,17 @@ void PlyWriter::commit() {
   }
   if (std::ranges::any_of(lists_, [](const List& list) { return list.temporary != nullptr; })) {
     write_header();
-    for (List& list : lists_) {
+    for (std::size_t element = 0; element < lists_.size(); ++element) {
+      List& list = lists_[element];
       list.temporary->stream().flush();
-      copy(list.temporary->partial_path(), file_.stream());
+      std::int64_t record = 0;
+      copy(list.temporary->partial_path(), std::max<std::size_t>(list.record_bytes, 1),
+           file_.stream(), [&](std::span<char> bytes) {
+             if (!rewrite) return;
+             for (; !bytes.empty(); bytes = bytes.subspan(list.record_bytes)) {
+               rewrite(element, record++, bytes.first(list.record_bytes));
+             }
+           });
       list.temporary.reset();
     }
   }

@@ -6,8 +6,10 @@
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -54,14 +56,20 @@ class PlyWriter {
   /// Records that were appended to element number `element`.
   std::int64_t count(std::size_t element) const { return lists_.at(element).count; }
 
-  /// Completes the file; nothing can be appended afterwards.
+  /// Changes a record that was appended: number `record` of element number `element`, its bytes.
+  using Rewrite =
+      std::function<void(std::size_t element, std::int64_t record, std::span<char> bytes)>;
+
+  /// Completes the file; nothing can be appended afterwards. `rewrite`, if there is one, is called
+  /// with every record, in order; not where the counts of all elements are known.
   /// @throws std::logic_error when an element has not as many records as its count says
-  void commit();
+  void commit(const Rewrite& rewrite = {});
 
  private:
   struct List {
     PlyElement element;
     std::int64_t count = 0;
+    std::size_t record_bytes = 0;           ///< the same for all
     std::unique_ptr<AtomicFile> temporary;  ///< never committed; null: counts are known
   };
 

@@ -29,6 +29,19 @@ CrossingRule crossing_rule(const SurfaceExtractor::Config& config, const TsdfVol
           volume.max_truncation_m()};
 }
 
+LoopClosure::Config loop_config(const MapperPipeline::Config& config) {
+  LoopClosure::Config loops = config.loops;
+  const double voxel_m = config.volume.resolution_m;
+  loops.voxel_m = voxel_m;
+  loops.closer.graph.voxel_m = voxel_m;
+  loops.closer.verifier.voxel_m = voxel_m;
+  loops.closer.verifier.registration = config.tracker.registration;
+  loops.closer.graph.max_drift_share = config.tracker.max_drift_share;
+  loops.reach_m = config.integrator.max_depth_m;
+  loops.closer.graph.near_m = config.integrator.max_depth_m;
+  return loops;
+}
+
 SliceWorker::Config worker_config(const MapperPipeline::Config& config, const TileGrid& tiles) {
   SliceWorker::Config worker = config.slices;
   if (config.patch_side_m > 0.0) worker.tiles = tiles;
@@ -55,6 +68,7 @@ void MapperPipeline::Config::validate() const {
   raycaster.validate();
   tracker.validate();
   relocalizer.validate();
+  loops.validate();
   slices.validate();
   check_range("patch_side_m", patch_side_m, 0.0, 100.0);
   patch_schedule.validate();
@@ -72,6 +86,9 @@ MapperPipeline::MapperPipeline(const Config& config)
       tiles_(config.patch_side_m, config.volume.resolution_m),
       slice_worker_(worker_config(config, tiles_)) {
   if (config.patch_side_m > 0.0) {
+    if (config.close_loops && config.given_path.empty()) {
+      loops_.emplace(loop_config(config), relocalizer_.keyframes());
+    }
     patch_schedule_.emplace(config.patch_schedule, tiles_,
                             crossing_rule(config.slices.extractor, volume_));
   }
@@ -92,11 +109,16 @@ FrameResult MapperPipeline::process(const RgbdFrame& measured) {
     clock.end_of(&StageTimes::shift_ms);
     integrator_.integrate(frame, X_WC_, volume_, noise_.noise());
     clock.end_of(&StageTimes::integrate_ms);
-    update_model(frame, input);
+    update_model(frame, input, result.tracking);
     clock.end_of(&StageTimes::raycast_ms);
   } else if (model_) {
     look_where_expected(input);
     clock.end_of(&StageTimes::raycast_ms);
+  }
+  if (loops_) {
+    result.correction = correct(loops_->take_due(frame.utime));
+    result.tracking.X_WC = corrected(result.tracking.X_WC);
+    clock.end_of(&StageTimes::loops_ms);
   }
   if (patch_schedule_) {
     submit_patches(frame);
@@ -109,9 +131,25 @@ FrameResult MapperPipeline::process(const RgbdFrame& measured) {
 }
 
 std::vector<CloudSlice> MapperPipeline::finish() {
+  if (loops_) correct(loops_->finish());
   // After the last frame, at which a batch of patches may have ended.
-  slice_worker_.submit(volume_.detach_all(), patch_schedule_ ? utime_ + 1 : utime_, X_WC_);
+  slice_worker_.submit(volume_.detach_all(), patch_schedule_ ? utime_ + 1 : utime_,
+                       corrected(X_WC_));
   return slice_worker_.drain();
+}
+
+Trajectory MapperPipeline::corrected_path() const {
+  return loops_ ? loops_->corrected_path() : path_;
+}
+
+std::optional<MapCorrection> MapperPipeline::correct(std::optional<MapCorrection> correction) {
+  if (!correction) return std::nullopt;
+  slice_worker_.submit(loops_->deformation(), utime_, corrected(X_WC_), volume_.resolution_m());
+  return correction;
+}
+
+Pose MapperPipeline::corrected(const Pose& X_UC) const {
+  return loops_ ? loops_->deformation().at(loops_->keyframe()) * X_UC : X_UC;
 }
 
 RgbdFrame MapperPipeline::cleaned(const RgbdFrame& frame) {
@@ -189,29 +227,36 @@ int MapperPipeline::shift(const RgbdFrame& frame, const Pose& X_WC) {
   std::vector<DetachedBlocks> left = volume_.shift_to(X_WC.translation());
   for (DetachedBlocks& blocks : left) {
     if (patch_schedule_) patch_schedule_->note_left(blocks.coords, volume_);
-    slice_worker_.submit(std::move(blocks), frame.utime, X_WC);
+    slice_worker_.submit(std::move(blocks), frame.utime, corrected(X_WC));
   }
   return static_cast<int>(left.size());
 }
 
 void MapperPipeline::submit_patches(const RgbdFrame& frame) {
-  std::optional<PatchBatch> batch = patch_schedule_->next(volume_, frame.utime);
+  std::optional<PatchBatch> batch =
+      patch_schedule_->next(volume_, frame.utime, loops_ ? loops_->keyframe() : 0);
   if (!batch) return;
   std::vector<BlockSlot> slots;
-  for (const PatchBatch::Patch& patch : batch->patches) {
+  for (PatchBatch::Patch& patch : batch->patches) {
+    if (loops_) patch.X_WP = loops_->deformation().at(patch.keyframe);
     if (!patch.in_volume) continue;
     tiles_.for_each_block(patch.tile, [&](const BlockCoord& coord) {
       const BlockSlot slot = volume_.find(coord);
       if (slot != kNoBlock) slots.push_back(slot);
     });
   }
-  slice_worker_.submit(*std::move(batch), volume_.snapshot(std::move(slots)), frame.utime, X_WC_);
+  slice_worker_.submit(*std::move(batch), volume_.snapshot(std::move(slots)), frame.utime,
+                       corrected(X_WC_));
 }
 
-void MapperPipeline::update_model(const RgbdFrame& frame, const TrackingInput& input) {
+void MapperPipeline::update_model(const RgbdFrame& frame, const TrackingInput& input,
+                                  const TrackingResult& located) {
+  if (!loops_) path_.push_back({input.utime, X_WC_});
   if (!config_.given_path.empty()) return;  // the model is only for tracking
   model_ = model_from(X_WC_, input.surface_C.front().intrinsics, frame.depth_m);
-  relocalizer_.remember(input, *model_);
+  if (loops_) loops_->release_left(volume_, X_WC_);
+  const bool is_keyframe = relocalizer_.remember(input, *model_);
+  if (loops_) loops_->follow(located, is_keyframe, input.utime, noise_.noise());
 }
 
 void MapperPipeline::look_where_expected(const TrackingInput& input) {

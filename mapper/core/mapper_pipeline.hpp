@@ -13,6 +13,7 @@
 #include "mapper/core/frame/rgbd_frame.hpp"
 #include "mapper/core/fusion/integrator.hpp"
 #include "mapper/core/fusion/raycaster.hpp"
+#include "mapper/core/loop_closure/loop_closure.hpp"
 #include "mapper/core/relocalization/relocalizer.hpp"
 #include "mapper/core/slices/patch_schedule.hpp"
 #include "mapper/core/slices/slice_worker.hpp"
@@ -28,10 +29,11 @@ namespace kintsugi::mapper {
 struct FrameResult {
   TrackingResult tracking;
   std::vector<CloudSlice>
-      slices;            ///< finished since the frame before; they left at any earlier frame
-  int slices_left = 0;   ///< slices that left the volume at this frame
-  StageTimes times;      ///< wall time
-  StageTimes cpu_times;  ///< CPU time of the whole process during these stages
+      slices;  ///< finished since the frame before; they left at any earlier frame
+  std::optional<MapCorrection> correction;  ///< loops were closed
+  int slices_left = 0;                      ///< slices that left the volume at this frame
+  StageTimes times;                         ///< wall time
+  StageTimes cpu_times;                     ///< CPU time of the whole process during these stages
 };
 
 /// Tracks the camera, fuses each frame into a volume that moves with it, and returns what leaves
@@ -56,6 +58,10 @@ class MapperPipeline {
     Raycaster::Config raycaster;
     Tracker::Config tracker;
     Relocalizer::Config relocalizer;
+    LoopClosure::Config loops;  ///< its lengths in voxels and its reach follow from the volume
+    /// The map is corrected where the camera comes back to a place. For patches, and without a
+    /// given path.
+    bool close_loops = true;
     SliceWorker::Config slices;  ///< its `tiles` follow from what is below
     /// The map comes in patches of about this size, m, while its surface is in the volume; 0: in
     /// slices, when it leaves the volume.
@@ -91,6 +97,13 @@ class MapperPipeline {
 
   std::int64_t num_blocks() const { return static_cast<std::int64_t>(volume_.num_blocks()); }
   int num_keyframes() const { return relocalizer_.num_keyframes(); }
+  /// None where loops are not closed.
+  const LoopClosure* loops() const { return loops_ ? &*loops_ : nullptr; }
+  /// Where a patch is in the corrected map, by its number in PatchRun; after finish().
+  PatchPose pose_of_patch(int patch) const { return slice_worker_.pose_of_patch(patch); }
+
+  /// Of the frames whose pose is known, as corrected by the loops that were closed so far.
+  Trajectory corrected_path() const;
   std::int64_t volume_bytes() const { return static_cast<std::int64_t>(volume_.memory_bytes()); }
   const DepthNoise& noise() const { return noise_.noise(); }
   double extraction_ms() const { return slice_worker_.busy_ms(); }
@@ -105,8 +118,12 @@ class MapperPipeline {
   void learn_noise(const TrackingInput& input, const Pose& X_WC);
   int shift(const RgbdFrame& frame, const Pose& X_WC);
   void submit_patches(const RgbdFrame& frame);
+  /// Moves the patches; returns what it was given.
+  std::optional<MapCorrection> correct(std::optional<MapCorrection> correction);
+  Pose corrected(const Pose& X_UC) const;
   std::optional<TrackingResult> find_again(const TrackingInput& input);
-  void update_model(const RgbdFrame& frame, const TrackingInput& input);
+  void update_model(const RgbdFrame& frame, const TrackingInput& input,
+                    const TrackingResult& located);
   /// After a lost frame: the model for the next one is the map as seen from where the camera should
   /// be.
   void look_where_expected(const TrackingInput& input);
@@ -123,11 +140,13 @@ class MapperPipeline {
   NoiseEstimator noise_;
   LocalNoiseEstimator local_noise_;
   Relocalizer relocalizer_;
+  std::optional<LoopClosure> loops_;  ///< none: the map is not corrected
+  Trajectory path_;  ///< of the frames that were located, where loops are not closed
   const TileGrid tiles_;
   std::optional<PatchSchedule> patch_schedule_;  ///< none: slices
   SliceWorker slice_worker_;
   std::optional<Model> model_;    ///< none before the first fused frame
-  Pose X_WC_ = Pose::Identity();  ///< of the last fused frame
+  Pose X_WC_ = Pose::Identity();  ///< of the last fused frame, as tracked
   bool has_frames_ = false;
   std::int64_t utime_ = 0;  ///< of the last frame
 };

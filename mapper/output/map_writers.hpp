@@ -8,21 +8,28 @@
 #include "lcmtypes/base/ply_writer.hpp"
 #include "lcmtypes/messages.hpp"
 #include "mapper/core/extraction/mesh_extractor.hpp"
+#include "mapper/core/slices/patch_run.hpp"
+#include "mapper/output/patch_runs.hpp"
 
 namespace kintsugi::mapper {
 
 /// Writes the points of slices: x y z nx ny nz (metres, W), red green blue, weight. 31 bytes per
 /// point on disk, none in memory. Throws like PlyWriter.
+///
+/// Points of patches are written in their frames P, and moved to W when the file is completed.
 class CloudWriter {
  public:
   explicit CloudWriter(const std::filesystem::path& path);
 
-  void append(const std::vector<CloudPoint>& points_W);
-  void commit();  ///< completes the file
+  /// `runs`: the patches of the points; empty: they are in W.
+  void append(const std::vector<CloudPoint>& points, const std::vector<PatchRun>& runs = {});
+  /// Completes the file.
+  void commit(const PoseOfPatch& pose_of = {});
   std::int64_t num_points() const;
 
  private:
   PlyWriter file_;
+  PatchRuns runs_;
 };
 
 /// Writes a mesh: vertices x y z (metres, W), red green blue; triangles counter-clockwise seen from
@@ -32,13 +39,15 @@ class MeshWriter {
  public:
   explicit MeshWriter(const std::filesystem::path& path);
 
-  /// Pieces in the order in which a MeshExtractor gave them.
-  void append(const MeshPiece& piece);
-  void commit();  ///< completes the file
+  /// Pieces in the order in which a MeshExtractor gave them, and the patches of their vertices.
+  void append(const MeshPiece& piece, const std::vector<PatchRun>& runs = {});
+  /// Completes the file.
+  void commit(const PoseOfPatch& pose_of = {});
   std::int64_t num_triangles() const;
 
  private:
   PlyWriter file_;
+  PatchRuns runs_;
 };
 
 }  // namespace kintsugi::mapper

@@ -42,27 +42,28 @@ void MapFiles::Output<Writer>::note_failure(const std::exception& error) {
 MapFiles::MapFiles(const std::string& cloud, const std::string& mesh)
     : cloud_(cloud), mesh_(mesh) {}
 
-std::function<void(const std::vector<CloudPoint>&)> MapFiles::points_sink() {
+std::function<void(const std::vector<CloudPoint>&, const std::vector<PatchRun>&)>
+MapFiles::points_sink() {
   if (!cloud_.writer) return {};
-  return [this](const std::vector<CloudPoint>& points_W) {
-    cloud_.attempt([&points_W](CloudWriter& writer) { writer.append(points_W); });
+  return [this](const std::vector<CloudPoint>& points, const std::vector<PatchRun>& runs) {
+    cloud_.attempt([&](CloudWriter& writer) { writer.append(points, runs); });
   };
 }
 
-std::function<void(const MeshPiece&)> MapFiles::mesh_sink() {
+std::function<void(const MeshPiece&, const std::vector<PatchRun>&)> MapFiles::mesh_sink() {
   if (!mesh_.writer) return {};
-  return [this](const MeshPiece& piece) {
-    mesh_.attempt([&piece](MeshWriter& writer) { writer.append(piece); });
+  return [this](const MeshPiece& piece, const std::vector<PatchRun>& runs) {
+    mesh_.attempt([&](MeshWriter& writer) { writer.append(piece, runs); });
   };
 }
 
-void MapFiles::commit() {
-  cloud_.attempt([this](CloudWriter& writer) {
-    writer.commit();
+void MapFiles::commit(const PoseOfPatch& pose_of) {
+  cloud_.attempt([&](CloudWriter& writer) {
+    writer.commit(pose_of);
     spdlog::info("cloud of {} points in {}", writer.num_points(), cloud_.path);
   });
-  mesh_.attempt([this](MeshWriter& writer) {
-    writer.commit();
+  mesh_.attempt([&](MeshWriter& writer) {
+    writer.commit(pose_of);
     spdlog::info("mesh of {} triangles in {}", writer.num_triangles(), mesh_.path);
   });
 }

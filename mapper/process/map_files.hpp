@@ -24,12 +24,13 @@ class MapFiles {
 
   /// Takes the points of this part that have left the volume; empty when there is no cloud file. To
   /// be called from one thread, which need not be that of the others.
-  std::function<void(const std::vector<CloudPoint>&)> points_sink();
+  std::function<void(const std::vector<CloudPoint>&, const std::vector<PatchRun>&)> points_sink();
   /// The same with pieces of the mesh.
-  std::function<void(const MeshPiece&)> mesh_sink();
+  std::function<void(const MeshPiece&, const std::vector<PatchRun>&)> mesh_sink();
 
-  /// Completes the files; nothing can be added until begin_part().
-  void commit();
+  /// Completes the files, with patches where `pose_of` has them; nothing can be added until
+  /// begin_part().
+  void commit(const PoseOfPatch& pose_of = {});
 
   /// Begins the files of another part. Never fails: see above.
   void begin_part(int part);

@@ -55,6 +55,16 @@ MapperPipeline::Config pipeline_config(const Options& options, MapFiles& map_fil
   return config;
 }
 
+/// One file for each part.
+void write_path_files(const std::string& name, const std::vector<Trajectory>& paths) {
+  if (name.empty()) return;
+  for (std::size_t part = 0; part < paths.size(); ++part) {
+    AtomicFile file(part_file(name, static_cast<int>(part)));
+    write_tum(file.stream(), paths[part]);
+    file.commit();
+  }
+}
+
 /// With a given path a lost frame is one without a pose: another part would not help.
 double restart_after_s(const Options& options) {
   return options.pipeline.given_path.empty() ? options.restart_after_s : 0.0;
@@ -84,7 +94,7 @@ void MapperProcess::run() {
   log_start();
   map_frames();
   publish_rest();
-  map_files_.commit();
+  commit_map_files();
   write_paths();
   log_summary();
   lingering_ = true;
@@ -118,6 +128,7 @@ void MapperProcess::map_frame(const TimedFrame& read) {
   }
   const TrackingResult& tracking = result.tracking;
   log_change_of_state(result, frame);
+  if (result.correction) log_correction(*result.correction, frame);
   if (is_located(tracking.state)) paths_.back().push_back({frame.utime, tracking.X_WC});
 
   num_slices += result.slices.size();
@@ -142,13 +153,12 @@ std::size_t MapperProcess::restart(const RgbdFrame& frame, FrameResult lost) {
                frame.frame_index, statistics_.part(), options_.restart_after_s,
                reason_text(lost.tracking));
   // The pose first: a run that is resumed then ends the part at this frame, too.
-  std::vector<CloudSlice> rest = pipeline_->finish();
-  const std::size_t num_slices = lost.slices.size() + rest.size();
+  const std::size_t num_slices = lost.slices.size();
   publish_result(frame, lost);
-  publisher_.publish_slices(std::move(rest), true);
-  map_files_.commit();
+  const std::size_t num_last_slices = finish_part(true);
+  commit_map_files();
   begin_part();
-  return num_slices;
+  return num_slices + num_last_slices;
 }
 
 void MapperProcess::begin_part() {
@@ -187,8 +197,9 @@ void MapperProcess::measure(const TimedFrame& read, FrameTimings& timings) {
 void MapperProcess::publish_rest() {
   finished_ = resumption_.has_caught_up(last_utime_);
   if (finished_) {
-    publisher_.publish_slices(pipeline_->finish());
+    finish_part(false);
   } else {
+    corrected_paths_.push_back(pipeline_->corrected_path());
     spdlog::warn(
         "stopped before all frames that were mapped before are mapped again: resume once more");
   }
@@ -196,13 +207,22 @@ void MapperProcess::publish_rest() {
   publish_status();
 }
 
-void MapperProcess::write_paths() {
-  if (options_.output_path_file.empty()) return;
-  for (std::size_t part = 0; part < paths_.size(); ++part) {
-    AtomicFile file(part_file(options_.output_path_file, static_cast<int>(part)));
-    write_tum(file.stream(), paths_[part]);
-    file.commit();
-  }
+/// Publishes the end of this part of the map. Returns the number of slices.
+std::size_t MapperProcess::finish_part(bool part_follows) {
+  std::vector<CloudSlice> rest = pipeline_->finish();
+  const std::size_t num_slices = rest.size();
+  publisher_.publish_slices(std::move(rest), part_follows);
+  corrected_paths_.push_back(pipeline_->corrected_path());
+  return num_slices;
+}
+
+void MapperProcess::commit_map_files() {
+  map_files_.commit([&](int patch) { return pipeline_->pose_of_patch(patch); });
+}
+
+void MapperProcess::write_paths() const {
+  write_path_files(options_.output_path_file, corrected_paths_);
+  write_path_files(options_.online_path_file, paths_);
 }
 
 void MapperProcess::publish_status() {
@@ -219,6 +239,11 @@ void MapperProcess::publish_status() {
   status.frames_total = source.frames_total;
   status.frames_dropped = source.counts.frames_dropped;
   status.keyframes = pipeline_->num_keyframes();
+  if (const LoopClosure* const loops = pipeline_->loops()) {
+    status.loops = loops->num_loops();
+    status.loops_contradicted = loops->num_contradicted();
+    status.corrections = loops->deformation().number();
+  }
   const DepthNoise& noise = pipeline_->noise();
   status.noise_base_m = noise.base_m;
   status.noise_share = noise.share;
@@ -266,6 +291,14 @@ void MapperProcess::log_change_of_state(const FrameResult& result, const RgbdFra
   }
 }
 
+void MapperProcess::log_correction(const MapCorrection& correction, const RgbdFrame& frame) {
+  spdlog::info("frame {}: {} loops closed so far, keyframes moved by up to {:.0f} mm{}",
+               frame.frame_index, correction.loops.size(), 1e3 * correction.largest_motion_m,
+               correction.num_contradicted == 0
+                   ? ""
+                   : fmt::format("; {} loops contradicted", correction.num_contradicted));
+}
+
 void MapperProcess::log_summary() const {
   const double elapsed_s = 1e-3 * run_clock_.elapsed_ms();
   const SourceStatus source = reader_.status();
@@ -281,10 +314,12 @@ void MapperProcess::log_summary() const {
   spdlog::info("{} slices, {} points, {} messages published", published.slices, published.points,
                published.chunks);
   if (paths_.size() > 1) log_parts();
-  if (options_.output_path_file.empty()) return;
-  for (std::size_t part = 0; part < paths_.size(); ++part) {
-    spdlog::info("camera path of {} poses in {}", paths_[part].size(),
-                 part_file(options_.output_path_file, static_cast<int>(part)).string());
+  for (const std::string& name : {options_.output_path_file, options_.online_path_file}) {
+    if (name.empty()) continue;
+    for (std::size_t part = 0; part < paths_.size(); ++part) {
+      spdlog::info("camera path of {} poses in {}", paths_[part].size(),
+                   part_file(name, static_cast<int>(part)).string());
+    }
   }
 }
 

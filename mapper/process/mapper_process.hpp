@@ -44,11 +44,14 @@ class MapperProcess {
   void publish_result(const RgbdFrame& frame, FrameResult& result);
   void measure(const TimedFrame& read, FrameTimings& timings);
   void publish_rest();
-  void write_paths();
+  std::size_t finish_part(bool part_follows);
+  void commit_map_files();
+  void write_paths() const;
   void publish_status();
   void publish_status_when_due();
   void log_start() const;
   void log_change_of_state(const FrameResult& result, const RgbdFrame& frame);
+  static void log_correction(const MapCorrection& correction, const RgbdFrame& frame);
   void log_summary() const;
   void log_parts() const;
   void throw_failures() const;
@@ -64,7 +67,10 @@ class MapperProcess {
   RunStatistics statistics_;
   std::optional<FrameLog> frame_log_;
   std::optional<FrameStore> frame_store_;
-  std::vector<Trajectory> paths_{1};  ///< of each part: the frames that were tracked or given
+  /// Of each part, the frames that were tracked or given: as believed at each frame, and as
+  /// corrected at its end.
+  std::vector<Trajectory> paths_{1};
+  std::vector<Trajectory> corrected_paths_;
   TrackingState last_state_ = TrackingState::kStarting;
   double cpu_ms_ = 0.0;         ///< of the process, at the last frame
   double extraction_ms_ = 0.0;  ///< of the pipeline, at the last frame

@@ -84,6 +84,8 @@ OptionGroup mapping_group(Options& o) {
             "surface points need more observations than this"},
            {"--trajectory", &o.given_path_file, kMustMatch,
             "camera path in TUM format; replaces tracking"},
+           {"--no-loop-closure", &o.no_loop_closure, kMustMatch,
+            "do not correct the map where the camera comes back to a place"},
            {"--restart-after",
             &o.restart_after_s,
             kMustMatch,
@@ -100,7 +102,10 @@ OptionGroup mapping_group(Options& o) {
 
 OptionGroup output_options(Options& o) {
   return {"Files to write",
-          {{"--output-trajectory", &o.output_path_file, kMayDiffer, "the camera path, TUM format"},
+          {{"--output-trajectory", &o.output_path_file, kMayDiffer,
+            "the camera path, corrected by the loops that were closed, TUM format"},
+           {"--online-trajectory", &o.online_path_file, kMayDiffer,
+            "the camera path as it was believed at each frame, TUM format"},
            {"--cloud", &o.cloud_file, kMayDiffer, "the points of every slice, PLY"},
            {"--mesh", &o.mesh_file, kMayDiffer, "the surface as triangles, PLY"},
            {"--timings", &o.timings_file, kMayDiffer,

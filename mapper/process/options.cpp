@@ -104,6 +104,7 @@ void complete_slices(Options& options) {
   if (options.slices != "patch" && options.slices != "shift") {
     throw std::invalid_argument("--slices is '" + options.slices + "', must be patch or shift");
   }
+  options.pipeline.close_loops = !options.no_loop_closure;
   options.pipeline.patch_side_m = options.slices == "patch" ? kPatchSide_m : 0.0;
 }
 

@@ -116,7 +116,9 @@ class Run {
     if (!options_.cloud.empty()) cloud_.emplace(options_.cloud);
     if (!options_.mesh.empty()) {
       mesh_.emplace(options_.mesh);
-      options_.pipeline.slices.on_mesh = [this](const MeshPiece& piece) { mesh_->append(piece); };
+      options_.pipeline.slices.on_mesh = [this](const MeshPiece& piece, const auto& /*runs*/) {
+        mesh_->append(piece);
+      };
     }
   }
 

@@ -9,7 +9,8 @@
 
 namespace kintsugi::mapper {
 
-/// The poses of the camera as tracked, in the uncorrected map (U) and, for each, the keyframe that it was at.
+/// The poses of the camera as tracked, in the uncorrected map (U) and, for each, the keyframe that
+/// it was at.
 class CameraPath {
  public:
   /// Adds the pose at a time after all before. `jumped`: it was not tracked from the one before.
@@ -18,9 +19,9 @@ class CameraPath {
   /// Length, without jumps, metres.
   double length_m() const { return length_m_; }
 
-  /// The path in the corrected map. Between the moment when the camera came to a keyframe and the one
-  /// when it came to the next, the correction goes over linearly from that of the one to that of the
-  /// other, unless it jumped.
+  /// The path in the corrected map. Between the moment when the camera came to a keyframe and the
+  /// one when it came to the next, the correction goes over linearly from that of the one to that
+  /// of the other, unless it jumped.
   Trajectory corrected(const MapDeformation& deformation) const;
 
  private:

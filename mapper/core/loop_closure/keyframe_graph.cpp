@@ -27,7 +27,6 @@ Matrix6d with_error(const Matrix6d& information, double sigma) {
   return 0.5 * (sum + sum.transpose());  // symmetric but for rounding
 }
 
-
 }  // namespace
 
 void KeyframeGraph::Config::validate() const {
@@ -55,7 +54,8 @@ void KeyframeGraph::add_tracked(int from, int to, const Matrix6d& information_T)
   if (from == to) throw std::invalid_argument("KeyframeGraph: a motion needs two keyframes");
   const Pose X_FT = nodes_[from].X_UK.inverse(Eigen::Isometry) * nodes_[to].X_UK;
   // Both keyframes were registered with the volume.
-  tracked_.push_back({from, to, X_FT, with_error(0.5 * information_T, kSurfaceError_vox * config_.voxel_m), false});
+  tracked_.push_back({from, to, X_FT,
+                      with_error(0.5 * information_T, kSurfaceError_vox * config_.voxel_m), false});
 }
 
 void KeyframeGraph::check_number(int number) const {
@@ -92,8 +92,7 @@ bool KeyframeGraph::agree(const Loop& a, const Loop& b) const {
   };
   if (distance_m(a.later, b.later) > config_.near_m) return false;
   if (distance_m(a.earlier, b.earlier) > config_.near_m) return false;
-  const Pose X_LaLb_tracked =
-      nodes_[a.later].X_UK.inverse(Eigen::Isometry) * nodes_[b.later].X_UK;
+  const Pose X_LaLb_tracked = nodes_[a.later].X_UK.inverse(Eigen::Isometry) * nodes_[b.later].X_UK;
   const Pose X_EaEb = nodes_[a.earlier].X_UK.inverse(Eigen::Isometry) * nodes_[b.earlier].X_UK;
   const Pose X_LaLb = a.X_EL.inverse(Eigen::Isometry) * X_EaEb * b.X_EL;
   // The uncertainty of a rotation moves what is as far away as both keyframes are from each other.
@@ -109,17 +108,15 @@ double KeyframeGraph::optimize() {
     if (optimized.contradicted.empty()) {
       double largest_motion_m = 0.0;
       for (std::size_t i = 0; i < X_WK_.size(); ++i) {
-        const Eigen::Vector3d motion =
-            optimized.X_WN[i].translation() - X_WK_[i].translation();
+        const Eigen::Vector3d motion = optimized.X_WN[i].translation() - X_WK_[i].translation();
         largest_motion_m = std::max(largest_motion_m, motion.norm());
       }
       X_WK_ = optimized.X_WN;
       return largest_motion_m;
     }
     const int worst = *std::max_element(
-        optimized.contradicted.begin(), optimized.contradicted.end(), [&](int i, int j) {
-          return optimized.error_sigmas[i] < optimized.error_sigmas[j];
-        });
+        optimized.contradicted.begin(), optimized.contradicted.end(),
+        [&](int i, int j) { return optimized.error_sigmas[i] < optimized.error_sigmas[j]; });
     confirmed_.erase(confirmed_.begin() + (worst - static_cast<std::ptrdiff_t>(tracked_.size())));
     ++num_contradicted_;
   }
@@ -129,8 +126,9 @@ PoseGraph KeyframeGraph::pose_graph() const {
   PoseGraph graph{X_WK_, tracked_};
   for (const Loop& loop : confirmed_) {
     // Two surfaces were compared.
-    graph.edges.push_back({loop.earlier, loop.later, loop.X_EL,
-                           with_error(loop.information_L, 2.0 * kSurfaceError_vox * config_.voxel_m), true});
+    graph.edges.push_back(
+        {loop.earlier, loop.later, loop.X_EL,
+         with_error(loop.information_L, 2.0 * kSurfaceError_vox * config_.voxel_m), true});
   }
   return graph;
 }

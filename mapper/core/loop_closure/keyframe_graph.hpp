@@ -11,7 +11,8 @@ namespace kintsugi::mapper {
 
 /// Where keyframes are, according to tracking and loops.
 ///
-/// U is the uncorrected map, in which the camera is tracked; W the corrected one, the same at first.
+/// U is the uncorrected map, in which the camera is tracked; W the corrected one, the same at
+/// first.
 ///
 /// A loop counts only when it is confirmed: when another loop, from another later keyframe, agrees
 /// with it. For that both later keyframes must have been near each other on the camera's path, and

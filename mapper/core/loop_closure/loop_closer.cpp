@@ -47,9 +47,7 @@ void LoopCloser::add(NewKeyframe added, std::int64_t utime) {
 
 std::optional<MapCorrection> LoopCloser::take_due(std::int64_t utime) {
   std::unique_lock lock(mutex_);
-  done_.wait(lock, [&] {
-    return failure_ || queue_.empty() || queue_.front().due_utime > utime;
-  });
+  done_.wait(lock, [&] { return failure_ || queue_.empty() || queue_.front().due_utime > utime; });
   if (failure_) std::rethrow_exception(failure_);
   std::optional<MapCorrection> newest;
   while (!finished_.empty() && finished_.front().first <= utime) {
@@ -129,10 +127,9 @@ std::vector<Loop> LoopCloser::matches_of(const NewKeyframe& added) const {
   std::vector<Loop> loops;
   const int later = added.number;
   for (const int earlier : candidates_for(added)) {
-    const Pose X_EL_believed =
-        graph_.X_WK(earlier).inverse(Eigen::Isometry) * graph_.X_WK(later);
-    const bool sees_same = common_share(later, earlier, X_EL_believed) >=
-                           config_.verifier.evidence.min_overlap_share;
+    const Pose X_EL_believed = graph_.X_WK(earlier).inverse(Eigen::Isometry) * graph_.X_WK(later);
+    const bool sees_same =
+        common_share(later, earlier, X_EL_believed) >= config_.verifier.evidence.min_overlap_share;
     const auto match = verifier_.match(*added.keyframe, *keyframes_[earlier],
                                        sees_same ? X_EL_believed : Pose::Identity(), added.noise);
     if (match) {

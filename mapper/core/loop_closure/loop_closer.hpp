@@ -31,18 +31,18 @@ struct NewKeyframe {
 
 /// Where the keyframes are after loops were closed.
 struct MapCorrection {
-  std::vector<Pose> X_WK;    ///< of all keyframes up to the newest that was known
-  std::vector<Loop> loops;   ///< all that are confirmed
-  int num_contradicted = 0;  ///< loops that were given up, so far
+  std::vector<Pose> X_WK;         ///< of all keyframes up to the newest that was known
+  std::vector<Loop> loops;        ///< all that are confirmed
+  int num_contradicted = 0;       ///< loops that were given up, so far
   double largest_motion_m = 0.0;  ///< of a keyframe, since the correction before
 };
 
-/// Compares each new keyframe with earlier ones that the volume does not hold any more, and corrects
-/// the poses of all when loops are confirmed.
+/// Compares each new keyframe with earlier ones that the volume does not hold any more, and
+/// corrects the poses of all when loops are confirmed.
 ///
 /// A keyframe is held by the one from which it was tracked, and by the oldest and the nearest of
-/// those in the volume that see the same: as long as the volume holds a surface, tracking against it
-/// does not drift.
+/// those in the volume that see the same: as long as the volume holds a surface, tracking against
+/// it does not drift.
 ///
 /// Candidates are keyframes that look alike, and those that would see the same surface if tracking
 /// had not drifted. The best few matches of a keyframe count.

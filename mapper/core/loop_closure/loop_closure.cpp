@@ -88,7 +88,7 @@ void LoopClosure::compare_newest() {
 }
 
 std::optional<MapCorrection> LoopClosure::take_due(std::int64_t utime) {
-  if (auto due = closer_.take_due(utime)) waiting_ = std::move(due);
+  note(closer_.take_due(utime));
   if (!waiting_) return std::nullopt;
   const bool may_be_small = 1e-6 * static_cast<double>(utime - applied_utime_) >= config_.period_s;
   auto correction =
@@ -97,9 +97,16 @@ std::optional<MapCorrection> LoopClosure::take_due(std::int64_t utime) {
   return correction;
 }
 
+void LoopClosure::note(std::optional<MapCorrection> newest) {
+  if (!newest) return;
+  num_loops_ = static_cast<int>(newest->loops.size());
+  num_contradicted_ = newest->num_contradicted;
+  waiting_ = std::move(newest);
+}
+
 std::optional<MapCorrection> LoopClosure::finish() {
   compare_newest();
-  if (auto last = closer_.drain()) waiting_ = std::move(last);
+  note(closer_.drain());
   return apply_if_above(config_.least_motion_vox);
 }
 

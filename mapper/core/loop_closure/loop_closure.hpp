@@ -38,8 +38,9 @@ class LoopClosure {
   /// @throws std::invalid_argument if the configuration is not valid
   LoopClosure(const Config& config, KeyframeMap& keyframes);
 
-  /// To be called before a located frame may become a keyframe: releases the keyframes whose surface
-  /// is not in the volume any more, so that the camera gets a new one where it comes back to them.
+  /// To be called before a located frame may become a keyframe: releases the keyframes whose
+  /// surface is not in the volume any more, so that the camera gets a new one where it comes back
+  /// to them.
   void release_left(const TsdfVolume& volume, const Pose& X_UC);
 
   /// To be called after each located frame; `is_keyframe`: it has become the newest keyframe.
@@ -61,11 +62,15 @@ class LoopClosure {
   /// The keyframe at which the camera is, or was last; 0 before the first.
   int keyframe() const { return last_at_; }
 
+  int num_loops() const { return num_loops_; }                ///< that count
+  int num_contradicted() const { return num_contradicted_; }  ///< that were given up
+
   double busy_ms() const { return closer_.busy_ms(); }
 
  private:
   void compare_newest();
   std::optional<MapCorrection> apply_if_above(double least_motion_vox);
+  void note(std::optional<MapCorrection> newest);
   double motion_m(const MapCorrection& correction) const;
 
   const Config config_;
@@ -78,7 +83,9 @@ class LoopClosure {
   int last_at_ = 0;  ///< the keyframe near which the camera is, or was
   MapDeformation deformation_;
   std::vector<int> from_;  ///< by keyframe: that from which the camera came; itself for the first
-  std::optional<MapCorrection> waiting_;  ///< the newest, not applied yet
+  int num_loops_ = 0;
+  int num_contradicted_ = 0;
+  std::optional<MapCorrection> waiting_;        ///< the newest, not applied yet
   std::int64_t applied_utime_ = INT64_MIN / 2;  ///< of the last one
 };
 

@@ -1,15 +1,55 @@
 #include "mapper/core/slices/patch_maker.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <span>
 #include <utility>
 
 namespace kintsugi::mapper {
+namespace {
 
-void PatchMaker::keep(const ExtractedSurface& left) {
+constexpr double kLeastMotion_vox = 0.1;  // a smaller one is no error
+
+}  // namespace
+
+std::vector<PatchRun> PatchMaker::keep(const ExtractedSurface& left) {
   for (const auto& [tile, points_W] : by_tile(left)) {
-    std::vector<CloudPoint>& left_W = patches_[tile].left_W;
+    std::vector<CloudPoint>& left_W = patch_at(tile).left_W;
     left_W.insert(left_W.end(), points_W.begin(), points_W.end());
   }
+  std::vector<PatchRun> runs;
+  for (const ExtractedSurface::Block& block : left.blocks) {
+    runs.push_back({block.num_points, patch_at(grid_.tile_of(block.coord)).number});
+  }
+  return runs;
+}
+
+std::vector<PatchRun> PatchMaker::patches_of(const MeshPiece& piece, double resolution_m) const {
+  std::vector<PatchRun> runs;
+  const double block_m = kBlockSide * resolution_m;
+  for (const MeshPiece::Vertex& vertex : piece.vertices) {
+    const auto block = [&](float p) { return static_cast<int>(std::floor(p / block_m)); };
+    const auto found = newest_.find(
+        grid_.tile_of(make_block_coord(block(vertex.x), block(vertex.y), block(vertex.z))));
+    const int patch = found == newest_.end() ? kNoPatch : found->second;
+    if (runs.empty() || runs.back().patch != patch) runs.push_back({0, patch});
+    ++runs.back().num_points;
+  }
+  return runs;
+}
+
+/// The patch of a tile that may be sent again; a new one where there is none.
+PatchMaker::Patch& PatchMaker::patch_at(const TileCoord& tile) {
+  Patch& patch = patches_[tile];
+  if (patch.number != kNoPatch) return patch;
+  patch.number = static_cast<int>(places_.size());
+  // It moves like the one before it until it is known where it was seen.
+  Place place = places_.empty() ? Place() : places_.back();
+  place.tile = tile;
+  place.id = kNoId;
+  places_.push_back(place);
+  newest_[tile] = patch.number;
+  return patch;
 }
 
 std::vector<CloudSlice> PatchMaker::make(const PatchBatch& batch, const ExtractedSurface& in_volume,
@@ -17,7 +57,9 @@ std::vector<CloudSlice> PatchMaker::make(const PatchBatch& batch, const Extracte
   auto present_W = by_tile(in_volume);
   std::vector<CloudSlice> slices;
   for (const PatchBatch::Patch& due : batch.patches) {
-    Patch& patch = patches_[due.tile];
+    Patch& patch = patch_at(due.tile);
+    Place& place = places_[patch.number];
+    place.keyframe = due.keyframe;
     CloudSlice slice = header;
     slice.kind = SliceKind::kPatch;
     slice.in_volume = due.in_volume;
@@ -26,9 +68,12 @@ std::vector<CloudSlice> PatchMaker::make(const PatchBatch& batch, const Extracte
       const auto& points_W = present_W[due.tile];
       slice.points_W.insert(slice.points_W.end(), points_W.begin(), points_W.end());
     }
-    if (patch.id != kNoId || !slice.points_W.empty()) {
-      if (patch.id == kNoId) patch.id = next_id_++;
-      slice.id = patch.id;
+    if (place.id != kNoId || !slice.points_W.empty()) {
+      if (place.id == kNoId) place.id = next_id_++;
+      place.X_WP = due.X_WP;
+      slice.id = place.id;
+      slice.X_WP = place.X_WP;
+      slice.correction = correction_;
       slice.revision = ++patch.revision;
       revision_sum_ += slice.revision > 0 ? 1 : 0;
       slices.push_back(std::move(slice));
@@ -39,9 +84,49 @@ std::vector<CloudSlice> PatchMaker::make(const PatchBatch& batch, const Extracte
   return slices;
 }
 
+std::vector<CloudSlice> PatchMaker::correct(const MapDeformation& deformation,
+                                            const CloudSlice& header) {
+  correction_ = deformation.number();
+  CloudSlice slice = header;
+  slice.kind = SliceKind::kCorrection;
+  slice.ends_batch = true;
+  slice.correction = correction_;
+  for (Place& place : places_) {
+    const PatchPose X_WP = deformation.at(place.keyframe);
+    if (place.id == kNoId || place.X_WP == X_WP) continue;
+    const double moved_m =
+        motion_m(place.tile, place.X_WP.pose(), X_WP.pose(), header.resolution_m);
+    if (moved_m <= kLeastMotion_vox * header.resolution_m) continue;
+    place.X_WP = X_WP;
+    slice.motions.push_back({place.id, X_WP});
+  }
+  if (slice.motions.empty()) return {};
+  std::ranges::sort(slice.motions, {}, &PatchMotion::id);
+  slice.X_WP = deformation.newest();
+  slice.id = next_id_++;
+  return {std::move(slice)};
+}
+
+/// The largest distance that a corner of the tile moves, metres.
+double PatchMaker::motion_m(const TileCoord& tile, const Pose& X_WP_before, const Pose& X_WP_after,
+                            double resolution_m) const {
+  const double side_m = grid_.side_blocks() * kBlockSide * resolution_m;
+  double largest_m = 0.0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Eigen::Vector3d p_P =
+        side_m * Eigen::Vector3d(tile.x + (corner & 1), tile.y + ((corner >> 1) & 1),
+                                 tile.z + ((corner >> 2) & 1));
+    largest_m = std::max(largest_m, (X_WP_after * p_P - X_WP_before * p_P).norm());
+  }
+  return largest_m;
+}
+
 std::vector<CloudSlice> PatchMaker::finish(const CloudSlice& header) {
   PatchBatch everything;
-  for (const auto& [tile, patch] : patches_) everything.patches.push_back({tile, false});
+  for (const auto& [tile, patch] : patches_) {
+    const Place& place = places_[patch.number];
+    everything.patches.push_back({tile, false, place.keyframe, place.X_WP.pose()});
+  }
   std::vector<CloudSlice> slices = make(everything, {}, header);
   CloudSlice& last = slices.emplace_back(header);
   last.kind = SliceKind::kFinal;

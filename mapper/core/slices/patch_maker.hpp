@@ -5,8 +5,11 @@
 #include <vector>
 
 #include "lcmtypes/messages.hpp"
+#include "mapper/core/extraction/mesh_extractor.hpp"
 #include "mapper/core/extraction/surface_extractor.hpp"
+#include "mapper/core/loop_closure/map_deformation.hpp"
 #include "mapper/core/slices/patch_batch.hpp"
+#include "mapper/core/slices/patch_run.hpp"
 #include "mapper/core/slices/tile.hpp"
 
 namespace kintsugi::mapper {
@@ -22,8 +25,15 @@ class PatchMaker {
  public:
   explicit PatchMaker(const TileGrid& grid) : grid_(grid) {}
 
-  /// Takes surface that has left the volume.
-  void keep(const ExtractedSurface& left);
+  /// Takes surface that has left the volume. Returns the patches of its points.
+  std::vector<PatchRun> keep(const ExtractedSurface& left);
+
+  /// The patches of the vertices of a mesh: that of the tile in which each one is, as it is now or
+  /// was when it left.
+  std::vector<PatchRun> patches_of(const MeshPiece& piece, double resolution_m) const;
+
+  /// Where a patch was sent to, by its number in PatchRun.
+  const PatchPose& pose_of(int patch) const { return places_.at(patch).X_WP; }
 
   /// The patches of a batch; `in_volume` has the surface of their tiles that is in the volume.
   /// `header` has the fields that are the same in all of them. A patch that never had points is
@@ -31,20 +41,38 @@ class PatchMaker {
   std::vector<CloudSlice> make(const PatchBatch& batch, const ExtractedSurface& in_volume,
                                const CloudSlice& header);
 
+  /// Moves the patches with the keyframes at which they were seen. Gives the correction slice with
+  /// those that move by more than a tenth of a voxel; nothing where none does.
+  std::vector<CloudSlice> correct(const MapDeformation& deformation, const CloudSlice& header);
+
   /// The last revision of every patch that is not departed, and the final slice.
   std::vector<CloudSlice> finish(const CloudSlice& header);
 
  private:
   static constexpr std::int32_t kNoId = -1;
   struct Patch {
-    std::int32_t id = kNoId;
+    int number = kNoPatch;  ///< of its place
     std::int32_t revision = -1;
     std::vector<CloudPoint> left_W;  ///< points that have left the volume
   };
 
+  /// Where a patch was sent to, whether it is departed or not.
+  struct Place {
+    TileCoord tile;
+    std::int32_t id = kNoId;
+    int keyframe = 0;  ///< with which it moves
+    PatchPose X_WP;
+  };
+
   std::map<TileCoord, std::vector<CloudPoint>> by_tile(const ExtractedSurface& surface) const;
+  Patch& patch_at(const TileCoord& tile);
+  double motion_m(const TileCoord& tile, const Pose& X_WP_before, const Pose& X_WP_after,
+                  double resolution_m) const;
 
   const TileGrid grid_;
+  std::vector<Place> places_;           ///< of all patches, by number
+  std::map<TileCoord, int> newest_;     ///< the number of the newest patch of each tile
+  std::int32_t correction_ = 0;         ///< number of the last one
   std::map<TileCoord, Patch> patches_;  ///< those that may be sent again
   std::int32_t next_id_ = 0;
   std::int64_t revision_sum_ = 0;  ///< of the newest revisions

@@ -33,21 +33,24 @@ void PatchSchedule::note_left(const std::vector<BlockCoord>& left, const TsdfVol
   }
   for (const TileCoord& tile : touched) {
     if (is_in_volume(tile, volume)) continue;
+    const auto found = tiles_.find(tile);
+    departed_[tile] = found == tiles_.end() ? keyframe_ : found->second.keyframe;
     tiles_.erase(tile);
-    departed_.insert(tile);
   }
 }
 
-std::optional<PatchBatch> PatchSchedule::next(const TsdfVolume& volume, std::int64_t utime) {
+std::optional<PatchBatch> PatchSchedule::next(const TsdfVolume& volume, std::int64_t utime,
+                                              int keyframe) {
   if (!last_utime_) last_utime_ = utime;
   const double waited_s = 1e-6 * static_cast<double>(utime - *last_utime_);
   if (waited_s < kEarly * config_.period_s) return std::nullopt;
   last_utime_ = utime;
+  keyframe_ = keyframe;
   look_at(volume);
 
   PatchBatch batch;
-  for (const TileCoord& tile : std::exchange(departed_, {})) {
-    batch.patches.push_back({tile, false});
+  for (const auto& [tile, seen_at] : std::exchange(departed_, {})) {
+    batch.patches.push_back({tile, false, seen_at});
   }
   for (auto& [coord, tile] : tiles_) {
     tile.debt += cost_of_waiting(tile, waited_s);
@@ -59,7 +62,7 @@ std::optional<PatchBatch> PatchSchedule::next(const TsdfVolume& volume, std::int
     }
     std::erase_if(tile.blocks,
                   [](const auto& entry) { return entry.second.sent.num_voxels() == 0; });
-    batch.patches.push_back({coord, true});
+    batch.patches.push_back({coord, true, tile.keyframe});
   }
   if (batch.patches.empty()) return std::nullopt;
   std::ranges::stable_sort(batch.patches, {}, &PatchBatch::Patch::tile);  // departed ones first
@@ -78,7 +81,9 @@ void PatchSchedule::look_at(const TsdfVolume& volume) {
     const auto tile = tiles_.find(tile_coord);
     if (now.num_voxels() == 0 && (tile == tiles_.end() || !tile->second.blocks.contains(coord)))
       continue;
-    Block& block = tiles_[tile_coord].blocks[coord];
+    Tile& seen_tile = tiles_[tile_coord];
+    seen_tile.keyframe = keyframe_;
+    Block& block = seen_tile.blocks[coord];
     block.now = now;
     block.change = change_between(block.sent, now);
   }

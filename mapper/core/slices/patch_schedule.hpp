@@ -46,8 +46,9 @@ class PatchSchedule {
   /// To be called when blocks have left the volume, with their coordinates.
   void note_left(const std::vector<BlockCoord>& left, const TsdfVolume& volume);
 
-  /// The batch of this frame, to be called after it was fused; nothing: none is due.
-  std::optional<PatchBatch> next(const TsdfVolume& volume, std::int64_t utime);
+  /// The batch of this frame, to be called after it was fused; nothing: none is due. `keyframe`: at
+  /// which the camera is.
+  std::optional<PatchBatch> next(const TsdfVolume& volume, std::int64_t utime, int keyframe = 0);
 
  private:
   struct Block {
@@ -58,6 +59,7 @@ class PatchSchedule {
   struct Tile {
     std::map<BlockCoord, Block> blocks;  ///< those that have surface, or had when they were sent
     double debt = 0.0;                   ///< cost of waiting over the cost of sending
+    int keyframe = 0;                    ///< at which it was seen last
   };
 
   void look_at(const TsdfVolume& volume);
@@ -69,7 +71,9 @@ class PatchSchedule {
   const TileGrid grid_;
   const CrossingRule rule_;
   std::map<TileCoord, Tile> tiles_;
-  std::set<TileCoord> departed_;  ///< tiles without blocks in the volume, since the last batch
+  /// Tiles without blocks in the volume, since the last batch, and where they were seen last.
+  std::map<TileCoord, int> departed_;
+  int keyframe_ = 0;                        ///< at the last look at the volume
   std::optional<std::int64_t> last_utime_;  ///< of the last batch that was due
   std::uint32_t num_moves_ = 0;             ///< of the volume at that time
 };

@@ -4,22 +4,13 @@
 #include <iterator>
 #include <utility>
 
-#include <sys/resource.h>
-
 #include "lcmtypes/base/argument_check.hpp"
 #include "lcmtypes/base/stopwatch.hpp"
+#include "lcmtypes/base/thread_priority.hpp"
 #include "mapper/core/volume/tsdf_block_pool.hpp"
 
 namespace kintsugi::mapper {
 namespace {
-
-/// Of the calling thread only. A failure is ignored: extraction then competes with tracking.
-void lower_priority_of_thread() {
-#ifdef __linux__
-  constexpr int kNice = 10;
-  setpriority(PRIO_PROCESS, 0, kNice);  // on Linux 0 means this thread
-#endif
-}
 
 /// With those around it, which are copies where they stay in the volume.
 std::size_t num_blocks_held(const DetachedBlocks& blocks) {
@@ -61,13 +52,21 @@ SliceWorker::~SliceWorker() {
 
 void SliceWorker::submit(DetachedBlocks blocks, std::int64_t utime, const Pose& X_WC) {
   CloudSlice header = header_of(blocks, utime, X_WC);
-  enqueue({std::move(blocks), std::nullopt, std::move(header)});
+  enqueue({std::move(blocks), std::nullopt, std::nullopt, std::move(header)});
 }
 
 void SliceWorker::submit(PatchBatch batch, DetachedBlocks in_volume, std::int64_t utime,
                          const Pose& X_WC) {
   CloudSlice header = header_of(in_volume, utime, X_WC);
-  enqueue({std::move(in_volume), std::move(batch), std::move(header)});
+  enqueue({std::move(in_volume), std::move(batch), std::nullopt, std::move(header)});
+}
+
+void SliceWorker::submit(MapDeformation deformation, std::int64_t utime, const Pose& X_WC,
+                         float resolution_m) {
+  DetachedBlocks none;
+  none.resolution_m = resolution_m;
+  CloudSlice header = header_of(none, utime, X_WC);
+  enqueue({std::move(none), std::nullopt, std::move(deformation), std::move(header)});
 }
 
 void SliceWorker::enqueue(Job job) {
@@ -132,16 +131,23 @@ void SliceWorker::run() {
 }
 
 std::vector<CloudSlice> SliceWorker::work_on(Job& job) {
+  if (job.deformation) {
+    return patches_.value().correct(*job.deformation, job.header);
+  }
   ExtractedSurface surface = extractor_.extract_blocks(job.blocks);
   if (job.batch) return patches_.value().make(*job.batch, surface, job.header);
-  if (config_.on_points) config_.on_points(surface.points_W);
-  if (config_.on_mesh) config_.on_mesh(mesh_extractor_.extract(job.blocks));
+  const std::vector<PatchRun> runs = patches_ ? patches_->keep(surface) : std::vector<PatchRun>();
+  if (config_.on_points) config_.on_points(surface.points_W, runs);
+  if (config_.on_mesh) {
+    const MeshPiece piece = mesh_extractor_.extract(job.blocks);
+    config_.on_mesh(piece, patches_ ? patches_->patches_of(piece, job.header.resolution_m)
+                                    : std::vector<PatchRun>());
+  }
   return slices_of_left(job, std::move(surface));
 }
 
 std::vector<CloudSlice> SliceWorker::slices_of_left(const Job& job, ExtractedSurface surface) {
   if (patches_) {
-    patches_->keep(surface);
     return job.header.kind == SliceKind::kFinal ? patches_->finish(job.header)
                                                 : std::vector<CloudSlice>();
   }

@@ -37,11 +37,12 @@ class SliceWorker {
     /// Largest number of blocks in the queue, with those around the slices; a slice larger than
     /// this waits for an empty queue. 8,192 blocks are 32 MB, about three slices of a room.
     std::size_t max_queued_blocks = 8'192;
-    /// Called with the points that have left the volume, in order, on the worker's thread; may be
-    /// empty. Exceptions from it are treated like those from extraction.
-    std::function<void(const std::vector<CloudPoint>&)> on_points;
-    /// The same with each piece of the mesh; if empty, no mesh is made.
-    std::function<void(const MeshPiece&)> on_mesh;
+    /// Called with the points that have left the volume, in order, on the worker's thread, and the
+    /// patches that they are of (none where there are no patches); may be empty. Exceptions from it
+    /// are treated like those from extraction.
+    std::function<void(const std::vector<CloudPoint>&, const std::vector<PatchRun>&)> on_points;
+    /// The same with each piece of the mesh and its vertices; if empty, no mesh is made.
+    std::function<void(const MeshPiece&, const std::vector<PatchRun>&)> on_mesh;
 
     /// @throws std::invalid_argument naming field, value and bound
     void validate() const;
@@ -61,6 +62,10 @@ class SliceWorker {
   /// @throws as above
   void submit(PatchBatch batch, DetachedBlocks in_volume, std::int64_t utime, const Pose& X_WC);
 
+  /// Queues a correction of the patches; see PatchMaker::correct(). For patches only.
+  /// @throws as above
+  void submit(MapDeformation deformation, std::int64_t utime, const Pose& X_WC, float resolution_m);
+
   /// Slices finished since the last call, without waiting.
   /// @throws what extraction of a slice threw
   std::vector<CloudSlice> take_finished();
@@ -68,14 +73,18 @@ class SliceWorker {
   /// Waits for all submitted slices, then as take_finished().
   std::vector<CloudSlice> drain();
 
+  /// Where a patch is in the corrected map, by its number in PatchRun; after drain().
+  PatchPose pose_of_patch(int patch) const { return patches_.value().pose_of(patch); }
+
   /// Time spent extracting so far, milliseconds.
   double busy_ms() const;
 
  private:
   struct Job {
     DetachedBlocks blocks;
-    std::optional<PatchBatch> batch;  ///< none: the blocks have left
-    CloudSlice header;                ///< of its slices
+    std::optional<PatchBatch> batch;            ///< none: the blocks have left
+    std::optional<MapDeformation> deformation;  ///< there are no blocks
+    CloudSlice header;                          ///< of its slices
   };
 
   void enqueue(Job job);

@@ -37,9 +37,9 @@ class Tracker {
     /// m/s^2 (and rad/s^2), of a hand-held camera: a pose farther from the prediction than this
     /// explains is judged as one found anew.
     double max_acceleration = 30.0;
-    /// m/s, of whatever carries the camera; a person who runs. Where tracking was lost for a
+    /// m/s, of whatever carries the camera: a person who runs. Where tracking was lost for a
     /// moment, the camera cannot be in another room, however much that looks like this one.
-    double max_speed = 10.0;
+    double max_speed = 5.0;
     /// Largest drift, as a share of the path: dense tracking drifts by about a hundredth. A place
     /// that is found again may be so far from where the map has it.
     double max_drift_share = 0.02;

@@ -140,20 +140,22 @@ TEST(MapperPipeline, FusesNothingWhileLostAndGoesOnWhenTheViewReturns) {
             0.010);
 }
 
-/// A slow pan and a return to its beginning, between the frames seen then: what the camera does
-/// meanwhile is not seen.
+/// A slow pan and, a second later, a return to its beginning, between the frames seen then: what the
+/// camera does meanwhile is not seen.
 Output pan_and_return(bool with_color, bool covered) {
   static const SyntheticRun office = synthetic_run("office", 48, true, 5);
   std::vector<RgbdFrame> frames;
   Trajectory true_path;
+  std::int64_t utime = 0;
   const auto play = [&](const RgbdFrame& frame, const Pose& X_WC) {
     frames.push_back(frame);
-    frames.back().utime = 33'333 * static_cast<std::int64_t>(frames.size());
+    frames.back().utime = utime += 33'333;
     if (!with_color) frames.back().color_rgb.release();
     true_path.push_back({frames.back().utime, X_WC});
   };
   for (int i = 0; i < 48; i += 2) play(office.frames[i], office.true_path[i].X_WC);
   for (int i = 0; covered && i < 5; ++i) play(blank(office.frames[0]), Pose::Identity());
+  utime += 1'000'000;
   for (int i = 1; i < 12; i += 2) play(office.frames[i], office.true_path[i].X_WC);
   MapperPipeline::Config config = small_config();
   Output output = run(config, frames);

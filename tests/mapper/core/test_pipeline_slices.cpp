@@ -32,7 +32,9 @@ Map map_walk(std::size_t threads) {
   config.volume = {
       .region = RegionShape::kCube, .volume_size_m = 3.2, .resolution_m = 0.015, .shift_vox = 8};
   config.slices.extractor.weight_threshold = 1;
-  config.slices.on_mesh = [&map](const MeshPiece& piece) { map.mesh.push_back(piece); };
+  config.slices.on_mesh = [&map](const MeshPiece& piece, const std::vector<PatchRun>& /*runs*/) {
+    map.mesh.push_back(piece);
+  };
   config.given_path = walk().true_path;
   MapperPipeline pipeline(config);
   const auto take = [&map](std::vector<CloudSlice> slices) {

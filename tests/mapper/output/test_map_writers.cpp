@@ -1,3 +1,4 @@
+#include <array>
 #include <bit>
 #include <cstring>
 #include <fstream>
@@ -194,6 +195,52 @@ TEST(CloudReader, RefusesAHeaderWithoutAnEnd) {
   std::ofstream(path, std::ios::binary) << header;
   EXPECT_THAT([&] { read_cloud(path); },
               ThrowsMessage<std::runtime_error>(HasSubstr("ends with its header")));
+}
+
+TEST(CloudWriter, MovesPointsOfPatchesWhenTheFileIsCompleted) {
+  const kintsugi::testing::TemporaryFolder folder;
+  const auto path = folder.path() / "map.ply";
+  CloudWriter writer(path);
+  const std::vector<CloudPoint> points = {example_point(1), example_point(2), example_point(3)};
+  writer.append(points, {{1, 7}, {2, 8}});
+  writer.append(points);
+  writer.append({example_point(4)}, {{1, 8}});
+  writer.commit([](int patch) {
+    Pose X_WP = Pose::Identity();
+    X_WP.translation().z() = patch == 7 ? 100.0 : 200.0;
+    return PatchPose(X_WP);
+  });
+  const std::vector<CloudPoint> read = read_cloud(path);
+  ASSERT_EQ(read.size(), 7U);
+  const std::array<float, 7> motion_m = {100.0F, 200.0F, 200.0F, 0.0F, 0.0F, 0.0F, 200.0F};
+  const std::array<int, 7> source = {1, 2, 3, 1, 2, 3, 4};
+  for (std::size_t i = 0; i < read.size(); ++i) {
+    CloudPoint expected = example_point(source[i]);
+    expected.z += motion_m[i];
+    EXPECT_EQ(read[i], expected) << "point " << i;
+  }
+}
+
+TEST(MeshWriter, MovesVerticesOfPatchesAndLeavesTriangles) {
+  const kintsugi::testing::TemporaryFolder folder;
+  const auto still = folder.path() / "still.ply";
+  const auto moved = folder.path() / "moved.ply";
+  MeshPiece piece;
+  piece.vertices = {{1, 2, 3, {9, 8, 7}}, {4, 5, 6, {6, 5, 4}}, {7, 8, 9, {3, 2, 1}}};
+  piece.triangles = {{0, 1, 2}};
+  MeshPiece expected = piece;
+  expected.vertices[2].x += 10.0F;
+  MeshWriter expected_writer(still);
+  expected_writer.append(expected);
+  expected_writer.commit();
+  MeshWriter writer(moved);
+  writer.append(piece, {{2, kNoPatch}, {1, 0}});
+  writer.commit([](int) {
+    Pose X_WP = Pose::Identity();
+    X_WP.translation().x() = 10.0;
+    return PatchPose(X_WP);
+  });
+  EXPECT_EQ(read_file(moved), read_file(still));
 }
 
 }  // namespace

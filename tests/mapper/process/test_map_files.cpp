@@ -38,9 +38,9 @@ std::string header_line(const std::filesystem::path& file, const std::string& te
 TEST(MapFiles, HoldWhatWasAdded) {
   const TemporaryFolder folder;
   MapFiles files(folder / "cloud.ply", folder / "mesh.ply");
-  for (const int num_points : {3, 0, 4}) files.points_sink()(points(num_points));
-  files.mesh_sink()(one_triangle());
-  files.points_sink()(points(2));
+  for (const int num_points : {3, 0, 4}) files.points_sink()(points(num_points), {});
+  files.mesh_sink()(one_triangle(), {});
+  files.points_sink()(points(2), {});
   EXPECT_FALSE(std::filesystem::exists(folder / "cloud.ply"));
   files.commit();
   EXPECT_EQ(header_line(folder / "cloud.ply", "element vertex"), "element vertex 9");
@@ -70,8 +70,8 @@ void add_more_than_fits(const TemporaryFolder& folder) {
   setrlimit(RLIMIT_FSIZE, &limit);
   MapFiles files(folder / "cloud.ply", folder / "mesh.ply");
   const auto sink = files.points_sink();
-  for (int i = 0; i < 10; ++i) sink(points(2'000));
-  files.mesh_sink()(one_triangle());
+  for (int i = 0; i < 10; ++i) sink(points(2'000), {});
+  files.mesh_sink()(one_triangle(), {});
   files.commit();
   std::exit(files.failed() ? 0 : 1);
 }

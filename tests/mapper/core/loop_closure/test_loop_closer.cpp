@@ -1,10 +1,10 @@
 // A camera that comes back to a place with some drift, and one that comes to another place.
 
-#include <gtest/gtest.h>
-
 #include <map>
 #include <optional>
 #include <string>
+
+#include <gtest/gtest.h>
 
 #include "lcmtypes/trajectory.hpp"
 #include "mapper/core/loop_closure/loop_closer.hpp"
@@ -16,10 +16,10 @@ namespace {
 using testing::synthetic_run;
 using testing::SyntheticRun;
 
-constexpr int kKeyframes = 8;      // of each visit
-constexpr double kAway_m = 30.0;   // path between both visits
-constexpr double kNear = 1e6;      // information: 1 mm from one keyframe to the next
-constexpr double kAway = 25.0;     // and 0.2 m from the first visit to the second
+constexpr int kKeyframes = 8;     // of each visit
+constexpr double kAway_m = 30.0;  // path between both visits
+constexpr double kNear = 1e6;     // information: 1 mm from one keyframe to the next
+constexpr double kAway = 25.0;    // and 0.2 m from the first visit to the second
 constexpr std::int64_t kSecond_us = 1'000'000;
 
 /// Frames 0, 10, 20.. of the scene for the first visit, 5, 15, 25.. for the second.
@@ -70,7 +70,8 @@ class TwoVisits {
                       .similar = {},
                       .is_released = {},
                       .noise = {}};
-    for (int i = 0; i <= number; ++i) added.is_released.push_back(number >= kKeyframes && i < kKeyframes);
+    for (int i = 0; i <= number; ++i)
+      added.is_released.push_back(number >= kKeyframes && i < kKeyframes);
     added.similar = keyframes_.similar_to(number, [&](int i) { return added.is_released[i]; });
     closer.add(std::move(added), number * kSecond_us);
   }

@@ -98,5 +98,67 @@ TEST_F(Patches, EndWithTheirLastRevisionsAndTheirSum) {
   EXPECT_EQ(slices[3].revision_sum, 3);
 }
 
+MapDeformation correction(int number, double y0, double y1) {
+  std::vector<Pose> X_WU(2, Pose::Identity());
+  X_WU[0].translation().y() = y0;
+  X_WU[1].translation().y() = y1;
+  return {number, X_WU};
+}
+
+TEST_F(Patches, MoveWithTheKeyframesAtWhichTheyWereSeen) {
+  maker.make({{{kHere, true, 0}, {kThere, true, 1}}}, surface({{0, {1}}, {1, {2}}}), header());
+  const auto first = maker.correct(correction(1, 0.0, 0.02), header());
+  ASSERT_EQ(first.size(), 1U);
+  EXPECT_EQ(first[0].kind, SliceKind::kCorrection);
+  EXPECT_EQ(first[0].id, 2) << "numbered like the other slices";
+  EXPECT_EQ(first[0].correction, 1);
+  EXPECT_TRUE(first[0].ends_batch);
+  EXPECT_THAT(first[0].points_W, IsEmpty());
+  ASSERT_EQ(first[0].motions.size(), 1U) << "the other one does not move";
+  EXPECT_EQ(first[0].motions[0].id, 1);
+  EXPECT_FLOAT_EQ(first[0].motions[0].X_WP.t_WP[1], 0.02F);
+
+  const auto revised = maker.make({{{kHere, true, 1, correction(1, 0.0, 0.02).at(1)}}},
+                                  surface({{0, {3}}}), header());
+  EXPECT_EQ(revised[0].correction, 1);
+  EXPECT_FLOAT_EQ(revised[0].X_WP.t_WP[1], 0.02F) << "seen again, at the later keyframe";
+}
+
+TEST_F(Patches, MoveAlsoAfterTheyHaveLeftForGood) {
+  maker.make({{{kHere, true, 0}}}, surface({{0, {1}}}), header());
+  maker.keep(surface({{0, {2}}}));
+  maker.make({{{kHere, false, 0}}}, {}, header());
+  const auto slices = maker.correct(correction(1, 0.02, 0.0), header());
+  ASSERT_EQ(slices.size(), 1U);
+  ASSERT_EQ(slices[0].motions.size(), 1U);
+  EXPECT_EQ(slices[0].motions[0].id, 0);
+}
+
+TEST_F(Patches, OfATenthOfAVoxelStayUntilItIsMore) {
+  maker.make({{{kHere, true, 0}}}, surface({{0, {1}}}), header());
+  EXPECT_THAT(maker.correct(correction(1, 0.0009, 0.0), header()), IsEmpty());
+  EXPECT_THAT(maker.correct(correction(2, 0.0018, 0.0), header()), ::testing::SizeIs(1))
+      << "measured from where it was sent to";
+}
+
+TEST_F(Patches, TellWhichOfThemThePointsAndVerticesThatLeftAreOf) {
+  maker.make({{{kHere, true, 0}, {kThere, true, 1}}}, surface({{0, {1}}, {1, {2}}}), header());
+  maker.correct(correction(1, 0.01, 0.02), header());
+  const auto runs = maker.keep(surface({{0, {1, 1}}, {1, {2}}}));
+  ASSERT_EQ(runs.size(), 2U);
+  EXPECT_EQ(runs[0].num_points, 2U);
+  EXPECT_FLOAT_EQ(maker.pose_of(runs[0].patch).t_WP[1], 0.01F);
+  EXPECT_FLOAT_EQ(maker.pose_of(runs[1].patch).t_WP[1], 0.02F);
+
+  MeshPiece piece;
+  for (const float x : {0.01F, 0.07F, 0.09F, 5.0F}) piece.vertices.push_back({.x = x});
+  const auto of_vertices = maker.patches_of(piece, 0.01);
+  ASSERT_EQ(of_vertices.size(), 3U);
+  EXPECT_EQ(of_vertices[0].num_points, 2U);
+  EXPECT_EQ(of_vertices[0].patch, runs[0].patch);
+  EXPECT_EQ(of_vertices[1].patch, runs[1].patch);
+  EXPECT_EQ(of_vertices[2].patch, kNoPatch);
+}
+
 }  // namespace
 }  // namespace kintsugi::mapper
