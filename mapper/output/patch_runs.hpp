@@ -28,7 +28,7 @@ class PatchRuns {
   };
 
   std::vector<Run> runs_;
-  std::size_t at_ = 0;  ///< the run of the last call
+  std::size_t at_ = 0;             ///< the run of the last call
   std::optional<PatchPose> X_WP_;  ///< of that run, once it is needed
 };
 

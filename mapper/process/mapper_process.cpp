@@ -313,6 +313,10 @@ void MapperProcess::log_summary() const {
   const MapPublisher::Published published = publisher_.published();
   spdlog::info("{} slices, {} points, {} messages published", published.slices, published.points,
                published.chunks);
+  if (const LoopClosure* const loops = pipeline_->loops(); loops && loops->num_loops() > 0) {
+    spdlog::info("{} loops closed, {} contradicted; the map was corrected {} times",
+                 loops->num_loops(), loops->num_contradicted(), loops->deformation().number());
+  }
   if (paths_.size() > 1) log_parts();
   for (const std::string& name : {options_.output_path_file, options_.online_path_file}) {
     if (name.empty()) continue;

@@ -18,6 +18,7 @@ std::vector<PatchRun> PatchMaker::keep(const ExtractedSurface& left) {
     left_W.insert(left_W.end(), points_W.begin(), points_W.end());
   }
   std::vector<PatchRun> runs;
+  runs.reserve(left.blocks.size());
   for (const ExtractedSurface::Block& block : left.blocks) {
     runs.push_back({block.num_points, patch_at(grid_.tile_of(block.coord)).number});
   }

@@ -140,8 +140,8 @@ TEST(MapperPipeline, FusesNothingWhileLostAndGoesOnWhenTheViewReturns) {
             0.010);
 }
 
-/// A slow pan and, a second later, a return to its beginning, between the frames seen then: what the
-/// camera does meanwhile is not seen.
+/// A slow pan and, a second later, a return to its beginning, between the frames seen then: what
+/// the camera does meanwhile is not seen.
 Output pan_and_return(bool with_color, bool covered) {
   static const SyntheticRun office = synthetic_run("office", 48, true, 5);
   std::vector<RgbdFrame> frames;

@@ -108,7 +108,8 @@ class CorrectingMapper {
     for (int i = 0; i < kPatchSide_vox; ++i) {
       for (int j = 0; j < kPatchSide_vox; ++j) {
         const double x = 0.01 * (kPatchSide_vox * (id % 3) + i) + noise(random_);
-        const double y = 0.01 * (kPatchSide_vox * (id / 3) + j) + noise(random_);
+        const int row = id / 3;
+        const double y = 0.01 * (kPatchSide_vox * row + j) + noise(random_);
         const double z = 0.03 * std::sin(20 * x) + noise(random_) / 4;
         const Eigen::Vector3d n = Eigen::Vector3d(-0.6 * std::cos(20 * x), 0, 1).normalized();
         patch.points_W.push_back(testing::make_point(x, y, z, n.x(), n.y(), n.z()));

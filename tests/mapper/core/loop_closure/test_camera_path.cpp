@@ -14,7 +14,8 @@ Pose at(double x, double y = 0.0) {
 /// Ten frames along x, 0.1 m apart; at keyframe 0 and, from frame 5 on, at keyframe 1.
 CameraPath two_stays(bool jumped) {
   CameraPath path;
-  for (int i = 0; i < 10; ++i) path.add(1000 * i, at(0.1 * i), i < 5 ? 0 : 1, jumped && i == 5);
+  for (int i = 0; i < 10; ++i)
+    path.add(std::int64_t{1000} * i, at(0.1 * i), i < 5 ? 0 : 1, jumped && i == 5);
   return path;
 }
 

@@ -111,8 +111,8 @@ TEST(LoopCloser, CorrectionsComeOutAtATimeThatDependsOnTheFramesAlone) {
   TwoVisits visits("office", "office", true);
   const std::int64_t delay_us = 2 * kSecond_us;
   std::vector<std::int64_t> due;
-  for (std::int64_t utime = 0; utime <= 2 * kKeyframes * kSecond_us + delay_us;
-       utime += kSecond_us / 2) {
+  const std::int64_t end_us = std::int64_t{2} * kKeyframes * kSecond_us + delay_us;
+  for (std::int64_t utime = 0; utime <= end_us; utime += kSecond_us / 2) {
     if (visits.closer.take_due(utime)) due.push_back(utime);
   }
   ASSERT_FALSE(due.empty());
