@@ -131,6 +131,9 @@ Header read_header(RecordReader& file) {
   if (header.part_follows > 1) {
     file.fail("part_follows " + std::to_string(header.part_follows) + ", expected 0 or 1");
   }
+  if (header.reserved != 0) {
+    file.fail("the reserved field is " + std::to_string(header.reserved) + ", expected 0");
+  }
   return header;
 }
 
@@ -196,6 +199,21 @@ void read_slice(RecordReader& file, SegmentMapState& state) {
   state.slices.push_back(std::move(slice));
 }
 
+/// Where corrections have put patches, by ascending id.
+void read_motions(RecordReader& file, std::uint32_t num_places, PatchMotions& motions) {
+  std::int64_t last_id = -1;
+  for (const Place& place : file.read_all<Place>(num_places)) {
+    check_place(file, place.slice_id, place.place);
+    if (place.slice_id <= last_id || place.place.correction == 0) {
+      file.fail("correction " + std::to_string(place.place.correction) + " has moved slice " +
+                std::to_string(place.slice_id) + " after slice " + std::to_string(last_id) +
+                ", expected a correction >= 1 and ascending slices");
+    }
+    last_id = place.slice_id;
+    motions.learn(place.slice_id, place.place);
+  }
+}
+
 }  // namespace
 
 void write_map_state(const SegmentMapState& state, const std::filesystem::path& path) {
@@ -246,10 +264,7 @@ SegmentMapState read_map_state(const std::filesystem::path& path) {
   state.last_changes = file.read_all<LastChange>(header.num_segments);
   state.thetas = file.read_all<double>(header.num_thetas);
   state.chunks = file.read_all<SequenceRange>(header.num_chunk_ranges);
-  for (const Place& place : file.read_all<Place>(header.num_places)) {
-    check_place(file, place.slice_id, place.place);
-    state.motions.learn(place.slice_id, place.place);
-  }
+  read_motions(file, header.num_places, state.motions);
   if (file.left() != sizeof(std::uint32_t)) {
     file.fail("expected the checksum here: the slices have not the points the header tells");
   }

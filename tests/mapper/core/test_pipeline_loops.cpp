@@ -1,12 +1,12 @@
 // A walk around four rooms whose beginning has left the volume when the camera comes back to it.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <map>
 #include <tuple>
 #include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 #include "lcmtypes/patch_motions.hpp"
 #include "mapper/core/mapper_pipeline.hpp"
@@ -88,11 +88,13 @@ std::vector<CloudPoint> received_points(std::vector<CloudSlice> slices) {
   for (auto& [id, slice] : newest) pointers.push_back(&slice);
   apply_corrections(pointers);
   std::vector<CloudPoint> points_W;
-  for (const auto& [id, slice] : newest) std::ranges::copy(slice.points_W, std::back_inserter(points_W));
+  for (const auto& [id, slice] : newest)
+    std::ranges::copy(slice.points_W, std::back_inserter(points_W));
   return points_W;
 }
 
-std::vector<std::tuple<float, float, float>> sorted_positions(const std::vector<CloudPoint>& points) {
+std::vector<std::tuple<float, float, float>> sorted_positions(
+    const std::vector<CloudPoint>& points) {
   std::vector<std::tuple<float, float, float>> positions;
   for (const CloudPoint& p : points) positions.emplace_back(p.x, p.y, p.z);
   std::ranges::sort(positions);
