@@ -13,6 +13,9 @@ Sequence::Sequence(const Config& config)
       sensor_(make_sensor({.name = config.sensor, .noise = config.noise, .seed = config.seed})),
       intrinsics_(sensor_->intrinsics()) {
   check_range("synthetic: speed", config_.speed, 0.1, 10.0);
+  check_range("synthetic: laps", config_.laps, 1, 1000);
+  require(config_.laps == 1 || content_.trajectory.is_closed(), "synthetic: laps", config_.laps,
+          "1: the path does not end where it begins");
   require(config_.rate_hz == 30 || config_.rate_hz == 15, "synthetic: rate", config_.rate_hz,
           "30 or 15");
   const int on_path = frames_on_path();
@@ -22,7 +25,7 @@ Sequence::Sequence(const Config& config)
 }
 
 int Sequence::frames_on_path() const {
-  const double duration_s = content_.trajectory.duration_s() / config_.speed;
+  const double duration_s = config_.laps * content_.trajectory.duration_s() / config_.speed;
   return 1 + static_cast<int>(std::floor(duration_s * config_.rate_hz + 1e-9));
 }
 
@@ -40,7 +43,7 @@ Pose Sequence::X_WC(int frame) const {
   const double path_frames = config_.speed * kFrameRate_hz / config_.rate_hz;
   const double path_us =
       std::floor(path_frames * (config_.start + frame) * 1e6 / kFrameRate_hz + 0.5);
-  return content_.trajectory.X_WC(1e-6 * path_us);
+  return content_.trajectory.X_WC(1e-6 * path_us, config_.laps);
 }
 
 const RenderedFrame& Sequence::truth(int frame) {

@@ -25,6 +25,7 @@ class Sequence {
     std::string sensor = "kinect1";  ///< one of sensor_names()
     bool noise = true;               ///< of the depth sensor
     double speed = 1.0;              ///< times that of the path, within [0.1, 10]
+    int laps = 1;                    ///< how often the path is walked, if it is closed
     int rate_hz = 30;                ///< frames per second, 30 or 15
     std::uint32_t seed = 1;          ///< for the noise of the sensor and the shake of the hand
     int start = 0;                   ///< first frame, >= 0 and on the path

@@ -56,11 +56,12 @@ std::string joined_sensor_names() {
   return list;
 }
 
-const std::array<Option, 8>& options_table() {
-  static const std::array<Option, 8> kTable = {{
+const std::array<Option, 9>& options_table() {
+  static const std::array<Option, 9> kTable = {{
       {"sensor", joined_sensor_names(), [](Config& c, const Argument& a) { c.sensor = a.value; }},
       {"noise", "on|off", [](Config& c, const Argument& a) { c.noise = a.is_on(); }},
       {"speed", "N", [](Config& c, const Argument& a) { c.speed = a.number<double>(); }},
+      {"laps", "N", [](Config& c, const Argument& a) { c.laps = a.number<int>(); }},
       {"rate", "30|15", [](Config& c, const Argument& a) { c.rate_hz = a.number<int>(); }},
       {"seed", "N", [](Config& c, const Argument& a) { c.seed = a.number<std::uint32_t>(); }},
       {"start", "N", [](Config& c, const Argument& a) { c.start = a.number<int>(); }},

@@ -139,8 +139,19 @@ double Trajectory::shake(int axis, double t_s) const {
   return sum;
 }
 
-Pose Trajectory::X_WC(double t_s) const {
-  const double t = std::clamp(t_s, 0.0, knots_.back().t_s);
+bool Trajectory::is_closed() const {
+  constexpr double kMost = 0.01;  // metres and radians: less than the shake of the hand
+  const Knot& first = knots_.front();
+  const Knot& last = knots_.back();
+  return (first.position_W - last.position_W).norm() < kMost &&
+         first.q_WC.angularDistance(last.q_WC) < kMost;
+}
+
+Pose Trajectory::X_WC(double t_s, int laps) const {
+  const double lap_s = knots_.back().t_s;
+  const double since_start_s = std::clamp(t_s, 0.0, laps * lap_s);
+  const double lap = std::min(std::floor(since_start_s / lap_s), laps - 1.0);
+  const double t = since_start_s - lap * lap_s;
   const auto after =
       std::clamp(std::lower_bound(knots_.begin(), knots_.end(), t,
                                   [](const Knot& knot, double time) { return knot.t_s < time; }),
@@ -148,10 +159,12 @@ Pose Trajectory::X_WC(double t_s) const {
   const Knot& a = *(after - 1);
   const Knot& b = *after;
   const double share = b.t_s > a.t_s ? (t - a.t_s) / (b.t_s - a.t_s) : 0.0;
-  const Eigen::Vector3d turn_C(shake(3, t), shake(4, t), shake(5, t));
+  const Eigen::Vector3d turn_C(shake(3, since_start_s), shake(4, since_start_s),
+                               shake(5, since_start_s));
   Pose X_WC = Pose::Identity();
-  X_WC.translation() = a.position_W + share * (b.position_W - a.position_W) +
-                       Eigen::Vector3d(shake(0, t), shake(1, t), shake(2, t));
+  X_WC.translation() =
+      a.position_W + share * (b.position_W - a.position_W) +
+      Eigen::Vector3d(shake(0, since_start_s), shake(1, since_start_s), shake(2, since_start_s));
   X_WC.linear() =
       (a.q_WC.slerp(share, b.q_WC) * Eigen::AngleAxisd(turn_C.norm(), turn_C.stableNormalized()))
           .toRotationMatrix();

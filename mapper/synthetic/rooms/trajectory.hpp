@@ -43,8 +43,12 @@ class Trajectory {
   /// @throws std::invalid_argument with fewer than two waypoints, or when look_at() throws
   Trajectory(const std::vector<Waypoint>& waypoints, const Config& config);
 
-  /// Pose of the camera C in the scene's frame W; t_s is clamped to [0, duration_s].
-  Pose X_WC(double t_s) const;
+  /// Pose of the camera C in the scene's frame W; t_s is clamped to [0, laps * duration_s]. Each
+  /// lap is along the same path; the shake goes on.
+  Pose X_WC(double t_s, int laps = 1) const;
+
+  /// Whether the path ends where it begins, so that there can be several laps.
+  bool is_closed() const;
 
   double duration_s() const { return config_.duration_s; }
   /// Of the path without the shake, metres.

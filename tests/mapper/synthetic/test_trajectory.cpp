@@ -71,6 +71,22 @@ TEST(Trajectory, ShakeIsThatOfItsSeedAndBounded) {
   }
 }
 
+TEST(Trajectory, AClosedPathCanBeWalkedSeveralTimes) {
+  const Trajectory path = make_scene_with_path("loop").trajectory;
+  ASSERT_TRUE(path.is_closed());
+  const double lap_s = path.duration_s();
+  for (const double t_s : {0.0, 12.3, 99.9}) {
+    EXPECT_TRUE(path.X_WC(t_s, 3).isApprox(path.X_WC(t_s), 0.0)) << t_s;
+    // The same but for the shake of the hand: four sines on each axis.
+    const Pose moved = path.X_WC(t_s).inverse() * path.X_WC(t_s + 2 * lap_s, 3);
+    EXPECT_LT(moved.translation().norm(), 2 * std::sqrt(3.0) * 4 * 0.002) << t_s;
+    EXPECT_GT(moved.translation().norm(), 0.0) << t_s;
+  }
+  const Pose step = path.X_WC(lap_s - kFrame_s, 2).inverse() * path.X_WC(lap_s, 2);
+  EXPECT_LT(step.translation().norm(), 0.03) << "from one lap to the next";
+  EXPECT_FALSE(make_scene_with_path("office").trajectory.is_closed());
+}
+
 TEST(Trajectory, BadConfigurationIsRefused) {
   const std::vector<Waypoint> two = {{{0, 0, 1}, {2, 0, 1}}, {{1, 0, 1}, {2, 0, 1}}};
   EXPECT_THROW(Trajectory(two, {.duration_s = 0}), std::invalid_argument);
