@@ -81,11 +81,14 @@ class BlockIntegration {
     return min(max(share, Float(in.min_share)), Float(1.0F));
   }
 
-  /// The running means of the voxels' distances with one more measurement.
+  /// The running means of the voxels' distances with one more measurement. A mean that is farther
+  /// behind a surface than this measurement could have it is of another surface, which a camera saw
+  /// from the other side of a thin wall, from afar: it begins anew.
   Int fuse_distances(const Float& sdf_m, const Float& share, const std::uint32_t* voxels) const {
     const Int voxel = Int::load(voxels);
     const Float mean = to_float(shift_right_signed<16>(shift_left<16>(voxel)));
-    const Float weight = to_float(shift_right<16>(voxel));
+    const Float lowest = Float(0.0F) - share * Float(BlockLayout::kDistanceScale);
+    const Float weight = select(mean < lowest, Float(0.0F), to_float(shift_right<16>(voxel)));
     const Float raised = weight + Float(1.0F);
     const Float measured = min(sdf_m * Float(frame_.truncation.inverse_max), share) *
                            Float(BlockLayout::kDistanceScale);

@@ -20,7 +20,8 @@ inline float truncation_share(float depth_m, const TruncationByDepth& truncation
 
 inline Voxel fuse_distance(Voxel voxel, float sdf_m, float share, const IntegrationFrame& frame) {
   const auto mean = static_cast<float>(voxel_distance_raw(voxel));
-  const auto weight = static_cast<float>(voxel_weight(voxel));
+  const bool is_of_other_surface = mean < 0.0F - share * kDistanceScale;
+  const auto weight = is_of_other_surface ? 0.0F : static_cast<float>(voxel_weight(voxel));
   const float fraction = sdf_m * frame.truncation.inverse_max;
   const float measured = (fraction < share ? fraction : share) * kDistanceScale;
   const float raised = weight + 1.0F;
