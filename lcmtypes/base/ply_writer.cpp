@@ -21,15 +21,17 @@ std::filesystem::path temporary_name(std::filesystem::path path, const std::stri
   return path;
 }
 
-/// Copies records of this size; `visit` is called with the bytes of some, before they are written.
+/// Copies records of this size; `select` is called with the bytes of some, and returns those at
+/// their beginning that are written.
 void copy(const std::filesystem::path& from, std::size_t record_bytes, std::ostream& to,
-          const std::function<void(std::span<char>)>& visit) {
+          const std::function<std::span<char>(std::span<char>)>& select) {
   constexpr std::size_t kRecords = 4096;
   std::ifstream in(from, std::ios::binary);
   std::vector<char> buffer(kRecords * record_bytes);
   while (in.read(buffer.data(), static_cast<std::streamsize>(buffer.size())), in.gcount() > 0) {
-    visit(std::span(buffer).first(static_cast<std::size_t>(in.gcount())));
-    to.write(buffer.data(), in.gcount());
+    const std::span<char> bytes =
+        select(std::span(buffer).first(static_cast<std::size_t>(in.gcount())));
+    to.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   }
   if (!in.eof()) throw std::system_error(errno, std::generic_category(), from.string());
 }
@@ -38,7 +40,7 @@ void copy(const std::filesystem::path& from, std::size_t record_bytes, std::ostr
 
 PlyWriter::PlyWriter(const std::filesystem::path& path, std::vector<PlyElement> elements,
                      const std::vector<std::string>& comments)
-    : file_(path), comments_(comments) {
+    : path_(path), file_(path), comments_(comments) {
   for (const std::string& comment : comments) {
     require(comment.find_first_of("\r\n") == std::string::npos,
             path.string() + ": a comment for its header has several lines: '" + comment + "'");
@@ -88,22 +90,40 @@ void PlyWriter::commit(const Rewrite& rewrite) {
                            std::to_string(*list.element.count));
   }
   if (std::ranges::any_of(lists_, [](const List& list) { return list.temporary != nullptr; })) {
+    for (std::size_t i = 0; rewrite && i < lists_.size(); ++i) rewrite_records(i, rewrite);
     write_header();
-    for (std::size_t element = 0; element < lists_.size(); ++element) {
-      List& list = lists_[element];
+    for (List& list : lists_) {
       list.temporary->stream().flush();
-      std::int64_t record = 0;
       copy(list.temporary->partial_path(), std::max<std::size_t>(list.record_bytes, 1),
-           file_.stream(), [&](std::span<char> bytes) {
-             if (!rewrite) return;
-             for (; !bytes.empty(); bytes = bytes.subspan(list.record_bytes)) {
-               rewrite(element, record++, bytes.first(list.record_bytes));
-             }
-           });
+           file_.stream(), [](std::span<char> bytes) { return bytes; });
       list.temporary.reset();
     }
   }
   file_.commit();
+}
+
+/// The header comes before the records and has their number: those that stay are written to another
+/// temporary file first.
+void PlyWriter::rewrite_records(std::size_t element, const Rewrite& rewrite) {
+  List& list = lists_[element];
+  list.temporary->stream().flush();
+  auto kept = std::make_unique<AtomicFile>(temporary_name(path_, list.element.name + ".kept"));
+  std::int64_t record = 0;
+  std::int64_t num_kept = 0;
+  copy(list.temporary->partial_path(), std::max<std::size_t>(list.record_bytes, 1), kept->stream(),
+       [&](std::span<char> bytes) {
+         std::size_t end = 0;
+         for (std::size_t at = 0; at < bytes.size(); at += list.record_bytes) {
+           const std::span<char> here = bytes.subspan(at, list.record_bytes);
+           if (!rewrite(element, record++, here)) continue;
+           std::ranges::copy(here, bytes.begin() + static_cast<std::ptrdiff_t>(end));
+           end += list.record_bytes;
+           ++num_kept;
+         }
+         return bytes.first(end);
+       });
+  list.temporary = std::move(kept);
+  list.count = num_kept;
 }
 
 }  // namespace kintsugi

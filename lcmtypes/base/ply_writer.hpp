@@ -53,12 +53,14 @@ class PlyWriter {
     write_record(element, record.data(), record.size());
   }
 
-  /// Records that were appended to element number `element`.
+  /// Records of element number `element`: those that were appended; after commit(), those in the
+  /// file.
   std::int64_t count(std::size_t element) const { return lists_.at(element).count; }
 
   /// Changes a record that was appended: number `record` of element number `element`, its bytes.
+  /// Returns whether it stays in the file.
   using Rewrite =
-      std::function<void(std::size_t element, std::int64_t record, std::span<char> bytes)>;
+      std::function<bool(std::size_t element, std::int64_t record, std::span<char> bytes)>;
 
   /// Completes the file; nothing can be appended afterwards. `rewrite`, if there is one, is called
   /// with every record, in order; not where the counts of all elements are known.
@@ -74,8 +76,10 @@ class PlyWriter {
   };
 
   void write_record(std::size_t element, const char* record, std::size_t size);
+  void rewrite_records(std::size_t element, const Rewrite& rewrite);
   void write_header();
 
+  std::filesystem::path path_;
   AtomicFile file_;
   std::vector<std::string> comments_;
   std::vector<List> lists_;

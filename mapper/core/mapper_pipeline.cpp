@@ -6,10 +6,12 @@
 #include <utility>
 
 #include "lcmtypes/base/argument_check.hpp"
+#include "lcmtypes/trajectory.hpp"
 #include "mapper/core/frame/camera.hpp"
 #include "mapper/core/frame/covered_share.hpp"
 #include "mapper/core/frame/sensors.hpp"
 #include "mapper/core/fusion/truncation.hpp"
+#include "mapper/core/relocalization/keyframe_blocks.hpp"
 
 namespace kintsugi::mapper {
 namespace {
@@ -48,6 +50,12 @@ SliceWorker::Config worker_config(const MapperPipeline::Config& config, const Ti
   return worker;
 }
 
+SameSurface same_surface(const MapperPipeline::Config& config) {
+  SameSurface same = config.same_surface;
+  same.weight_threshold = config.slices.extractor.weight_threshold;
+  return same;
+}
+
 }  // namespace
 
 void MapperPipeline::Config::set_max_range(double max_range_m) {
@@ -69,7 +77,9 @@ void MapperPipeline::Config::validate() const {
   tracker.validate();
   relocalizer.validate();
   loops.validate();
+  same_surface.validate();
   slices.validate();
+  check_range("max_kept_mb", max_kept_mb, 0.0, 1e6);
   check_range("patch_side_m", patch_side_m, 0.0, 100.0);
   patch_schedule.validate();
   check_range("finest_tracking_width_px", finest_tracking_width_px, 16, 16384);
@@ -88,6 +98,8 @@ MapperPipeline::MapperPipeline(const Config& config)
   if (config.patch_side_m > 0.0) {
     if (config.close_loops && config.given_path.empty()) {
       loops_.emplace(loop_config(config), relocalizer_.keyframes());
+      if (config.volume.region == RegionShape::kBall)
+        reactivation_.emplace(tiles_, config.max_kept_mb);
     }
     patch_schedule_.emplace(config.patch_schedule, tiles_,
                             crossing_rule(config.slices.extractor, volume_));
@@ -104,8 +116,16 @@ FrameResult MapperPipeline::process(const RgbdFrame& measured) {
   result.tracking = locate(input);
   clock.end_of(&StageTimes::track_ms);
   if (is_located(result.tracking.state)) {
+    const auto keyframe = result.tracking.found_by_keyframe;
+    if (reactivation_ && keyframe && relocalizer_.keyframes().is_released()[*keyframe]) {
+      go_over_to(*keyframe, result.tracking.X_WC, input);
+    }
     X_WC_ = result.tracking.X_WC;
-    result.slices_left = shift(frame, X_WC_);
+    result.slices_left = shift(X_WC_);
+    if (reactivation_) {
+      reactivation_->tidy();
+      bring_back_visible(input);
+    }
     clock.end_of(&StageTimes::shift_ms);
     integrator_.integrate(frame, X_WC_, volume_, noise_.noise());
     clock.end_of(&StageTimes::integrate_ms);
@@ -132,6 +152,7 @@ FrameResult MapperPipeline::process(const RgbdFrame& measured) {
 
 std::vector<CloudSlice> MapperPipeline::finish() {
   if (loops_) correct(loops_->finish());
+  if (reactivation_) clear_known(slots_of([](BlockSlot) { return true; }));
   // After the last frame, at which a batch of patches may have ended.
   slice_worker_.submit(volume_.detach_all(), patch_schedule_ ? utime_ + 1 : utime_,
                        corrected(X_WC_));
@@ -223,21 +244,76 @@ std::optional<TrackingResult> MapperPipeline::find_again(const TrackingInput& in
   return found;
 }
 
-int MapperPipeline::shift(const RgbdFrame& frame, const Pose& X_WC) {
-  std::vector<DetachedBlocks> left = volume_.shift_to(X_WC.translation());
-  for (DetachedBlocks& blocks : left) {
-    if (patch_schedule_) patch_schedule_->note_left(blocks.coords, volume_);
-    slice_worker_.submit(std::move(blocks), frame.utime, corrected(X_WC));
+int MapperPipeline::shift(const Pose& X_WC) {
+  TsdfVolume::BeforeLeaving before_leaving;
+  if (reactivation_) before_leaving = [this](const auto& leaving) { clear_known(leaving); };
+  std::vector<DetachedBlocks> left = volume_.shift_to(X_WC.translation(), before_leaving);
+  for (DetachedBlocks& blocks : left) take_left(std::move(blocks));
+  return static_cast<int>(left.size()) + (reactivation_ ? let_go_of_far_surface() : 0);
+}
+
+/// What the camera saw long ago, on a way on which tracking may have drifted, is not where it sees
+/// it now. It leaves before the camera comes back to it.
+int MapperPipeline::let_go_of_far_surface() {
+  const bool is_new_keyframe =
+      keyframe_at_move_.empty() || keyframe_at_move_.back() != loops_->keyframe();
+  keyframe_at_move_.resize(volume_.num_moves() + 1, loops_->keyframe());
+  if (!is_new_keyframe) return 0;
+  const std::vector<bool> is_near = loops_->near_keyframes();
+  std::vector<BlockSlot> far = slots_of([&](BlockSlot slot) {
+    const auto keyframe = static_cast<std::size_t>(keyframe_at_move_[volume_.last_seen(slot)]);
+    return keyframe < is_near.size() && !is_near[keyframe];
+  });
+  if (far.empty()) return 0;
+  clear_known(far);
+  std::erase_if(far, [this](BlockSlot slot) { return !volume_.in_use(slot); });
+  take_left(volume_.detach(std::move(far), SliceKind::kPatch));
+  return 1;
+}
+
+std::vector<BlockSlot> MapperPipeline::slots_of(
+    const std::function<bool(BlockSlot)>& is_chosen) const {
+  std::vector<BlockSlot> slots;
+  for (BlockSlot slot = 0; slot < volume_.slots_end(); ++slot) {
+    if (volume_.in_use(slot) && is_chosen(slot)) slots.push_back(slot);
   }
-  return static_cast<int>(left.size());
+  return slots;
+}
+
+/// Of surface that is seen again after a long way one stays: the first one, to which the camera
+/// goes over.
+void MapperPipeline::clear_known(const std::vector<BlockSlot>& leaving) {
+  const std::vector<bool> is_near = loops_->near_keyframes();
+  const Pose X_WU = loops_->deformation().at(loops_->keyframe());
+  const auto place_of = [&](int keyframe) -> std::optional<Pose> {
+    if (is_near[keyframe]) return std::nullopt;
+    return loops_->deformation().at(keyframe).inverse(Eigen::Isometry) * X_WU;
+  };
+  std::vector<BlockCoord> coords;
+  for (const BlockSlot slot : leaving) coords.push_back(volume_.coord(slot));
+  reactivation_->clear_known(volume_, leaving, place_of, same_surface(config_));
+  std::erase_if(coords,
+                [this](const BlockCoord& coord) { return volume_.find(coord) != kNoBlock; });
+  patch_schedule_->note_left(coords, volume_);
+}
+
+void MapperPipeline::take_left(DetachedBlocks left, bool waits) {
+  if (patch_schedule_) patch_schedule_->note_left(left.coords, volume_);
+  if (reactivation_) reactivation_->keep(left);
+  slice_worker_.submit(std::move(left), utime_, corrected(X_WC_), waits);
 }
 
 void MapperPipeline::submit_patches(const RgbdFrame& frame) {
   std::optional<PatchBatch> batch =
       patch_schedule_->next(volume_, frame.utime, loops_ ? loops_->keyframe() : 0);
   if (!batch) return;
+  submit_patches(*std::move(batch));
+}
+
+void MapperPipeline::submit_patches(PatchBatch batch) {
+  if (reactivation_) reactivation_->close_departed(batch);
   std::vector<BlockSlot> slots;
-  for (PatchBatch::Patch& patch : batch->patches) {
+  for (PatchBatch::Patch& patch : batch.patches) {
     if (loops_) patch.X_WP = loops_->deformation().at(patch.keyframe);
     if (!patch.in_volume) continue;
     tiles_.for_each_block(patch.tile, [&](const BlockCoord& coord) {
@@ -245,18 +321,85 @@ void MapperPipeline::submit_patches(const RgbdFrame& frame) {
       if (slot != kNoBlock) slots.push_back(slot);
     });
   }
-  slice_worker_.submit(*std::move(batch), volume_.snapshot(std::move(slots)), frame.utime,
+  slice_worker_.submit(std::move(batch), volume_.snapshot(std::move(slots)), utime_,
                        corrected(X_WC_));
 }
 
 void MapperPipeline::update_model(const RgbdFrame& frame, const TrackingInput& input,
-                                  const TrackingResult& located) {
+                                  TrackingResult& located) {
   if (!loops_) path_.push_back({input.utime, X_WC_});
   if (!config_.given_path.empty()) return;  // the model is only for tracking
-  model_ = model_from(X_WC_, input.surface_C.front().intrinsics, frame.depth_m);
   if (loops_) loops_->release_left(volume_, X_WC_);
+  if (reactivation_) {
+    loops_->take_back(volume_, X_WC_);
+    if (go_over_to_known_surface(input)) located.X_WC = X_WC_;
+  }
+  model_ = model_from(X_WC_, input.surface_C.front().intrinsics, frame.depth_m);
   const bool is_keyframe = relocalizer_.remember(input, *model_);
   if (loops_) loops_->follow(located, is_keyframe, input.utime, noise_.noise());
+}
+
+/// What a frame at the present pose is about to change.
+void MapperPipeline::bring_back_visible(const TrackingInput& input) {
+  restore(reactivation_->take_visible(input.surface_C.front(), X_WC_, loops_->near_keyframes(),
+                                      loops_->keyframe(), volume_));
+}
+
+void MapperPipeline::restore(Reactivation::Returned returned) {
+  if (returned.visits.empty()) return;
+  volume_.restore(returned.blocks, returned.around);
+  std::vector<TileVisit> visits;
+  for (const auto& [visit, keyframe] : returned.visits) {
+    patch_schedule_->note_returned(visit.tile, keyframe, volume_);
+    visits.push_back(visit);
+  }
+  slice_worker_.submit(std::move(visits), utime_, corrected(X_WC_), volume_.resolution_m());
+}
+
+/// Where a keyframe would be due but is there already, and its surface is kept: the frame is
+/// registered with that, and tracking goes on there.
+bool MapperPipeline::go_over_to_known_surface(const TrackingInput& input) {
+  if (relocalizer_.keyframes().find_near(X_WC_)) return false;
+  const Pose X_CorrectedC = corrected(X_WC_);
+  const auto number = loops_->find_released_near(X_CorrectedC);
+  if (!number) return false;
+  const Keyframe& keyframe = relocalizer_.keyframes()[*number];
+  const std::vector<bool> is_near = loops_->keyframes_near(*number);
+  if (!reactivation_->has_most_of(blocks_seen_from(keyframe, volume_.config().resolution_m),
+                                  is_near)) {
+    return false;
+  }
+  const Pose X_NC_expected =
+      loops_->deformation().at(*number).inverse(Eigen::Isometry) * X_CorrectedC;
+  const Model seen_then{
+      pyramid_from_surface(keyframe.surface(), static_cast<int>(input.surface_C.size())),
+      keyframe.X_WC, config_.volume.resolution_m};
+  const TrackingResult found = tracker_.register_anew(input, seen_then, X_NC_expected);
+  if (found.state != TrackingState::kTracking) return false;
+  const Pose difference = X_NC_expected.inverse(Eigen::Isometry) * found.X_WC;
+  const double limit_m =
+      config_.same_surface.max_distance_vox * config_.volume.resolution_m +
+      config_.loops.closer.verifier.max_disagreement_sigmas * found.quality.sigma_m;
+  if (std::max(difference.translation().norm(), rotation_angle_rad(difference)) > limit_m) {
+    return false;
+  }
+  tracker_.change_frame(found.X_WC * X_WC_.inverse(Eigen::Isometry));
+  go_over_to(*number, found.X_WC, input);
+  return true;
+}
+
+/// Empties the volume and fills it with what is kept around a keyframe, in whose frame N the camera
+/// is from now on.
+void MapperPipeline::go_over_to(int keyframe, const Pose& X_NC, const TrackingInput& input) {
+  clear_known(slots_of([](BlockSlot) { return true; }));
+  take_left(volume_.detach_all(SliceKind::kPatch), false);
+  submit_patches(patch_schedule_->depart_all(reactivation_->open_tiles()));
+  X_WC_ = X_NC;
+  loops_->go_to(keyframe);
+  volume_.shift_to(X_NC.translation());
+  keyframe_at_move_.resize(volume_.num_moves() + 1, keyframe);
+  bring_back_visible(input);
+  loops_->take_back(volume_, X_NC);
 }
 
 void MapperPipeline::look_where_expected(const TrackingInput& input) {

@@ -14,6 +14,8 @@
 #include "mapper/core/fusion/integrator.hpp"
 #include "mapper/core/fusion/raycaster.hpp"
 #include "mapper/core/loop_closure/loop_closure.hpp"
+#include "mapper/core/reactivation/covered_surface.hpp"
+#include "mapper/core/reactivation/reactivation.hpp"
 #include "mapper/core/relocalization/relocalizer.hpp"
 #include "mapper/core/slices/patch_schedule.hpp"
 #include "mapper/core/slices/slice_worker.hpp"
@@ -62,6 +64,11 @@ class MapperPipeline {
     /// The map is corrected where the camera comes back to a place. For patches, and without a
     /// given path.
     bool close_loops = true;
+    /// Where the camera comes back to a place, what it sees is the surface that is there.
+    SameSurface same_surface;  ///< its weight threshold follows from the extractor
+    /// Of surface that has left and may come back, 1e6 bytes; above that what left longest ago is
+    /// forgotten. A metre of a walk through rooms takes 5 MB.
+    double max_kept_mb = 1000.0;
     SliceWorker::Config slices;  ///< its `tiles` follow from what is below
     /// The map comes in patches of about this size, m, while its surface is in the volume; 0: in
     /// slices, when it leaves the volume.
@@ -99,13 +106,20 @@ class MapperPipeline {
   int num_keyframes() const { return relocalizer_.num_keyframes(); }
   /// None where loops are not closed.
   const LoopClosure* loops() const { return loops_ ? &*loops_ : nullptr; }
-  /// Where a patch is in the corrected map, by its number in PatchRun; after finish().
-  PatchPose pose_of_patch(int patch) const { return slice_worker_.pose_of_patch(patch); }
+  /// Where a patch is in the corrected map, by its number in PatchRun; nothing: its points were
+  /// replaced. After finish().
+  std::optional<PatchPose> pose_of_patch(int patch) const {
+    return slice_worker_.pose_of_patch(patch);
+  }
 
   /// Of the frames whose pose is known, as corrected by the loops that were closed so far.
   Trajectory corrected_path() const;
   std::int64_t volume_bytes() const { return static_cast<std::int64_t>(volume_.memory_bytes()); }
   const DepthNoise& noise() const { return noise_.noise(); }
+  /// Of what has left and may come back.
+  std::int64_t kept_bytes() const {
+    return reactivation_ ? static_cast<std::int64_t>(reactivation_->bytes()) : 0;
+  }
   double extraction_ms() const { return slice_worker_.busy_ms(); }
 
  private:
@@ -116,14 +130,22 @@ class MapperPipeline {
   TrackingResult locate_on_given_path(std::int64_t utime) const;
   TrackingResult start(const TrackingInput& input);
   void learn_noise(const TrackingInput& input, const Pose& X_WC);
-  int shift(const RgbdFrame& frame, const Pose& X_WC);
+  int shift(const Pose& X_WC);
+  int let_go_of_far_surface();
+  void take_left(DetachedBlocks left, bool waits = true);
+  void clear_known(const std::vector<BlockSlot>& leaving);
+  std::vector<BlockSlot> slots_of(const std::function<bool(BlockSlot)>& is_chosen) const;
   void submit_patches(const RgbdFrame& frame);
+  void submit_patches(PatchBatch batch);
   /// Moves the patches; returns what it was given.
   std::optional<MapCorrection> correct(std::optional<MapCorrection> correction);
   Pose corrected(const Pose& X_UC) const;
   std::optional<TrackingResult> find_again(const TrackingInput& input);
-  void update_model(const RgbdFrame& frame, const TrackingInput& input,
-                    const TrackingResult& located);
+  void update_model(const RgbdFrame& frame, const TrackingInput& input, TrackingResult& located);
+  void bring_back_visible(const TrackingInput& input);
+  bool go_over_to_known_surface(const TrackingInput& input);
+  void go_over_to(int keyframe, const Pose& X_NC, const TrackingInput& input);
+  void restore(Reactivation::Returned returned);
   /// After a lost frame: the model for the next one is the map as seen from where the camera should
   /// be.
   void look_where_expected(const TrackingInput& input);
@@ -144,6 +166,9 @@ class MapperPipeline {
   Trajectory path_;  ///< of the frames that were located, where loops are not closed
   const TileGrid tiles_;
   std::optional<PatchSchedule> patch_schedule_;  ///< none: slices
+  std::optional<Reactivation> reactivation_;     ///< none: what has left does not come back
+  /// By TsdfVolume::num_moves(): at which keyframe the camera was.
+  std::vector<int> keyframe_at_move_;
   SliceWorker slice_worker_;
   std::optional<Model> model_;    ///< none before the first fused frame
   Pose X_WC_ = Pose::Identity();  ///< of the last fused frame, as tracked

@@ -10,17 +10,30 @@ namespace {
 constexpr std::size_t kVertices = 0;
 constexpr std::size_t kFaces = 1;
 
-/// Moves vertices, whose records begin with this many of the floats of a CloudPoint.
-PlyWriter::Rewrite moves(PatchRuns& runs, const PoseOfPatch& pose_of, std::size_t num_floats) {
-  if (!pose_of) return {};
-  return [&runs, &pose_of, num_floats](std::size_t element, std::int64_t record,
-                                       std::span<char> bytes) {
-    if (element != kVertices) return;
-    CloudPoint point;
-    std::memcpy(&point, bytes.data(), num_floats * sizeof(float));
-    point = runs.moved(record, point, pose_of);
-    std::memcpy(bytes.data(), &point, num_floats * sizeof(float));
-  };
+/// Moves a vertex, whose record begins with this many of the floats of a CloudPoint; false: it is
+/// dropped.
+bool move_vertex(const PatchRuns& runs, std::int64_t record, std::span<char> bytes,
+                 std::size_t num_floats) {
+  CloudPoint point;
+  std::memcpy(&point, bytes.data(), num_floats * sizeof(float));
+  const auto moved = runs.moved(record, point);
+  if (!moved) return false;
+  std::memcpy(bytes.data(), &*moved, num_floats * sizeof(float));
+  return true;
+}
+
+/// Numbers the vertices of a face anew; false: one of them is dropped.
+bool renumber_face(const PatchRuns& runs, std::span<char> bytes) {
+  MeshPiece::Triangle triangle;
+  const std::span<char> indices = bytes.last(sizeof triangle);
+  std::memcpy(&triangle, indices.data(), sizeof triangle);
+  for (std::uint32_t& vertex : triangle) {
+    const auto number = runs.number_of_kept(vertex);
+    if (!number) return false;
+    vertex = static_cast<std::uint32_t>(*number);
+  }
+  std::memcpy(indices.data(), &triangle, sizeof triangle);
+  return true;
 }
 
 }  // namespace
@@ -39,7 +52,13 @@ void CloudWriter::append(const std::vector<CloudPoint>& points, const std::vecto
 
 std::int64_t CloudWriter::num_points() const { return file_.count(kVertices); }
 
-void CloudWriter::commit(const PoseOfPatch& pose_of) { file_.commit(moves(runs_, pose_of, 6)); }
+void CloudWriter::commit(const PoseOfPatch& pose_of) {
+  if (!pose_of) return file_.commit();
+  runs_.place(pose_of);
+  file_.commit([this](std::size_t /*element*/, std::int64_t record, std::span<char> bytes) {
+    return move_vertex(runs_, record, bytes, 6);
+  });
+}
 
 MeshWriter::MeshWriter(const std::filesystem::path& path)
     : file_(path, {{"vertex",
@@ -57,6 +76,13 @@ void MeshWriter::append(const MeshPiece& piece, const std::vector<PatchRun>& run
 
 std::int64_t MeshWriter::num_triangles() const { return file_.count(kFaces); }
 
-void MeshWriter::commit(const PoseOfPatch& pose_of) { file_.commit(moves(runs_, pose_of, 3)); }
+void MeshWriter::commit(const PoseOfPatch& pose_of) {
+  if (!pose_of) return file_.commit();
+  runs_.place(pose_of);
+  file_.commit([this](std::size_t element, std::int64_t record, std::span<char> bytes) {
+    return element == kVertices ? move_vertex(runs_, record, bytes, 3)
+                                : renumber_face(runs_, bytes);
+  });
+}
 
 }  // namespace kintsugi::mapper

@@ -1,5 +1,7 @@
 #include "mapper/output/patch_runs.hpp"
 
+#include <algorithm>
+
 #include "lcmtypes/patch_motions.hpp"
 
 namespace kintsugi::mapper {
@@ -7,22 +9,37 @@ namespace kintsugi::mapper {
 void PatchRuns::append(std::size_t num_points, const std::vector<PatchRun>& runs) {
   const auto add = [&](std::size_t count, int patch) {
     const std::int64_t begin = runs_.empty() ? 0 : runs_.back().end;
-    if (runs_.empty() || runs_.back().patch != patch) runs_.push_back({begin, patch});
+    if (runs_.empty() || runs_.back().patch != patch) runs_.push_back({begin, patch, {}, 0});
     runs_.back().end += static_cast<std::int64_t>(count);
   };
   if (runs.empty()) add(num_points, kNoPatch);
   for (const PatchRun& run : runs) add(run.num_points, run.patch);
 }
 
-CloudPoint PatchRuns::moved(std::int64_t number, const CloudPoint& point,
-                            const PoseOfPatch& pose_of) {
-  while (at_ < runs_.size() && runs_[at_].end <= number) {
-    ++at_;
-    X_WP_.reset();
+void PatchRuns::place(const PoseOfPatch& pose_of) {
+  std::int64_t begin = 0;
+  std::int64_t num_dropped = 0;
+  for (Run& run : runs_) {
+    run.X_WP = run.patch == kNoPatch ? PatchPose() : pose_of(run.patch);
+    run.num_dropped = num_dropped;
+    if (!run.X_WP) num_dropped += run.end - begin;
+    begin = run.end;
   }
-  if (at_ == runs_.size() || runs_[at_].patch == kNoPatch) return point;
-  if (!X_WP_) X_WP_ = pose_of(runs_[at_].patch);
-  return kintsugi::moved({&point, 1}, *X_WP_).front();
+}
+
+std::optional<CloudPoint> PatchRuns::moved(std::int64_t number, const CloudPoint& point) const {
+  const Run& run = run_of(number);
+  if (!run.X_WP) return std::nullopt;
+  return kintsugi::moved({&point, 1}, *run.X_WP).front();
+}
+
+std::optional<std::int64_t> PatchRuns::number_of_kept(std::int64_t number) const {
+  const Run& run = run_of(number);
+  return run.X_WP ? std::optional(number - run.num_dropped) : std::nullopt;
+}
+
+const PatchRuns::Run& PatchRuns::run_of(std::int64_t number) const {
+  return *std::ranges::upper_bound(runs_, number, {}, &Run::end);
 }
 
 }  // namespace kintsugi::mapper

@@ -317,6 +317,10 @@ void MapperProcess::log_summary() const {
     spdlog::info("{} loops closed, {} contradicted; the map was corrected {} times",
                  loops->num_loops(), loops->num_contradicted(), loops->deformation().number());
   }
+  if (const std::int64_t kept = pipeline_->kept_bytes(); kept > 0) {
+    spdlog::info("{:.0f} MB kept of what left the volume, for when the camera comes back",
+                 1e-6 * static_cast<double>(kept));
+  }
   if (paths_.size() > 1) log_parts();
   for (const std::string& name : {options_.output_path_file, options_.online_path_file}) {
     if (name.empty()) continue;

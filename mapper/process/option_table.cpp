@@ -67,6 +67,10 @@ OptionGroup mapping_group(Options& o) {
             "above this, what has been out of view for longest leaves the volume; with --volume "
             "range",
             "MB"},
+           {"--kept-memory", &o.pipeline.max_kept_mb, kMustMatch,
+            "what left the volume is kept, and comes back where the camera does; above this, what "
+            "left longest ago is forgotten",
+            "MB"},
            {"--resolution", &o.resolution_m, kMustMatch,
             "side of a voxel; 0: 8.79 mm (4.5 m / 512)", "m"},
            {"--sensor", &o.sensor, kMustMatch,

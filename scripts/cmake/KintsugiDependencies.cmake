@@ -15,7 +15,7 @@ find_package(TBB REQUIRED)
 find_package(ZLIB REQUIRED)
 find_package(flann REQUIRED CONFIG)
 find_package(Ceres 2.1 REQUIRED)
-find_library(LZ4_LIBRARY lz4 REQUIRED)  # FLANN's headers call it
+find_library(LZ4_LIBRARY lz4 REQUIRED)  # packs blocks; FLANN's headers call it, too
 
 # OpenCV's own targets carry no SYSTEM includes before CMake 3.25; ours do.
 add_library(kintsugi_opencv INTERFACE)

@@ -5,27 +5,17 @@
 
 #include "lcmtypes/base/argument_check.hpp"
 #include "lcmtypes/trajectory.hpp"
+#include "mapper/core/relocalization/keyframe_blocks.hpp"
 
 namespace kintsugi::mapper {
 namespace {
 
-constexpr int kSampleStep_px = 16;  // of a keyframe's surface
-
 /// Whether most of what it saw is not in the volume any more.
 bool has_left(const Keyframe& keyframe, const TsdfVolume& volume) {
-  const double block_m = kBlockSide * volume.config().resolution_m;
-  int num_points = 0;
-  int num_there = 0;
-  for (int v = kSampleStep_px / 2; v < keyframe.camera.height; v += kSampleStep_px) {
-    for (int u = kSampleStep_px / 2; u < keyframe.camera.width; u += kSampleStep_px) {
-      if (!(keyframe.depth_m(v, u) > 0.0)) continue;
-      const Eigen::Vector3d p_U = keyframe.X_WC * keyframe.point(v, u);
-      const Eigen::Vector3i block = (p_U / block_m).array().floor().cast<int>();
-      ++num_points;
-      if (volume.find(make_block_coord(block.x(), block.y(), block.z())) != kNoBlock) ++num_there;
-    }
-  }
-  return 2 * num_there < num_points;
+  const std::vector<BlockCoord> blocks = blocks_seen_from(keyframe, volume.config().resolution_m);
+  const auto num_there = std::ranges::count_if(
+      blocks, [&](const BlockCoord& block) { return volume.find(block) != kNoBlock; });
+  return 2 * static_cast<std::size_t>(num_there) < blocks.size();
 }
 
 }  // namespace
@@ -49,11 +39,40 @@ void LoopClosure::release_left(const TsdfVolume& volume, const Pose& X_UC) {
   keyframes_.release_if([&](const Keyframe& keyframe) { return has_left(keyframe, volume); });
 }
 
+void LoopClosure::take_back(const TsdfVolume& volume, const Pose& X_UC) {
+  if (keyframes_.find_near(X_UC)) return;
+  const std::vector<bool> is_near = near_keyframes();
+  for (int i = 0; i < keyframes_.size(); ++i) {
+    if (keyframes_.is_released()[i] && is_near[i] && !has_left(keyframes_[i], volume)) {
+      keyframes_.take_back(i);
+    }
+  }
+}
+
+std::optional<int> LoopClosure::find_released_near(const Pose& X_WC) const {
+  std::optional<int> nearest;
+  double least = 1.0;
+  for (int i = 0; i < keyframes_.size(); ++i) {
+    if (!keyframes_.is_released()[i]) continue;
+    const double distance = keyframes_.in_spacings(X_WK(i), X_WC);
+    if (!(distance < least)) continue;
+    least = distance;
+    nearest = i;
+  }
+  return nearest;
+}
+
+void LoopClosure::go_to(int keyframe) {
+  keyframes_.release_if([](const Keyframe&) { return true; });
+  last_at_ = keyframe;
+  went_ = true;
+}
+
 void LoopClosure::follow(const TrackingResult& located, bool is_keyframe, std::int64_t utime,
                          const DepthNoise& noise) {
   const Pose& X_UC = located.X_WC;
-  const bool jumped = located.found_by_keyframe.has_value();
-  if (jumped) last_at_ = *located.found_by_keyframe;
+  const bool jumped = std::exchange(went_, false) || located.found_by_keyframe.has_value();
+  if (located.found_by_keyframe) last_at_ = *located.found_by_keyframe;
   if (is_keyframe) {
     compare_newest();
     const int number = keyframes_.size() - 1;
@@ -67,8 +86,10 @@ void LoopClosure::follow(const TrackingResult& located, bool is_keyframe, std::i
                           .is_released = keyframes_.is_released(),
                           .noise = noise};
     newest_utime_ = utime;
-    from_.push_back(number == 0 ? 0 : last_at_);
-    deformation_.add(deformation_.at(from_.back()));
+    tree_.add(newest_->from,
+              newest_->from ? (keyframes_[last_at_].X_WC.translation() - X_UC.translation()).norm()
+                            : 0.0);
+    deformation_.add(deformation_.at(tree_.from(number)));
     last_at_ = number;
     return;
   }
@@ -113,12 +134,12 @@ std::optional<MapCorrection> LoopClosure::finish() {
 std::optional<MapCorrection> LoopClosure::apply_if_above(double least_motion_vox) {
   if (!waiting_ || motion_m(*waiting_) <= least_motion_vox * config_.voxel_m) return std::nullopt;
   std::vector<Pose> X_WU;
-  for (std::size_t k = 0; k < from_.size(); ++k) {
+  for (std::size_t k = 0; k < static_cast<std::size_t>(tree_.size()); ++k) {
     if (k < waiting_->X_WK.size()) {
       const Pose& X_UK = keyframes_[static_cast<int>(k)].X_WC;
       X_WU.push_back(waiting_->X_WK[k] * X_UK.inverse(Eigen::Isometry));
     } else {
-      X_WU.push_back(Pose(X_WU[from_[k]]));
+      X_WU.push_back(Pose(X_WU[tree_.from(static_cast<int>(k))]));
     }
   }
   deformation_ = MapDeformation(deformation_.number() + 1, std::move(X_WU));

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mapper/core/loop_closure/camera_path.hpp"
+#include "mapper/core/loop_closure/keyframe_tree.hpp"
 #include "mapper/core/loop_closure/loop_closer.hpp"
 #include "mapper/core/relocalization/keyframe_map.hpp"
 #include "mapper/core/tracking/tracking_result.hpp"
@@ -42,6 +43,27 @@ class LoopClosure {
   /// surface is not in the volume any more, so that the camera gets a new one where it comes back
   /// to them.
   void release_left(const TsdfVolume& volume, const Pose& X_UC);
+
+  /// To be called after it, when surface may have come back into the volume: the keyframes that see
+  /// it count again.
+  void take_back(const TsdfVolume& volume, const Pose& X_UC);
+
+  /// By number: whether the camera, where it is, sees the surface of that keyframe where the
+  /// keyframe saw it. Tracking does not drift on such a short way.
+  std::vector<bool> near_keyframes() const { return keyframes_near(last_at_); }
+  /// The same for a camera at another keyframe.
+  std::vector<bool> keyframes_near(int keyframe) const {
+    return tree_.within(keyframe, config_.reach_m);
+  }
+
+  /// The nearest of the released keyframes that a camera at this pose is near, as corrected.
+  std::optional<int> find_released_near(const Pose& X_WC) const;
+
+  Pose X_WK(int keyframe) const { return deformation_.at(keyframe) * keyframes_[keyframe].X_WC; }
+
+  /// The camera is now tracked at this keyframe, in surface that has come back; all others are
+  /// released until take_back().
+  void go_to(int keyframe);
 
   /// To be called after each located frame; `is_keyframe`: it has become the newest keyframe.
   void follow(const TrackingResult& located, bool is_keyframe, std::int64_t utime,
@@ -82,7 +104,8 @@ class LoopClosure {
   std::int64_t newest_utime_ = 0;
   int last_at_ = 0;  ///< the keyframe near which the camera is, or was
   MapDeformation deformation_;
-  std::vector<int> from_;  ///< by keyframe: that from which the camera came; itself for the first
+  KeyframeTree tree_;
+  bool went_ = false;  ///< go_to() was called since the last frame
   int num_loops_ = 0;
   int num_contradicted_ = 0;
   std::optional<MapCorrection> waiting_;        ///< the newest, not applied yet

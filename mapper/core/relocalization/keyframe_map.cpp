@@ -52,17 +52,21 @@ KeyframeMap::KeyframeMap(const Config& config) : config_((config.validate(), con
 
 std::optional<int> KeyframeMap::find_near(const Pose& X_WC) const {
   std::optional<int> nearest;
-  double least = 1.0;  // the larger of both distances, in units of the spacing
+  double least = 1.0;
   for (int i = 0; i < size(); ++i) {
     if (is_released_[i]) continue;
-    const Pose X_KC = keyframes_[i]->X_WC.inverse() * X_WC;
-    const double distance = std::max(X_KC.translation().norm() / config_.spacing_m,
-                                     rotation_angle_rad(X_KC) / config_.spacing_rad);
+    const double distance = in_spacings(keyframes_[i]->X_WC, X_WC);
     if (!(distance < least)) continue;
     least = distance;
     nearest = i;
   }
   return nearest;
+}
+
+double KeyframeMap::in_spacings(const Pose& X_WA, const Pose& X_WB) const {
+  const Pose X_AB = X_WA.inverse() * X_WB;
+  return std::max(X_AB.translation().norm() / config_.spacing_m,
+                  rotation_angle_rad(X_AB) / config_.spacing_rad);
 }
 
 void KeyframeMap::release_if(const std::function<bool(const Keyframe&)>& has_left) {

@@ -65,6 +65,10 @@ class KeyframeMap {
   /// nothing: a keyframe is due.
   std::optional<int> find_near(const Pose& X_WC) const;
 
+  /// The distance of two poses or the angle between them, in units of the spacing, whichever is
+  /// larger.
+  double in_spacings(const Pose& X_WA, const Pose& X_WB) const;
+
   /// Adds the frame at X_WC as a keyframe, with the map's surface as seen from there.
   void add(const Pose& X_WC, const TrackingInput& frame, const SurfaceMap& surface_C);
 
@@ -72,6 +76,8 @@ class KeyframeMap {
   /// their surface is in the volume no more, so a new one says where the camera is now.
   void release_if(const std::function<bool(const Keyframe&)>& has_left);
   void release(int number) { is_released_[number] = true; }
+  /// The surface of a released keyframe is in the volume again.
+  void take_back(int number) { is_released_[number] = false; }
   const std::vector<bool>& is_released() const { return is_released_; }  ///< by number
 
   /// Numbers of the most similar keyframes, without duplicates: first by the number of shared

@@ -53,6 +53,47 @@ PatchMaker::Patch& PatchMaker::patch_at(const TileCoord& tile) {
   return patch;
 }
 
+std::vector<CloudSlice> PatchMaker::reopen(std::span<const TileVisit> visits,
+                                           const CloudSlice& header) {
+  std::vector<CloudSlice> ended;
+  for (const TileVisit& visit : visits) {
+    Patch& patch = patch_at(visit.tile);
+    if (visit.number != TileVisit::kOpen) {
+      if (places_[patch.number].id != kNoId) ended.push_back(revision_of(patch, header));
+      places_[patch.number].is_void = true;
+      const Closed& closed = closed_.at(visit.tile).at(visit.number);
+      patch.number = closed.number;
+      patch.revision = closed.revision;
+    }
+    places_[patch.number].is_void = true;
+    places_.push_back(places_[patch.number]);
+    places_.back().is_void = false;
+    patch.number = static_cast<int>(places_.size()) - 1;
+    patch.left_W.clear();
+    newest_[visit.tile] = patch.number;
+  }
+  if (!ended.empty()) ended.back().ends_batch = true;
+  return ended;
+}
+
+/// The next revision, without points yet.
+CloudSlice PatchMaker::revision_of(Patch& patch, const CloudSlice& header) {
+  const Place& place = places_[patch.number];
+  CloudSlice slice = header;
+  slice.kind = SliceKind::kPatch;
+  slice.id = place.id;
+  slice.X_WP = place.X_WP;
+  slice.correction = correction_;
+  slice.revision = ++patch.revision;
+  revision_sum_ += slice.revision > 0 ? 1 : 0;
+  return slice;
+}
+
+std::optional<PatchPose> PatchMaker::pose_of(int patch) const {
+  const Place& place = places_.at(patch);
+  return place.is_void ? std::nullopt : std::optional(place.X_WP);
+}
+
 std::vector<CloudSlice> PatchMaker::make(const PatchBatch& batch, const ExtractedSurface& in_volume,
                                          const CloudSlice& header) {
   auto present_W = by_tile(in_volume);
@@ -61,25 +102,21 @@ std::vector<CloudSlice> PatchMaker::make(const PatchBatch& batch, const Extracte
     Patch& patch = patch_at(due.tile);
     Place& place = places_[patch.number];
     place.keyframe = due.keyframe;
-    CloudSlice slice = header;
-    slice.kind = SliceKind::kPatch;
-    slice.in_volume = due.in_volume;
-    slice.points_W = due.in_volume ? patch.left_W : std::move(patch.left_W);
+    std::vector<CloudPoint> points_W = due.in_volume ? patch.left_W : std::move(patch.left_W);
     if (due.in_volume) {
-      const auto& points_W = present_W[due.tile];
-      slice.points_W.insert(slice.points_W.end(), points_W.begin(), points_W.end());
+      const auto& more_W = present_W[due.tile];
+      points_W.insert(points_W.end(), more_W.begin(), more_W.end());
     }
-    if (place.id != kNoId || !slice.points_W.empty()) {
+    if (place.id != kNoId || !points_W.empty()) {
       if (place.id == kNoId) place.id = next_id_++;
       place.X_WP = due.X_WP;
-      slice.id = place.id;
-      slice.X_WP = place.X_WP;
-      slice.correction = correction_;
-      slice.revision = ++patch.revision;
-      revision_sum_ += slice.revision > 0 ? 1 : 0;
-      slices.push_back(std::move(slice));
+      CloudSlice& slice = slices.emplace_back(revision_of(patch, header));
+      slice.in_volume = due.in_volume;
+      slice.points_W = std::move(points_W);
     }
-    if (!due.in_volume) patches_.erase(due.tile);
+    if (due.in_volume) continue;
+    closed_[due.tile].push_back({patch.number, patch.revision});
+    patches_.erase(due.tile);
   }
   if (!slices.empty()) slices.back().ends_batch = true;
   return slices;
@@ -94,7 +131,7 @@ std::vector<CloudSlice> PatchMaker::correct(const MapDeformation& deformation,
   slice.correction = correction_;
   for (Place& place : places_) {
     const PatchPose X_WP = deformation.at(place.keyframe);
-    if (place.id == kNoId || place.X_WP == X_WP) continue;
+    if (place.id == kNoId || place.is_void || place.X_WP == X_WP) continue;
     const double moved_m =
         motion_m(place.tile, place.X_WP.pose(), X_WP.pose(), header.resolution_m);
     if (moved_m <= kLeastMotion_vox * header.resolution_m) continue;

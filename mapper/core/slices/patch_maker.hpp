@@ -2,6 +2,8 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "lcmtypes/messages.hpp"
@@ -11,6 +13,7 @@
 #include "mapper/core/slices/patch_batch.hpp"
 #include "mapper/core/slices/patch_run.hpp"
 #include "mapper/core/slices/tile.hpp"
+#include "mapper/core/slices/tile_visit.hpp"
 
 namespace kintsugi::mapper {
 
@@ -20,7 +23,8 @@ namespace kintsugi::mapper {
 /// A patch has the surface of its tile that has left, as it was extracted when it left, and then
 /// that which is in the volume. So the last revisions of all patches together are the slices that
 /// left the volume, point for point. When the volume comes back to a tile that had left it for
-/// good, there is another patch.
+/// good, there is another patch, unless the blocks of the first one come back: then that goes on,
+/// and what was given of it before, by keep(), counts no more.
 class PatchMaker {
  public:
   explicit PatchMaker(const TileGrid& grid) : grid_(grid) {}
@@ -32,8 +36,14 @@ class PatchMaker {
   /// was when it left.
   std::vector<PatchRun> patches_of(const MeshPiece& piece, double resolution_m) const;
 
-  /// Where a patch was sent to, by its number in PatchRun.
-  const PatchPose& pose_of(int patch) const { return places_.at(patch).X_WP; }
+  /// Continues the patches of visits that are in the volume again, with all their blocks. Where
+  /// there was another patch until now, which has no surface any more, it ends: gives its last
+  /// revision. `header` as for make().
+  std::vector<CloudSlice> reopen(std::span<const TileVisit> visits, const CloudSlice& header);
+
+  /// Where a patch was sent to, by its number in PatchRun; nothing: the points with this number
+  /// count no more.
+  std::optional<PatchPose> pose_of(int patch) const;
 
   /// The patches of a batch; `in_volume` has the surface of their tiles that is in the volume.
   /// `header` has the fields that are the same in all of them. A patch that never had points is
@@ -62,18 +72,26 @@ class PatchMaker {
     std::int32_t id = kNoId;
     int keyframe = 0;  ///< with which it moves
     PatchPose X_WP;
+    bool is_void = false;  ///< the patch goes on under another number
+  };
+
+  struct Closed {
+    int number = kNoPatch;
+    std::int32_t revision = -1;
   };
 
   std::map<TileCoord, std::vector<CloudPoint>> by_tile(const ExtractedSurface& surface) const;
   Patch& patch_at(const TileCoord& tile);
+  CloudSlice revision_of(Patch& patch, const CloudSlice& header);
   double motion_m(const TileCoord& tile, const Pose& X_WP_before, const Pose& X_WP_after,
                   double resolution_m) const;
 
   const TileGrid grid_;
-  std::vector<Place> places_;           ///< of all patches, by number
-  std::map<TileCoord, int> newest_;     ///< the number of the newest patch of each tile
-  std::int32_t correction_ = 0;         ///< number of the last one
-  std::map<TileCoord, Patch> patches_;  ///< those that may be sent again
+  std::vector<Place> places_;        ///< of all patches, by number
+  std::map<TileCoord, int> newest_;  ///< the number of the newest patch of each tile
+  std::map<TileCoord, std::vector<Closed>> closed_;  ///< by TileVisit::number
+  std::int32_t correction_ = 0;                      ///< number of the last one
+  std::map<TileCoord, Patch> patches_;               ///< those that may be sent again
   std::int32_t next_id_ = 0;
   std::int64_t revision_sum_ = 0;  ///< of the newest revisions
 };

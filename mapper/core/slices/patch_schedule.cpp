@@ -39,6 +39,31 @@ void PatchSchedule::note_left(const std::vector<BlockCoord>& left, const TsdfVol
   }
 }
 
+void PatchSchedule::note_returned(const TileCoord& coord, int keyframe, const TsdfVolume& volume) {
+  departed_.erase(coord);
+  Tile& tile = tiles_[coord];
+  tile.keyframe = keyframe;
+  grid_.for_each_block(coord, [&](const BlockCoord& block_coord) {
+    const BlockSlot slot = volume.find(block_coord);
+    if (slot == kNoBlock) return;
+    const BlockSurface surface(volume, slot, rule_);
+    if (surface.num_voxels() == 0 || tile.blocks.contains(block_coord)) return;
+    tile.blocks[block_coord] = {
+        .sent = surface, .now = surface, .change = {.num_in_all = surface.num_voxels()}};
+  });
+}
+
+PatchBatch PatchSchedule::depart_all(const std::vector<TileCoord>& others) {
+  for (const auto& [coord, tile] : tiles_) departed_.emplace(coord, tile.keyframe);
+  for (const TileCoord& coord : others) departed_.emplace(coord, keyframe_);
+  tiles_.clear();
+  PatchBatch batch;
+  for (const auto& [coord, keyframe] : std::exchange(departed_, {})) {
+    batch.patches.push_back({coord, false, keyframe});
+  }
+  return batch;
+}
+
 std::optional<PatchBatch> PatchSchedule::next(const TsdfVolume& volume, std::int64_t utime,
                                               int keyframe) {
   if (!last_utime_) last_utime_ = utime;

@@ -46,6 +46,14 @@ class PatchSchedule {
   /// To be called when blocks have left the volume, with their coordinates.
   void note_left(const std::vector<BlockCoord>& left, const TsdfVolume& volume);
 
+  /// To be called when all blocks of an open visit have come back: what was sent of them is up to
+  /// date. `keyframe`: at which the tile was seen last.
+  void note_returned(const TileCoord& tile, int keyframe, const TsdfVolume& volume);
+
+  /// Ends the visits of all tiles, at once; to be called when the volume is empty. `others`: tiles
+  /// that it may not know of.
+  PatchBatch depart_all(const std::vector<TileCoord>& others);
+
   /// The batch of this frame, to be called after it was fused; nothing: none is due. `keyframe`: at
   /// which the camera is.
   std::optional<PatchBatch> next(const TsdfVolume& volume, std::int64_t utime, int keyframe = 0);

@@ -17,11 +17,11 @@ std::size_t num_blocks_held(const DetachedBlocks& blocks) {
   return blocks.coords.size() + blocks.apron_coords.size();
 }
 
-CloudSlice header_of(const DetachedBlocks& blocks, std::int64_t utime, const Pose& X_WC) {
+CloudSlice header_of(SliceKind kind, float resolution_m, std::int64_t utime, const Pose& X_WC) {
   CloudSlice header;
   header.utime = utime;
-  header.kind = blocks.kind;
-  header.resolution_m = blocks.resolution_m;
+  header.kind = kind;
+  header.resolution_m = resolution_m;
   header.X_WC = X_WC;
   return header;
 }
@@ -50,35 +50,54 @@ SliceWorker::~SliceWorker() {
   thread_.join();
 }
 
-void SliceWorker::submit(DetachedBlocks blocks, std::int64_t utime, const Pose& X_WC) {
-  CloudSlice header = header_of(blocks, utime, X_WC);
-  enqueue({std::move(blocks), std::nullopt, std::nullopt, std::move(header)});
+void SliceWorker::submit(DetachedBlocks blocks, std::int64_t utime, const Pose& X_WC, bool waits) {
+  Job job;
+  job.header = header_of(blocks.kind, blocks.resolution_m, utime, X_WC);
+  job.blocks = std::move(blocks);
+  job.waits = waits;
+  enqueue(std::move(job));
 }
 
 void SliceWorker::submit(PatchBatch batch, DetachedBlocks in_volume, std::int64_t utime,
                          const Pose& X_WC) {
-  CloudSlice header = header_of(in_volume, utime, X_WC);
-  enqueue({std::move(in_volume), std::move(batch), std::nullopt, std::move(header)});
+  Job job;
+  job.header = header_of(in_volume.kind, in_volume.resolution_m, utime, X_WC);
+  job.blocks = std::move(in_volume);
+  job.batch = std::move(batch);
+  enqueue(std::move(job));
 }
 
 void SliceWorker::submit(MapDeformation deformation, std::int64_t utime, const Pose& X_WC,
                          float resolution_m) {
-  DetachedBlocks none;
-  none.resolution_m = resolution_m;
-  CloudSlice header = header_of(none, utime, X_WC);
-  enqueue({std::move(none), std::nullopt, std::move(deformation), std::move(header)});
+  Job job;
+  job.header = header_of(SliceKind::kCorrection, resolution_m, utime, X_WC);
+  job.deformation = std::move(deformation);
+  enqueue(std::move(job));
+}
+
+void SliceWorker::submit(std::vector<TileVisit> returned, std::int64_t utime, const Pose& X_WC,
+                         float resolution_m) {
+  Job job;
+  job.header = header_of(SliceKind::kPatch, resolution_m, utime, X_WC);
+  job.returned = std::move(returned);
+  enqueue(std::move(job));
 }
 
 void SliceWorker::enqueue(Job job) {
   std::unique_lock lock(mutex_);
-  const std::size_t num_blocks = num_blocks_held(job.blocks);
+  const std::size_t num_blocks = num_blocks_counted(job);
   done_.wait(lock, [&] {
-    return failure_ || queue_.empty() || queued_blocks_ + num_blocks <= config_.max_queued_blocks;
+    return failure_ || num_blocks == 0 || queue_.empty() ||
+           queued_blocks_ + num_blocks <= config_.max_queued_blocks;
   });
   if (failure_) std::rethrow_exception(failure_);
   queued_blocks_ += num_blocks;
   queue_.push_back(std::move(job));
   work_.notify_one();
+}
+
+std::size_t SliceWorker::num_blocks_counted(const Job& job) {
+  return job.waits ? num_blocks_held(job.blocks) : 0;
 }
 
 std::vector<CloudSlice> SliceWorker::take_finished() {
@@ -123,7 +142,7 @@ void SliceWorker::run() {
     busy_ms_ += elapsed_ms;
     failure_ = failure;
     std::ranges::move(slices, std::back_inserter(finished_));
-    queued_blocks_ -= num_blocks_held(job.blocks);
+    queued_blocks_ -= num_blocks_counted(job);
     queue_.pop_front();
     done_.notify_all();
     if (failure_) return;
@@ -134,6 +153,7 @@ std::vector<CloudSlice> SliceWorker::work_on(Job& job) {
   if (job.deformation) {
     return patches_.value().correct(*job.deformation, job.header);
   }
+  if (!job.returned.empty()) return patches_.value().reopen(job.returned, job.header);
   ExtractedSurface surface = extractor_.extract_blocks(job.blocks);
   if (job.batch) return patches_.value().make(*job.batch, surface, job.header);
   const std::vector<PatchRun> runs = patches_ ? patches_->keep(surface) : std::vector<PatchRun>();

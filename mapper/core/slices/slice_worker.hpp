@@ -17,6 +17,7 @@
 #include "mapper/core/slices/patch_batch.hpp"
 #include "mapper/core/slices/patch_maker.hpp"
 #include "mapper/core/slices/tile.hpp"
+#include "mapper/core/slices/tile_visit.hpp"
 #include "mapper/core/volume/detached_blocks.hpp"
 
 namespace kintsugi::mapper {
@@ -56,7 +57,9 @@ class SliceWorker {
 
   /// Queues blocks that left at `utime` when the camera was at `X_WC`. Final blocks end the run.
   /// @throws what extraction of an earlier slice threw
-  void submit(DetachedBlocks blocks, std::int64_t utime, const Pose& X_WC);
+  /// `waits`: for room in the queue. Blocks of a volume that is emptied need not: they take no more
+  /// memory than they did, and the next one of this size comes much later.
+  void submit(DetachedBlocks blocks, std::int64_t utime, const Pose& X_WC, bool waits = true);
 
   /// Queues patches; `in_volume` are copies of those blocks of their tiles that are in the volume.
   /// @throws as above
@@ -66,6 +69,11 @@ class SliceWorker {
   /// @throws as above
   void submit(MapDeformation deformation, std::int64_t utime, const Pose& X_WC, float resolution_m);
 
+  /// Queues the return of visits to the volume; see PatchMaker::reopen(). For patches only.
+  /// @throws as above
+  void submit(std::vector<TileVisit> returned, std::int64_t utime, const Pose& X_WC,
+              float resolution_m);
+
   /// Slices finished since the last call, without waiting.
   /// @throws what extraction of a slice threw
   std::vector<CloudSlice> take_finished();
@@ -73,8 +81,10 @@ class SliceWorker {
   /// Waits for all submitted slices, then as take_finished().
   std::vector<CloudSlice> drain();
 
-  /// Where a patch is in the corrected map, by its number in PatchRun; after drain().
-  PatchPose pose_of_patch(int patch) const { return patches_.value().pose_of(patch); }
+  /// See PatchMaker::pose_of(); after drain().
+  std::optional<PatchPose> pose_of_patch(int patch) const {
+    return patches_.value().pose_of(patch);
+  }
 
   /// Time spent extracting so far, milliseconds.
   double busy_ms() const;
@@ -84,10 +94,13 @@ class SliceWorker {
     DetachedBlocks blocks;
     std::optional<PatchBatch> batch;            ///< none: the blocks have left
     std::optional<MapDeformation> deformation;  ///< there are no blocks
+    std::vector<TileVisit> returned;            ///< if there are any, there are no blocks
     CloudSlice header;                          ///< of its slices
+    bool waits = true;                          ///< its blocks count in the queue
   };
 
   void enqueue(Job job);
+  static std::size_t num_blocks_counted(const Job& job);
   void run();
   std::vector<CloudSlice> work_on(Job& job);
   std::vector<CloudSlice> slices_of_left(const Job& job, ExtractedSurface surface);

@@ -123,6 +123,13 @@ TrackingResult Tracker::register_anew(const TrackingInput& frame, const Model& m
   return result;
 }
 
+void Tracker::change_frame(const Pose& X_NW) {
+  X_WC_ = X_NW * X_WC_;
+  X_WC_followed_ = X_NW * X_WC_followed_;
+  if (reference_) reference_->X_WK = X_NW * reference_->X_WK;
+  if (last_frame_) last_frame_->X_WV = X_NW * last_frame_->X_WV;
+}
+
 bool Tracker::can_be_at(const Pose& X_WC, std::int64_t utime) const {
   if (!has_pose_) return true;
   const double distance_m = (X_WC.translation() - X_WC_.translation()).norm();

@@ -37,9 +37,10 @@ class Tracker {
     /// m/s^2 (and rad/s^2), of a hand-held camera: a pose farther from the prediction than this
     /// explains is judged as one found anew.
     double max_acceleration = 30.0;
-    /// m/s, of whatever carries the camera: a person who runs. Where tracking was lost for a
-    /// moment, the camera cannot be in another room, however much that looks like this one.
-    double max_speed = 5.0;
+    /// m/s, of whatever carries the camera: a person in a hurry. Where tracking was lost for a
+    /// moment, the camera cannot be in another room, however much that looks like this one. A
+    /// faster camera is found later.
+    double max_speed = 2.0;
     /// Largest drift, as a share of the path: dense tracking drifts by about a hundredth. A place
     /// that is found again may be so far from where the map has it.
     double max_drift_share = 0.02;
@@ -70,6 +71,9 @@ class Tracker {
   /// accepted (kTracking) only as a pose found anew. Does not change the tracker.
   TrackingResult register_anew(const TrackingInput& frame, const Model& model,
                                const Pose& X_WC_start) const;
+
+  /// Goes on in another frame N of the map, with the same velocity and reference.
+  void change_frame(const Pose& X_NW);
 
   /// The pose at this device time (microseconds) with constant velocity.
   Pose predict(std::int64_t utime) const;

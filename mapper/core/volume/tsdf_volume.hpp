@@ -3,12 +3,15 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <span>
 #include <vector>
 
 #include "mapper/core/kernels/volume_access.hpp"
 #include "mapper/core/volume/block_region.hpp"
 #include "mapper/core/volume/block_table.hpp"
 #include "mapper/core/volume/detached_blocks.hpp"
+#include "mapper/core/volume/stored_block.hpp"
 #include "mapper/core/volume/tsdf_block.hpp"
 #include "mapper/core/volume/tsdf_block_pool.hpp"
 
@@ -87,6 +90,8 @@ class TsdfVolume {
   BlockSlot allocate(const BlockCoord& coord);
   /// Says that a block is in view, so that it is among the last to leave a ball that is too full.
   void mark_seen(BlockSlot slot) { last_seen_[slot] = num_moves_; }
+  /// The number of calls of shift_to() when a block was last in view.
+  std::uint32_t last_seen(BlockSlot slot) const { return last_seen_[slot]; }
   /// Whether a block was in view after so many calls of shift_to().
   bool seen_since(BlockSlot slot, std::uint32_t num_moves) const {
     return last_seen_[slot] > num_moves;
@@ -111,6 +116,9 @@ class TsdfVolume {
   BlockSlot slots_end() const { return static_cast<BlockSlot>(in_use_.size()); }
   bool in_use(BlockSlot slot) const { return in_use_[slot] != 0; }
 
+  /// Called with blocks of a ball that are about to leave; may change and discard them.
+  using BeforeLeaving = std::function<void(const std::vector<BlockSlot>&)>;
+
   /// Centres the region on the camera, to the nearest block, along each axis on which the camera is
   /// farther than shift_vox from the centre. Returns the blocks that left. Of a cube: one object
   /// for each axis (in the order x, y, z) along which any did, with the direction of the motion as
@@ -123,14 +131,22 @@ class TsdfVolume {
   /// those seen since the call before.
   /// @throws std::invalid_argument where the position is not finite or farther than 100 km from W's
   /// origin; the volume is unchanged then
-  std::vector<DetachedBlocks> shift_to(const Eigen::Vector3d& camera_W);
+  std::vector<DetachedBlocks> shift_to(const Eigen::Vector3d& camera_W,
+                                       const BeforeLeaving& before_leaving = {});
 
   /// A copy of all blocks, as a final slice; the volume is unchanged.
   DetachedBlocks snapshot() const;
   /// A copy of these blocks, in any order, as a patch; the volume is unchanged.
   DetachedBlocks snapshot(std::vector<BlockSlot> slots) const;
-  /// All blocks, as a final slice; the volume is empty afterwards.
-  DetachedBlocks detach_all();
+  /// These blocks, in any order, which the volume then has no more.
+  DetachedBlocks detach(std::vector<BlockSlot> slots, SliceKind kind);
+  /// All blocks; the volume is empty afterwards.
+  DetachedBlocks detach_all(SliceKind kind = SliceKind::kFinal);
+
+  /// Puts blocks of a ball back as they were when they left; in view. They are in the region, and
+  /// the volume has none at these places. `around`: blocks that left, too, and share a face, an
+  /// edge or a corner with those.
+  void restore(std::span<const StoredBlock> blocks, std::span<const StoredBlock> around);
 
   std::size_t num_blocks() const { return num_blocks_; }  ///< in the region
   std::size_t memory_bytes() const;                       ///< including blocks that are handed out
@@ -139,7 +155,8 @@ class TsdfVolume {
   static constexpr double kBlockBytes = sizeof(VoxelBlock) + sizeof(ColorBlock);
 
   std::vector<DetachedBlocks> shift_cube(const Eigen::Vector3d& offset_vox);
-  std::vector<DetachedBlocks> shift_ball(const Eigen::Vector3d& offset_vox);
+  std::vector<DetachedBlocks> shift_ball(const Eigen::Vector3d& offset_vox,
+                                         const BeforeLeaving& before_leaving);
   /// The blocks that are not in `region`, ascending.
   std::vector<BlockSlot> slots_outside(const BlockRegion& region) const;
   /// Those of the blocks in `region` that were in view longest ago, in no particular order; none

@@ -49,10 +49,15 @@ DetachedBlocks TsdfVolume::copy(const std::vector<BlockSlot>& slots, SliceKind k
   return blocks;
 }
 
-DetachedBlocks TsdfVolume::detach_all() {
+DetachedBlocks TsdfVolume::detach_all(SliceKind kind) {
   BlockRegion nothing = region_;
   nothing.side = 0;
-  return detach(slots_outside(nothing), SliceKind::kFinal, nothing);
+  return detach(slots_outside(nothing), kind, nothing);
+}
+
+DetachedBlocks TsdfVolume::detach(std::vector<BlockSlot> slots, SliceKind kind) {
+  sort_by_coord(slots);
+  return detach(slots, kind, region_);
 }
 
 void TsdfVolume::sort_by_coord(std::vector<BlockSlot>& slots) const {

@@ -33,11 +33,13 @@ int whole_blocks(double offset_vox) {
 
 }  // namespace
 
-std::vector<DetachedBlocks> TsdfVolume::shift_to(const Eigen::Vector3d& camera_W) {
+std::vector<DetachedBlocks> TsdfVolume::shift_to(const Eigen::Vector3d& camera_W,
+                                                 const BeforeLeaving& before_leaving) {
   check_position(camera_W);
   ++num_moves_;
   const Eigen::Vector3d offset_vox = (camera_W - center_W()) / config_.resolution_m;
-  return region_.shape == RegionShape::kCube ? shift_cube(offset_vox) : shift_ball(offset_vox);
+  return region_.shape == RegionShape::kCube ? shift_cube(offset_vox)
+                                             : shift_ball(offset_vox, before_leaving);
 }
 
 std::vector<DetachedBlocks> TsdfVolume::shift_cube(const Eigen::Vector3d& offset_vox) {
@@ -53,7 +55,8 @@ std::vector<DetachedBlocks> TsdfVolume::shift_cube(const Eigen::Vector3d& offset
   return slices;
 }
 
-std::vector<DetachedBlocks> TsdfVolume::shift_ball(const Eigen::Vector3d& offset_vox) {
+std::vector<DetachedBlocks> TsdfVolume::shift_ball(const Eigen::Vector3d& offset_vox,
+                                                   const BeforeLeaving& before_leaving) {
   BlockRegion moved = region_;
   for (int axis = 0; axis < 3; ++axis) {
     if (is_beyond(offset_vox[axis], config_)) {
@@ -70,6 +73,10 @@ std::vector<DetachedBlocks> TsdfVolume::shift_ball(const Eigen::Vector3d& offset
     sort_by_coord(leaving);
   }
   if (leaving.empty() && moved.min == region_.min) return {};
+  if (before_leaving && !leaving.empty()) {
+    before_leaving(leaving);
+    std::erase_if(leaving, [this](BlockSlot slot) { return !in_use(slot); });
+  }
   const SliceKind kind = kind_of(leaving, moved);
   DetachedBlocks slice = detach(leaving, kind, moved);
   std::vector<DetachedBlocks> slices;

@@ -27,16 +27,18 @@ inline cv::Mat_<float> metres(const cv::Mat_<std::uint16_t>& depth_mm) {
   return depth_m;
 }
 
-/// The first `count` frames of the scene's path, 320x240, every `step`-th.
+/// `count` frames of the scene's path, 320x240, every `step`-th from frame `first` on. A closed
+/// path goes on after its end.
 inline SyntheticRun synthetic_run(const std::string& scene_name, int count, bool noise,
-                                  int step = 1) {
+                                  int step = 1, int first = 0) {
   const synthetic::SceneWithPath world = synthetic::make_scene_with_path(scene_name);
   const auto sensor = synthetic::make_sensor({.noise = noise});
   const Intrinsics camera = half_size(synthetic::default_intrinsics());
   SyntheticRun run;
-  for (int i = 0; i < count * step; i += step) {
+  const int laps = world.trajectory.is_closed() ? 100 : 1;
+  for (int i = first; i < first + count * step; i += step) {
     const std::int64_t utime = synthetic::frame_utime(i);
-    const Pose X_WC = world.trajectory.X_WC(1e-6 * static_cast<double>(utime));
+    const Pose X_WC = world.trajectory.X_WC(1e-6 * static_cast<double>(utime), laps);
     const synthetic::RenderedFrame picture = synthetic::render(world.scene, camera, X_WC);
     RgbdFrame frame;
     frame.utime = utime;

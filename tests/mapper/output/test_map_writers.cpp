@@ -243,5 +243,47 @@ TEST(MeshWriter, MovesVerticesOfPatchesAndLeavesTriangles) {
   EXPECT_EQ(read_file(moved), read_file(still));
 }
 
+/// Patch 1 was replaced.
+std::optional<PatchPose> all_but_patch_1(int patch) {
+  return patch == 1 ? std::nullopt : std::optional(PatchPose());
+}
+
+TEST(CloudWriter, DropsPointsOfPatchesThatCountNoMore) {
+  const kintsugi::testing::TemporaryFolder folder;
+  CloudWriter writer(folder.path() / "map.ply");
+  std::vector<CloudPoint> points(10'000);
+  for (int i = 0; i < 10'000; ++i) points[i] = example_point(i);
+  writer.append(points, {{3'000, 0}, {4'000, 1}, {2'000, kNoPatch}, {1'000, 2}});
+  writer.commit(all_but_patch_1);
+  EXPECT_EQ(writer.num_points(), 6'000);
+  points.erase(points.begin() + 3'000, points.begin() + 7'000);
+  EXPECT_EQ(read_cloud(folder.path() / "map.ply"), points);
+  EXPECT_EQ(num_files(folder.path()), 1);
+}
+
+TEST(MeshWriter, DropsFacesOfVerticesThatCountNoMore) {
+  const kintsugi::testing::TemporaryFolder folder;
+  MeshWriter writer(folder.path() / "mesh.ply");
+  MeshPiece piece;
+  for (int i = 0; i < 6; ++i) piece.vertices.push_back({static_cast<float>(i), 0, 0, {}});
+  piece.triangles = {{0, 1, 4}, {1, 2, 4}, {4, 5, 0}, {2, 3, 4}};
+  writer.append(piece, {{2, 0}, {2, 1}, {2, 2}});
+  writer.commit(all_but_patch_1);
+  EXPECT_EQ(writer.num_triangles(), 2);
+  Bytes bytes(read_file(folder.path() / "mesh.ply"));
+  while (bytes.line() != "end_header") {
+  }
+  for (const float x : {0.0F, 1.0F, 4.0F, 5.0F}) {
+    EXPECT_EQ(bytes.value<float>(), x);
+    for (int i = 0; i < 2; ++i) bytes.value<float>();
+    for (int i = 0; i < 3; ++i) bytes.value<std::uint8_t>();
+  }
+  for (const auto& triangle : {std::array{0, 1, 2}, std::array{2, 3, 0}}) {
+    EXPECT_EQ(bytes.value<std::uint8_t>(), 3);
+    for (const int vertex : triangle) EXPECT_EQ(bytes.value<std::int32_t>(), vertex);
+  }
+  EXPECT_TRUE(bytes.at_end());
+}
+
 }  // namespace
 }  // namespace kintsugi::mapper

@@ -79,6 +79,65 @@ TEST_F(Patches, ThatHaveLeftForGoodAreOtherPatchesWhenTheVolumeComesBack) {
   EXPECT_THAT(weights(slices[1]), ElementsAre(3));
 }
 
+TEST_F(Patches, GoOnWhenTheirBlocksComeBack) {
+  maker.make({{{kHere}}}, surface({{0, {1}}}), header());
+  const int before = maker.keep(surface({{0, {2}}})).front().patch;
+  maker.make({{{kHere, false}}}, {}, header());
+  maker.reopen(std::vector<TileVisit>{{kHere, 0}}, header());
+  EXPECT_FALSE(maker.pose_of(before).has_value()) << "what was kept of it counts no more";
+  const auto slices = maker.make({{{kHere}}}, surface({{0, {3}}}), header());
+  ASSERT_EQ(slices.size(), 1U);
+  EXPECT_EQ(slices[0].id, 0) << "the same patch";
+  EXPECT_EQ(slices[0].revision, 2);
+  EXPECT_TRUE(slices[0].in_volume);
+  EXPECT_THAT(weights(slices[0]), ElementsAre(3));
+
+  const int after = maker.keep(surface({{0, {4}}})).front().patch;
+  EXPECT_NE(after, before);
+  EXPECT_TRUE(maker.pose_of(after).has_value());
+  const auto last = maker.finish(header());
+  EXPECT_THAT(weights(last[0]), ElementsAre(4));
+  EXPECT_EQ(last[0].revision, 3);
+  EXPECT_EQ(last.back().revision_sum, 3);
+}
+
+TEST_F(Patches, GoOnWhenPartOfAnOpenOneComesBack) {
+  maker.make({{{kHere}}}, surface({{0, {1}}}), header());
+  const int before = maker.keep(surface({{0, {2}}})).front().patch;
+  maker.reopen(std::vector<TileVisit>{{kHere}}, header());
+  EXPECT_FALSE(maker.pose_of(before).has_value());
+  const auto slices = maker.make({{{kHere}}}, surface({{0, {3}}}), header());
+  EXPECT_EQ(slices.at(0).id, 0);
+  EXPECT_EQ(slices.at(0).revision, 1);
+  EXPECT_THAT(weights(slices[0]), ElementsAre(3)) << "not what had left, too";
+}
+
+TEST_F(Patches, AreToldApartByTheVisit) {
+  for (const float weight : {1.0F, 2.0F}) {
+    maker.make({{{kHere}}}, surface({{0, {weight}}}), header());
+    maker.make({{{kHere, false}}}, {}, header());
+  }
+  maker.reopen(std::vector<TileVisit>{{kHere, 0}}, header());
+  EXPECT_EQ(maker.make({{{kHere}}}, surface({{0, {5}}}), header()).at(0).id, 0);
+  maker.make({{{kHere, false}}}, {}, header());
+  maker.reopen(std::vector<TileVisit>{{kHere, 1}}, header());
+  EXPECT_EQ(maker.make({{{kHere}}}, surface({{0, {5}}}), header()).at(0).id, 1);
+}
+
+TEST_F(Patches, EndWhereAnEarlierOneGoesOn) {
+  maker.make({{{kHere}}}, surface({{0, {1}}}), header());
+  maker.make({{{kHere, false}}}, {}, header());
+  maker.make({{{kHere}}}, surface({{0, {2}}}), header());
+  const auto ended = maker.reopen(std::vector<TileVisit>{{kHere, 0}}, header());
+  ASSERT_EQ(ended.size(), 1U);
+  EXPECT_EQ(ended[0].id, 1);
+  EXPECT_EQ(ended[0].revision, 1);
+  EXPECT_THAT(ended[0].points_W, IsEmpty());
+  EXPECT_FALSE(ended[0].in_volume);
+  EXPECT_TRUE(ended[0].ends_batch);
+  EXPECT_EQ(maker.make({{{kHere}}}, surface({{0, {5}}}), header()).at(0).id, 0);
+}
+
 TEST_F(Patches, EndWithTheirLastRevisionsAndTheirSum) {
   maker.make({{{kHere}}}, surface({{0, {1}}}), header());
   maker.make({{{kHere}, {kThere}}}, surface({{0, {1}}, {1, {2}}}), header());
@@ -147,8 +206,8 @@ TEST_F(Patches, TellWhichOfThemThePointsAndVerticesThatLeftAreOf) {
   const auto runs = maker.keep(surface({{0, {1, 1}}, {1, {2}}}));
   ASSERT_EQ(runs.size(), 2U);
   EXPECT_EQ(runs[0].num_points, 2U);
-  EXPECT_FLOAT_EQ(maker.pose_of(runs[0].patch).t_WP[1], 0.01F);
-  EXPECT_FLOAT_EQ(maker.pose_of(runs[1].patch).t_WP[1], 0.02F);
+  EXPECT_FLOAT_EQ(maker.pose_of(runs[0].patch)->t_WP[1], 0.01F);
+  EXPECT_FLOAT_EQ(maker.pose_of(runs[1].patch)->t_WP[1], 0.02F);
 
   MeshPiece piece;
   for (const float x : {0.01F, 0.07F, 0.09F, 5.0F}) piece.vertices.push_back({.x = x});

@@ -68,6 +68,29 @@ TEST_F(SchedulePlane, SendsNothingThatDoesNotChange) {
   EXPECT_EQ(frames_until_batch(), 0) << "a tenth of a voxel, and a few observations";
 }
 
+TEST_F(SchedulePlane, DoesNotSendAgainWhatCameBackAsItWas) {
+  frames_until_batch();
+  const std::size_t num_tiles = batch_->patches.size();
+  const PatchBatch departed = schedule_.depart_all({});
+  EXPECT_EQ(departed.patches.size(), num_tiles);
+  EXPECT_THAT(departed.patches, Each(Field(&PatchBatch::Patch::in_volume, false)));
+  for (const PatchBatch::Patch& patch : departed.patches) {
+    schedule_.note_returned(patch.tile, 7, volume_);
+  }
+  EXPECT_EQ(frames_until_batch(), 0);
+  set_plane(0.353, 40);
+  EXPECT_LE(frames_until_batch(), 2) << "but when it changes";
+}
+
+TEST_F(SchedulePlane, EndsAllVisitsAndThoseThatItDoesNotKnow) {
+  frames_until_batch();
+  const TileCoord unknown{.z = 50, .y = 0, .x = 0};
+  const PatchBatch departed = schedule_.depart_all({unknown});
+  EXPECT_EQ(departed.patches.size(), batch_->patches.size() + 1);
+  EXPECT_EQ(departed.patches.back().tile, unknown);
+  EXPECT_THAT(schedule_.depart_all({}).patches, SizeIs(0U));
+}
+
 TEST_F(SchedulePlane, SendsBetterSurfaceLaterThanNewSurface) {
   frames_until_batch();
   set_plane(0.303, 40);

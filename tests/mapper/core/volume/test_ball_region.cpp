@@ -156,5 +156,47 @@ TEST(BallRegion, SaysHowFarItCanReach) {
               ThrowsMessage<std::invalid_argument>(HasSubstr("max_range_m is 9.")));
 }
 
+StoredBlock stored(const DetachedBlocks& left, std::size_t i) {
+  return {left.coords[i], *left.voxels[i], *left.colors[i]};
+}
+
+TEST(BallRegion, TakesBlocksBackAsTheyWere) {
+  TsdfVolume volume(small_ball());
+  volume.shift_to(Eigen::Vector3d::Zero());
+  const BlockCoord here = make_block_coord(0, 0, 0);
+  const BlockCoord beside = make_block_coord(1, 0, 0);
+  for (const BlockCoord& coord : {here, beside}) {
+    const BlockSlot slot = volume.allocate(coord);
+    volume.voxels(slot).voxels.fill(0x00090000U + static_cast<Voxel>(coord.x));
+    volume.colors(slot).colors.fill(0x01000000U + static_cast<VoxelColor>(coord.x));
+  }
+  const DetachedBlocks left = volume.detach_all(SliceKind::kPatch);
+  ASSERT_EQ(left.coords, (std::vector{here, beside}));
+  EXPECT_EQ(left.kind, SliceKind::kPatch);
+  volume.shift_to(Eigen::Vector3d(1e-3, 0, 0));
+
+  volume.restore(std::vector{stored(left, 0)}, std::vector{stored(left, 1)});
+  EXPECT_EQ(volume.num_blocks(), 1U);
+  const BlockSlot slot = volume.find(here);
+  ASSERT_NE(slot, kNoBlock);
+  EXPECT_EQ(volume.voxels(slot).voxels, left.voxels[0]->voxels);
+  EXPECT_EQ(volume.colors(slot).colors, left.colors[0]->colors);
+  const DetachedBlocks again = volume.detach_all();
+  EXPECT_EQ(again.coords, std::vector{here});
+  EXPECT_EQ(again.apron_coords, std::vector{beside}) << "to extract the surface between both";
+}
+
+TEST(BallRegion, LetsThoseAboutToLeaveBeChangedFirst) {
+  TsdfVolume volume(small_ball());
+  const BlockSlot first = volume.allocate(make_block_coord(0, 0, 0));
+  volume.allocate(make_block_coord(1, 0, 0));
+  const auto left = volume.shift_to(Eigen::Vector3d(50, 0, 0), [&](const auto& leaving) {
+    EXPECT_EQ(leaving.size(), 2U);
+    volume.discard(first);
+  });
+  ASSERT_EQ(left.size(), 1U);
+  EXPECT_EQ(left[0].coords, std::vector{make_block_coord(1, 0, 0)});
+}
+
 }  // namespace
 }  // namespace kintsugi::mapper

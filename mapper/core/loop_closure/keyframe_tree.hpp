@@ -1,0 +1,32 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+namespace kintsugi::mapper {
+
+/// From which keyframe the camera came to which.
+class KeyframeTree {
+ public:
+  /// Adds keyframe number size(), `distance_m` from that from which the camera came to it.
+  void add(std::optional<int> from, double distance_m);
+
+  /// Whether a keyframe is this one, or the camera's way to it from this one was not longer than
+  /// `reach_m`; by number.
+  std::vector<bool> within(int keyframe, double reach_m) const;
+
+  /// The keyframe from which the camera came to this one; itself for the first.
+  int from(int keyframe) const { return nodes_[keyframe].from; }
+  int size() const { return static_cast<int>(nodes_.size()); }
+
+ private:
+  struct Node {
+    int from = 0;
+    double distance_m = 0.0;
+    std::vector<int> to;
+  };
+
+  std::vector<Node> nodes_;
+};
+
+}  // namespace kintsugi::mapper

@@ -1,0 +1,216 @@
+#include "mapper/core/reactivation/covered_surface.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <bitset>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <vector>
+
+#include "lcmtypes/base/argument_check.hpp"
+
+namespace kintsugi::mapper {
+namespace {
+
+/// Where the voxel's surface is, by its distance and the gradient of the distance.
+struct NearSurface {
+  Eigen::Vector3d offset_vox;  ///< from the voxel's centre
+  Eigen::Vector3d normal;      ///< unit
+};
+
+/// Distances in voxels, of blocks that are found by their coordinates.
+template <typename FindBlock>
+class DistanceField {
+ public:
+  DistanceField(FindBlock find_block, double truncation_vox, int weight_threshold)
+      : find_block_(find_block), scale_(truncation_vox), weight_threshold_(weight_threshold) {}
+
+  /// Of voxel (x, y, z), counted from the origin; nothing where it was not observed.
+  std::optional<double> distance_vox(const Eigen::Vector3i& voxel) {
+    static_assert(kBlockSide == 8);
+    const BlockCoord coord = make_block_coord(voxel.x() >> 3, voxel.y() >> 3, voxel.z() >> 3);
+    if (coord != last_coord_ || !has_last_) {  // most are in the same one
+      last_ = find_block_(coord);
+      last_coord_ = coord;
+      has_last_ = true;
+    }
+    if (last_ == nullptr) return std::nullopt;
+    const Voxel value = last_->voxels[voxel_index(voxel.x() & 7, voxel.y() & 7, voxel.z() & 7)];
+    if (voxel_weight(value) <= weight_threshold_) return std::nullopt;
+    return scale_ * static_cast<double>(voxel_distance(value));
+  }
+
+  /// Whether the distance changes its sign from this voxel to one that shares a face with it.
+  bool is_at_crossing(const Eigen::Vector3i& voxel) {
+    const auto here = distance_vox(voxel);
+    if (!here) return false;
+    for (int side = 0; side < 6; ++side) {
+      const int step = side % 2 == 0 ? 1 : -1;
+      const auto there = distance_vox(voxel + step * Eigen::Vector3i::Unit(side / 2));
+      if (there && (*there < 0.0) != (*here < 0.0)) return true;
+    }
+    return false;
+  }
+
+  /// The surface near a voxel; nothing where none is within `max_distance_vox`.
+  std::optional<NearSurface> surface_near(const Eigen::Vector3i& voxel, double max_distance_vox) {
+    const auto here = distance_vox(voxel);
+    if (!here || std::abs(*here) > max_distance_vox) return std::nullopt;
+    Eigen::Vector3d gradient;
+    for (int axis = 0; axis < 3; ++axis) {
+      const Eigen::Vector3i step = Eigen::Vector3i::Unit(axis);
+      const auto after = distance_vox(voxel + step);
+      const auto before = distance_vox(voxel - step);
+      if (!after && !before) return std::nullopt;
+      gradient[axis] = after && before ? 0.5 * (*after - *before)
+                                       : (after ? *after - *here : *here - *before);
+    }
+    const double slope = gradient.norm();
+    if (!(slope > kLeastSlope)) return std::nullopt;
+    // The distance is measured along the ray, which may meet the surface at an angle.
+    return NearSurface{-*here / (slope * slope) * gradient, gradient / slope};
+  }
+
+ private:
+  static constexpr double kLeastSlope = 0.1;  // below it distances are truncated, or noise
+
+  FindBlock find_block_;
+  double scale_;
+  int weight_threshold_;
+  BlockCoord last_coord_;
+  const VoxelBlock* last_ = nullptr;
+  bool has_last_ = false;
+};
+
+}  // namespace
+
+void SameSurface::validate() const {
+  check_range("max_distance_vox", max_distance_vox, 0.0, 100.0);
+  check_range("max_angle_deg", max_angle_deg, 0.0, 180.0);
+  check_range("weight_threshold", weight_threshold, 0, 65534);
+}
+
+namespace {
+
+/// Decides about the voxels of a volume.
+class Comparison {
+ public:
+  Comparison(const TsdfVolume& volume, const std::vector<Cover>& covers, const SameSurface& same)
+      : volume_(volume),
+        covers_(covers),
+        same_(same),
+        voxel_m_(volume.config().resolution_m),
+        truncation_vox_(volume.config().largest_truncation_vox()),
+        reach_vox_(volume.config().truncation_vox),
+        min_cosine_(std::cos(same.max_angle_deg * std::numbers::pi / 180.0)) {}
+
+  struct Decision {
+    std::bitset<kBlockVoxels> covered;
+    bool has_rest = false;  ///< other surface
+  };
+
+  /// About the voxels between which and the next one there is surface.
+  Decision decide(BlockSlot slot) const {
+    Decision decision;
+    const BlockCoord& coord = volume_.coord(slot);
+    std::vector<Placed> near = covers_near(coord);
+    if (near.empty()) return decision;
+    DistanceField own(
+        [this](const BlockCoord& at) -> const VoxelBlock* {
+          const BlockSlot found = volume_.find(at);
+          return found == kNoBlock ? nullptr : &volume_.voxels(found);
+        },
+        truncation_vox_, 0);
+    for (int index = 0; index < kBlockVoxels; ++index) {
+      const Eigen::Vector3i voxel(coord.x * kBlockSide + index % kBlockSide,
+                                  coord.y * kBlockSide + index / kBlockSide % kBlockSide,
+                                  coord.z * kBlockSide + index / (kBlockSide * kBlockSide));
+      if (!own.is_at_crossing(voxel)) continue;
+      const auto surface = own.surface_near(voxel, reach_vox_);
+      const bool is_covered = surface && std::ranges::any_of(near, [&](Placed& cover) {
+        return covers(cover, voxel, *surface);
+      });
+      decision.covered[index] = is_covered;
+      decision.has_rest = decision.has_rest || !is_covered;
+    }
+    return decision;
+  }
+
+ private:
+  struct FindIn {
+    const std::vector<StoredBlock>* blocks;
+    const VoxelBlock* operator()(const BlockCoord& coord) const {
+      const auto found = std::ranges::lower_bound(*blocks, coord, {}, &StoredBlock::coord);
+      return found == blocks->end() || found->coord != coord ? nullptr : &found->voxels;
+    }
+  };
+  struct Placed {
+    Pose X_OU;
+    DistanceField<FindIn> distances_O;
+  };
+
+  std::vector<Placed> covers_near(const BlockCoord& coord) const {
+    const double block_m = kBlockSide * voxel_m_;
+    const Eigen::Vector3d center_U =
+        block_m * (Eigen::Vector3d(coord.x, coord.y, coord.z).array() + 0.5).matrix();
+    const double radius_m = 0.5 * std::sqrt(3.0) * block_m + same_.max_distance_vox * voxel_m_;
+    std::vector<Placed> near;
+    for (const Cover& cover : covers_) {
+      const double limit_m = radius_m + cover.radius_m;
+      if ((cover.center_U - center_U).squaredNorm() > limit_m * limit_m) continue;
+      near.push_back({cover.X_OU, {FindIn{&cover.blocks}, truncation_vox_, same_.weight_threshold}});
+    }
+    return near;
+  }
+
+  bool covers(Placed& cover, const Eigen::Vector3i& voxel, const NearSurface& surface) const {
+    const Eigen::Vector3d p_U =
+        voxel_m_ * (voxel.cast<double>().array() + 0.5 + surface.offset_vox.array()).matrix();
+    const Eigen::Vector3d p_O = cover.X_OU * p_U;
+    const Eigen::Vector3i at = (p_O / voxel_m_).array().floor().cast<int>();
+    const auto found = cover.distances_O.surface_near(at, reach_vox_);
+    if (!found) return false;
+    const Eigen::Vector3d center_O = voxel_m_ * (at.cast<double>().array() + 0.5).matrix();
+    const double distance_vox =
+        ((p_O - center_O) / voxel_m_ - found->offset_vox).dot(found->normal);
+    return std::abs(distance_vox) <= same_.max_distance_vox &&
+           found->normal.dot(cover.X_OU.linear() * surface.normal) >= min_cosine_;
+  }
+
+  const TsdfVolume& volume_;
+  const std::vector<Cover>& covers_;
+  const SameSurface& same_;
+  const double voxel_m_;
+  const double truncation_vox_;
+  const double reach_vox_;  ///< no crossing is farther from a voxel
+  const double min_cosine_;
+};
+
+}  // namespace
+
+void clear_covered(TsdfVolume& volume, const std::vector<BlockSlot>& slots,
+                   const std::vector<Cover>& covers, const SameSurface& same) {
+  if (covers.empty()) return;
+  // All are looked at before any is changed: the gradients need the blocks around as they are.
+  const Comparison comparison(volume, covers, same);
+  std::vector<Comparison::Decision> decisions(slots.size());
+  tbb::parallel_for(std::size_t{0}, slots.size(),
+                    [&](std::size_t i) { decisions[i] = comparison.decide(slots[i]); });
+  for (std::size_t i = 0; i < slots.size(); ++i) {
+    const auto& [covered, has_rest] = decisions[i];
+    if (covered.none()) continue;
+    if (!has_rest) {
+      volume.discard(slots[i]);
+      continue;
+    }
+    VoxelBlock& block = volume.voxels(slots[i]);
+    for (int index = 0; index < kBlockVoxels; ++index) {
+      if (covered[index]) block.voxels[index] = 0;
+    }
+  }
+}
+
+}  // namespace kintsugi::mapper

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "lcmtypes/geometry.hpp"
+#include "mapper/core/volume/stored_block.hpp"
+#include "mapper/core/volume/tsdf_volume.hpp"
+
+namespace kintsugi::mapper {
+
+/// When two surfaces are the same one.
+struct SameSurface {
+  double max_distance_vox = 1.5;
+  double max_angle_deg = 30.0;  ///< between the normals
+  int weight_threshold = 8;     ///< observations of voxels that count, as of points
+
+  /// @throws std::invalid_argument naming field, value and bound
+  void validate() const;
+};
+
+/// Blocks of another map O.
+struct Cover {
+  Pose X_OU = Pose::Identity();
+  Eigen::Vector3d center_U = Eigen::Vector3d::Zero();
+  double radius_m = 0.0;            ///< of a ball around all of them
+  std::vector<StoredBlock> blocks;  ///< ascending
+};
+
+/// Clears the voxels of these blocks of the volume (U) whose surface a cover has, too, and discards
+/// blocks that have none left.
+void clear_covered(TsdfVolume& volume, const std::vector<BlockSlot>& slots,
+                   const std::vector<Cover>& covers, const SameSurface& same);
+
+}  // namespace kintsugi::mapper

@@ -1,0 +1,102 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "mapper/core/reactivation/block_packing.hpp"
+#include "mapper/core/slices/tile.hpp"
+#include "mapper/core/slices/tile_visit.hpp"
+#include "mapper/core/volume/detached_blocks.hpp"
+#include "mapper/core/volume/stored_block.hpp"
+
+namespace kintsugi::mapper {
+
+/// Keeps the blocks that have left the volume, by tile, so that they can come back as they were.
+///
+/// A tile that left for good is closed, and a second visit of the camera makes another one: where
+/// tracking had drifted in between, both show the same place with an offset.
+///
+/// Memory: about a third of the 4 KB of a block. Blocks are packed some time after they came, some of
+/// them each frame, so that no frame waits for those of a large slice.
+class TileStore {
+ public:
+  /// Above `max_mb` (1e6 bytes) the visits that were closed longest ago are forgotten.
+  TileStore(const TileGrid& grid, double max_mb)
+      : grid_(grid), max_bytes_(static_cast<std::size_t>(1e6 * max_mb)) {}
+
+  /// Keeps blocks that have left, in the open visits of their tiles. A block that is there already
+  /// is replaced.
+  void keep(const DetachedBlocks& left);
+
+  /// Closes the open visit of a tile, which was seen last at this keyframe. Also counts the visit
+  /// where it has no blocks.
+  void close(const TileCoord& tile, int keyframe);
+
+  /// Calls visit(TileVisit, int keyframe) for all tiles that are kept, ascending; the keyframe of an
+  /// open one is -1.
+  template <typename Visit>
+  void for_each(Visit visit) const {
+    for (const auto& [key, entry] : entries_) visit(key, entry.keyframe);
+  }
+
+  /// The blocks of a visit, ascending.
+  std::vector<StoredBlock> copy_of(const TileVisit& visit) const;
+
+  /// Takes the blocks of a visit out, ascending.
+  std::vector<StoredBlock> take(const TileVisit& visit);
+
+  using VisitFilter = std::function<bool(const TileVisit&, int keyframe)>;
+  /// A copy of the block at a place, from a visit of which this is true; of several from the open
+  /// one, or else the last.
+  std::optional<StoredBlock> find(const BlockCoord& coord, const VisitFilter& is_allowed) const;
+  bool has(const BlockCoord& coord, const VisitFilter& is_allowed) const {
+    return find_block(coord, is_allowed) != nullptr;
+  }
+
+  /// The places of a visit's blocks, ascending.
+  std::vector<BlockCoord> coords_of(const TileVisit& visit) const;
+
+  /// Packs some of the blocks that wait for it, and forgets visits. To be called once a frame.
+  void tidy();
+
+  std::size_t bytes() const { return num_bytes_; }  ///< of the blocks
+
+ private:
+  /// As it left; `storage` keeps it alive.
+  struct UnpackedBlock {
+    const VoxelBlock* voxels = nullptr;
+    const ColorBlock* colors = nullptr;
+    std::shared_ptr<const void> storage;
+  };
+  struct Block {
+    UnpackedBlock unpacked;  ///< null once it is packed
+    PackedBlock packed;      ///< its coordinate is always there
+  };
+  struct Entry {
+    int keyframe = -1;
+    std::map<BlockCoord, std::shared_ptr<Block>> blocks;
+  };
+
+  const Block* find_block(const BlockCoord& coord, const VisitFilter& is_allowed) const;
+  static StoredBlock copy_of(const Block& block);
+  static std::size_t bytes_of(const Block& block);
+  static std::size_t bytes_of(const Entry& entry);
+  void pack_some();
+  void forget(const TileVisit& visit);
+
+  const TileGrid grid_;
+  const std::size_t max_bytes_;
+  std::map<TileVisit, Entry> entries_;
+  std::deque<TileVisit> closed_;  ///< in this order; some have come back
+  std::size_t num_bytes_ = 0;
+  std::map<TileCoord, int> num_closed_;
+  std::deque<std::weak_ptr<Block>> to_pack_;  ///< expired: it has come back
+};
+
+}  // namespace kintsugi::mapper

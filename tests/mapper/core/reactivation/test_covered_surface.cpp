@@ -1,0 +1,113 @@
+#include <algorithm>
+#include <numbers>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "mapper/core/extraction/surface_extractor.hpp"
+#include "mapper/core/reactivation/covered_surface.hpp"
+#include "tests/mapper/core/exact_volume.hpp"
+
+namespace kintsugi::mapper {
+namespace {
+
+constexpr double kVoxel_m = 0.01;
+
+template <typename Function>
+TsdfVolume volume_of(Function signed_distance_m, int weight = 20) {
+  return testing::exact_volume(1.0, kVoxel_m, weight, signed_distance_m);
+}
+
+std::vector<BlockSlot> slots_of(const TsdfVolume& volume) {
+  std::vector<BlockSlot> slots;
+  for (BlockSlot slot = 0; slot < volume.slots_end(); ++slot) {
+    if (volume.in_use(slot)) slots.push_back(slot);
+  }
+  return slots;
+}
+
+/// A floor, seen from above.
+constexpr double kFloor_m = 0.103;
+double above_floor(const Eigen::Vector3d& p_U) { return p_U.z() - kFloor_m; }
+
+class Floor : public ::testing::Test {
+ protected:
+  /// Covers the floor with a plane in frame O.
+  template <typename Function>
+  void clear(Function signed_distance_m, const Pose& X_OU, int weight = 20) {
+    const TsdfVolume other = volume_of(signed_distance_m, weight);
+    Cover cover{.X_OU = X_OU, .center_U = Eigen::Vector3d::Zero(), .radius_m = 2.0, .blocks = {}};
+    for (const BlockSlot slot : slots_of(other)) {
+      cover.blocks.push_back({other.coord(slot), other.voxels(slot), other.colors(slot)});
+    }
+    std::ranges::sort(cover.blocks, {}, &StoredBlock::coord);
+    clear_covered(floor_, slots_of(floor_), {cover}, {});
+  }
+  std::vector<CloudPoint> points() const {
+    return SurfaceExtractor({}).extract_blocks(floor_.snapshot()).points_W;
+  }
+
+  TsdfVolume floor_ = volume_of(above_floor);
+};
+
+TEST_F(Floor, IsClearedWhereTheSameSurfaceIs) {
+  ASSERT_FALSE(points().empty());
+  clear(above_floor, Pose::Identity());
+  EXPECT_TRUE(points().empty());
+}
+
+TEST_F(Floor, IsClearedByASurfaceAVoxelAwayInAnotherFrame) {
+  Pose X_OU = Pose::Identity();
+  X_OU.linear() = Eigen::AngleAxisd(0.5, Eigen::Vector3d::UnitX()).toRotationMatrix();
+  X_OU.translation() = Eigen::Vector3d(0.02, -0.03, 0.015);
+  const Pose X_UO = X_OU.inverse();
+  const auto in_o = [&](const Eigen::Vector3d& p_O) {
+    return above_floor(X_UO * p_O) - kVoxel_m;
+  };
+  const std::size_t before = points().size();
+  clear(in_o, X_OU);
+  // The other volume is a cube, too, which is turned.
+  EXPECT_LT(points().size(), before / 4);
+  for (const CloudPoint& point : points()) {
+    EXPECT_GT(std::max(std::abs(point.y), std::abs(point.x)), 0.35F) << "only at the edges";
+  }
+}
+
+TEST_F(Floor, StaysWhereTheOtherSurfaceIsFartherAway) {
+  const std::size_t before = points().size();
+  clear([](const Eigen::Vector3d& p) { return above_floor(p) - 2.0 * kVoxel_m; }, Pose::Identity());
+  EXPECT_EQ(points().size(), before);
+}
+
+TEST_F(Floor, StaysWhereTheOtherSurfaceFacesElsewhere) {
+  const std::size_t before = points().size();
+  clear([](const Eigen::Vector3d& p) { return -above_floor(p); }, Pose::Identity());
+  EXPECT_EQ(points().size(), before) << "the ceiling of the floor below";
+  const double tilt = 40.0 * std::numbers::pi / 180.0;
+  clear(
+      [&](const Eigen::Vector3d& p) {
+        return std::cos(tilt) * above_floor(p) + std::sin(tilt) * p.x();
+      },
+      Pose::Identity());
+  EXPECT_EQ(points().size(), before) << "a ramp";
+}
+
+TEST_F(Floor, StaysWhereTheOtherSurfaceWasHardlySeen) {
+  const std::size_t before = points().size();
+  clear(above_floor, Pose::Identity(), 5);
+  EXPECT_EQ(points().size(), before);
+}
+
+TEST_F(Floor, StaysBesideTheOtherSurface) {
+  Pose half_a_metre = Pose::Identity();
+  half_a_metre.translation().x() = -0.5;  // what is at x in U is at x - 0.5 in O
+  clear(above_floor, half_a_metre);
+  const auto left = points();
+  EXPECT_FALSE(left.empty());
+  for (const CloudPoint& point : left) EXPECT_LT(point.x, 0.08F) << "the cubes end with whole blocks";
+  const auto max = std::ranges::max(left, {}, &CloudPoint::x);
+  EXPECT_GT(max.x, -0.08F) << "no gap but the ends of the cubes";
+}
+
+}  // namespace
+}  // namespace kintsugi::mapper
