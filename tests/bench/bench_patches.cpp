@@ -10,7 +10,6 @@
 #include <iostream>
 #include <map>
 #include <string>
-#include <tuple>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -19,6 +18,7 @@
 #include "segmenter/map/segment_map.hpp"
 #include "tests/bench/bench_exact_report.hpp"
 #include "tests/bench/map_generator.hpp"
+#include "tests/bench/map_generator_patches.hpp"
 #include "tests/fuzz/random.hpp"
 
 namespace kintsugi::segmenter::bench {
@@ -63,30 +63,6 @@ Options parse_command_line(int argc, char** argv) {
   return options;
 }
 
-/// The points of each tile, one for each voxel, in the order of tiles.
-std::vector<CloudSlice> cut_into_patches(const Slices& slices, double tile_m) {
-  using Key = std::tuple<int, int, int>;
-  const auto key_of = [](const CloudPoint& p, double side_m) {
-    const auto cell = [&](float v) { return static_cast<int>(std::floor(v / side_m)); };
-    return Key{cell(p.x), cell(p.y), cell(p.z)};
-  };
-  std::map<Key, std::map<Key, CloudPoint>> tiles;
-  for (const CloudPoint& p : all_points(slices)) {
-    tiles[key_of(p, tile_m)].try_emplace(key_of(p, kResolution_m), p);
-  }
-  std::vector<CloudSlice> patches;
-  for (const auto& [tile, voxels] : tiles) {
-    CloudSlice& patch = patches.emplace_back();
-    patch.session = 1;
-    patch.id = static_cast<std::int32_t>(patches.size()) - 1;
-    patch.kind = SliceKind::kPatch;
-    patch.in_volume = true;
-    patch.resolution_m = static_cast<float>(kResolution_m);
-    for (const auto& [voxel, point] : voxels) patch.points_W.push_back(point);
-  }
-  return patches;
-}
-
 CloudSlice revised(const CloudSlice& patch, std::int32_t revision, Random& random,
                    const Options& options) {
   CloudSlice result = patch;
@@ -114,7 +90,8 @@ CloudSlice revised(const CloudSlice& patch, std::int32_t revision, Random& rando
 }
 
 int run(const Options& options) {
-  std::vector<CloudSlice> patches = cut_into_patches(generate_map(options.map), options.tile_m);
+  std::vector<CloudSlice> patches =
+      cut_into_patches(generate_map(options.map), options.tile_m, kResolution_m);
   SegmentMapConfig config;
   config.engine = preset(options.preset);
   config.engine.explore_share = options.engine.explore_share;

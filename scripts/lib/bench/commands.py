@@ -58,6 +58,8 @@ SECTIONS = (
             ("bench_segmenter",)),
     Section("exact", "mode exact slice by slice and under corrections, on a generated map of 4 million points",
             segmenting.exact, ("bench_exact",)),
+    Section("corrections", "corrections that move all patches, or few, of a generated map of 4 million points",
+            segmenting.corrections, ("bench_motions",)),
     Section("whole-map", "saving, describing, querying and resuming a whole map", segmenting.whole_map,
             ("bench_whole_map",)),
     Section("renderer", "drawing a picture", others.renderer, ("bench_renderer",)),

@@ -178,6 +178,10 @@ def by_first_column(table):
     return {cells[0]: cells[1:] for cells in (list(row.values()) for row in table)}
 
 
+def corrections(run):
+    return run.bench("bench_motions", "--runs", 7)
+
+
 def whole_map(run):
     printed = run.bench("bench_whole_map", "--points", 4000000)
     rows = [[row["what"], row["ms"], row["MB"] if float(row["MB"]) else None] for row in parse_tables(printed)[0]]

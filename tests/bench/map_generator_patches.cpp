@@ -1,0 +1,57 @@
+#include "tests/bench/map_generator_patches.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <tuple>
+
+namespace kintsugi::segmenter::bench {
+namespace {
+
+using Cell = std::tuple<int, int, int>;
+
+Cell cell_of(const CloudPoint& p, double side_m) {
+  const auto cell = [&](float v) { return static_cast<int>(std::floor(v / side_m)); };
+  return {cell(p.x), cell(p.y), cell(p.z)};
+}
+
+}  // namespace
+
+std::vector<CloudSlice> cut_into_patches(const Slices& slices, double tile_m, double voxel_m) {
+  struct Place {
+    Cell tile;
+    Cell voxel;
+    std::size_t point;
+
+    bool operator<(const Place& other) const {
+      return std::tie(tile, voxel, point) < std::tie(other.tile, other.voxel, other.point);
+    }
+  };
+  const std::vector<CloudPoint> points = all_points(slices);
+  std::vector<Place> places;
+  places.reserve(points.size());
+  for (const CloudPoint& p : points) {
+    places.push_back({cell_of(p, tile_m), cell_of(p, voxel_m), places.size()});
+  }
+  std::sort(places.begin(), places.end());
+
+  std::vector<CloudSlice> patches;
+  const Place* last = nullptr;
+  for (const Place& place : places) {
+    const bool is_same_tile = last != nullptr && place.tile == last->tile;
+    if (is_same_tile && place.voxel == last->voxel) continue;
+    if (!is_same_tile) {
+      CloudSlice& patch = patches.emplace_back();
+      patch.session = 1;
+      patch.id = static_cast<std::int32_t>(patches.size()) - 1;
+      patch.kind = SliceKind::kPatch;
+      patch.in_volume = true;
+      patch.resolution_m = static_cast<float>(voxel_m);
+    }
+    patches.back().points_W.push_back(points[place.point]);
+    last = &place;
+  }
+  return patches;
+}
+
+}  // namespace kintsugi::segmenter::bench
