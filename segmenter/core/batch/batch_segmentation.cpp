@@ -9,8 +9,6 @@
 #include <oneapi/tbb/enumerable_thread_specific.h>
 #include <oneapi/tbb/parallel_for.h>
 
-#include "segmenter/core/points/point_rows.hpp"
-
 namespace kintsugi::segmenter {
 namespace {
 
@@ -88,10 +86,14 @@ double weight_of_first_share(const PointRows& rows, EdgeWeight weight_of, double
 BatchStatistics segment_points(const PointCloud& cloud, std::span<const PointIndex> points,
                                const EngineConfig& config, SegmentForest& forest,
                                JoinObserver& observer) {
-  const PointRows rows(cloud, points, config.radius_m());
+  return segment_points(PointRows(cloud, points, config.radius_m()), config, forest, observer);
+}
+
+BatchStatistics segment_points(const PointRows& rows, const EngineConfig& config,
+                               SegmentForest& forest, JoinObserver& observer) {
   const EdgeWeight weight_of = config.edge_weight();
   const double max_weight = config.max_weight();
-  const double limit = points.size() < kMinPointsForTwoPasses
+  const double limit = rows.points().size() < kMinPointsForTwoPasses
                            ? max_weight
                            : weight_of_first_share(rows, weight_of, max_weight);
   EdgesByThread light = find_edges(rows, weight_of, WeightRange{0.0, limit},
@@ -99,8 +101,8 @@ BatchStatistics segment_points(const PointCloud& cloud, std::span<const PointInd
   const BatchStatistics first = join(light, forest, observer);
   if (limit >= max_weight) return first;
 
-  std::vector<PointIndex> segments(points.size());
-  for (std::size_t k = 0; k < points.size(); ++k) {
+  std::vector<PointIndex> segments(rows.points().size());
+  for (std::size_t k = 0; k < segments.size(); ++k) {
     segments[k] = forest.find(rows.points()[k].index);
   }
   EdgesByThread heavy =

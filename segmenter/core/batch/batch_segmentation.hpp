@@ -7,6 +7,7 @@
 #include "segmenter/core/batch/segment_forest.hpp"
 #include "segmenter/core/parameters/engine_config.hpp"
 #include "segmenter/core/points/point_cloud.hpp"
+#include "segmenter/core/points/point_rows.hpp"
 
 namespace kintsugi::segmenter {
 
@@ -27,5 +28,8 @@ struct BatchStatistics {
 BatchStatistics segment_points(const PointCloud& cloud, std::span<const PointIndex> points,
                                const EngineConfig& config, SegmentForest& forest,
                                JoinObserver& observer);
+/// The same for the points of `rows`, which were made for config.radius_m().
+BatchStatistics segment_points(const PointRows& rows, const EngineConfig& config,
+                               SegmentForest& forest, JoinObserver& observer);
 
 }  // namespace kintsugi::segmenter

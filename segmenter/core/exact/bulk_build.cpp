@@ -86,21 +86,23 @@ void build_history(PointIndex host, State& state, std::vector<PointIndex>& guest
 
 }  // namespace
 
-BatchStatistics build_state(const PointCloud& cloud, std::span<const PointIndex> points,
-                            const EngineConfig& config, State& state) {
+BatchStatistics build_state(const PointRows& rows, const EngineConfig& config, State& state) {
   SegmentForest forest(config.threshold, config.scale);
   forest.grow(static_cast<PointIndex>(state.vertices.size()));
-  Recorder recorder(forest, state, points.size());
-  const BatchStatistics statistics = segment_points(cloud, points, config, forest, recorder);
+  Recorder recorder(forest, state, rows.points().size());
+  const BatchStatistics statistics = segment_points(rows, config, forest, recorder);
   recorder.enter_joins();
 
   using Range = oneapi::tbb::blocked_range<std::size_t>;
-  oneapi::tbb::parallel_for(Range(0, points.size(), kPointsPerTask), [&](const Range& range) {
-    std::vector<PointIndex> guests;
-    for (const PointIndex x : points.subspan(range.begin(), range.size())) {
-      if (state.vertices[x].history != kNone) build_history(x, state, guests);
-    }
-  });
+  oneapi::tbb::parallel_for(Range(0, state.vertices.size(), kPointsPerTask),
+                            [&](const Range& range) {
+                              std::vector<PointIndex> guests;
+                              for (std::size_t k = range.begin(); k < range.end(); ++k) {
+                                const auto x = static_cast<PointIndex>(k);
+                                if (state.vertices[x].history != kNone)
+                                  build_history(x, state, guests);
+                              }
+                            });
   return statistics;
 }
 

@@ -38,16 +38,15 @@ RunStatistics ExactEngine::update(const CloudChange& change) {
   const bool is_rebuilt = is_cheaper_to_rebuild(change);
   add_vertices(change);
   if (is_rebuilt) {
-    // At the same time: neither needs the other.
-    oneapi::tbb::parallel_invoke([&] { update_index(change); },
-                                 [&] { rebuild(change, statistics); });
+    rebuild(change, true, statistics);
   } else {
     erase_watches_of(change.removed);
-    update_index(change);
+    index_->remove(change.removed);
+    index_->insert(change.added);
     if (!edges) edges = find_new_edges(change.added);
     start_look_ahead();
     statistics.neighbours_ms = stopwatch.lap_ms();
-    if (!propagate(change, std::move(*edges), statistics)) rebuild(change, statistics);
+    if (!propagate(change, std::move(*edges), statistics)) rebuild(change, false, statistics);
     edges_ahead_.finish();
   }
   next_slice_W_.clear();
@@ -85,11 +84,6 @@ void ExactEngine::erase_watches_of(std::span<const PointIndex> removed) {
   });
 }
 
-void ExactEngine::update_index(const CloudChange& change) {
-  index_->remove(change.removed);
-  index_->insert(change.added);
-}
-
 /// Each edge of the added points, which must be touched, once.
 std::vector<EdgeKey> ExactEngine::find_new_edges(std::span<const PointIndex> added) const {
   std::vector<EdgeKey> edges;
@@ -119,17 +113,23 @@ bool ExactEngine::propagate(const CloudChange& change, std::vector<EdgeKey> edge
   return true;
 }
 
-void ExactEngine::rebuild(const CloudChange& change, RunStatistics& statistics) {
+/// `also_index`: the index, too, is not up to date.
+void ExactEngine::rebuild(const CloudChange& change, bool also_index, RunStatistics& statistics) {
   Stopwatch stopwatch;
   for (const PointIndex x : change.removed) state_.vertices[x].is_gone = 1;
   propagation_.reset();
-  state_.clear();
-  std::vector<PointIndex> points;
-  points.reserve(static_cast<std::size_t>(num_points_));
-  for (PointIndex x = 0; x < state_.vertices.size(); ++x) {
-    if (!state_.vertices[x].is_gone) points.push_back(x);
-  }
-  const BatchStatistics batch = exact::build_state(cloud_, points, config_, state_);
+  rows_ = rows_of_all();
+  BatchStatistics batch;
+  // At the same time: neither needs the other.
+  oneapi::tbb::parallel_invoke(
+      [&] {
+        if (also_index) index_->assign(*rows_);
+      },
+      [&] {
+        state_.clear();
+        batch = exact::build_state(*rows_, config_, state_);
+      });
+  if (config_.fragment_limit() == 0) rows_.reset();  // nobody will take them
   statistics.joins_ms += stopwatch.lap_ms();
   names_.update_all(change.removed);
   statistics.naming_ms = stopwatch.lap_ms();
@@ -137,6 +137,15 @@ void ExactEngine::rebuild(const CloudChange& change, RunStatistics& statistics) 
   statistics.num_joins = batch.num_joins;
   statistics.num_points = num_points_;
   statistics.is_rebuilt = true;
+}
+
+std::unique_ptr<PointRows> ExactEngine::rows_of_all() const {
+  std::vector<PointIndex> points;
+  points.reserve(static_cast<std::size_t>(num_points_));
+  for (PointIndex x = 0; x < state_.vertices.size(); ++x) {
+    if (!state_.vertices[x].is_gone) points.push_back(x);
+  }
+  return std::make_unique<PointRows>(cloud_, points, config_.radius_m());
 }
 
 double ExactEngine::theta(ComponentId component) const {

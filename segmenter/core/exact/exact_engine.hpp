@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "segmenter/core/engine/incremental_engine.hpp"
@@ -77,6 +78,7 @@ class ExactEngine final : public IncrementalEngine {
   std::span<const PointIndex> changed() const override { return names_.changed(); }
   double theta(ComponentId component) const override;
   const NeighbourIndex& neighbour_index() const override { return *index_; }
+  std::unique_ptr<const PointRows> take_rows() override { return std::move(rows_); }
   PointIndex point_of(ComponentId component) const override { return names_.root(component); }
   std::size_t bytes() const override;
 
@@ -84,12 +86,12 @@ class ExactEngine final : public IncrementalEngine {
   bool is_cheaper_to_rebuild(const CloudChange& change) const;
   void add_vertices(const CloudChange& change);
   void erase_watches_of(std::span<const PointIndex> removed);
-  void update_index(const CloudChange& change);
   std::vector<exact::EdgeKey> find_new_edges(std::span<const PointIndex> added) const;
   void start_look_ahead();
   bool propagate(const CloudChange& change, std::vector<exact::EdgeKey> edges,
                  RunStatistics& statistics);
-  void rebuild(const CloudChange& change, RunStatistics& statistics);
+  void rebuild(const CloudChange& change, bool also_index, RunStatistics& statistics);
+  std::unique_ptr<PointRows> rows_of_all() const;
 
   const PointCloud& cloud_;
   EngineConfig config_;
@@ -102,6 +104,7 @@ class ExactEngine final : public IncrementalEngine {
   exact::ChangePropagation propagation_;
   exact::ComponentNames names_;
   std::int64_t num_points_ = 0;
+  std::unique_ptr<PointRows> rows_;  ///< of the last update, if it was a rebuild; for take_rows()
 };
 
 }  // namespace kintsugi::segmenter

@@ -17,11 +17,11 @@ FragmentLayer::FragmentLayer(const PointCloud& cloud, const IncrementalEngine& b
       clusters_(components_),
       search_(cloud, base.neighbour_index(), components_, config.edge_weight()) {}
 
-void FragmentLayer::update(const CloudChange& change) {
+void FragmentLayer::update(const CloudChange& change, const PointRows* rows) {
   grow();
   changed_.clear();
   if (is_cheaper_to_rebuild(change)) {
-    rebuild(change);
+    rebuild(change, rows);
   } else {
     dissolve_changed(change);
     take_over_components(change);
@@ -44,9 +44,10 @@ bool FragmentLayer::is_cheaper_to_rebuild(const CloudChange& change) const {
   return num_changed > config_.rebuild_share * static_cast<double>(cloud_.num_live());
 }
 
-void FragmentLayer::rebuild(const CloudChange& change) {
+void FragmentLayer::rebuild(const CloudChange& change, const PointRows* rows) {
   take_over_components(change);
-  const std::vector<PointIndex> namers = rebuild_clusters(cloud_, config_, components_, clusters_);
+  const std::vector<PointIndex> namers =
+      rebuild_clusters(cloud_, config_, components_, clusters_, rows);
   for (PointIndex i = 0; i < labels_.size(); ++i) {
     if (components_[i] != kNoComponent) set_label(i, components_[namers[i]]);
   }

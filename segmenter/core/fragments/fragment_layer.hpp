@@ -48,8 +48,9 @@ class FragmentLayer {
   /// `base`, the engine below, and `cloud` must outlive the layer.
   FragmentLayer(const PointCloud& cloud, const IncrementalEngine& base, const EngineConfig& config);
 
-  /// To be called after base.update(change).
-  void update(const CloudChange& change);
+  /// To be called after base.update(change). `rows`: the points of the cloud; null where nobody has
+  /// them.
+  void update(const CloudChange& change, const PointRows* rows);
 
   /// As in SegmentationEngine. Each component has the name of one of the base engine's.
   std::span<const ComponentId> components() const { return labels_.span(); }
@@ -60,7 +61,7 @@ class FragmentLayer {
  private:
   void grow();
   bool is_cheaper_to_rebuild(const CloudChange& change) const;
-  void rebuild(const CloudChange& change);
+  void rebuild(const CloudChange& change, const PointRows* rows);
 
   void dissolve(ClusterId cluster);
   void dissolve_changed(const CloudChange& change);

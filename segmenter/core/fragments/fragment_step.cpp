@@ -8,7 +8,6 @@
 
 #include "segmenter/core/fragments/edge_order.hpp"
 #include "segmenter/core/graph/edge_buckets.hpp"
-#include "segmenter/core/points/point_rows.hpp"
 
 namespace kintsugi::segmenter {
 namespace {
@@ -50,6 +49,12 @@ void join_fragments(const PointCloud& cloud, std::span<const PointIndex> points,
                     std::span<const ComponentId> components, const EngineConfig& config,
                     FragmentForest& forest, FragmentObserver& observer) {
   const PointRows rows(cloud, points, config.radius_m());
+  join_fragments(cloud, rows, components, config, forest, observer);
+}
+
+void join_fragments(const PointCloud& cloud, const PointRows& rows,
+                    std::span<const ComponentId> components, const EngineConfig& config,
+                    FragmentForest& forest, FragmentObserver& observer) {
   EdgesByThread found = find_edges(rows, components, forest, config.edge_weight());
   const EdgeOrder order(cloud);
   const auto is_joining = [&](ComponentId a, ComponentId b) {

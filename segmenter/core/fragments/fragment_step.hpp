@@ -6,6 +6,7 @@
 #include "segmenter/core/graph/edge.hpp"
 #include "segmenter/core/parameters/engine_config.hpp"
 #include "segmenter/core/points/point_cloud.hpp"
+#include "segmenter/core/points/point_rows.hpp"
 
 namespace kintsugi::segmenter {
 
@@ -27,6 +28,10 @@ class FragmentObserver {
 /// `points` are those in the cloud, `components` is the partition that `forest` was made for. The
 /// result is the same for any number of threads.
 void join_fragments(const PointCloud& cloud, std::span<const PointIndex> points,
+                    std::span<const ComponentId> components, const EngineConfig& config,
+                    FragmentForest& forest, FragmentObserver& observer);
+/// The same for the points of `rows`, which were made for config.radius_m().
+void join_fragments(const PointCloud& cloud, const PointRows& rows,
                     std::span<const ComponentId> components, const EngineConfig& config,
                     FragmentForest& forest, FragmentObserver& observer);
 

@@ -58,7 +58,8 @@ class Recorder final : public FragmentObserver {
 }  // namespace
 
 std::vector<PointIndex> rebuild_clusters(const PointCloud& cloud, const EngineConfig& config,
-                                         const BaseComponents& components, Clusters& clusters) {
+                                         const BaseComponents& components, Clusters& clusters,
+                                         const PointRows* rows) {
   clusters.clear();
   const std::span<const ComponentId> names = components.of_points();
   std::vector<PointIndex> points;
@@ -68,7 +69,11 @@ std::vector<PointIndex> rebuild_clusters(const PointCloud& cloud, const EngineCo
   }
   FragmentForest forest(names, components.limit());
   Recorder recorder(components, forest, clusters);
-  join_fragments(cloud, points, names, config, forest, recorder);
+  if (rows != nullptr) {
+    join_fragments(cloud, *rows, names, config, forest, recorder);
+  } else {
+    join_fragments(cloud, points, names, config, forest, recorder);
+  }
 
   std::vector<PointIndex> namers(names.size());
   for (const PointIndex i : points) {

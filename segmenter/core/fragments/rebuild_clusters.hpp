@@ -9,9 +9,11 @@
 
 namespace kintsugi::segmenter {
 
-/// Finds all clusters by the fragment step over all points. Returns for each point of the cloud a
-/// point of the component that its segment is named after; unspecified for points that are gone.
+/// Finds all clusters by the fragment step over all points; `rows` are those, or null. Returns for
+/// each point of the cloud a point of the component that its segment is named after; unspecified
+/// for points that are gone.
 std::vector<PointIndex> rebuild_clusters(const PointCloud& cloud, const EngineConfig& config,
-                                         const BaseComponents& components, Clusters& clusters);
+                                         const BaseComponents& components, Clusters& clusters,
+                                         const PointRows* rows);
 
 }  // namespace kintsugi::segmenter

@@ -96,6 +96,14 @@ void FlannIndex::remove(std::span<const PointIndex> points) {
   build(dirty);
 }
 
+void FlannIndex::assign(const PointRows& rows) {
+  tiles_.clear();
+  std::vector<PointIndex> points;
+  points.reserve(rows.points().size());
+  for (const PointRows::Point& point : rows.points()) points.push_back(point.index);
+  insert(points);
+}
+
 void FlannIndex::find_neighbours(const CloudPoint& p, PointIndex left_out,
                                  std::vector<PointIndex>& neighbours) const {
   const float position_W[3] = {p.x, p.y, p.z};

@@ -19,6 +19,7 @@ class FlannIndex final : public NeighbourIndex {
 
   void insert(std::span<const PointIndex> points) override;
   void remove(std::span<const PointIndex> points) override;
+  void assign(const PointRows& rows) override;
   void visit(std::span<const PointIndex> points, const Visit& visit_point) const override;
   void visit_places(std::span<const CloudPoint> places_W, const Visit& visit_place) const override;
   void visit_concurrently(std::span<const PointIndex> points,

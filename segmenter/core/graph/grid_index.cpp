@@ -8,10 +8,6 @@
 namespace kintsugi::segmenter {
 namespace {
 
-// Two neighbours may be further apart than r by a rounding error of float32 (relative: about
-// 2^-22). Cells that are wider by this factor keep them in adjacent cells.
-constexpr double kCellsPerRadius = 1.0 + 1e-5;
-
 constexpr std::size_t kPointsPerTask = 2048;
 
 constexpr PointIndex kNoPoint = UINT32_MAX;

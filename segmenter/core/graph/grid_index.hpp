@@ -31,6 +31,7 @@ class GridIndex final : public NeighbourIndex {
 
   void insert(std::span<const PointIndex> points) override;
   void remove(std::span<const PointIndex> points) override;
+  void assign(const PointRows& rows) override;
   void visit(std::span<const PointIndex> points, const Visit& visit_point) const override;
   void visit_places(std::span<const CloudPoint> places_W, const Visit& visit_place) const override;
   void visit_concurrently(std::span<const PointIndex> points,
@@ -60,6 +61,7 @@ class GridIndex final : public NeighbourIndex {
     std::uint32_t num_arrivals = 0;                   ///< used by insert(), else zero
     std::vector<Entry> entries;                       ///< sorted by row
   };
+  struct Run;
   struct Tile {
     std::array<std::unique_ptr<Block>, kNumBlocks> blocks;  ///< x fastest
   };
@@ -93,6 +95,9 @@ class GridIndex final : public NeighbourIndex {
   Block& block_at(const Cell& block);
   void sort_by_row(Block& block, std::vector<Entry>& scratch) const;
   void remove(PointIndex point);
+  void empty_blocks();
+  void append_runs(const PointRows& rows, std::size_t row, std::vector<Run>& runs);
+  static void fill_layer(const PointRows& rows, std::span<const Run> runs);
 
   const PointCloud& cloud_;
   float squared_radius_m2_;

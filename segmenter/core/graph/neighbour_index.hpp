@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "segmenter/core/points/point_cloud.hpp"
+#include "segmenter/core/points/point_rows.hpp"
 
 namespace kintsugi::segmenter {
 
@@ -44,6 +45,9 @@ class NeighbourIndex {
   virtual void insert(std::span<const PointIndex> points) = 0;
   /// Removes points. The cloud must still hold their positions.
   virtual void remove(std::span<const PointIndex> points) = 0;
+  /// Removes all points, wherever they are now, and adds those of `rows`, which were made for the
+  /// same radius.
+  virtual void assign(const PointRows& rows) = 0;
 
   /// Visits `points`, which must be in the index, in this order and in the calling thread.
   virtual void visit(std::span<const PointIndex> points, const Visit& visit_point) const = 0;

@@ -34,4 +34,8 @@ inline std::int32_t cell_coordinate(double value_m, double cell_m) {
   return static_cast<std::int32_t>(std::clamp(std::floor(value_m / cell_m), -kLast, kLast));
 }
 
+/// Two neighbours may be further apart than r by a rounding error of float32 (relative: about
+/// 2^-22). Cells that are wider than r by this factor keep them in adjacent cells.
+inline constexpr double kCellsPerRadius = 1.0 + 1e-5;
+
 }  // namespace kintsugi::segmenter

@@ -14,10 +14,6 @@
 namespace kintsugi::segmenter {
 namespace {
 
-// As in grid_index.cpp: two neighbours may be a rounding error further apart than r. Cells that are
-// wider by this factor keep them in adjacent cells.
-constexpr double kReachPerRadius = 1.0 + 1e-5;
-
 /// The sort key of a point; unsigned numbers that are ordered as the coordinates they stand for.
 struct Key {
   std::uint32_t x;  ///< coordinate
@@ -76,16 +72,16 @@ GrowingArray<Key> sorted_keys(std::span<const CloudPoint> points_W,
 PointRows::PointRows(std::span<const CloudPoint> points_W, std::span<const PointIndex> points,
                      float radius_m)
     : squared_radius_m2_(radius_m * radius_m),
-      reach_m_(static_cast<float>(radius_m * kReachPerRadius)) {
+      reach_m_(static_cast<float>(radius_m * kCellsPerRadius)) {
   assert(radius_m > 0.0F);
-  const GrowingArray<Key> keys = sorted_keys(points_W, points, radius_m * kReachPerRadius);
+  const GrowingArray<Key> keys = sorted_keys(points_W, points, radius_m * kCellsPerRadius);
   points_.resize(keys.size());
   oneapi::tbb::parallel_for(std::size_t{0}, keys.size(), [&](std::size_t k) {
     const CloudPoint& p = points_W[keys[k].index];
     points_[k] = {p.x, p.y, p.z, p.nx, p.ny, p.nz, p.red, p.green, p.blue, keys[k].index};
   });
   for (Slot k = 0; k < keys.size(); ++k) {
-    const Row row{from_ordered_bits(keys[k].z), from_ordered_bits(keys[k].y), k};
+    const RowStart row{from_ordered_bits(keys[k].z), from_ordered_bits(keys[k].y), k};
     if (rows_.empty() || rows_.back().z != row.z || rows_.back().y != row.y) rows_.push_back(row);
   }
   constexpr std::int32_t kNowhere = std::numeric_limits<std::int32_t>::max();
@@ -112,7 +108,7 @@ std::array<PointRows::Window, 5> PointRows::windows_of(std::size_t row) const {
 
 /// The first row at or after (z, y).
 std::size_t PointRows::find_row(std::int32_t z, std::int32_t y) const {
-  const auto found = std::partition_point(rows_.begin(), rows_.end(), [&](const Row& row) {
+  const auto found = std::partition_point(rows_.begin(), rows_.end(), [&](const RowStart& row) {
     return row.z != z ? row.z < z : row.y < y;
   });
   return static_cast<std::size_t>(found - rows_.begin());

@@ -37,6 +37,17 @@ class PointRows {
 
   std::span<const Point> points() const { return points_.span(); }
   std::size_t num_rows() const { return rows_.size() - 1; }
+  /// The cells of a row, in a grid of r * kCellsPerRadius, and the slots of its points.
+  struct Row {
+    std::int32_t z;
+    std::int32_t y;
+    Slot first;
+    Slot last;  ///< one past it
+  };
+  Row row(std::size_t index) const {
+    const RowStart& row = rows_[index];
+    return {row.z, row.y, row.first, rows_[index + 1].first};
+  }
 
   /// Calls fn(Slot a, Slot b) for each pair of neighbours whose first point, in the order of rows,
   /// lies in `row` and for which keep(a, b) holds. Over all rows, each pair comes once. May be
@@ -45,7 +56,7 @@ class PointRows {
   void for_each_pair(std::size_t row, const Keep& keep, const Fn& fn) const;
 
  private:
-  struct Row {
+  struct RowStart {
     std::int32_t z;
     std::int32_t y;
     Slot first;
@@ -72,7 +83,7 @@ class PointRows {
   float squared_radius_m2_;
   float reach_m_;
   GrowingArray<Point> points_;
-  std::vector<Row> rows_;  ///< by z, then y; a sentinel at the end
+  std::vector<RowStart> rows_;  ///< by z, then y; a sentinel at the end
 };
 
 template <typename Keep, typename Fn>

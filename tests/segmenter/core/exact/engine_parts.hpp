@@ -86,7 +86,7 @@ class EngineParts {
     for (PointIndex x = 0; x < cloud_.size(); ++x) {
       if (is_in(x)) points.push_back(x);
     }
-    build_state(cloud_, points, kConfig, state_);
+    build_state(PointRows(cloud_, points, kConfig.radius_m()), kConfig, state_);
     names_.update_all(removed);
     names_check_.expect(added);
   }

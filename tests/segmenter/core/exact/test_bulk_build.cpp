@@ -30,7 +30,8 @@ class Built {
       points.push_back(x);
       state_.vertices.reset(x);
     }
-    statistics_ = build_state(cloud_, points, EngineParts::kConfig, state_);
+    statistics_ = build_state(PointRows(cloud_, points, EngineParts::kConfig.radius_m()),
+                              EngineParts::kConfig, state_);
   }
 
   const State& state() const { return state_; }

@@ -247,6 +247,35 @@ TEST_P(NeighbourIndexTest, FindsNoRemovedPointAndAgainAfterInsertingIt) {
   }
 }
 
+// The points of each round are elsewhere, in part in the blocks of the round before.
+TEST_P(NeighbourIndexTest, AssignedPointsReplaceWhateverWasInIt) {
+  PointCloud cloud;
+  const auto index = make_neighbour_index(GetParam(), cloud, kRadius_m);
+  for (int round = 0; round < 4; ++round) {
+    const std::vector<CloudPoint> points =
+        random_points(1500, -0.3 + 0.2 * round, 0.4, 48U + static_cast<unsigned>(round));
+    if (round == 0) {
+      cloud.add_slice(0, points);
+    } else {
+      cloud.replace_slice(0, points);
+    }
+    cloud.take_change();
+    const std::vector<PointIndex> live = cloud.everything().added;
+    index->assign(PointRows(cloud, live, kRadius_m));
+    std::set<PointIndex> gone;
+    for (PointIndex i = 0; i < cloud.size(); ++i) gone.insert(i);
+    for (const PointIndex i : live) gone.erase(i);
+    EXPECT_EQ(visit_some(*index, cloud.size(), live), brute_force_without(cloud, gone));
+    // It can change as after insertion.
+    const std::vector<PointIndex> some(live.begin(), live.begin() + 700);
+    index->remove(some);
+    index->insert(some);
+    EXPECT_EQ(visit_some(*index, cloud.size(), live), brute_force_without(cloud, gone));
+  }
+  index->assign(PointRows(cloud, {}, kRadius_m));
+  index->visit_all([](PointIndex, std::span<const PointIndex>) { ADD_FAILURE(); });
+}
+
 TEST_P(NeighbourIndexTest, MayBecomeEmpty) {
   PointCloud cloud;
   cloud.add_slice(0, random_points(300, -0.1, 0.2, 43));
