@@ -58,7 +58,11 @@ std::vector<SegmentUpdate> SegmentMap::add(std::span<const CloudSlice> slices) {
   last.is_final = ends_run();
   last.runs = label_runs(cloud_, id_update.changes, change.moved, ids_.ids());
   const LastChange now{last.utime, last.slice_id};
-  for (const std::uint32_t id : statistics_.apply(cloud_, ids_, id_update.changes, now)) {
+  const std::vector<std::uint32_t> changed_ids =
+      change.moved_in_place.empty()
+          ? statistics_.apply(cloud_, ids_, id_update.changes, now)
+          : statistics_.recount(cloud_, ids_, id_update.changes, change.moved_in_place, now);
+  for (const std::uint32_t id : changed_ids) {
     last.statistics.push_back(statistics_(id));
   }
   last.events = std::move(id_update.events);
@@ -89,11 +93,23 @@ void SegmentMap::store(const CloudSlice& slice) {
 
 /// Moves the patches that are in the map, unless they are where a newer correction has put them.
 void SegmentMap::move_patches(const CloudSlice& correction) {
+  std::vector<PointCloud::PlacedSlice> moving;
+  std::int64_t num_points = 0;
   for (const PatchMotion& motion : motions_.learn(correction)) {
     const SliceRecord* const record = cloud_.find_slice(motion.id);
     if (record == nullptr || record->patch == PatchState::kNoPatch) continue;
     if (record->place.correction >= correction.correction) continue;
-    cloud_.move_slice(motion.id, {motion.X_WP, correction.correction});
+    moving.push_back({motion.id, {motion.X_WP, correction.correction}});
+    num_points += record->count;
+  }
+  // A point that gets another index comes and goes. Where the engine will start anew because of so
+  // many, they may as well keep their indices, and all that is known by index.
+  const bool starts_anew = 2.0 * static_cast<double>(num_points) >
+                           config_.engine.rebuild_share * static_cast<double>(cloud_.num_live());
+  if (starts_anew && engine_->takes_moves_in_place()) {
+    cloud_.move_in_place(moving);
+  } else {
+    for (const auto& [slice_id, place] : moving) cloud_.move_slice(slice_id, place);
   }
 }
 

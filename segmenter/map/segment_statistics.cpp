@@ -7,13 +7,6 @@
 #include <utility>
 
 namespace kintsugi::segmenter {
-namespace {
-
-// A segment of more points than this keeps its extent by blocks, because a scan of all its points
-// whenever one leaves a face of its box takes too long. Below half as many it stops doing so.
-constexpr std::int64_t kLargePoints = 1024;
-
-}  // namespace
 
 std::vector<std::uint32_t> SegmentStatisticsTable::apply(const PointCloud& cloud,
                                                          const SegmentIds& ids,

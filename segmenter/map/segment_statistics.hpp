@@ -31,6 +31,13 @@ class SegmentStatisticsTable {
   std::vector<std::uint32_t> apply(const PointCloud& cloud, const SegmentIds& ids,
                                    std::span<const IdChange> changes, const LastChange& now = {});
 
+  /// As apply(), after a change with points that moved in place. Their segments change, too. Takes
+  /// time proportional to the size of the map.
+  std::vector<std::uint32_t> recount(const PointCloud& cloud, const SegmentIds& ids,
+                                     std::span<const IdChange> changes,
+                                     std::span<const PointRange> moved_in_place,
+                                     const LastChange& now = {});
+
   /// The statistics of a segment that has points.
   [[nodiscard]] SegmentStatistics operator()(std::uint32_t segment_id) const;
   [[nodiscard]] LastChange last_change(std::uint32_t segment_id) const;
@@ -64,9 +71,17 @@ class SegmentStatisticsTable {
 
   Sums& sums_of(std::uint32_t segment_id);
   std::vector<Touched> add_up(const PointCloud& cloud, std::span<const IdChange> changes);
+  [[nodiscard]] std::vector<Touched> count_anew(const PointCloud& cloud, const SegmentIds& ids,
+                                                std::span<const std::uint8_t> is_counted);
+  void scan_blocks(const PointCloud& cloud, const SegmentIds& ids, std::span<const Touched> places);
   void refresh_extent(const PointCloud& cloud, const SegmentIds& ids, std::uint32_t segment_id,
                       std::span<const std::uint32_t> blocks);
   void remove(std::uint32_t segment_id);
+
+  /// A segment of more points than this keeps its extent by blocks, because a scan of all its
+  /// points whenever one leaves a face of its box takes too long. Below half as many it stops doing
+  /// so.
+  static constexpr std::int64_t kLargePoints = 1024;
 
   float resolution_m_;
   GrowingArray<std::uint32_t> place_;               ///< in sums_, by segment id

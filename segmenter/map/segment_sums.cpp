@@ -28,6 +28,17 @@ void SegmentSums::add(const CloudPoint& point, bool is_in_volume, std::int64_t s
   }
 }
 
+void SegmentSums::add(const SegmentSums& other) {
+  num_points += other.num_points;
+  num_in_volume += other.num_in_volume;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    position[axis] += other.position[axis];
+    normal[axis] += other.normal[axis];
+    color[axis] += other.color[axis];
+  }
+  extent.include(other.extent);
+}
+
 SegmentStatistics SegmentSums::statistics(std::uint32_t segment_id, float resolution_m) const {
   assert(num_points > 0);
   const auto count = static_cast<double>(num_points);

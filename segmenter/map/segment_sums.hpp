@@ -24,6 +24,9 @@ struct SegmentSums {
   /// Adds `point`, or subtracts it when `sign` is -1. The extent stays as it is.
   void add(const CloudPoint& point, bool is_in_volume, std::int64_t sign);
 
+  /// Adds the points of `other`.
+  void add(const SegmentSums& other);
+
   /// The statistics of at least one point, each of which stands for resolution_m^2 of surface.
   [[nodiscard]] SegmentStatistics statistics(std::uint32_t segment_id, float resolution_m) const;
 };

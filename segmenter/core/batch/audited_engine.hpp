@@ -24,6 +24,7 @@ class AuditedEngine final : public SegmentationEngine {
 
   /// @throws AuditError naming the first point that differs
   RunStatistics update(const CloudChange& change) override;
+  bool takes_moves_in_place() const override { return engine_->takes_moves_in_place(); }
   void look_ahead(std::span<const CloudPoint> slice_W) override { engine_->look_ahead(slice_W); }
   std::span<const ComponentId> components() const override { return engine_->components(); }
   std::span<const ComponentId> unmerged_components() const override {

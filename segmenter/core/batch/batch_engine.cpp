@@ -37,9 +37,12 @@ RunStatistics BatchEngine::update(const CloudChange& change) {
 /// Marks the points in the cloud in components_. Returns the names before the change; kNoComponent
 /// for new points.
 std::vector<ComponentId> BatchEngine::take_over(const CloudChange& change) {
-  if (index_) {
+  if (index_ && change.moved_in_place.empty()) {
     index_->remove(change.removed);
     index_->insert(change.added);
+  } else if (index_) {
+    index_ = make_neighbour_index(config_.neighbour_search, cloud_, config_.radius_m());
+    index_->insert(cloud_.everything().added);
   }
   components_.resize(cloud_.size(), kNoComponent);
   if (joins_fragments()) joined_.resize(cloud_.size(), kNoComponent);

@@ -18,6 +18,7 @@ class BatchEngine final : public SegmentationEngine {
   BatchEngine(const PointCloud& cloud, const EngineConfig& config);
 
   RunStatistics update(const CloudChange& change) override;
+  bool takes_moves_in_place() const override { return true; }
   std::span<const ComponentId> components() const override {
     return joins_fragments() ? joined_ : components_;
   }

@@ -40,6 +40,10 @@ class SegmentationEngine {
   /// they came.
   virtual RunStatistics update(const CloudChange& change) = 0;
 
+  /// Whether changes may have points that moved in place. The engine then computes the partition
+  /// from all points again.
+  virtual bool takes_moves_in_place() const { return false; }
+
   /// Instead of a first update() with `everything`: goes on with a saved partition, as it was
   /// before fragments were joined. `components` by point, each named by its smallest point;
   /// `thetas` by that name. An engine whose partition depends only on the points ignores both and

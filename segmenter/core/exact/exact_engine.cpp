@@ -34,7 +34,8 @@ RunStatistics ExactEngine::update(const CloudChange& change) {
   RunStatistics statistics{.num_iterations = 1};
   Stopwatch stopwatch;
   std::optional<std::vector<EdgeKey>> edges = edges_ahead_.take(change.added);
-  if (!change.removed.empty()) edges.reset();  // some may lead to points that are gone
+  // Some may lead to points that are gone, or elsewhere.
+  if (!change.removed.empty() || !change.moved_in_place.empty()) edges.reset();
   const bool is_rebuilt = is_cheaper_to_rebuild(change);
   add_vertices(change);
   if (is_rebuilt) {
@@ -63,6 +64,7 @@ void ExactEngine::start_look_ahead() {
 }
 
 bool ExactEngine::is_cheaper_to_rebuild(const CloudChange& change) const {
+  if (!change.moved_in_place.empty()) return true;
   const auto num_changed = static_cast<double>(change.added.size() + change.removed.size());
   return num_changed > config_.rebuild_share * static_cast<double>(num_points_);
 }

@@ -73,6 +73,7 @@ class ExactEngine final : public IncrementalEngine {
   ~ExactEngine() override;
 
   RunStatistics update(const CloudChange& change) override;
+  bool takes_moves_in_place() const override { return true; }
   void look_ahead(std::span<const CloudPoint> slice_W) override;
   std::span<const ComponentId> components() const override { return names_.of_points(); }
   std::span<const PointIndex> changed() const override { return names_.changed(); }

@@ -16,6 +16,7 @@ class FragmentEngine final : public SegmentationEngine {
       : engine_(std::move(engine)), layer_(cloud, *engine_, config) {}
 
   RunStatistics update(const CloudChange& change) override;
+  bool takes_moves_in_place() const override { return engine_->takes_moves_in_place(); }
   /// `components` are those before fragments are joined.
   void resume(const CloudChange& everything, std::span<const ComponentId> components,
               std::span<const double> thetas) override;

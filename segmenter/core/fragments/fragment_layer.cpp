@@ -40,6 +40,7 @@ void FragmentLayer::grow() {
 }
 
 bool FragmentLayer::is_cheaper_to_rebuild(const CloudChange& change) const {
+  if (!change.moved_in_place.empty()) return true;
   const auto num_changed = static_cast<double>(base_.changed().size() + change.removed.size());
   return num_changed > config_.rebuild_share * static_cast<double>(cloud_.num_live());
 }

@@ -7,6 +7,8 @@
 #include <string>
 #include <utility>
 
+#include <oneapi/tbb/parallel_for.h>
+
 #include "segmenter/core/points/admission.hpp"
 #include "segmenter/core/points/voxel_pairs.hpp"
 
@@ -110,6 +112,33 @@ const SliceRecord& PointCloud::move_slice(std::int32_t slice_id, const PatchPlac
   return slices_[position];
 }
 
+void PointCloud::move_in_place(std::span<const PlacedSlice> slices) {
+  std::vector<std::uint32_t> positions;
+  positions.reserve(slices.size());
+  for (const PlacedSlice& slice : slices) positions.push_back(position_of(slice.slice_id));
+  begin_change();
+  oneapi::tbb::parallel_for(std::size_t{0}, slices.size(), [&](std::size_t k) {
+    put_in_place(slices_[positions[k]], slices[k].place);
+  });
+  bytes_P_ = 0;
+  for (const SliceRecord& slice : slices_) bytes_P_ += bytes_P(slice);
+  for (const PlacedSlice& slice : slices) moved_in_place_.insert(slice.slice_id);
+}
+
+/// Moves the points of a slice from where they were received.
+void PointCloud::put_in_place(SliceRecord& slice, const PatchPlace& place) {
+  const bool is_same_pose = slice.place.X_WP == place.X_WP;
+  slice.place = place;
+  if (is_same_pose || slice.count == 0) return;
+  PointsInPatch accepted_P = std::move(slice.points_P);
+  if (accepted_P == nullptr) {
+    const auto points = points_W().subspan(slice.first, slice.count);
+    accepted_P = std::make_shared<std::vector<CloudPoint>>(points.begin(), points.end());
+  }
+  std::ranges::copy(moved(*accepted_P, place.X_WP), points_W_.begin() + slice.first);
+  slice.points_P = place.X_WP.is_identity() ? nullptr : std::move(accepted_P);
+}
+
 /// The accepted points of a slice as received.
 std::span<const CloudPoint> PointCloud::points_P(const SliceRecord& slice) const {
   if (slice.points_P != nullptr) return *slice.points_P;
@@ -133,6 +162,12 @@ CloudChange PointCloud::take_change() {
   std::sort(change.added.begin(), change.added.end());
   std::sort(change.moved.begin(), change.moved.end(),
             [](const MovedPoint& a, const MovedPoint& b) { return a.to < b.to; });
+  for (const std::int32_t slice_id : moved_in_place_) {
+    const SliceRecord& slice = *find_slice(slice_id);
+    if (slice.count > 0) change.moved_in_place.push_back({slice.first, slice.count});
+  }
+  std::ranges::sort(change.moved_in_place, {}, &PointRange::first);
+  moved_in_place_.clear();
   unreported_.clear();
   is_taken_ = true;
   return change;

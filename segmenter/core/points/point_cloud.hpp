@@ -40,12 +40,24 @@ struct MovedPoint {
   bool operator==(const MovedPoint&) const = default;
 };
 
+/// The points [first, first + count).
+struct PointRange {
+  PointIndex first = 0;
+  PointIndex count = 0;
+
+  bool operator==(const PointRange&) const = default;
+};
+
 /// The points that came and went between two updates of an engine. A point that moved is in both
-/// lists, with its old and its new index.
+/// lists, with its old and its new index, unless it moved in place.
 struct CloudChange {
   std::vector<PointIndex> added;    ///< ascending
   std::vector<PointIndex> removed;  ///< ascending; still readable until the cloud changes again
   std::vector<MovedPoint> moved;    ///< removed and added points that are the same, by `to`
+  /// Points that have other positions and normals at the same index (move_in_place()), ascending.
+  /// Where there are some, nothing is known any more that was computed from positions, not even of
+  /// the points in `removed`.
+  std::vector<PointRange> moved_in_place;
 };
 
 /// Whether a slice is a patch, and whether that may still change.
@@ -95,7 +107,8 @@ struct SliceRecord {
 /// (pair_by_voxel()), since its points come in other places of the list.
 ///
 /// A patch that moves gets new indices in the same way, in the same revision. Its points are moved
-/// from where they were received, so that they do not depend on earlier motions.
+/// from where they were received, so that they do not depend on earlier motions. Where a large part
+/// of the map moves, patches can move in place: then points keep their indices.
 class PointCloud {
  public:
   /// @param voxel_m voxel size, for patches; 0: their points are paired as those of other slices
@@ -121,6 +134,16 @@ class PointCloud {
   /// Moves a slice to `place`.
   /// @throws as replace_slice()
   const SliceRecord& move_slice(std::int32_t slice_id, const PatchPlace& place);
+
+  /// A slice and where it is.
+  struct PlacedSlice {
+    std::int32_t slice_id = 0;
+    PatchPlace place;
+  };
+  /// Moves slices, each of which is named once, and their points keep their indices. Only for
+  /// engines that take such changes (SegmentationEngine::takes_moves_in_place()).
+  /// @throws std::invalid_argument, and moves nothing, when there is no such slice
+  void move_in_place(std::span<const PlacedSlice> slices);
 
   /// What changed since the last call.
   CloudChange take_change();
@@ -166,6 +189,7 @@ class PointCloud {
   void begin_change();
   SliceRecord store(SliceRecord slice, std::span<const CloudPoint> points_P);
   void place(SliceRecord& slice, PointsInPatch accepted_P);
+  void put_in_place(SliceRecord& slice, const PatchPlace& place);
   void check_size(std::int32_t slice_id, std::size_t num_points) const;
   [[nodiscard]] std::span<const CloudPoint> points_P(const SliceRecord& slice) const;
   void append_moved(const SliceRecord& before, const SliceRecord& after,
@@ -183,9 +207,10 @@ class PointCloud {
   PointIndex num_live_ = 0;
   std::int64_t num_rejected_ = 0;
 
-  std::set<std::int32_t> unreported_;  ///< slices that came since the last take_change()
-  std::vector<Retired> retired_;       ///< old records of replaced slices, by `first`
-  bool is_taken_ = false;              ///< retired_ has been returned by take_change()
+  std::set<std::int32_t> unreported_;      ///< slices that came since the last take_change()
+  std::set<std::int32_t> moved_in_place_;  ///< since the last take_change()
+  std::vector<Retired> retired_;           ///< old records of replaced slices, by `first`
+  bool is_taken_ = false;                  ///< retired_ has been returned by take_change()
 };
 
 /// PointCloud::slice_of() for many points; fast where consecutive points are of one slice. Valid

@@ -127,6 +127,55 @@ TEST(SegmentStatistics, OfLargeSegmentsEqualThoseFromScratchUnderCorrections) {
   }
 }
 
+// The points of some slices move in place while others change segment; in between slices are
+// replaced, so that what recount() leaves behind is used by apply().
+TEST(SegmentStatistics, EqualThoseFromScratchWherePointsMoveInPlace) {
+  std::mt19937 random(11);
+  PointCloud cloud;
+  SegmentIds ids;
+  SegmentStatisticsTable table(0.01F);
+  std::vector<ComponentId> before;
+  const auto some_points = [&] {
+    std::vector<CloudPoint> points(300);
+    std::ranges::generate(points, [&] { return random_point(random); });
+    return points;
+  };
+  for (std::int32_t slice = 0; slice < 20; ++slice) {
+    cloud.add_slice(slice, some_points(), 0, PatchState::kInVolume);
+  }
+  for (int step = 0; step < 30; ++step) {
+    if (step % 3 == 1) {
+      cloud.replace_slice(static_cast<std::int32_t>(random() % 20), some_points());
+    } else if (step > 0) {
+      std::vector<PointCloud::PlacedSlice> moving;
+      for (std::int32_t slice = 0; slice < 20; ++slice) {
+        if (random() % 2 == 0) continue;
+        PatchPlace place{.X_WP = {}, .correction = step};
+        place.X_WP.t_WP[2] = static_cast<float>(random() % 8);
+        moving.push_back({slice, place});
+      }
+      cloud.move_in_place(moving);
+    }
+    const CloudChange change = cloud.take_change();
+    before.resize(cloud.size(), kNoComponent);
+    for (const PointIndex i : change.removed) before[i] = kNoComponent;
+    std::vector<ComponentId> after = before;
+    for (const PointIndex i : cloud.everything().added) {
+      if (after[i] == kNoComponent || random() % 20 == 0) {
+        after[i] = random() % 3 == 0 ? static_cast<ComponentId>(3 + random() % 9) : random() % 3;
+      }
+    }
+    const IdUpdate update = ids.update(cloud, change, after, differences(before, after));
+    if (change.moved_in_place.empty()) {
+      table.apply(cloud, ids, update.changes);
+    } else {
+      table.recount(cloud, ids, update.changes, change.moved_in_place);
+    }
+    before = after;
+    ASSERT_EQ(table.all(), from_scratch(cloud, ids, 0.01F)) << "step " << step;
+  }
+}
+
 TEST(SegmentStatistics, HaveTheValuesOfClosedForm) {
   PointCloud cloud;
   CloudPoint a{0.5F, -1.0F, 2.0F, 1.0F, 0.0F, 0.0F, 10, 20, 30, 0, 1.0F};

@@ -126,6 +126,52 @@ TEST(PointCloud, DoesNotGrowWithEveryCorrection) {
   EXPECT_EQ(cloud.size(), 70U);
 }
 
+PatchPlace place_at(float x, std::int32_t correction) {
+  PatchPlace place;
+  place.X_WP.t_WP[0] = x;
+  place.correction = correction;
+  return place;
+}
+
+TEST(PointCloud, PointsThatMoveInPlaceKeepTheirIndices) {
+  PointCloud cloud;
+  for (std::int32_t slice = 0; slice < 3; ++slice) {
+    cloud.add_slice(slice, std::vector{point(1), bad_point(), point(2)}, 0, PatchState::kInVolume);
+  }
+  cloud.take_change();
+  cloud.move_in_place(
+      std::vector<PointCloud::PlacedSlice>{{2, place_at(8, 1)}, {0, place_at(4, 1)}});
+  CloudChange change = cloud.take_change();
+  EXPECT_THAT(change.added, IsEmpty());
+  EXPECT_THAT(change.removed, IsEmpty());
+  EXPECT_THAT(change.moved, IsEmpty());
+  EXPECT_THAT(change.moved_in_place, ElementsAre(PointRange{0, 2}, PointRange{4, 2}));
+  EXPECT_EQ(cloud[1], point(6));
+  EXPECT_EQ(cloud[2], point(1));
+  EXPECT_EQ(cloud[4], point(9));
+  EXPECT_EQ(cloud.find_slice(0)->place, place_at(4, 1));
+  EXPECT_EQ(cloud.find_slice(1)->place, PatchPlace{});
+
+  // Back where they were received: nothing is kept besides.
+  cloud.move_in_place(std::vector<PointCloud::PlacedSlice>{{0, place_at(0, 2)}});
+  change = cloud.take_change();
+  EXPECT_THAT(change.moved_in_place, ElementsAre(PointRange{0, 2}));
+  EXPECT_EQ(cloud[1], point(2));
+  EXPECT_EQ(cloud.find_slice(0)->points_P, nullptr);
+  EXPECT_NE(cloud.find_slice(2)->points_P, nullptr);
+  EXPECT_THAT(cloud.take_change().moved_in_place, IsEmpty());
+}
+
+TEST(PointCloud, WhereOneSliceIsNotThereNoneMovesInPlace) {
+  PointCloud cloud;
+  cloud.add_slice(0, std::vector{point(1)}, 0, PatchState::kInVolume);
+  cloud.take_change();
+  const std::vector<PointCloud::PlacedSlice> slices{{0, place_at(4, 1)}, {7, place_at(4, 1)}};
+  EXPECT_THROW(cloud.move_in_place(slices), std::invalid_argument);
+  EXPECT_EQ(cloud[0], point(1));
+  EXPECT_THAT(cloud.take_change().moved_in_place, IsEmpty());
+}
+
 TEST(PointCloud, RefusesToReplaceWhatIsNotThereOrNotNewer) {
   PointCloud cloud;
   cloud.add_slice(5, std::vector{point(0)}, 3);
