@@ -8,8 +8,12 @@ namespace {
 
 constexpr double kUnits = 1099511627776.0;  // 2^40
 
-// Below 2^63: a coordinate is below 2^20 m (admission.hpp).
-std::int64_t to_units(float value) { return std::llround(static_cast<double>(value) * kUnits); }
+// Below 2^63: a coordinate is below 2^20 m (admission.hpp). Rounds as std::llround(), which is a
+// call: the sum is exact where there is a fraction, since a float32 has 24 bits.
+std::int64_t to_units(float value) {
+  const double units = static_cast<double>(value) * kUnits;
+  return static_cast<std::int64_t>(units + std::copysign(0.5, units));
+}
 
 }  // namespace
 

@@ -46,7 +46,7 @@ void ComponentNames::update_all(std::span<const PointIndex> removed) {
   names_.resize(vertices_.size(), kNoComponent);
   std::vector<PointIndex> roots;
   for (PointIndex x = 0; x < vertices_.size(); ++x) {
-    if (vertices_[x].is_gone || !vertices_.is_root(x)) continue;
+    if (!is_live_root(x)) continue;
     position(vertices_[x]) = static_cast<std::uint32_t>(roots.size());
     roots.push_back(x);
   }
@@ -67,12 +67,18 @@ void ComponentNames::update_all(std::span<const PointIndex> removed) {
   for (const PointIndex root : roots) position(vertices_[root]) = 0;
 }
 
+/// A point that is gone is a root, too, with no guest. Only records of roots are read: those of all
+/// vertices are the largest part of the engine's memory.
+bool ComponentNames::is_live_root(PointIndex x) const {
+  return vertices_.is_root(x) && vertices_[x].is_gone == 0;
+}
+
 /// By point: the position of its root; kNone for points that are gone.
 std::vector<std::uint32_t> ComponentNames::find_components() const {
   std::vector<std::uint32_t> components(vertices_.size(), kNone);
   oneapi::tbb::parallel_for(std::size_t{0}, components.size(), [&](std::size_t i) {
-    const auto x = static_cast<PointIndex>(i);
-    if (!vertices_[x].is_gone) components[x] = vertices_[forest_.root(x)].visit;
+    const PointIndex root = forest_.root(static_cast<PointIndex>(i));
+    if (vertices_[root].is_gone == 0) components[i] = vertices_[root].visit;
   });
   return components;
 }

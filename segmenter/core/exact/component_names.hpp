@@ -43,6 +43,7 @@ class ComponentNames {
     std::uint32_t num_points;
   };
 
+  bool is_live_root(PointIndex x) const;
   std::vector<std::uint32_t> find_components() const;
   std::vector<Share> count_pieces(std::span<const PointIndex> touched) const;
   std::vector<ComponentId> give_names(std::vector<Share> shares, std::span<const PointIndex> roots,

@@ -120,17 +120,21 @@ void ExactEngine::rebuild(const CloudChange& change, bool also_index, RunStatist
   Stopwatch stopwatch;
   for (const PointIndex x : change.removed) state_.vertices[x].is_gone = 1;
   propagation_.reset();
-  rows_ = rows_of_all();
+  std::vector<PointIndex> points;
+  points.reserve(static_cast<std::size_t>(num_points_));
+  for (PointIndex x = 0; x < state_.vertices.size(); ++x) {
+    if (!state_.vertices[x].is_gone) points.push_back(x);
+  }
+  // At the same time, here and below: neither needs the other.
+  oneapi::tbb::parallel_invoke(
+      [&] { state_.clear(); },
+      [&] { rows_ = std::make_unique<PointRows>(cloud_, points, config_.radius_m()); });
   BatchStatistics batch;
-  // At the same time: neither needs the other.
   oneapi::tbb::parallel_invoke(
       [&] {
         if (also_index) index_->assign(*rows_);
       },
-      [&] {
-        state_.clear();
-        batch = exact::build_state(*rows_, config_, state_);
-      });
+      [&] { batch = exact::build_state(*rows_, config_, state_); });
   if (config_.fragment_limit() == 0) rows_.reset();  // nobody will take them
   statistics.joins_ms += stopwatch.lap_ms();
   names_.update_all(change.removed);
@@ -139,15 +143,6 @@ void ExactEngine::rebuild(const CloudChange& change, bool also_index, RunStatist
   statistics.num_joins = batch.num_joins;
   statistics.num_points = num_points_;
   statistics.is_rebuilt = true;
-}
-
-std::unique_ptr<PointRows> ExactEngine::rows_of_all() const {
-  std::vector<PointIndex> points;
-  points.reserve(static_cast<std::size_t>(num_points_));
-  for (PointIndex x = 0; x < state_.vertices.size(); ++x) {
-    if (!state_.vertices[x].is_gone) points.push_back(x);
-  }
-  return std::make_unique<PointRows>(cloud_, points, config_.radius_m());
 }
 
 double ExactEngine::theta(ComponentId component) const {

@@ -92,7 +92,6 @@ class ExactEngine final : public IncrementalEngine {
   bool propagate(const CloudChange& change, std::vector<exact::EdgeKey> edges,
                  RunStatistics& statistics);
   void rebuild(const CloudChange& change, bool also_index, RunStatistics& statistics);
-  std::unique_ptr<PointRows> rows_of_all() const;
 
   const PointCloud& cloud_;
   EngineConfig config_;
