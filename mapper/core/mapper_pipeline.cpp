@@ -290,6 +290,7 @@ void MapperPipeline::clear_known(const std::vector<BlockSlot>& leaving) {
     return loops_->deformation().at(keyframe).inverse(Eigen::Isometry) * X_WU;
   };
   std::vector<BlockCoord> coords;
+  coords.reserve(leaving.size());
   for (const BlockSlot slot : leaving) coords.push_back(volume_.coord(slot));
   reactivation_->clear_known(volume_, leaving, place_of, same_surface(config_));
   std::erase_if(coords,

@@ -1,12 +1,12 @@
 #include "mapper/core/reactivation/block_packing.hpp"
 
-#include <lz4.h>
-
 #include <array>
 #include <cstdint>
 #include <cstring>
 #include <span>
 #include <stdexcept>
+
+#include <lz4.h>
 
 namespace kintsugi::mapper {
 namespace {

@@ -1,7 +1,5 @@
 #include "mapper/core/reactivation/covered_surface.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <Eigen/Core>
 #include <algorithm>
 #include <bitset>
@@ -9,6 +7,8 @@
 #include <numbers>
 #include <optional>
 #include <vector>
+
+#include <tbb/parallel_for.h>
 
 #include "lcmtypes/base/argument_check.hpp"
 
@@ -65,8 +65,8 @@ class DistanceField {
       const auto after = distance_vox(voxel + step);
       const auto before = distance_vox(voxel - step);
       if (!after && !before) return std::nullopt;
-      gradient[axis] = after && before ? 0.5 * (*after - *before)
-                                       : (after ? *after - *here : *here - *before);
+      gradient[axis] =
+          after && before ? 0.5 * (*after - *before) : (after ? *after - *here : *here - *before);
     }
     const double slope = gradient.norm();
     if (!(slope > kLeastSlope)) return std::nullopt;
@@ -131,8 +131,8 @@ class Comparison {
       if (!own.is_at_crossing(voxel)) continue;
       const auto surface = own.surface_near(voxel, reach_vox_);
       const bool is_covered = surface && std::ranges::any_of(near, [&](Placed& cover) {
-        return covers(cover, voxel, *surface);
-      });
+                                return covers(cover, voxel, *surface);
+                              });
       decision.covered[index] = is_covered;
       decision.has_rest = decision.has_rest || !is_covered;
     }
@@ -161,7 +161,8 @@ class Comparison {
     for (const Cover& cover : covers_) {
       const double limit_m = radius_m + cover.radius_m;
       if ((cover.center_U - center_U).squaredNorm() > limit_m * limit_m) continue;
-      near.push_back({cover.X_OU, {FindIn{&cover.blocks}, truncation_vox_, same_.weight_threshold}});
+      near.push_back(
+          {cover.X_OU, {FindIn{&cover.blocks}, truncation_vox_, same_.weight_threshold}});
     }
     return near;
   }

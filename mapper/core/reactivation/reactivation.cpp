@@ -5,6 +5,8 @@
 #include <iterator>
 #include <set>
 
+#include <tbb/parallel_for.h>
+
 #include "mapper/core/reactivation/visible_space.hpp"
 
 namespace kintsugi::mapper {
@@ -40,17 +42,21 @@ void Reactivation::clear_known(TsdfVolume& volume, const std::vector<BlockSlot>&
     const Eigen::Vector3d corner_U = block_m * Eigen::Vector3d(coord.x, coord.y, coord.z);
     box_U.extend(corner_U).extend(corner_U + Eigen::Vector3d::Constant(block_m));
   }
+  std::vector<TileVisit> visits;
   std::vector<Cover> covers;
+  const double radius = radius_m(resolution_m);
   store_.for_each([&](const TileVisit& visit, int keyframe) {
     if (visit.number == TileVisit::kOpen) return;
     const auto X_OU = place_of(keyframe);
     if (!X_OU) return;
-    const double radius = radius_m(resolution_m);
     const Eigen::Vector3d center_U =
         X_OU->inverse(Eigen::Isometry) * center_of(visit.tile, resolution_m);
     if (box_U.exteriorDistance(center_U) > radius) return;
-    covers.push_back({*X_OU, center_U, radius, store_.copy_of(visit)});
+    visits.push_back(visit);
+    covers.push_back({*X_OU, center_U, radius, {}});
   });
+  tbb::parallel_for(std::size_t{0}, visits.size(),
+                    [&](std::size_t i) { covers[i].blocks = store_.copy_of(visits[i]); });
   clear_covered(volume, leaving, covers, same);
 }
 
@@ -99,13 +105,18 @@ Reactivation::Returned Reactivation::take(const std::vector<Returned::Visit>& vi
     };
     bool is_taken = std::ranges::any_of(coords, is_in_volume);
     if (visit.number != TileVisit::kOpen) {
-      tiles_.for_each_block(visit.tile, [&](const BlockCoord& coord) {
-        is_taken = is_taken || is_in_volume(coord);
-      });
+      tiles_.for_each_block(
+          visit.tile, [&](const BlockCoord& coord) { is_taken = is_taken || is_in_volume(coord); });
     }
     if (is_taken) continue;
     returned.visits.push_back(visits[i]);
-    std::ranges::move(store_.take(visit), std::back_inserter(returned.blocks));
+  }
+  std::vector<std::vector<StoredBlock>> blocks(returned.visits.size());
+  tbb::parallel_for(std::size_t{0}, blocks.size(),
+                    [&](std::size_t i) { blocks[i] = store_.copy_of(returned.visits[i].visit); });
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    store_.forget(returned.visits[i].visit);
+    std::ranges::move(blocks[i], std::back_inserter(returned.blocks));
   }
   std::ranges::sort(returned.blocks, {}, &StoredBlock::coord);
   add_around(is_near, volume, returned);

@@ -19,9 +19,9 @@ namespace kintsugi::mapper {
 
 /// Keeps what leaves the volume (a ball), and finds what belongs into it again.
 ///
-/// Where tracking has drifted since a surface was seen, that surface is not where the camera sees it
-/// now. So only surface comes back that was seen near on the camera's path: by keyframes that are
-/// tracked together. To go over to surface of other keyframes, the camera must be located among
+/// Where tracking has drifted since a surface was seen, that surface is not where the camera sees
+/// it now. So only surface comes back that was seen near on the camera's path: by keyframes that
+/// are tracked together. To go over to surface of other keyframes, the camera must be located among
 /// those, and the volume must be emptied.
 class Reactivation {
  public:
@@ -53,8 +53,8 @@ class Reactivation {
   void clear_known(TsdfVolume& volume, const std::vector<BlockSlot>& leaving,
                    const PlaceOfKeyframe& place_of, const SameSurface& same) const;
 
-  /// Takes out what a frame is about to change. `is_near`: by keyframe, whether its surface is where
-  /// this camera sees it; `keyframe`: at which the camera is.
+  /// Takes out what a frame is about to change. `is_near`: by keyframe, whether its surface is
+  /// where this camera sees it; `keyframe`: at which the camera is.
   Returned take_visible(const SurfaceMap& seen_C, const Pose& X_UC,
                         const std::vector<bool>& is_near, int keyframe, const TsdfVolume& volume);
 

@@ -6,8 +6,8 @@
 namespace kintsugi::mapper {
 namespace {
 
-/// Of the blocks that wait, each frame. A sixteenth of the volume leaves at a time, with the default
-/// memory 2,700 blocks: half of them are packed within 7 frames, in 2 ms each.
+/// Of the blocks that wait, each frame. A sixteenth of the volume leaves at a time, with the
+/// default memory 2,700 blocks: half of them are packed within 7 frames, in 2 ms each.
 constexpr double kPackedShare = 0.1;
 
 }  // namespace
@@ -15,8 +15,8 @@ constexpr double kPackedShare = 0.1;
 void TileStore::keep(const DetachedBlocks& left) {
   for (std::size_t i = 0; i < left.coords.size(); ++i) {
     const BlockCoord& coord = left.coords[i];
-    auto block = std::make_shared<Block>(
-        Block{{left.voxels[i], left.colors[i], left.storage}, {coord, {}}});
+    auto block =
+        std::make_shared<Block>(Block{{left.voxels[i], left.colors[i], left.storage}, {coord, {}}});
     to_pack_.push_back(block);
     std::shared_ptr<Block>& place = entries_[{grid_.tile_of(coord)}].blocks[coord];
     if (place) num_bytes_ -= bytes_of(*place);
@@ -41,12 +41,6 @@ std::vector<StoredBlock> TileStore::copy_of(const TileVisit& visit) const {
   if (entry == entries_.end()) return blocks;
   blocks.reserve(entry->second.blocks.size());
   for (const auto& [coord, block] : entry->second.blocks) blocks.push_back(copy_of(*block));
-  return blocks;
-}
-
-std::vector<StoredBlock> TileStore::take(const TileVisit& visit) {
-  std::vector<StoredBlock> blocks = copy_of(visit);
-  forget(visit);
   return blocks;
 }
 

@@ -22,8 +22,8 @@ namespace kintsugi::mapper {
 /// A tile that left for good is closed, and a second visit of the camera makes another one: where
 /// tracking had drifted in between, both show the same place with an offset.
 ///
-/// Memory: about a third of the 4 KB of a block. Blocks are packed some time after they came, some of
-/// them each frame, so that no frame waits for those of a large slice.
+/// Memory: about a third of the 4 KB of a block. Blocks are packed some time after they came, some
+/// of them each frame, so that no frame waits for those of a large slice.
 class TileStore {
  public:
   /// Above `max_mb` (1e6 bytes) the visits that were closed longest ago are forgotten.
@@ -38,18 +38,17 @@ class TileStore {
   /// where it has no blocks.
   void close(const TileCoord& tile, int keyframe);
 
-  /// Calls visit(TileVisit, int keyframe) for all tiles that are kept, ascending; the keyframe of an
-  /// open one is -1.
+  /// Calls visit(TileVisit, int keyframe) for all tiles that are kept, ascending; the keyframe of
+  /// an open one is -1.
   template <typename Visit>
   void for_each(Visit visit) const {
     for (const auto& [key, entry] : entries_) visit(key, entry.keyframe);
   }
 
-  /// The blocks of a visit, ascending.
+  /// The blocks of a visit, ascending. May be called from several threads.
   std::vector<StoredBlock> copy_of(const TileVisit& visit) const;
 
-  /// Takes the blocks of a visit out, ascending.
-  std::vector<StoredBlock> take(const TileVisit& visit);
+  void forget(const TileVisit& visit);
 
   using VisitFilter = std::function<bool(const TileVisit&, int keyframe)>;
   /// A copy of the block at a place, from a visit of which this is true; of several from the open
@@ -88,7 +87,6 @@ class TileStore {
   static std::size_t bytes_of(const Block& block);
   static std::size_t bytes_of(const Entry& entry);
   void pack_some();
-  void forget(const TileVisit& visit);
 
   const TileGrid grid_;
   const std::size_t max_bytes_;

@@ -15,8 +15,8 @@ VisibleSpace::VisibleSpace(const cv::Mat_<float>& depth_m, const Intrinsics& cam
     : camera_(camera),
       X_CU_(X_UC.inverse(Eigen::Isometry)),
       margin_m_(margin_m),
-      farthest_m_((depth_m.rows + kCell_px - 1) / kCell_px, (depth_m.cols + kCell_px - 1) / kCell_px,
-                  0.0F) {
+      farthest_m_((depth_m.rows + kCell_px - 1) / kCell_px,
+                  (depth_m.cols + kCell_px - 1) / kCell_px, 0.0F) {
   for (int v = 0; v < depth_m.rows; ++v) {
     const float* const row = depth_m[v];
     float* const cells = farthest_m_[v / kCell_px];
@@ -40,7 +40,9 @@ bool VisibleSpace::meets(const Eigen::Vector3d& center_U, double radius_m) const
   const double reach_v = camera_.fy * radius_m / z;
   const double u = camera_.fx * p_C.x() / std::max(p_C.z(), radius_m) + camera_.cx;
   const double v = camera_.fy * p_C.y() / std::max(p_C.z(), radius_m) + camera_.cy;
-  const auto first = [](double px) { return std::max(0, static_cast<int>(std::floor(px / kCell_px))); };
+  const auto first = [](double px) {
+    return std::max(0, static_cast<int>(std::floor(px / kCell_px)));
+  };
   const auto last = [](double px, int cells) {
     return static_cast<int>(std::min(std::floor(px / kCell_px), cells - 1.0));
   };

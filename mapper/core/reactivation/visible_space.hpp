@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+
 #include <opencv2/core.hpp>
 
 #include "lcmtypes/geometry.hpp"

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include <tbb/parallel_for.h>
+
 #include "lcmtypes/base/argument_check.hpp"
 
 namespace kintsugi::mapper {
@@ -43,14 +45,20 @@ void PatchSchedule::note_returned(const TileCoord& coord, int keyframe, const Ts
   departed_.erase(coord);
   Tile& tile = tiles_[coord];
   tile.keyframe = keyframe;
+  std::vector<BlockSlot> slots;
   grid_.for_each_block(coord, [&](const BlockCoord& block_coord) {
     const BlockSlot slot = volume.find(block_coord);
-    if (slot == kNoBlock) return;
-    const BlockSurface surface(volume, slot, rule_);
-    if (surface.num_voxels() == 0 || tile.blocks.contains(block_coord)) return;
-    tile.blocks[block_coord] = {
-        .sent = surface, .now = surface, .change = {.num_in_all = surface.num_voxels()}};
+    if (slot != kNoBlock && !tile.blocks.contains(block_coord)) slots.push_back(slot);
   });
+  std::vector<BlockSurface> surfaces(slots.size());
+  tbb::parallel_for(std::size_t{0}, slots.size(),
+                    [&](std::size_t i) { surfaces[i] = BlockSurface(volume, slots[i], rule_); });
+  for (std::size_t i = 0; i < slots.size(); ++i) {
+    const int num_voxels = surfaces[i].num_voxels();
+    if (num_voxels == 0) continue;
+    tile.blocks[volume.coord(slots[i])] = {
+        .sent = surfaces[i], .now = surfaces[i], .change = {.num_in_all = num_voxels}};
+  }
 }
 
 PatchBatch PatchSchedule::depart_all(const std::vector<TileCoord>& others) {

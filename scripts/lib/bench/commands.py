@@ -50,6 +50,8 @@ SECTIONS = (
     Section("surface", "the points of the map against the true surface", mapping.surface,
             ("kintsugi-mapper", "kintsugi-evaluate-surface")),
     Section("memory", "memory of the mapper over two floors", mapping.memory, ("kintsugi-mapper",)),
+    Section("loops", "a round that is walked once, twice and ten times: the map, its error and the mapper's memory",
+            mapping.loops, MAPPER),
     Section("maps", "time of segmenting each slice and agreement with batch, beside the paper's tables",
             segmenting.maps, (*TRIO, "kintsugi-evaluate")),
     Section("quality", "segments against the true objects of the synthetic office, and a sweep of each parameter",

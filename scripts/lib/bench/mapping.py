@@ -4,7 +4,7 @@ import re
 from collections import Counter
 
 from .accuracy import error, trajectory_errors
-from .run import room
+from .run import Input, room
 from .tables import first_table, fixed, markdown, number, quantile, read_csv
 
 VOXEL_M = 4.5 / 512  # the mapper's default
@@ -72,6 +72,24 @@ def memory(run):
     shown = [i for i in range(len(rows)) if i % step == step - 1 or i == 0]
     return markdown(["frames mapped", "memory of the mapper, MB"],
                     [[f"{i + 1:,}", fixed(rows[i]["memory_mb"], 0)] for i in shown])
+
+
+def loops(run):
+    """The same round again and again: nothing may grow."""
+    rows = []
+    for laps in (1, 2, 10):
+        source = Input(f"loop-{laps}", address=f"synthetic://loop?speed=3&laps={laps}")
+        cloud = run.folder / f"{source.name}.ply"
+        mapped = run.map_alone(source.name, source, "--cloud", cloud)
+        points = int(re.search(r"cloud of (\d+) points", mapped.log)[1])
+        closed = re.search(r"(\d+) loops closed, (\d+) contradicted", mapped.log)
+        kept = re.search(r"(\d+) MB kept", mapped.log)
+        frames = read_csv(mapped.timings)
+        rows.append([laps, f"{points:,}", closed[1] if closed else 0, closed[2] if closed else 0,
+                     error(trajectory_errors(run, mapped, source), "ate_m_rmse", 1e3), kept[1] if kept else 0,
+                     fixed(frames[-1]["memory_mb"], 0), fixed(mapped.cpu_ms, 1)])
+    return markdown(["rounds", "points", "loops", "contradicted", "ATE rmse, mm", "kept, MB", "memory, MB",
+                     "CPU a frame, ms"], rows)
 
 
 def bare(run):

@@ -61,9 +61,7 @@ TEST_F(Floor, IsClearedByASurfaceAVoxelAwayInAnotherFrame) {
   X_OU.linear() = Eigen::AngleAxisd(0.5, Eigen::Vector3d::UnitX()).toRotationMatrix();
   X_OU.translation() = Eigen::Vector3d(0.02, -0.03, 0.015);
   const Pose X_UO = X_OU.inverse();
-  const auto in_o = [&](const Eigen::Vector3d& p_O) {
-    return above_floor(X_UO * p_O) - kVoxel_m;
-  };
+  const auto in_o = [&](const Eigen::Vector3d& p_O) { return above_floor(X_UO * p_O) - kVoxel_m; };
   const std::size_t before = points().size();
   clear(in_o, X_OU);
   // The other volume is a cube, too, which is turned.
@@ -104,7 +102,8 @@ TEST_F(Floor, StaysBesideTheOtherSurface) {
   clear(above_floor, half_a_metre);
   const auto left = points();
   EXPECT_FALSE(left.empty());
-  for (const CloudPoint& point : left) EXPECT_LT(point.x, 0.08F) << "the cubes end with whole blocks";
+  for (const CloudPoint& point : left)
+    EXPECT_LT(point.x, 0.08F) << "the cubes end with whole blocks";
   const auto max = std::ranges::max(left, {}, &CloudPoint::x);
   EXPECT_GT(max.x, -0.08F) << "no gap but the ends of the cubes";
 }

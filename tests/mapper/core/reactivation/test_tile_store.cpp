@@ -72,7 +72,7 @@ class Store : public ::testing::Test {
   TileStore store_{TileGrid(0.16, 0.01), 1.0};
 };
 
-TEST_F(Store, KeepsBlocksByTileUntilTheyAreTaken) {
+TEST_F(Store, KeepsBlocksByTileUntilTheyAreForgotten) {
   keep({first_, other_});
   keep({second_});
   EXPECT_THAT(visits(), ElementsAre(TileVisit{tile_}, TileVisit{next_}));
@@ -85,8 +85,8 @@ TEST_F(Store, KeepsBlocksByTileUntilTheyAreTaken) {
     store_.tidy();
   }
   EXPECT_GT(store_.bytes(), 0U);
-  EXPECT_EQ(store_.take({tile_}).size(), 2U);
-  EXPECT_THAT(store_.take({tile_}), IsEmpty());
+  store_.forget({tile_});
+  EXPECT_THAT(store_.copy_of({tile_}), IsEmpty());
   EXPECT_THAT(visits(), ElementsAre(TileVisit{next_}));
 }
 
@@ -107,8 +107,8 @@ TEST_F(Store, NumbersClosedVisitsAlsoThoseWithoutBlocks) {
   store_.for_each([&](const TileVisit& visit, int keyframe) {
     EXPECT_EQ(keyframe, visit.number == 1 ? 4 : -1);
   });
-  EXPECT_TRUE(same(store_.take({tile_, 1}).front(), first_));
-  EXPECT_TRUE(same(store_.take({tile_}).front(), second_));
+  EXPECT_TRUE(same(store_.copy_of({tile_, 1}).front(), first_));
+  EXPECT_TRUE(same(store_.copy_of({tile_}).front(), second_));
 }
 
 TEST_F(Store, ForgetsWhatWasClosedLongestAgo) {
@@ -121,7 +121,7 @@ TEST_F(Store, ForgetsWhatWasClosedLongestAgo) {
   EXPECT_LE(store_.bytes(), 1'000'000U);
   EXPECT_GT(store_.bytes(), 900'000U);
   for (const TileVisit& visit : visits()) EXPECT_LT(visit.tile.x, 130);
-  for (const TileVisit& visit : visits()) store_.take(visit);
+  for (const TileVisit& visit : visits()) store_.forget(visit);
   EXPECT_EQ(store_.bytes(), 0U);
 }
 
