@@ -1,5 +1,7 @@
 #include "tests/support/played_map.hpp"
 
+#include <algorithm>
+#include <span>
 #include <utility>
 
 #include "tests/bench/map_generator.hpp"
@@ -13,6 +15,19 @@ constexpr float kResolution_m = 0.01F;  // of the generated map
 constexpr float kShift_m = 0.01F;
 constexpr std::int64_t kFirstUtime = 1'000'000;
 
+/// Cuts the slices, in the order of their points.
+std::vector<Points> cut(const std::vector<Points>& slices, std::size_t most_points) {
+  std::vector<Points> pieces;
+  for (const Points& slice : slices) {
+    for (std::size_t first = 0; first < slice.size(); first += most_points) {
+      const auto rest = std::span(slice).subspan(first);
+      const auto piece = rest.first(std::min(most_points, rest.size()));
+      pieces.emplace_back(piece.begin(), piece.end());
+    }
+  }
+  return pieces;
+}
+
 std::vector<Points> generate(const PlayedMap::Config& config) {
   segmenter::bench::MapConfig map;
   map.num_points = config.num_points;
@@ -25,7 +40,7 @@ std::vector<Points> generate(const PlayedMap::Config& config) {
     if (slice.size() >= config.slice_points) slices.push_back(std::exchange(slice, {}));
   }
   if (!slice.empty() || slices.empty()) slices.push_back(std::move(slice));
-  return slices;
+  return config.most_points > 0 ? cut(slices, config.most_points) : slices;
 }
 
 /// A camera a metre above the middle of what it sees.

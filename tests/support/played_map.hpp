@@ -22,8 +22,9 @@ class PlayedMap {
   struct Config {
     std::int64_t session = 1;  ///< > 0
     std::string map_name = "map";
-    std::size_t num_points = 4'000'000;  ///< at least so many, >= 1
-    std::size_t slice_points = kNormalSlicePoints;
+    std::size_t num_points = 4'000'000;             ///< at least so many, >= 1
+    std::size_t slice_points = kNormalSlicePoints;  ///< of a slice, at least
+    std::size_t most_points = 0;                    ///< of a slice, at most; 0: no limit
     int num_rooms = 14;
     std::uint32_t seed = 1;
   };

@@ -3,8 +3,12 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstddef>
+#include <filesystem>
+#include <stdexcept>
 #include <string>
 #include <thread>
+#include <utility>
 
 #include "lcmtypes/base/process_memory.hpp"
 #include "lcmtypes/base/stop_signal.hpp"
@@ -15,6 +19,7 @@
 #include "mapper/session/session_store.hpp"
 #include "mapper/session/stored_stream.hpp"
 #include "tests/support/bus_program.hpp"
+#include "tests/support/corrected_map.hpp"
 #include "tests/support/played_map.hpp"
 
 namespace kintsugi::testing {
@@ -29,6 +34,7 @@ struct Options {
   std::string url;
   PlayedMap::Config map;
   std::int64_t batch = 0;
+  int corrections = 0;
   double speed = 1.0;
   double seconds = 0.0;
   double linger_s = 2.0;
@@ -41,6 +47,9 @@ void add_flags(CLI::App& app, Options& options) {
   app.add_option("--lcm-url", options.url, "The bus; empty: LCM's default");
   app.add_option("--points", options.map.num_points, "Size of the map")->capture_default_str();
   app.add_option("--slice-points", options.map.slice_points, "Size of a slice, at least")
+      ->capture_default_str();
+  app.add_option("--most-points", options.map.most_points,
+                 "Cuts slices, so that none has more points; 0: does not")
       ->capture_default_str();
   app.add_option("--rooms", options.map.num_rooms, "How many the map goes through")
       ->capture_default_str();
@@ -58,6 +67,11 @@ void add_flags(CLI::App& app, Options& options) {
                  "supersedes those that wait to be sent. 0: slices that have left")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
+  app.add_option("--corrections", options.corrections,
+                 "So many corrections move the whole map (needs --batch). Then nothing supersedes "
+                 "anything, so that a player that was killed can go on with --store")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
   app.add_option("--seconds", options.seconds,
                  "Goes on for so long: when all but the final slice is published, the slices come "
                  "again, corrected")
@@ -69,7 +83,9 @@ void add_flags(CLI::App& app, Options& options) {
   app.add_option("--rate", options.rate_MB_per_s, "Of the stream at most, MB a second")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  app.add_option("--store", options.store, "The log of the session; empty: a temporary file");
+  app.add_option("--store", options.store,
+                 "The log of the session, which goes on where an earlier run was killed; empty: a "
+                 "temporary file");
   app.add_option("--report", options.report, "Writes at the end what it did (JSON)");
 }
 
@@ -81,8 +97,7 @@ class SlicePlayer {
         bus_(options.url),
         log_(log_config(options)),
         stream_(bus_, channels::kCloudSlice, options.map.session, stream_config(options, bus_),
-                &log_.stream(channels::kCloudSlice, options.map.session)) {
-    log_.begin_session(options.map.session, {{"device", "slice_player"}});
+                &open_stream(log_, options.map.session)) {
     stream_.subscribe(bus_);
   }
 
@@ -101,6 +116,7 @@ class SlicePlayer {
   static mapper::SessionStore::Config log_config(const Options& options) {
     mapper::SessionStore::Config config;
     config.path = options.store;
+    config.resume = std::filesystem::exists(options.store);
     return config;
   }
 
@@ -112,9 +128,21 @@ class SlicePlayer {
     return config;
   }
 
+  /// Chunks after a gap in the log, and those of a message that was cut off, are sent anew.
+  static mapper::StoredStream& open_stream(mapper::SessionStore& log, std::int64_t session) {
+    mapper::StoredStream& stream = log.stream(channels::kCloudSlice, session);
+    if (log.sessions().empty()) {
+      log.begin_session(session, {{"device", "slice_player"}});
+    } else {
+      stream.index().truncate_at_gap();
+    }
+    return stream;
+  }
+
   double elapsed_s() const { return Seconds(Clock::now() - start_).count(); }
 
   void play() {
+    if (options_.corrections > 0) return play_corrections();
     const std::int32_t last = map_.num_slices() - 1;
     for (std::int32_t id = 0; id < last; ++id) publish(id, 0);
     for (std::int32_t revision = 1; elapsed_s() < options_.seconds; ++revision) {
@@ -127,17 +155,38 @@ class SlicePlayer {
     publish(last, 0);
   }
 
-  /// Waits until the slice is due. After a stop signal the rest of the map is published at once.
-  void publish(std::int32_t id, std::int32_t revision) {
+  void play_corrections() {
+    const CorrectedMap corrected(map_, {.num_corrections = options_.corrections,
+                                        .batch_patches = static_cast<int>(options_.batch)});
+    for (std::size_t step = 0; step < corrected.num_steps(); ++step) {
+      wait_until_due();
+      CloudSlice slice = corrected.slice(step);
+      if (slice.kind == SliceKind::kCorrection) ++corrections_;
+      count(slice);
+      stream_.publish(std::move(slice));
+      publish_status_when_due();
+    }
+  }
+
+  /// Until the next slice is due. After a stop signal the rest of the map is published at once.
+  void wait_until_due() {
     if (options_.speed > 0.0) {
       const double due_s = static_cast<double>(slices_) / (options_.speed * kNormalSlicesPerSecond);
       while (elapsed_s() < due_s && !stop_requested()) rest();
     }
     while (stream_.queued_bytes() > kMaxQueuedBytes) rest();
-    CloudSlice slice = map_.slice(id, revision);
+  }
+
+  void count(const CloudSlice& slice) {
     points_ += static_cast<std::int64_t>(slice.points_W.size());
     ++slices_;
     most_queued_bytes_ = std::max(most_queued_bytes_, stream_.queued_bytes());
+  }
+
+  void publish(std::int32_t id, std::int32_t revision) {
+    wait_until_due();
+    CloudSlice slice = map_.slice(id, revision);
+    count(slice);
     revision_sum_ += revision > 0 ? 1 : 0;
     if (slice.kind == SliceKind::kFinal) slice.revision_sum = revision_sum_;
     if (options_.batch > 0 && slice.kind != SliceKind::kFinal) {
@@ -187,6 +236,7 @@ class SlicePlayer {
     status.state = TrackingState::kGiven;
     status.finished = finished_;
     status.lingering = lingering_;
+    status.corrections = corrections_;
     status.slices_published = slices_;
     status.points_published = points_;
     status.chunks_published = stream_.chunks_published();
@@ -223,7 +273,8 @@ class SlicePlayer {
   StreamPublisher stream_;
   Clock::time_point start_;
   Clock::time_point next_status_;
-  std::int64_t slices_ = 0;        // published, corrections too
+  std::int64_t slices_ = 0;        // published, revisions too
+  std::int64_t corrections_ = 0;   // of the map
   std::int64_t revision_sum_ = 0;  // of the newest revisions
   std::int64_t points_ = 0;
   std::size_t most_queued_bytes_ = 0;
@@ -231,7 +282,12 @@ class SlicePlayer {
   bool lingering_ = false;
 };
 
-void play(const Options& options) { SlicePlayer(options).run(); }
+void play(const Options& options) {
+  if (options.corrections > 0 && options.batch == 0) {
+    throw std::invalid_argument("--corrections needs --batch");
+  }
+  SlicePlayer(options).run();
+}
 
 }  // namespace
 }  // namespace kintsugi::testing
