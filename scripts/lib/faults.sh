@@ -20,7 +20,7 @@ fault_row() {
 has_row() { [[ -n "${row_call[$1]:-}" ]]; }
 list_rows() {
   local name
-  for name in "${row_names[@]}"; do printf '%-20s %s\n' "$name" "${row_what[$name]}"; done
+  for name in "${row_names[@]}"; do printf '%-26s %s\n' "$name" "${row_what[$name]}"; done
 }
 for group in "$kintsugi_root"/scripts/faults.d/*.sh; do source "$group"; done
 

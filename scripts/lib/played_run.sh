@@ -3,6 +3,7 @@
 
 player="${KINTSUGI_TEST_BIN:-$kintsugi_root/build/release/tests}/slice_player"
 played=()                # options of slice_player
+resumable=0              # 1: mapper and segmenter go on where they were when they are started again
 viewer_ends=(--exit-on-final)
 mapper_at=() others_at=() # prefixes of the commands of the mapper and of the others, for another host or another bus
 
@@ -16,12 +17,15 @@ choose_played() {
 
 # start_played PROCESS...: starts mapper, segmenter, viewer or log, which writes all statuses to $out/status.csv.
 start_played() {
-  local name
+  local name store=() saves=()
   mkdir -p "$out"
+  ((resumable)) && store=(--store="$out/mapper.lcm") saves=(--save="$out/segmenter.map" --save-every=5 --resume-if-saved)
   for name in "$@"; do
     case "$name" in
-      mapper) process_start mapper "${mapper_at[@]}" "$player" --linger=-1 --report="$out/player.json" "${played[@]}" ;;
-      segmenter) process_start segmenter "${others_at[@]}" "$KINTSUGI_BIN/kintsugi-segmenter" --out="$out" --linger=-1 ;;
+      mapper) process_start mapper "${mapper_at[@]}" "$player" --linger=-1 --report="$out/player.json" \
+        "${store[@]}" "${played[@]}" ;;
+      segmenter) process_start segmenter "${others_at[@]}" "$KINTSUGI_BIN/kintsugi-segmenter" --out="$out" --linger=-1 \
+        "${saves[@]}" ;;
       viewer) process_start viewer "${others_at[@]}" "$KINTSUGI_BIN/kintsugi-viewer" --out="$out" "${viewer_ends[@]}" \
         --every=1000000 ;;
       log) process_start log "${others_at[@]}" "$KINTSUGI_BIN/kintsugi-status" --log "$out/status.csv" ;;
