@@ -1,5 +1,6 @@
 #include "mapper/core/reactivation/block_packing.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <cstring>
