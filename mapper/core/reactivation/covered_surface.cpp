@@ -85,16 +85,6 @@ class DistanceField {
   bool has_last_ = false;
 };
 
-}  // namespace
-
-void SameSurface::validate() const {
-  check_range("max_distance_vox", max_distance_vox, 0.0, 100.0);
-  check_range("max_angle_deg", max_angle_deg, 0.0, 180.0);
-  check_range("weight_threshold", weight_threshold, 0, 65534);
-}
-
-namespace {
-
 /// Decides about the voxels of a volume.
 class Comparison {
  public:
@@ -191,6 +181,12 @@ class Comparison {
 };
 
 }  // namespace
+
+void SameSurface::validate() const {
+  check_range("max_distance_vox", max_distance_vox, 0.0, 100.0);
+  check_range("max_angle_deg", max_angle_deg, 0.0, 180.0);
+  check_range("weight_threshold", weight_threshold, 0, 65534);
+}
 
 void clear_covered(TsdfVolume& volume, const std::vector<BlockSlot>& slots,
                    const std::vector<Cover>& covers, const SameSurface& same) {

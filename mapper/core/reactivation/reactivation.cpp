@@ -8,6 +8,7 @@
 #include <tbb/parallel_for.h>
 
 #include "mapper/core/reactivation/visible_space.hpp"
+#include "mapper/core/volume/blocks_around.hpp"
 
 namespace kintsugi::mapper {
 namespace {
@@ -15,13 +16,6 @@ namespace {
 /// An open visit belongs to what the volume holds.
 bool is_here(const TileVisit& visit, int keyframe, const std::vector<bool>& is_near) {
   return visit.number == TileVisit::kOpen || is_near[keyframe];
-}
-
-template <typename Visit>
-void for_each_around(const BlockCoord& coord, Visit visit) {
-  for (int k = 0; k < 27; ++k) {
-    visit(make_block_coord(coord.x + k % 3 - 1, coord.y + k / 3 % 3 - 1, coord.z + k / 9 - 1));
-  }
 }
 
 }  // namespace

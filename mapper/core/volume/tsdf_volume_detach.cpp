@@ -5,6 +5,7 @@
 #include <memory>
 #include <utility>
 
+#include "mapper/core/volume/blocks_around.hpp"
 #include "mapper/core/volume/tsdf_volume.hpp"
 
 namespace kintsugi::mapper {
@@ -15,18 +16,6 @@ struct KeptBlock {
   const VoxelBlock* voxels = nullptr;
   const ColorBlock* colors = nullptr;
 };
-
-/// The block and the 26 around it.
-template <typename Visit>
-void for_each_around(const BlockCoord& coord, Visit visit) {
-  for (int dz = -1; dz <= 1; ++dz) {
-    for (int dy = -1; dy <= 1; ++dy) {
-      for (int dx = -1; dx <= 1; ++dx) {
-        visit(make_block_coord(coord.x + dx, coord.y + dy, coord.z + dz));
-      }
-    }
-  }
-}
 
 }  // namespace
 
