@@ -82,8 +82,10 @@ struct CloudSlice {
   bool superseded = false;
   /// Of the final slice: the sum of the newest revisions of all slices of the session.
   std::int64_t revision_sum = 0;
-  /// A run whose camera stays lost goes on in another part: a map of its own, in a frame W of its
-  /// own, in the session with the next number. So session - part is the session of part 0.
+  /// A run whose camera stays lost goes on in another part of the map. Until a loop joins them,
+  /// nobody knows where two parts are relative to each other: they lie apart in W, farther than any
+  /// map is large. This is the part in which the surface is by now; of a correction that in which
+  /// its patches are after it. Joined parts have the number of the first of them.
   std::int32_t part = 0;      ///< from 0, < session
   bool part_follows = false;  ///< of the final slice: the run goes on with another part
   float resolution_m = 0.0F;  ///< voxel size, > 0
@@ -106,6 +108,7 @@ struct CameraPose {
   std::int64_t frame_index = 0;
   TrackingState state = TrackingState::kStarting;
   Pose X_WC = Pose::Identity();
+  std::int32_t part = 0;  ///< of the map, in which the camera is; see CloudSlice::part
 };
 
 /// One frame of the camera with compressed images.

@@ -30,13 +30,13 @@ std::vector<CloudPoint> moved(std::span<const CloudPoint> points_P, const PatchP
   return points_W;
 }
 
-std::vector<PatchMotion> PatchMotions::learn(const CloudSlice& correction) {
-  std::vector<PatchMotion> newer;
+std::vector<PlacedPatch> PatchMotions::learn(const CloudSlice& correction) {
+  std::vector<PlacedPatch> newer;
   for (const PatchMotion& motion : correction.motions) {
     PatchPlace& place = places_[motion.id];
     if (correction.correction <= place.correction) continue;
-    place = {motion.X_WP, correction.correction};
-    newer.push_back(motion);
+    place = {motion.X_WP, correction.correction, correction.part};
+    newer.push_back({motion.id, place});
   }
   return newer;
 }
@@ -47,10 +47,10 @@ void PatchMotions::learn(std::int32_t patch_id, const PatchPlace& place) {
 }
 
 PatchPlace PatchMotions::place_of(const CloudSlice& slice) const {
-  if (slice.kind != SliceKind::kPatch) return {};
+  if (slice.kind != SliceKind::kPatch) return {.X_WP = {}, .correction = 0, .part = slice.part};
   const auto known = places_.find(slice.id);
   if (known != places_.end() && known->second.correction > slice.correction) return known->second;
-  return {slice.X_WP, slice.correction};
+  return {slice.X_WP, slice.correction, slice.part};
 }
 
 void apply_corrections(std::span<CloudSlice* const> slices) {

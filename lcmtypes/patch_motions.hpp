@@ -14,28 +14,38 @@ namespace kintsugi {
 /// R n likewise. The identity leaves the bits as they are.
 std::vector<CloudPoint> moved(std::span<const CloudPoint> points_P, const PatchPose& X_WP);
 
-/// A pose of a patch, and the number of the correction as of which it holds.
+/// A pose of a patch, the number of the correction as of which it holds, and the part of the map
+/// that the patch is in there.
 struct PatchPlace {
   PatchPose X_WP;
   std::int32_t correction = 0;  ///< 0: none
+  std::int32_t part = 0;        ///< CloudSlice::part
 
   bool operator==(const PatchPlace&) const = default;
 };
 
-/// The newest pose that corrections have given each patch, and the rule which pose counts: of the
+/// A patch, and where a correction puts it.
+struct PlacedPatch {
+  std::int32_t id = 0;
+  PatchPlace place;
+
+  bool operator==(const PlacedPatch&) const = default;
+};
+
+/// The newest place that corrections have given each patch, and the rule which pose counts: of the
 /// corrections that name a patch and of the header of its newest revision, the one with the highest
 /// number of corrections. So the place of a patch depends neither on the order of arrival nor on
 /// what was lost before.
 class PatchMotions {
  public:
-  /// Takes the motions of `correction`; slices of other kinds have none. Returns those that are
-  /// newer than what earlier calls gave for their patches: the ones that may move a patch.
-  std::vector<PatchMotion> learn(const CloudSlice& correction);
+  /// Takes the motions of `correction`; slices of other kinds have none. Returns those patches for
+  /// which this is newer than what earlier calls gave: the ones that may be moved.
+  std::vector<PlacedPatch> learn(const CloudSlice& correction);
   /// Takes a place that places() once had.
   void learn(std::int32_t patch_id, const PatchPlace& place);
 
   /// Where the points of a slice are: of a patch what its header says, or a newer correction; other
-  /// slices are in W.
+  /// slices are in W and stay in their part.
   [[nodiscard]] PatchPlace place_of(const CloudSlice& slice) const;
 
   /// Of each patch that a correction has named, by id.

@@ -40,6 +40,7 @@ struct MapperStatus {
   std::int64_t utime = 0;
   std::int64_t session = 0;
   std::int32_t part = 0;
+  std::int32_t parts = 1;
   TrackingState state = TrackingState::kStarting;
   bool finished = false;
   bool lingering = false;
@@ -98,6 +99,7 @@ struct MapperStatus {
     visit("utime", s.utime...);
     visit({"session", 1}, s.session...);
     visit("part", s.part...);
+    visit({"parts", 1}, s.parts...);
     visit("state", s.state...);
     visit("finished", s.finished...);
     visit("lingering", s.lingering...);

@@ -24,6 +24,7 @@ struct Small<CameraPose> : Shape<camera_pose_t> {
     to.session = from.session;
     to.frame_index = from.frame_index;
     to.state = static_cast<decltype(to.state)>(from.state);
+    to.part = from.part;
   }
   static void to_wire(const CameraPose& message, camera_pose_t& wire) {
     copy(message, wire);
@@ -38,6 +39,7 @@ struct Small<CameraPose> : Shape<camera_pose_t> {
     check.positive("session", m.session);
     check.not_negative("frame_index", m.frame_index);
     check_state(check, m.state);
+    check.not_negative("part", m.part);
     check.pose("X_WC", m.X_WC);
   }
 };

@@ -19,7 +19,7 @@ namespace {
 // (double); the chunks that are in the map (SequenceRange); where corrections have put patches
 // (Place); the checksum. A change of any of this is a new version.
 constexpr std::array<char, 8> kMagic = {'K', 'S', 'E', 'G', 'M', 'A', 'P', '\n'};
-constexpr std::uint32_t kVersion = 6;
+constexpr std::uint32_t kVersion = 7;
 static_assert(kMapParameters.size() == 7, "other parameters are a new version of the file");
 
 struct Start {
@@ -63,8 +63,8 @@ struct SliceHeader {
   std::uint32_t patch = 0;  ///< PatchState
   PatchPlace place;
 };
-static_assert(sizeof(Start) == 16 && sizeof(Header) == 136 && sizeof(SliceHeader) == 52 &&
-                  sizeof(Place) == 36,
+static_assert(sizeof(Start) == 16 && sizeof(Header) == 136 && sizeof(SliceHeader) == 56 &&
+                  sizeof(Place) == 40,
               "no padding, which would be written with whatever is in it");
 
 Header header_of(const SegmentMapState& state) {
@@ -158,9 +158,10 @@ void append(RecordReader& file, std::uint64_t count, std::vector<Record>& record
 }
 
 void check_place(RecordReader& file, std::int32_t slice_id, const PatchPlace& place) {
-  if (place.correction >= 0 && place.X_WP.is_valid()) return;
+  if (place.correction >= 0 && place.part >= 0 && place.X_WP.is_valid()) return;
   file.fail("slice " + std::to_string(slice_id) + " is at a place of correction " +
-            std::to_string(place.correction) + ", expected >= 0 and a pose");
+            std::to_string(place.correction) + " in part " + std::to_string(place.part) +
+            ", expected both >= 0 and a pose");
 }
 
 /// Reads the accepted points of a slice, and moves them.

@@ -93,13 +93,13 @@ void SegmentMap::store(const CloudSlice& slice) {
 
 /// Moves the patches that are in the map, unless they are where a newer correction has put them.
 void SegmentMap::move_patches(const CloudSlice& correction) {
-  std::vector<PointCloud::PlacedSlice> moving;
+  std::vector<PlacedPatch> moving;
   std::int64_t num_points = 0;
-  for (const PatchMotion& motion : motions_.learn(correction)) {
-    const SliceRecord* const record = cloud_.find_slice(motion.id);
+  for (const PlacedPatch& placed : motions_.learn(correction)) {
+    const SliceRecord* const record = cloud_.find_slice(placed.id);
     if (record == nullptr || record->patch == PatchState::kNoPatch) continue;
     if (record->place.correction >= correction.correction) continue;
-    moving.push_back({motion.id, {motion.X_WP, correction.correction}});
+    moving.push_back(placed);
     num_points += record->count;
   }
   // A point that gets another index comes and goes. Where the engine will start anew because of so
@@ -109,7 +109,7 @@ void SegmentMap::move_patches(const CloudSlice& correction) {
   if (starts_anew && engine_->takes_moves_in_place()) {
     cloud_.move_in_place(moving);
   } else {
-    for (const auto& [slice_id, place] : moving) cloud_.move_slice(slice_id, place);
+    for (const auto& [id, place] : moving) cloud_.move_slice(id, place);
   }
 }
 

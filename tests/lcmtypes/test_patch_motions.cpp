@@ -28,6 +28,8 @@ CloudSlice patch(std::int32_t id, std::int32_t correction, const Pose& X_WP) {
   return slice;
 }
 
+const std::int32_t kPart = testing::example_slice(0).part;  // of the patches, and corrections
+
 CloudSlice correction(std::int32_t number, std::vector<PatchMotion> motions) {
   CloudSlice slice = testing::example_correction(0, 100 + number);
   slice.correction = number;
@@ -92,20 +94,30 @@ TEST(PatchMotions, TheHighestCorrectionDecidesInEveryOrder) {
   EXPECT_EQ(forward.learn(first).size(), 2U);
   EXPECT_EQ(forward.learn(second).size(), 1U);
   PatchMotions backward;
-  EXPECT_EQ(backward.learn(second), second.motions);
-  EXPECT_EQ(backward.learn(first), (std::vector{first.motions[1]}));
+  EXPECT_EQ(backward.learn(second), (std::vector<PlacedPatch>{{5, {shift(2.0), 2, kPart}}}));
+  EXPECT_EQ(backward.learn(first), (std::vector<PlacedPatch>{{6, {shift(1.5), 1, kPart}}}));
   EXPECT_TRUE(backward.learn(second).empty());
   EXPECT_EQ(forward.places(), backward.places());
-  EXPECT_EQ(forward.places().at(5), (PatchPlace{shift(2.0), 2}));
+  EXPECT_EQ(forward.places().at(5), (PatchPlace{shift(2.0), 2, kPart}));
 }
 
 TEST(PatchMotions, AHeaderCountsUnlessACorrectionIsNewer) {
   PatchMotions motions;
   motions.learn(correction(2, {{5, shift(2.0)}}));
-  EXPECT_EQ(motions.place_of(patch(5, 1, shift(1.0))), (PatchPlace{shift(2.0), 2}));
-  EXPECT_EQ(motions.place_of(patch(5, 2, shift(3.0))), (PatchPlace{shift(3.0), 2}));
-  EXPECT_EQ(motions.place_of(patch(5, 4, shift(4.0))), (PatchPlace{shift(4.0), 4}));
-  EXPECT_EQ(motions.place_of(patch(6, 0, shift(0.0))), PatchPlace());
+  EXPECT_EQ(motions.place_of(patch(5, 1, shift(1.0))), (PatchPlace{shift(2.0), 2, kPart}));
+  EXPECT_EQ(motions.place_of(patch(5, 2, shift(3.0))), (PatchPlace{shift(3.0), 2, kPart}));
+  EXPECT_EQ(motions.place_of(patch(5, 4, shift(4.0))), (PatchPlace{shift(4.0), 4, kPart}));
+  EXPECT_EQ(motions.place_of(patch(6, 0, shift(0.0))), (PatchPlace{{}, 0, kPart}));
+}
+
+TEST(PatchMotions, ACorrectionBringsItsPatchesIntoItsPart) {
+  CloudSlice joined = correction(2, {{5, shift(2.0)}});
+  joined.part = 0;
+  PatchMotions motions;
+  motions.learn(joined);
+  EXPECT_EQ(motions.place_of(patch(5, 1, shift(1.0))).part, 0);
+  EXPECT_EQ(motions.place_of(patch(6, 1, shift(1.0))).part, kPart) << "it did not name this one";
+  EXPECT_EQ(motions.place_of(testing::example_slice(1)).part, kPart) << "of a slice that stays";
 }
 
 }  // namespace

@@ -231,7 +231,7 @@ inline SegmentAnswer example_answer(int num_segments) {
 }
 
 inline CameraPose example_camera_pose() {
-  return {7'000'000, 42, 210, TrackingState::kTracking, example_pose()};
+  return {7'000'000, 42, 210, TrackingState::kTracking, example_pose(), 2};
 }
 
 /// Gives each field of a status a valid value of its own, other than its default.

@@ -41,9 +41,9 @@ inline bool operator==(const CameraView& a, const CameraView& b) {
 }
 
 inline bool operator==(const CameraPose& a, const CameraPose& b) {
-  const auto& [utime, session, frame_index, state, X_WC] = a;
+  const auto& [utime, session, frame_index, state, X_WC, part] = a;
   return utime == b.utime && session == b.session && frame_index == b.frame_index &&
-         state == b.state && equal(X_WC, b.X_WC);
+         state == b.state && equal(X_WC, b.X_WC) && part == b.part;
 }
 
 }  // namespace kintsugi

@@ -112,17 +112,17 @@ const SliceRecord& PointCloud::move_slice(std::int32_t slice_id, const PatchPlac
   return slices_[position];
 }
 
-void PointCloud::move_in_place(std::span<const PlacedSlice> slices) {
+void PointCloud::move_in_place(std::span<const PlacedPatch> patches) {
   std::vector<std::uint32_t> positions;
-  positions.reserve(slices.size());
-  for (const PlacedSlice& slice : slices) positions.push_back(position_of(slice.slice_id));
+  positions.reserve(patches.size());
+  for (const PlacedPatch& patch : patches) positions.push_back(position_of(patch.id));
   begin_change();
-  oneapi::tbb::parallel_for(std::size_t{0}, slices.size(), [&](std::size_t k) {
-    put_in_place(slices_[positions[k]], slices[k].place);
+  oneapi::tbb::parallel_for(std::size_t{0}, patches.size(), [&](std::size_t k) {
+    put_in_place(slices_[positions[k]], patches[k].place);
   });
   bytes_P_ = 0;
   for (const SliceRecord& slice : slices_) bytes_P_ += bytes_P(slice);
-  for (const PlacedSlice& slice : slices) moved_in_place_.insert(slice.slice_id);
+  for (const PlacedPatch& patch : patches) moved_in_place_.insert(patch.id);
 }
 
 /// Moves the points of a slice from where they were received.

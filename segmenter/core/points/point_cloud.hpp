@@ -135,15 +135,10 @@ class PointCloud {
   /// @throws as replace_slice()
   const SliceRecord& move_slice(std::int32_t slice_id, const PatchPlace& place);
 
-  /// A slice and where it is.
-  struct PlacedSlice {
-    std::int32_t slice_id = 0;
-    PatchPlace place;
-  };
-  /// Moves slices, each of which is named once, and their points keep their indices. Only for
+  /// Moves patches, each of which is named once, and their points keep their indices. Only for
   /// engines that take such changes (SegmentationEngine::takes_moves_in_place()).
   /// @throws std::invalid_argument, and moves nothing, when there is no such slice
-  void move_in_place(std::span<const PlacedSlice> slices);
+  void move_in_place(std::span<const PlacedPatch> patches);
 
   /// What changed since the last call.
   CloudChange take_change();

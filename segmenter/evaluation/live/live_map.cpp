@@ -23,8 +23,8 @@ void LiveMap::add(CloudSlice slice, double now_s) {
   points_sent_ += std::ssize(slice.points_W);
   ++revisions_sent_;
   const RevisionOfSlice which(slice.id, slice.revision);
-  for (const PatchMotion& motion : motions_.learn(slice)) {
-    const auto shown = shown_.find(motion.id);
+  for (const PlacedPatch& placed : motions_.learn(slice)) {
+    const auto shown = shown_.find(placed.id);
     if (shown != shown_.end()) show(CloudSlice(shown->second.slice), shown->second.labels, now_s);
   }
   slices_[which] = std::move(slice);

@@ -227,11 +227,11 @@ TEST_F(SavedMapFile, ReasonsSayWhatWasExpected) {
   EXPECT_THAT(reason("ply\nformat ascii 1.0\nand so on"),
               AllOf(HasSubstr("no saved segment map"), HasSubstr("KSEGMAP")));
   std::string newer = bytes_;
-  newer[8] = 7;
-  EXPECT_THAT(reason(newer), AllOf(HasSubstr("version 7"), HasSubstr("expected 6")));
+  newer[8] = 8;
+  EXPECT_THAT(reason(newer), AllOf(HasSubstr("version 8"), HasSubstr("expected 7")));
   std::string older = bytes_;
-  older[8] = 5;
-  EXPECT_THAT(reason(older), AllOf(HasSubstr("version 5"), HasSubstr("expected 6")));
+  older[8] = 6;
+  EXPECT_THAT(reason(older), AllOf(HasSubstr("version 6"), HasSubstr("expected 7")));
   EXPECT_THAT(reason(bytes_.substr(0, bytes_.size() - 3)), HasSubstr("cut off"));
   std::string damaged = bytes_;
   damaged[200] ^= 1;

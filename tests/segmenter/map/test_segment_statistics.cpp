@@ -147,7 +147,7 @@ TEST(SegmentStatistics, EqualThoseFromScratchWherePointsMoveInPlace) {
     if (step % 3 == 1) {
       cloud.replace_slice(static_cast<std::int32_t>(random() % 20), some_points());
     } else if (step > 0) {
-      std::vector<PointCloud::PlacedSlice> moving;
+      std::vector<PlacedPatch> moving;
       for (std::int32_t slice = 0; slice < 20; ++slice) {
         if (random() % 2 == 0) continue;
         PatchPlace place{.X_WP = {}, .correction = step};

@@ -36,13 +36,11 @@ bool ReceivedMap::add_slice(CloudSlice message) {
 }
 
 void ReceivedMap::move_patches(const CloudSlice& correction) {
-  for (const PatchMotion& motion : motions_.learn(correction)) {
-    const auto found = slices_.find(motion.id);
+  for (const auto& [id, place] : motions_.learn(correction)) {
+    const auto found = slices_.find(id);
     if (found == slices_.end()) continue;
     up_.remove(found->second.shown().points_W());
-    found->second.for_each([&](MapSlice& slice) {
-      slice.move_to({motion.X_WP, correction.correction});
-    });
+    found->second.for_each([&place = place](MapSlice& slice) { slice.move_to(place); });
     up_.add(found->second.shown().points_W());
   }
 }

@@ -139,8 +139,7 @@ TEST(PointCloud, PointsThatMoveInPlaceKeepTheirIndices) {
     cloud.add_slice(slice, std::vector{point(1), bad_point(), point(2)}, 0, PatchState::kInVolume);
   }
   cloud.take_change();
-  cloud.move_in_place(
-      std::vector<PointCloud::PlacedSlice>{{2, place_at(8, 1)}, {0, place_at(4, 1)}});
+  cloud.move_in_place(std::vector<PlacedPatch>{{2, place_at(8, 1)}, {0, place_at(4, 1)}});
   CloudChange change = cloud.take_change();
   EXPECT_THAT(change.added, IsEmpty());
   EXPECT_THAT(change.removed, IsEmpty());
@@ -153,7 +152,7 @@ TEST(PointCloud, PointsThatMoveInPlaceKeepTheirIndices) {
   EXPECT_EQ(cloud.find_slice(1)->place, PatchPlace{});
 
   // Back where they were received: nothing is kept besides.
-  cloud.move_in_place(std::vector<PointCloud::PlacedSlice>{{0, place_at(0, 2)}});
+  cloud.move_in_place(std::vector<PlacedPatch>{{0, place_at(0, 2)}});
   change = cloud.take_change();
   EXPECT_THAT(change.moved_in_place, ElementsAre(PointRange{0, 2}));
   EXPECT_EQ(cloud[1], point(2));
@@ -166,7 +165,7 @@ TEST(PointCloud, WhereOneSliceIsNotThereNoneMovesInPlace) {
   PointCloud cloud;
   cloud.add_slice(0, std::vector{point(1)}, 0, PatchState::kInVolume);
   cloud.take_change();
-  const std::vector<PointCloud::PlacedSlice> slices{{0, place_at(4, 1)}, {7, place_at(4, 1)}};
+  const std::vector<PlacedPatch> slices{{0, place_at(4, 1)}, {7, place_at(4, 1)}};
   EXPECT_THROW(cloud.move_in_place(slices), std::invalid_argument);
   EXPECT_EQ(cloud[0], point(1));
   EXPECT_THAT(cloud.take_change().moved_in_place, IsEmpty());
