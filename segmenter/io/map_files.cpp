@@ -1,5 +1,7 @@
 #include "segmenter/io/map_files.hpp"
 
+#include <array>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -7,6 +9,7 @@
 #include "lcmtypes/client/statistics_json.hpp"
 #include "segmenter/io/ply/labelled_ply_writer.hpp"
 #include "segmenter/io/segments_csv.hpp"
+#include "segmenter/map/map_parts.hpp"
 
 namespace kintsugi::segmenter {
 namespace {
@@ -131,6 +134,23 @@ void write_json(const Json& head, std::span<const SegmentDescription> segments,
   file.commit();
 }
 
+constexpr char kPly[] = ".ply";
+constexpr char kJson[] = ".json";
+constexpr char kCsv[] = ".csv";
+constexpr std::array kExtensions{kPly, kJson, kCsv};
+
+/// Behind what `path` has already: that may contain dots.
+std::filesystem::path with_extension(std::filesystem::path path, const char* extension) {
+  return path += extension;
+}
+
+void write_files(const MapSnapshot& map, const std::filesystem::path& path) {
+  write_map_ply(map, with_extension(path, kPly));
+  const std::vector<SegmentDescription> segments = describe_segments(map);
+  write_segments_json(map, segments, with_extension(path, kJson));
+  write_segments_csv(segments, with_extension(path, kCsv));
+}
+
 }  // namespace
 
 void write_map_ply(const MapSnapshot& map, const std::filesystem::path& path) {
@@ -171,10 +191,22 @@ void write_segments_json(const LabelledCloud& cloud, std::span<const SegmentDesc
 void write_map_files(const MapSnapshot& map, const std::filesystem::path& folder,
                      const std::string& stem) {
   std::filesystem::create_directories(folder);
-  write_map_ply(map, folder / (stem + ".ply"));
-  const std::vector<SegmentDescription> segments = describe_segments(map);
-  write_segments_json(map, segments, folder / (stem + ".json"));
-  write_segments_csv(segments, folder / (stem + ".csv"));
+  const std::set<std::int32_t> parts = parts_of(map);
+  if (parts.size() == 1) return write_files(map, folder / stem);  // without a copy of the map
+  for (const std::int32_t part : parts) {
+    write_files(only_part(map, part), folder / part_stem(stem, part));
+  }
+}
+
+void remove_map_files(const std::filesystem::path& folder, const std::string& stem,
+                      std::int32_t part) {
+  for (const char* const extension : kExtensions) {
+    std::filesystem::remove(with_extension(folder / part_stem(stem, part), extension));
+  }
+}
+
+std::string part_stem(const std::string& stem, std::int32_t part) {
+  return part == 0 ? stem : stem + ".part" + std::to_string(part);
 }
 
 }  // namespace kintsugi::segmenter

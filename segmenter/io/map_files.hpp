@@ -1,6 +1,7 @@
 #pragma once
 // The map files: segments.ply, segments.json and segments.csv.
 
+#include <cstdint>
 #include <filesystem>
 #include <span>
 #include <string>
@@ -26,10 +27,19 @@ void write_segments_json(const MapSnapshot& map, const std::filesystem::path& pa
 void write_segments_json(const LabelledCloud& cloud, std::span<const SegmentDescription> segments,
                          const std::filesystem::path& path);
 
-/// Writes `folder`/`stem`.ply, .json and .csv (segments_csv.hpp), and makes the folder if
-/// needed. Each file appears complete or not at all.
+/// Writes `folder`/`stem`.ply, .json and .csv (segments_csv.hpp) of part 0, and the same of each
+/// other part that has points under its part_stem(); makes the folder if needed. Each file appears
+/// complete or not at all.
 /// @throws std::system_error naming the file and the reason
 void write_map_files(const MapSnapshot& map, const std::filesystem::path& folder,
                      const std::string& stem);
+
+/// Removes what write_map_files() has written of a part, as far as it is there.
+/// @throws std::filesystem::filesystem_error naming the file and the reason
+void remove_map_files(const std::filesystem::path& folder, const std::string& stem,
+                      std::int32_t part);
+
+/// The stem of the files of a part: `stem` itself for part 0, then "segments.part1" and so on.
+std::string part_stem(const std::string& stem, std::int32_t part);
 
 }  // namespace kintsugi::segmenter

@@ -33,10 +33,6 @@ std::string map_stem(const std::string& map_name, const std::string& plain_name)
   return map_name == plain_name ? "segments" : "segments_" + as_file_name(map_name);
 }
 
-std::string part_stem(const std::string& map_stem, std::int32_t part) {
-  return part == 0 ? map_stem : map_stem + ".part" + std::to_string(part);
-}
-
 std::string session_stem(const std::string& map_stem, std::int64_t map_session) {
   return map_stem + "_" + std::to_string(map_session);
 }

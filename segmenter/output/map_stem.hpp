@@ -11,9 +11,6 @@ namespace kintsugi::segmenter {
 /// become %XX, and the end of a long name is replaced by the CRC-32 of the name.
 std::string map_stem(const std::string& map_name, const std::string& plain_name);
 
-/// The stem for a part of a map: `map_stem` itself for part 0, then "segments.part1" and so on.
-std::string part_stem(const std::string& map_stem, std::int32_t part);
-
 /// The stem for a superseded session, whose map name belongs to a newer session.
 std::string session_stem(const std::string& map_stem, std::int64_t map_session);
 

@@ -7,19 +7,12 @@
 
 #include "segmenter/io/map_files.hpp"
 #include "segmenter/io/saved_map.hpp"
+#include "segmenter/map/map_parts.hpp"
 
 namespace kintsugi::segmenter {
 namespace {
 
 constexpr char kSaved[] = "";  // the action that writes the saved map; no stem is empty
-
-void write_files(const MapSnapshot& map, const std::filesystem::path& folder,
-                 const std::string& stem) {
-  write_map_files(map, folder, stem);
-  spdlog::info("wrote {}.ply and .json: {} slices, {} points, {} segments",
-               (folder / stem).string(), map.state.slices.size(), map.state.points_W.size(),
-               map.segments.size());
-}
 
 void save_state(const SegmentMapState& state, const std::filesystem::path& file) {
   if (file.has_parent_path()) {
@@ -66,13 +59,29 @@ MapWriter::Snapshot MapWriter::copy(const SegmentMap& map) {
 }
 
 void MapWriter::put_files(const Snapshot& map, const std::string& stem) {
-  put(stem, [this, map, stem] { write_files(*map, config_.folder, stem); });
+  put(stem, [this, map, stem] { write_files(*map, stem); });
 }
 
 void MapWriter::put_saved(const Snapshot& map) {
   if (!config_.save_file.empty()) {
     put(kSaved, [this, map] { save_state(map->state, config_.save_file); });
   }
+}
+
+/// Afterwards there are files of those parts alone that the map has by now.
+void MapWriter::write_files(const MapSnapshot& map, const std::string& stem) {
+  const std::set<std::int32_t> parts = parts_of(map);
+  std::set<std::int32_t>& written = written_parts_[stem];
+  written.insert(parts.begin(), parts.end());  // before, because a part of them may be written
+  write_map_files(map, config_.folder, stem);
+  std::erase_if(written, [&](std::int32_t part) {
+    if (parts.contains(part)) return false;
+    remove_map_files(config_.folder, stem, part);
+    return true;
+  });
+  spdlog::info("wrote {}.ply and .json: {} slices, {} points, {} segments",
+               (config_.folder / stem).string(), map.state.slices.size(), map.state.points_W.size(),
+               map.segments.size());
 }
 
 void MapWriter::put(const std::string& name, Action action) {

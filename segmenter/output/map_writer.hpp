@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -27,7 +28,9 @@ class MapWriter {
 
   explicit MapWriter(Config config) : config_(std::move(config)) {}
 
-  /// Writes the map files: STEM.ply, STEM.json and STEM.csv in Config::folder.
+  /// Writes the map files in Config::folder: STEM.ply, STEM.json and STEM.csv, and the like of each
+  /// further part (write_map_files()). What was written of a part that has been joined to another
+  /// since is removed.
   void write(const SegmentMap& map, const std::string& stem);
   /// Writes the saved map, for --resume: Config::save_file.
   void save(const SegmentMap& map);
@@ -54,13 +57,15 @@ class MapWriter {
   Snapshot copy(const SegmentMap& map);
   void put_files(const Snapshot& map, const std::string& stem);
   void put_saved(const Snapshot& map);
+  void write_files(const MapSnapshot& map, const std::string& stem);
   void put(const std::string& name, Action action);
   void attempt(const std::string& name, std::int64_t number, const Action& action);
 
   Config config_;
   std::mutex spare_mutex_;              // guards the next
   std::unique_ptr<MapSnapshot> spare_;  // memory of a copy that has been written, for the next one
-  mutable std::mutex mutex_;            // guards what follows
+  std::map<std::string, std::set<std::int32_t>> written_parts_;  // by stem; for jobs of writer_
+  mutable std::mutex mutex_;                                     // guards what follows
   std::map<std::string, std::int64_t> newest_;  // number of the newest action of each name
   std::map<std::string, Failure> failures_;     // by name of the action
   std::int64_t num_failures_ = 0;               // since the last success

@@ -135,8 +135,7 @@ void SegmentationLoop::write_all(const std::vector<SaveRequest>& requests) {
 void SegmentationLoop::write(const SaveRequest& request) {
   const SegmentMap& map = *request.map;
   const std::string& name = config_.maps.map_name;
-  const std::string name_stem = map_stem(map.map_name(), name.empty() ? kDefaultMapName : name);
-  const std::string stem = part_stem(name_stem, map.part());
+  const std::string stem = map_stem(map.map_name(), name.empty() ? kDefaultMapName : name);
   const bool is_main = stem == map_stem("", "");
   switch (request.kind) {
     case SaveKind::kCurrent:
@@ -146,7 +145,7 @@ void SegmentationLoop::write(const SaveRequest& request) {
     case SaveKind::kBroken:
       return writer_.write(map, stem);
     case SaveKind::kSessionEnded:
-      return writer_.write(map, session_stem(name_stem, map.map_session()));
+      return writer_.write(map, session_stem(stem, map.map_session()));
   }
 }
 

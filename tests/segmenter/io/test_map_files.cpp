@@ -160,6 +160,46 @@ TEST(MapFiles, AreTheSameBytesForTheSameMap) {
   EXPECT_EQ(num_files(folder.path()), 6U);  // nothing partial is left
 }
 
+TEST(MapFiles, AreASetForEachPart) {
+  const TemporaryFolder folder;
+  const auto slices = testing::session_in_two_parts();
+  SegmentMap map({}, 77, slices[0]);
+  map.add(slices);
+  write_map_files(take_snapshot(map), folder.path(), "map");
+  EXPECT_EQ(num_files(folder.path()), 6U);
+  EXPECT_EQ(read_ply(folder / "map.ply").slice_ids.back(), 1);
+  const PlyCloud part1 = read_ply(folder / "map.part1.ply");
+  EXPECT_EQ(part1.slice_ids.front(), 2);
+  EXPECT_EQ(part1.slice_ids.back(), 3);
+  EXPECT_GT(part1.points_W.front().x, 900.0F) << "in the coordinates of the map";
+  const auto json = nlohmann::json::parse(contents(folder / "map.part1.json"));
+  EXPECT_EQ(json["num_points"], part1.points_W.size());
+  EXPECT_EQ(json["num_segments"], json["segments"].size());
+  EXPECT_EQ(json["rejected"].size(), 2U);
+  EXPECT_GE(json["segments"][0]["first_slice"], 2);
+  EXPECT_THAT(contents(folder / "map.part1.csv"),
+              HasSubstr("\n" + json["segments"][0]["id"].dump() + ","));
+}
+
+TEST(MapFiles, OfOnePartAreRemoved) {
+  const TemporaryFolder folder;
+  const auto slices = testing::session_in_two_parts();
+  SegmentMap map({}, 77, slices[0]);
+  map.add(slices);
+  write_map_files(take_snapshot(map), folder.path(), "map");
+  remove_map_files(folder.path(), "map", 1);
+  EXPECT_EQ(num_files(folder.path()), 3U);
+  EXPECT_TRUE(std::filesystem::exists(folder / "map.ply"));
+  remove_map_files(folder.path(), "map", 1);  // nothing is there
+  remove_map_files(folder.path(), "map", 0);
+  EXPECT_EQ(num_files(folder.path()), 0U);
+}
+
+TEST(MapFiles, OfLaterPartsHaveTheNumberInTheirNames) {
+  EXPECT_EQ(part_stem("segments", 0), "segments");
+  EXPECT_EQ(part_stem("segments_5", 2), "segments_5.part2");
+}
+
 TEST(MapFiles, NameTheFileThatCannotBeWritten) {
   const TemporaryFolder folder;
   std::ofstream(folder / "taken") << "a file, not a folder";

@@ -8,8 +8,6 @@ namespace {
 TEST(MapStem, NamesOtherMapsThanThePlainOne) {
   EXPECT_EQ(map_stem("map", "map"), "segments");
   EXPECT_EQ(map_stem("office-2_b", "map"), "segments_office-2_b");
-  EXPECT_EQ(part_stem(map_stem("map", "map"), 0), "segments");
-  EXPECT_EQ(part_stem(map_stem("map", "map"), 2), "segments.part2");
   EXPECT_EQ(session_stem(map_stem("map", "map"), 5), "segments_5");
   EXPECT_EQ(session_stem(map_stem("office", "map"), 5), "segments_office_5");
 }

@@ -80,5 +80,58 @@ TEST_F(MapWriterTest, ANewerCopyTakesThePlaceOfOneThatCouldNotBeWritten) {
   EXPECT_EQ(num_saved(), 2U);
 }
 
+class MapWriterWithParts : public ::testing::Test {
+ protected:
+  MapWriterWithParts() { map_.add(slices_); }
+  void join() {
+    const CloudSlice correction = testing::correction_that_joins();
+    map_.add({&correction, 1});
+  }
+  void write(const std::string& stem = "segments") {
+    writer_.write(map_, stem);
+    writer_.wait();
+  }
+  bool exists(const char* name) const { return std::filesystem::exists(folder_ / name); }
+
+  kintsugi::testing::TemporaryFolder folder_;
+  std::vector<CloudSlice> slices_ = testing::session_in_two_parts();
+  SegmentMap map_{{}, 1, slices_[0]};
+  MapWriter writer_{{folder_.path(), {}}};
+};
+
+TEST_F(MapWriterWithParts, LeavesNoFilesOfAPartThatHasBeenJoined) {
+  write();
+  EXPECT_TRUE(exists("segments.part1.ply"));
+  std::ofstream(folder_ / "segments.part2.ply") << "of another run";
+  std::ofstream(folder_ / "segments_5.part1.ply") << "of another map";
+  join();
+  write();
+  EXPECT_TRUE(exists("segments.ply"));
+  EXPECT_FALSE(exists("segments.part1.ply"));
+  EXPECT_FALSE(exists("segments.part1.json"));
+  EXPECT_FALSE(exists("segments.part1.csv"));
+  EXPECT_TRUE(exists("segments.part2.ply"));
+  EXPECT_TRUE(exists("segments_5.part1.ply"));
+}
+
+TEST_F(MapWriterWithParts, TouchesNothingThatItHasNotWritten) {
+  std::ofstream(folder_ / "segments.part1.ply") << "of another run";
+  join();
+  write();
+  EXPECT_TRUE(exists("segments.part1.ply"));
+}
+
+TEST_F(MapWriterWithParts, RemovesWhatWasHalfWrittenOfAPart) {
+  std::filesystem::create_directory(folder_ / "segments.part1.json");  // cannot be replaced
+  write();
+  EXPECT_THAT(writer_.problem(), HasSubstr("segments.part1"));
+  EXPECT_TRUE(exists("segments.part1.ply"));
+  std::filesystem::remove(folder_ / "segments.part1.json");
+  join();
+  write();
+  EXPECT_THAT(writer_.problem(), IsEmpty());
+  EXPECT_FALSE(exists("segments.part1.ply"));
+}
+
 }  // namespace
 }  // namespace kintsugi::segmenter

@@ -2,7 +2,9 @@
 // A mapper session for tests, and what a listener makes of the updates.
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <set>
 #include <vector>
@@ -33,6 +35,43 @@ inline std::vector<CloudSlice> wavy_session(int num_slices, int points_per_slice
     slice.points_W.assign(begin, begin + points_per_slice);
   }
   return slices;
+}
+
+/// Four patches and the final slice. Two patches are one sheet in part 0, the others one in part 1,
+/// a kilometre away along x of W. Both sheets are the same in the frame P of their patches; the
+/// first point of each patch is not accepted.
+inline std::vector<CloudSlice> session_in_two_parts(int points_per_patch = 50) {
+  const std::vector<CloudSlice> sheet = wavy_session(2, points_per_patch);
+  std::vector<CloudSlice> slices{sheet[0], sheet[1], sheet[0], sheet[1]};
+  for (std::size_t i = 0; i < slices.size(); ++i) {
+    slices[i].utime = 1000 + static_cast<std::int64_t>(i);
+    slices[i].id = static_cast<std::int32_t>(i);
+    slices[i].kind = SliceKind::kPatch;
+    slices[i].ends_batch = true;
+    slices[i].points_W[0].x = std::numeric_limits<float>::quiet_NaN();
+    slices[i].part = static_cast<std::int32_t>(i / 2);
+    slices[i].X_WP.t_WP[0] = 1000.0F * static_cast<float>(slices[i].part);
+  }
+  CloudSlice last = slices.back();
+  last.id = 4;
+  last.kind = SliceKind::kFinal;
+  last.points_W.clear();
+  last.X_WP = {};
+  slices.push_back(last);
+  return slices;
+}
+
+/// A loop joins part 1 of session_in_two_parts() to part 0: its patches lie 5 m beside it.
+inline CloudSlice correction_that_joins() {
+  CloudSlice correction = session_in_two_parts().back();
+  correction.id = 5;
+  correction.kind = SliceKind::kCorrection;
+  correction.correction = 1;
+  correction.part = 0;
+  PatchPose X_WP;
+  X_WP.t_WP[0] = 5.0F;
+  correction.motions = {{2, X_WP}, {3, X_WP}};
+  return correction;
 }
 
 /// Labels of all points, by slice.
