@@ -33,8 +33,6 @@ struct Header {
   std::int64_t map_session = 0;
   std::int64_t final_revision_sum = 0;
   std::array<double, kMapParameters.size()> parameters{};
-  std::int32_t part = 0;
-  std::uint32_t part_follows = 0;
   std::int32_t final_slice_id = 0;
   std::uint32_t next_id = 0;
   std::uint32_t num_mode_bytes = 0;
@@ -63,7 +61,7 @@ struct SliceHeader {
   std::uint32_t patch = 0;  ///< PatchState
   PatchPlace place;
 };
-static_assert(sizeof(Start) == 16 && sizeof(Header) == 136 && sizeof(SliceHeader) == 56 &&
+static_assert(sizeof(Start) == 16 && sizeof(Header) == 128 && sizeof(SliceHeader) == 56 &&
                   sizeof(Place) == 40,
               "no padding, which would be written with whatever is in it");
 
@@ -75,8 +73,6 @@ Header header_of(const SegmentMapState& state) {
   for (std::size_t i = 0; i < kMapParameters.size(); ++i) {
     header.parameters[i] = state.config.engine.*kMapParameters[i].value;
   }
-  header.part = state.part;
-  header.part_follows = state.part_follows ? 1 : 0;
   header.final_slice_id = state.final_slice_id;
   header.next_id = state.next_id;
   header.num_mode_bytes = static_cast<std::uint32_t>(state.config.mode.size());
@@ -127,9 +123,6 @@ Header read_header(RecordReader& file) {
   if (const std::uint64_t expected = num_bytes_after(header); file.left() != expected) {
     file.fail(std::to_string(file.left()) + " bytes follow, expected " + std::to_string(expected) +
               " for what the header tells: the file is cut off or damaged");
-  }
-  if (header.part_follows > 1) {
-    file.fail("part_follows " + std::to_string(header.part_follows) + ", expected 0 or 1");
   }
   if (header.reserved != 0) {
     file.fail("the reserved field is " + std::to_string(header.reserved) + ", expected 0");
@@ -253,8 +246,6 @@ SegmentMapState read_map_state(const std::filesystem::path& path) {
   state.session = header.session;
   state.map_session = header.map_session;
   state.final_revision_sum = header.final_revision_sum;
-  state.part = header.part;
-  state.part_follows = header.part_follows != 0;
   state.final_slice_id = header.final_slice_id;
   state.next_id = header.next_id;
   state.config.mode = read_text(file, header.num_mode_bytes);

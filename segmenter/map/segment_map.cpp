@@ -24,7 +24,6 @@ SegmentMap::SegmentMap(const SegmentMapConfig& config, std::int64_t session,
       session_(session),
       map_session_(first.session),
       map_name_(first.map_name),
-      part_(first.part),
       cloud_(config_.engine.resolution_m),
       engine_(make_engine(config_.mode, cloud_, config_.engine)),
       statistics_(first.resolution_m) {}
@@ -55,7 +54,7 @@ std::vector<SegmentUpdate> SegmentMap::add(std::span<const CloudSlice> slices) {
     update.labels = slice_labels(*cloud_.find_slice(update.slice_id), ids_.ids());
   }
   SegmentUpdate& last = updates.back();
-  last.is_final = ends_run();
+  last.is_final = is_complete();
   last.runs = label_runs(cloud_, id_update.changes, change.moved, ids_.ids());
   const LastChange now{last.utime, last.slice_id};
   const std::vector<std::uint32_t> changed_ids =
@@ -84,7 +83,6 @@ void SegmentMap::store(const CloudSlice& slice) {
   if (slice.kind == SliceKind::kFinal) {
     final_slice_id_ = slice.id;
     final_revision_sum_ = slice.revision_sum;
-    part_follows_ = slice.part_follows;
   }
   if (slice.num_chunks > 0) {
     chunks_.insert({slice.sequence, slice.sequence + slice.num_chunks - 1});
@@ -129,7 +127,7 @@ std::vector<SegmentUpdate> SegmentMap::describe() const {
     update.labels = slice_labels(slice, ids_.ids());
   }
   if (!updates.empty()) {
-    updates.back().is_final = ends_run();
+    updates.back().is_final = is_complete();
     updates.back().statistics = statistics_.all();
   }
   return updates;

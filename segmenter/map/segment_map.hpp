@@ -24,8 +24,7 @@ namespace kintsugi::segmenter {
 class SegmentMap {
  public:
   /// @param session id of this run of the segmenter
-  /// @param first a slice of the map, for its name, mapper session, part and resolution; it is not
-  ///   added
+  /// @param first a slice of the map, for its name, mapper session and resolution; it is not added
   /// @throws std::invalid_argument for an invalid config or a resolution that is not > 0
   SegmentMap(const SegmentMapConfig& config, std::int64_t session, const CloudSlice& first);
 
@@ -77,9 +76,6 @@ class SegmentMap {
   /// far as the final slice tells them.
   [[nodiscard]] bool is_complete() const;
 
-  /// True when the final slice said that the mapper goes on with another part.
-  [[nodiscard]] bool part_follows() const { return part_follows_; }
-
   /// Memory of points, engine, ids and statistics.
   [[nodiscard]] std::size_t bytes() const {
     return cloud_.bytes() + engine_->bytes() + ids_.bytes() + statistics_.bytes();
@@ -92,17 +88,12 @@ class SegmentMap {
   [[nodiscard]] std::int64_t session() const { return session_; }
   [[nodiscard]] std::int64_t map_session() const { return map_session_; }
   [[nodiscard]] const std::string& map_name() const { return map_name_; }
-  /// Of the run of the mapper, from 0.
-  [[nodiscard]] std::int32_t part() const { return part_; }
-  /// The session of part 0 of the same run of the mapper.
-  [[nodiscard]] std::int64_t first_session() const { return map_session_ - part_; }
   /// A number that changes with every add().
   [[nodiscard]] std::int64_t version() const { return version_; }
   /// The chunks of the slice stream that are in the map, or older than what is in it.
   [[nodiscard]] const SequenceSet& chunks() const { return chunks_; }
 
  private:
-  [[nodiscard]] bool ends_run() const { return is_complete() && !part_follows_; }
   void check(const CloudSlice& slice) const;
   void store(const CloudSlice& slice);
   void move_patches(const CloudSlice& correction);
@@ -112,8 +103,6 @@ class SegmentMap {
   std::int64_t session_;
   std::int64_t map_session_;
   std::string map_name_;
-  std::int32_t part_;
-  bool part_follows_ = false;
   PointCloud cloud_;
   std::unique_ptr<SegmentationEngine> engine_;
   SegmentIds ids_;

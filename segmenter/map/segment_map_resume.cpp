@@ -55,9 +55,6 @@ void clear_for(std::vector<Record>& records, std::size_t size) {
 }
 
 void check_counts(const SegmentMapState& state) {
-  if (state.part < 0) {
-    throw std::invalid_argument("part is " + std::to_string(state.part) + ", expected >= 0");
-  }
   if (state.final_revision_sum < 0) {
     throw std::invalid_argument("final_revision_sum is " +
                                 std::to_string(state.final_revision_sum) + ", expected >= 0");
@@ -147,8 +144,6 @@ SegmentMap::SegmentMap(const SegmentMapState& state)
       session_(state.session),
       map_session_(state.map_session),
       map_name_(state.map_name),
-      part_(state.part),
-      part_follows_(state.part_follows),
       cloud_(config_.engine.resolution_m),
       engine_(make_engine(config_.mode, cloud_, config_.engine)),
       statistics_(static_cast<float>(config_.engine.resolution_m)),
@@ -193,8 +188,6 @@ void SegmentMap::copy_state(SegmentMapState& state) const {
   state.session = session_;
   state.map_session = map_session_;
   state.map_name = map_name_;
-  state.part = part_;
-  state.part_follows = part_follows_;
   state.final_slice_id = final_slice_id_;
   state.final_revision_sum = final_revision_sum_;
   state.next_id = ids_.next_id();

@@ -28,8 +28,6 @@ struct SegmentMapState {
   std::int64_t session = 0;      ///< of the segmenter
   std::int64_t map_session = 0;  ///< of the mapper
   std::string map_name;
-  std::int32_t part = 0;             ///< of the run of the mapper
-  bool part_follows = false;         ///< the final slice said so
   std::int32_t final_slice_id = -1;  ///< -1: not seen
   /// The final slice said so: the sum of the newest revisions of all slices; >= 0.
   std::int64_t final_revision_sum = 0;

@@ -75,13 +75,6 @@ void SessionMaps::supersede(const SegmentMap& map, Clock::time_point now, Warnin
       continue;
     }
     other.last_news = now;
-    if (other.map.segment_map().first_session() == map.first_session()) {
-      warnings.push_back(fmt::format(
-          "session {} is another part of the map '{}', in a frame of its own; session {} receives "
-          "only what is still missing of it, and then ends",
-          std::max(number, begun), map.map_name(), std::min(number, begun)));
-      continue;
-    }
     warnings.push_back(fmt::format(
         "session {} now owns the map name '{}'; session {} receives only what is still missing of "
         "it, and then ends. Mappers that run at the same time need a --map-name each",
@@ -94,15 +87,6 @@ bool SessionMaps::is_superseded(const SegmentMap& map) const {
                      [&](const auto& newer) {
                        return newer.second.map.segment_map().map_name() == map.map_name();
                      });
-}
-
-// The files of a part have names of their own, which only a newer run of the mapper takes over.
-bool SessionMaps::has_lost_name(const SegmentMap& map) const {
-  return std::any_of(
-      sessions_.upper_bound(map.map_session()), sessions_.end(), [&](const auto& newer) {
-        const SegmentMap& other = newer.second.map.segment_map();
-        return other.map_name() == map.map_name() && other.first_session() != map.first_session();
-      });
 }
 
 StepResult SessionMaps::step(Clock::time_point now) {
@@ -158,14 +142,10 @@ bool SessionMaps::can_end(std::int64_t number, Session& session, Clock::time_poi
 
 void SessionMaps::end(Sessions::iterator session, StepResult& result) {
   const auto number = session->first;
-  SessionMap& map = session->second.map;
+  const SessionMap& map = session->second.map;
   num_missing_ += map.counts().missing;
   result.has_progressed = true;
-  if (has_lost_name(map.segment_map())) {
-    result.saves.push_back({map.shared_segment_map(), SaveKind::kSessionEnded});
-  } else if (auto request = map.save()) {
-    result.saves.push_back(*std::move(request));
-  }
+  result.saves.push_back({map.shared_segment_map(), SaveKind::kSessionEnded});
   result.warnings.push_back(fmt::format("session {} has ended", number));
   result.ended_session = number;
   sessions_.erase(session);
@@ -182,9 +162,9 @@ std::vector<SaveRequest> SessionMaps::save(bool again) {
   return requests;
 }
 
-// A map is never written under the name that a newer run owns.
+// A map is never written under the name that a newer session owns.
 void SessionMaps::add_request(SaveRequest request, std::vector<SaveRequest>& requests) const {
-  if (has_lost_name(*request.map)) {
+  if (is_superseded(*request.map)) {
     if (request.kind == SaveKind::kForResume) {
       return;
     }
@@ -219,14 +199,13 @@ SessionMaps::Counts SessionMaps::counts() const {
   counts.complete = counts.ended = !sessions_.empty();
   for (const auto& [number, session] : sessions_) {
     const SessionMap::Counts& of_map = session.map.counts();
-    const SegmentMap& map = session.map.segment_map();
-    const bool is_last = !is_superseded(map) && !map.part_follows();
+    const bool is_newest = !is_superseded(session.map.segment_map());
     counts.newest = of_map;  // the largest number comes last
     counts.lag += of_map.lag;
     counts.missing += of_map.missing;
     counts.waiting_bytes += session.map.waiting_bytes();
-    counts.complete = counts.complete && of_map.complete && is_last;
-    counts.ended = counts.ended && of_map.ended && is_last;
+    counts.complete = counts.complete && of_map.complete && is_newest;
+    counts.ended = counts.ended && of_map.ended && is_newest;
   }
   return counts;
 }

@@ -25,9 +25,8 @@ struct StreamState {
 /// Maps of different names are kept side by side. Of two sessions with one name, the newer (the
 /// larger number) owns the name and the older is superseded: it still receives its own slices, and
 /// the two maps are never mixed. When nothing of a superseded session is missing and nothing new
-/// has arrived for Config::settle, a save of its map is requested and the session is forgotten. The
-/// part of a run that another part of the same run follows is superseded, too, but keeps its own
-/// name. Two mappers that run under one name at the same time therefore make two maps until the
+/// has arrived for Config::settle, a save of its map is requested and the session is forgotten. Two
+/// mappers that run under one name at the same time therefore make two maps until the
 /// older pauses; a warning says that each needs a name. Slices of forgotten sessions are dropped
 /// and counted.
 class SessionMaps {
@@ -54,8 +53,8 @@ class SessionMaps {
     std::int64_t missing = 0;       ///< slices, of all maps, also of forgotten ones
     std::int64_t dropped = 0;       ///< slices
     std::size_t waiting_bytes = 0;  ///< of slices that wait to be segmented
-    bool complete = false;          ///< every map is complete, none is superseded, no part follows
-    bool ended = false;             ///< every map has ended, none is superseded, no part follows
+    bool complete = false;          ///< every map is complete, and none is superseded
+    bool ended = false;             ///< every map has ended, and none is superseded
   };
 
   /// @param session of this segmenter
@@ -101,7 +100,6 @@ class SessionMaps {
   Session& begin(std::unique_ptr<SegmentMap> map, Clock::time_point now);
   void supersede(const SegmentMap& map, Clock::time_point now, Warnings& warnings);
   bool is_superseded(const SegmentMap& map) const;
-  bool has_lost_name(const SegmentMap& map) const;
   StepResult step_next(Clock::time_point now);
   void end_superseded(Clock::time_point now, StepResult& result);
   bool can_end(std::int64_t number, Session& session, Clock::time_point now) const;

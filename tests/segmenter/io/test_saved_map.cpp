@@ -112,7 +112,6 @@ TEST_P(SavedMap, KeepsWhatItIs) {
   slices[2].revision_sum = 9;  // one revision is missing
   slices[0].kind = slices[1].kind = SliceKind::kPatch;
   slices[1].in_volume = true;
-  slices[2].part_follows = true;
   slices[0].part = 3;
   SegmentMapConfig config = config_of(GetParam());
   config.engine.neighbour_search = NeighbourSearch::kFlann;
@@ -123,8 +122,6 @@ TEST_P(SavedMap, KeepsWhatItIs) {
   EXPECT_EQ(loaded->session(), 99);
   EXPECT_EQ(loaded->map_session(), 5);
   EXPECT_EQ(loaded->map_name(), "map");
-  EXPECT_EQ(loaded->part(), 3);
-  EXPECT_TRUE(loaded->part_follows());
   EXPECT_EQ(loaded->config().mode, GetParam());
   EXPECT_EQ(loaded->config().engine.threshold, 0.002);
   EXPECT_EQ(loaded->config().engine.resolution_m, static_cast<double>(0.01F));
@@ -133,6 +130,8 @@ TEST_P(SavedMap, KeepsWhatItIs) {
   ASSERT_EQ(loaded->cloud().slices().size(), 3U);
   EXPECT_EQ(loaded->cloud().slices()[2].revision, 8);
   EXPECT_EQ(loaded->cloud().slices()[0].patch, PatchState::kLeft);
+  EXPECT_EQ(loaded->cloud().slices()[0].place.part, 3);
+  EXPECT_EQ(loaded->cloud().slices()[1].place.part, 0);
   EXPECT_EQ(loaded->cloud().slices()[1].patch, PatchState::kInVolume);
   EXPECT_EQ(loaded->cloud().slices()[2].patch, PatchState::kNoPatch);
   EXPECT_FALSE(loaded->is_complete());
@@ -236,9 +235,6 @@ TEST_F(SavedMapFile, ReasonsSayWhatWasExpected) {
   std::string damaged = bytes_;
   damaged[200] ^= 1;
   EXPECT_THAT(reason(damaged), HasSubstr("checksum"));
-  std::string neither_yes_nor_no = bytes_;
-  neither_yes_nor_no[100] = 2;  // part_follows
-  EXPECT_THAT(reason(neither_yes_nor_no), HasSubstr("part_follows 2, expected 0 or 1"));
   std::filesystem::remove(path_);
   EXPECT_THAT([&] { load_map(path_); }, ThrowsMessage<std::runtime_error>(HasSubstr("No such")));
   EXPECT_THAT([&] { load_map(folder_.path()); },
@@ -246,20 +242,19 @@ TEST_F(SavedMapFile, ReasonsSayWhatWasExpected) {
 }
 
 TEST_F(SavedMapFile, ClaimsAreHeldAgainstItsSizeBeforeMemoryIsTaken) {
-  // Each count of the header, which ends at byte 152, claims two billion.
-  for (std::size_t at = 112; at < 148; at += 4) {
+  // Each count of the header, which ends at byte 144, claims two billion.
+  for (std::size_t at = 104; at < 140; at += 4) {
     std::string hostile = bytes_;
     const std::uint32_t count = 2'000'000'000;
     std::memcpy(hostile.data() + at, &count, sizeof(count));
     write(path_, hostile);
     EXPECT_LT(allocated_by([&] { EXPECT_THROW(load_map(path_), std::runtime_error); }), 100'000U);
-    write(path_, hostile.substr(0, 152));
+    write(path_, hostile.substr(0, 144));
     EXPECT_LT(allocated_by([&] { EXPECT_THROW(load_map(path_), std::runtime_error); }), 100'000U);
   }
 }
 
 TEST_F(SavedMapFile, IsRefusedWhenItIsNoStateOfAMap) {
-  expect_refused([](auto& s) { s.part = -1; }, "part is -1");
   expect_refused([](auto& s) { s.final_revision_sum = -1; }, "final_revision_sum is -1");
   expect_refused([](auto& s) { s.slices[1].patch = static_cast<PatchState>(3); },
                  "slice 1 has the patch state 3");

@@ -125,57 +125,16 @@ TEST_F(SessionMapsTest, LateSlicesOfAnOlderSessionGoIntoItsOwnMap) {
   EXPECT_EQ(maps.counts().missing, 0);
 }
 
-std::vector<CloudSlice> part_of_run(std::int64_t first_session, int part, bool part_follows) {
-  auto slices = named_session("map", first_session + part, 4, static_cast<unsigned>(part + 1));
-  for (CloudSlice& slice : slices) slice.part = part;
-  slices.back().part_follows = part_follows;
-  return slices;
-}
-
-TEST_F(SessionMapsTest, EveryPartOfARunIsWrittenAndKeepsItsName) {
-  const auto part0 = part_of_run(5, 0, true);
-  const auto part1 = part_of_run(5, 1, false);
+TEST_F(SessionMapsTest, ASessionThatBeganInALaterPartIsSupersededLikeAnyOther) {
+  auto older = named_session("map", 5, 4, 1);
+  for (CloudSlice& slice : older) slice.part = 1;
   SessionMaps maps = make();
-  for (const CloudSlice& slice : part0) offer(maps, slice);
-  settle(maps);
-  EXPECT_FALSE(maps.counts().ended) << "the next part has only not come yet";
-  EXPECT_FALSE(maps.counts().complete);
-  ASSERT_EQ(saves_.size(), 1U);
-  EXPECT_EQ(saves_[0].kind, SaveKind::kCurrent);
-  EXPECT_EQ(saves_[0].labels, labels_alone(part0));
-  for (const CloudSlice& slice : part1) offer(maps, slice);
-  EXPECT_THAT(warnings_, ElementsAre(HasSubstr("session 6 is another part of the map 'map'")));
-  settle(maps);
-  EXPECT_THAT(forgotten_, ElementsAre(5));
+  for (const CloudSlice& slice : older) offer(maps, slice);
   EXPECT_TRUE(maps.counts().ended);
-  ASSERT_EQ(saves_.size(), 2U) << "the first part has not changed since";
-  EXPECT_EQ(saves_[1].session, 6);
-  EXPECT_EQ(saves_[1].kind, SaveKind::kCurrent);
-  EXPECT_EQ(saves_[1].labels, labels_alone(part1));
-}
-
-TEST_F(SessionMapsTest, WhatIsLateOfAnEarlierPartIsWrittenUnderItsName) {
-  const auto part0 = part_of_run(5, 0, true);
-  SessionMaps maps = make();
-  offer(maps, part0[0]);
-  coming_.insert(5);
-  for (const CloudSlice& slice : part_of_run(5, 1, false)) offer(maps, slice);
-  for (std::size_t i = 1; i < part0.size(); ++i) offer(maps, part0[i]);
-  EXPECT_FALSE(maps.counts().ended);
-  coming_.clear();
+  for (const CloudSlice& slice : named_session("map", 6, 4, 2)) offer(maps, slice);
+  EXPECT_THAT(warnings_, ElementsAre(HasSubstr("session 6 now owns the map name 'map'")));
   settle(maps);
   EXPECT_EQ(saves_.back().session, 5);
-  EXPECT_EQ(saves_.back().kind, SaveKind::kCurrent);
-  EXPECT_EQ(saves_.back().labels, labels_alone(part0));
-  EXPECT_TRUE(maps.counts().ended);
-}
-
-TEST_F(SessionMapsTest, ANewerRunTakesTheNamesOfAllParts) {
-  SessionMaps maps = make();
-  for (const CloudSlice& slice : part_of_run(5, 1, false)) offer(maps, slice);
-  for (const CloudSlice& slice : part_of_run(9, 0, false)) offer(maps, slice);
-  settle(maps);
-  EXPECT_EQ(saves_.back().session, 6);
   EXPECT_EQ(saves_.back().kind, SaveKind::kSessionEnded);
 }
 
