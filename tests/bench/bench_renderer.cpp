@@ -21,13 +21,13 @@ void draw_figure(benchmark::State& state, const Viewpoint& viewpoint) {
   }
   for (const CameraPose& pose : room.poses) {
     map.add_pose(pose);
-    depth_camera.update(pose, map.up().up_W());
+    depth_camera.update(pose, map.up(0).up_W());
   }
 
   const MapRenderer renderer{MapRenderer::Config{}};
   for (auto _ : state) {
-    benchmark::DoNotOptimize(
-        renderer.draw_figure({map, map.received_track(), depth_camera, viewpoint}, caption(map)));
+    benchmark::DoNotOptimize(renderer.draw_figure(
+        {map, 0, map.received_track(0), depth_camera, viewpoint}, caption(map, 0)));
   }
   state.counters["points"] = static_cast<double>(map.counts().points);
 }

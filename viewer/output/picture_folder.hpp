@@ -18,6 +18,9 @@ class PictureFolder {
   /// False when it could not be written; logged at the first of several failures.
   bool save(const std::string& name, const cv::Mat3b& picture);
 
+  /// Removes a picture, if it is there.
+  void remove(const std::string& name);
+
   std::int64_t written() const { return written_; }
   /// Why the last picture could not be written; empty when it was.
   const std::string& problem() const { return attempts_.problem(); }

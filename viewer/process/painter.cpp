@@ -1,6 +1,7 @@
 #include "viewer/process/painter.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "lcmtypes/base/argument_check.hpp"
@@ -22,11 +23,13 @@ Painter::Painter(const Config& config)
 cv::Mat3b Painter::draw_figure(MapSession& session, RunFigure::Map map_wanted) {
   const Stopwatch stopwatch;
   const ReceivedMap& map = session.map();
+  const std::int32_t part = map.camera_part();
   Highlight highlight = config_.highlight;
   highlight.insert(session.answered().begin(), session.answered().end());
   cv::Mat3b figure = run_figure_.draw(
-      {map, map.received_track(), session.depth_camera(), config_.viewpoint, std::move(highlight)},
-      session.view(), caption(map), map_is_due(session) ? RunFigure::Map::kNew : map_wanted);
+      {map, part, map.received_track(part), session.depth_camera(part), config_.viewpoint,
+       std::move(highlight)},
+      session.view(), caption(map, part), map_is_due(session) ? RunFigure::Map::kNew : map_wanted);
   const double elapsed_ms = stopwatch.elapsed_ms();
   if (!run_figure_.has_drawn_map()) {
     without_map_ms_ = elapsed_ms;
@@ -44,16 +47,34 @@ bool Painter::map_is_due(const MapSession& session) const {
   return is_old && Clock::now() >= map_rest_end_;
 }
 
-std::vector<NamedPicture> Painter::draw_finals(MapSession& session) {
+std::vector<NamedPicture> Painter::draw_final(MapSession& session, std::int32_t part,
+                                              const std::string& part_of_name) {
   const Stopwatch stopwatch;
   const ReceivedMap& map = session.map();
-  const Subject subject{map, map.slice_track(), session.depth_camera(), OverviewViewpoint{},
+  const Subject subject{map,
+                        part,
+                        map.slice_track(part),
+                        session.depth_camera(part),
+                        OverviewViewpoint{},
                         config_.highlight};
   std::vector<NamedPicture> pictures;
-  pictures.push_back({"final", renderer_.draw_figure(subject, final_caption(map))});
+  pictures.push_back(
+      {"final", renderer_.draw_figure(subject, final_caption(map, part)), part_of_name});
   note_time(session, stopwatch.elapsed_ms());
-  pictures.push_back({"map_final", renderer_.draw_map(subject, Coloring::kTrue)});
-  pictures.push_back({"segments_final", renderer_.draw_map(subject, Coloring::kSegments)});
+  pictures.push_back({"map_final", renderer_.draw_map(subject, Coloring::kTrue), part_of_name});
+  pictures.push_back(
+      {"segments_final", renderer_.draw_map(subject, Coloring::kSegments), part_of_name});
+  return pictures;
+}
+
+std::vector<NamedPicture> Painter::draw_finals(MapSession& session) {
+  const std::int32_t last_part = session.map().newest_part();
+  std::vector<NamedPicture> pictures = draw_final(session, last_part, "");
+  for (const std::int32_t part : session.map().parts()) {
+    if (part == last_part) continue;
+    std::ranges::move(draw_final(session, part, ".part" + std::to_string(part)),
+                      std::back_inserter(pictures));
+  }
   if (config_.plots) pictures.push_back({"plots", session.history().draw({1000, 900})});
   for (const std::uint32_t id : config_.timelines) {
     const SegmentTimeline timeline = timeline_of(id, session.updates());

@@ -15,6 +15,7 @@ namespace kintsugi::viewer {
 struct NamedPicture {
   std::string name;  ///< of the file, without suffix and extension
   cv::Mat3b picture;
+  std::string part = {};  ///< behind the suffix: empty, or ".partK" of a part of the map
 };
 
 /// Draws the pictures of map sessions, and limits the share of time that drawing takes.
@@ -46,8 +47,9 @@ class Painter {
   /// old, and older while drawing has used its share of the time.
   cv::Mat3b draw_figure(MapSession& session, RunFigure::Map map);
 
-  /// Draws the final pictures, the figure first. They do not depend on poses, times and answers, so
-  /// that they are the same in every viewer that has the map; plots do.
+  /// Draws the final pictures, the figure first: of the part of the map in which the camera was
+  /// last, then of the other parts that have points. They do not depend on poses, times and
+  /// answers, so that they are the same in every viewer that has the map; plots do.
   std::vector<NamedPicture> draw_finals(MapSession& session);
 
   double render_ms() const { return render_ms_; }  ///< wall time of the last figure with its map
@@ -55,6 +57,8 @@ class Painter {
  private:
   using Clock = std::chrono::steady_clock;
 
+  std::vector<NamedPicture> draw_final(MapSession& session, std::int32_t part,
+                                       const std::string& part_of_name);
   bool map_is_due(const MapSession& session) const;
   Clock::time_point after_rest(double drawing_ms) const;
   void note_time(MapSession& session, double render_ms);

@@ -109,14 +109,16 @@ void ViewerProcess::write_snapshot(MapSession& session, const cv::Mat3b& figure)
   const ReceivedMap& map = session.map();
   const double time_s = 1e-6 * static_cast<double>(map.utime() - map.first_utime());
   if (!folder_.save(fmt::format("snapshot_{:06.1f}s.png", time_s), figure)) ++failures_;
-  outputs_.on_picture(figure, caption(map));
+  const std::string text = caption(map, map.camera_part());
+  outputs_.on_picture(figure, text);
   session.note_snapshot();
-  spdlog::info("{}; drawn in {:.0f} ms", caption(map), painter_.render_ms());
+  spdlog::info("{}; drawn in {:.0f} ms", text, painter_.render_ms());
 }
 
 void ViewerProcess::write_highlight(MapSession& session, const cv::Mat3b& figure) {
   if (!folder_.save("highlight.png", figure)) ++failures_;
-  outputs_.on_picture(figure, caption(session.map()));
+  const ReceivedMap& map = session.map();
+  outputs_.on_picture(figure, caption(map, map.camera_part()));
   session.note_answer();
   spdlog::info("{} segments of an answer in highlight.png", session.answered().size());
 }
@@ -137,7 +139,7 @@ void ViewerProcess::write_finals(double now_s, bool more_may_come) {
   bool have_all_ended = !sessions_.all().empty();
   for (auto& [number, session] : sessions_.all()) {
     if (!has_ended(session, now_s, more_may_come)) {
-      have_all_ended = false;  // a part before this one may still be missing something
+      have_all_ended = false;  // the session before may still be missing something
       continue;
     }
     if (!session.final_is_due(final_suffix(session))) continue;
@@ -163,14 +165,18 @@ bool ViewerProcess::write_final(MapSession& session) {
   if (!session.final_is_due(suffix)) return true;
   session.prepare_final();
   const ReceivedMap& map = session.map();
-  const std::string text = final_caption(map);
+  const std::string text = final_caption(map, map.newest_part());
   const std::vector<NamedPicture> pictures = painter_.draw_finals(session);
   if (!finals_retry_.is_failing()) outputs_.on_picture(pictures.front().picture, text);
   bool is_written = true;
-  for (const auto& [name, picture] : pictures) {
-    is_written &= folder_.save(name + suffix + ".png", picture);
+  std::set<std::string> files;
+  for (const auto& [name, picture, part] : pictures) {
+    const std::string file = fmt::format("{}{}{}.png", name, suffix, part);
+    is_written &= folder_.save(file, picture);
+    files.insert(file);
   }
   if (!is_written) return false;
+  replace_finals(suffix, std::move(files));
   session.note_final(suffix);
   if (map.lag_slices() > 0) {
     spdlog::warn("map session {}: {} slices lack their segments or are missing", map.map_session(),
@@ -178,6 +184,15 @@ bool ViewerProcess::write_final(MapSession& session) {
   }
   spdlog::info("final pictures of map session {}: {}", map.map_session(), text);
   return true;
+}
+
+/// Removes earlier final pictures of parts that the map has no longer.
+void ViewerProcess::replace_finals(const std::string& suffix, std::set<std::string> files) {
+  std::set<std::string>& before = finals_[suffix];
+  for (const std::string& file : before) {
+    if (!files.contains(file)) folder_.remove(file);
+  }
+  before = std::move(files);
 }
 
 /// The last picture of the video shows all that came.

@@ -3,8 +3,10 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 
 #include "viewer/output/picture_folder.hpp"
@@ -60,7 +62,7 @@ class ViewerProcess {
   /// exists, nothing new arrived for 5 s, and nothing is expected. `more_may_come`: messages are
   /// missing that may still be resent.
   void write_finals(double now_s, bool more_may_come);
-  /// The newest session has ended, and its final pictures are written or cannot be written.
+  /// Every session that is kept has ended, and its final pictures are written or cannot be.
   bool finished() const { return finished_; }
 
   /// Writes all final pictures that are due and closes the video. Call once, at the end.
@@ -80,6 +82,7 @@ class ViewerProcess {
   bool has_ended(const MapSession& session, double now_s, bool more_may_come) const;
   void note_finals(double now_s, bool all_written, bool have_all_ended);
   bool write_final(MapSession& session);
+  void replace_finals(const std::string& suffix, std::set<std::string> files);
 
   void write_snapshot(MapSession& session, const cv::Mat3b& figure);
   int frames_due() const;
@@ -99,6 +102,7 @@ class ViewerProcess {
 
   bool finished_ = false;
   RetryClock finals_retry_;
+  std::map<std::string, std::set<std::string>> finals_;  // files that are written, by suffix
   std::int64_t failures_ = 0;
 };
 

@@ -16,11 +16,12 @@ void MapSession::use(CloudSlice slice, double now_s) {
   pose.utime = slice.utime;
   pose.state = TrackingState::kTracking;
   pose.X_WC = slice.X_WC;
+  pose.part = slice.part;
   const std::int32_t id = slice.id;
   if (!map_.add_slice(std::move(slice))) return;
   slice_utime_ = std::max(slice_utime_, pose.utime);
   note_labelled(id);
-  if (is_newest) depth_camera_.update(pose, map_.up().up_W());
+  if (is_newest) follow(pose);
   note_change(now_s);
 }
 
@@ -39,7 +40,21 @@ void MapSession::note_labelled(std::int32_t slice_id) {
 }
 
 void MapSession::use(const CameraPose& pose) {
-  if (map_.add_pose(pose)) depth_camera_.update(pose, map_.up().up_W());
+  if (map_.add_pose(pose)) follow(pose);
+}
+
+void MapSession::follow(const CameraPose& pose) {
+  if (pose.utime > camera_utime_) {
+    camera_utime_ = pose.utime;
+    camera_part_ = pose.part;
+  }
+  depth_cameras_[pose.part].update(pose, map_.up(pose.part).up_W());
+}
+
+const SmoothedCamera& MapSession::depth_camera(std::int32_t part) const {
+  static const SmoothedCamera kWithoutPose;
+  const auto found = depth_cameras_.find(part);
+  return found == depth_cameras_.end() ? kWithoutPose : found->second;
 }
 
 void MapSession::use(const SegmentAnswer& answer) {
@@ -58,7 +73,8 @@ void MapSession::use(CameraView view) {
   pose.utime = view.utime;
   pose.state = view.state;
   pose.X_WC = view.X_WC;
-  use(pose);
+  pose.part = camera_part_;  // a view does not tell its part
+  if (view.utime > camera_utime_) use(pose);
   map_.note_time(view.utime);
   view_ = std::move(view);
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 
@@ -30,7 +31,8 @@ class MapSession {
   void use(const SegmentAnswer& answer);
 
   const ReceivedMap& map() const { return map_; }
-  const SmoothedCamera& depth_camera() const { return depth_camera_; }
+  /// In a part of the map; without a pose if it has not been there.
+  const SmoothedCamera& depth_camera(std::int32_t part) const;
   /// What the camera saw last; nullptr: no view has come.
   const CameraView* view() const { return view_ ? &*view_ : nullptr; }
   RunHistory& history() { return history_; }
@@ -76,11 +78,14 @@ class MapSession {
   };
 
   void note_change(double now_s);
+  void follow(const CameraPose& pose);
   void note_labelled(std::int32_t slice_id);
   std::int64_t utime_of_snapshot() const;
 
   ReceivedMap map_;
-  SmoothedCamera depth_camera_;
+  std::map<std::int32_t, SmoothedCamera> depth_cameras_;  // by part of the map
+  std::int64_t camera_utime_ = -1;                        // of the newest pose used; -1: none
+  std::int32_t camera_part_ = 0;                          // of the same
   RunHistory history_;
   bool keep_updates_;
   UpdateLog updates_;

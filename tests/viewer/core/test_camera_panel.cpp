@@ -63,7 +63,7 @@ double share_of(const IdImage& ids, std::uint32_t id) {
 TEST(SegmentsInView, AreThoseThatTheCameraLooksAtInEachPixel) {
   ReceivedMap map(kSession);
   add_wall(map, 0, 2.0F, 3, 4);
-  const IdImage ids = segments_in_view(map.chunks(), view_at(2.0), {320, 240}, {});
+  const IdImage ids = segments_in_view(map.chunks(0), view_at(2.0), {320, 240}, {});
   for (int v = 0; v < ids.rows; ++v) {
     for (int u = 0; u < ids.cols; ++u) {
       // x = 0 is at u = 159.5; half of a disc of one voxel is 0.8 pixels.
@@ -81,7 +81,7 @@ TEST(SegmentsInView, DoNotShineThroughWhatIsNotSegmentedYet) {
   for (int v = 0; v < 120; ++v) {
     for (int u = 0; u < 40; ++u) view.depth_mm[std::size_t{160} * v + u] = 1'880;
   }
-  const IdImage ids = segments_in_view(map.chunks(), view, {160, 120}, {});
+  const IdImage ids = segments_in_view(map.chunks(0), view, {160, 120}, {});
   EXPECT_EQ(0, cv::countNonZero(ids.colRange(0, 40)));
   EXPECT_EQ(0, cv::countNonZero(ids.colRange(40, 79) != 3));
 }
@@ -90,18 +90,18 @@ TEST(SegmentsInView, AreNotCoveredByWhatIsNoLongerThere) {
   ReceivedMap map(kSession);
   add_wall(map, 0, 2.0F, 3, 4);
   add_wall(map, 1, 1.0F, 8, 9);
-  EXPECT_EQ(0.0, share_of(segments_in_view(map.chunks(), view_at(2.0), {160, 120}, {}), 8));
-  EXPECT_GT(share_of(segments_in_view(map.chunks(), view_at(2.0), {160, 120}, {}), 3), 0.48);
-  EXPECT_GT(share_of(segments_in_view(map.chunks(), view_at(1.0), {160, 120}, {}), 8), 0.48);
+  EXPECT_EQ(0.0, share_of(segments_in_view(map.chunks(0), view_at(2.0), {160, 120}, {}), 8));
+  EXPECT_GT(share_of(segments_in_view(map.chunks(0), view_at(2.0), {160, 120}, {}), 3), 0.48);
+  EXPECT_GT(share_of(segments_in_view(map.chunks(0), view_at(1.0), {160, 120}, {}), 8), 0.48);
 }
 
 TEST(SegmentsInView, AreNoneWithoutADepthOrAPose) {
   ReceivedMap map(kSession);
   add_wall(map, 0, 2.0F, 3, 4);
-  EXPECT_EQ(1.0, share_of(segments_in_view(map.chunks(), view_at(0.0), {160, 120}, {}), 0));
+  EXPECT_EQ(1.0, share_of(segments_in_view(map.chunks(0), view_at(0.0), {160, 120}, {}), 0));
   CameraView lost = view_at(2.0);
   lost.state = TrackingState::kLost;
-  EXPECT_EQ(1.0, share_of(segments_in_view(map.chunks(), lost, {160, 120}, {}), 0));
+  EXPECT_EQ(1.0, share_of(segments_in_view(map.chunks(0), lost, {160, 120}, {}), 0));
 }
 
 TEST(MeasuredDepth, IsExactOnASlantedPlaneAndHasNoDepthBetweenTwoSurfaces) {
@@ -131,7 +131,7 @@ TEST(CameraPanel, TintsSegmentsOutlinesThemAndLeavesTheRestAsItIs) {
   CameraView view = view_at(2.0);
   const cv::Mat3b grey(240, 320, cv::Vec3b::all(100));
   cv::imencode(".jpg", grey, view.color_jpeg);
-  const cv::Mat3b panel = draw_camera_panel(map.chunks(), view, {640, 480}, {}, {});
+  const cv::Mat3b panel = draw_camera_panel(map.chunks(0), view, {640, 480}, {}, {});
   ASSERT_EQ(cv::Size(640, 480), panel.size());
   EXPECT_LT(cv::norm(panel(300, 500) - cv::Vec3b::all(100)), 4.0);
   const cv::Vec3b color = segment_color(3);
@@ -147,7 +147,7 @@ TEST(CameraPanel, TintsSegmentsOutlinesThemAndLeavesTheRestAsItIs) {
   }
   EXPECT_LT(nearest, 12.0);
 
-  const cv::Mat3b dark = draw_camera_panel(map.chunks(), view, {640, 480}, {99}, {});
+  const cv::Mat3b dark = draw_camera_panel(map.chunks(0), view, {640, 480}, {99}, {});
   EXPECT_LT(cv::mean(dark.rowRange(60, 480))[0], 50.0);  // another segment is highlighted
 }
 
@@ -157,7 +157,7 @@ TEST(CameraPanel, ShowsTheDepthWhenThereIsNoColorThatCanBeRead) {
   std::fill_n(view.depth_mm.begin(), 160 * 60, std::uint16_t{0});
   for (const bool has_garbage : {false, true}) {
     if (has_garbage) view.color_jpeg.assign(500, 0xab);
-    const cv::Mat3b panel = draw_camera_panel(map.chunks(), view, {160, 120}, {}, {});
+    const cv::Mat3b panel = draw_camera_panel(map.chunks(0), view, {160, 120}, {}, {});
     EXPECT_EQ(cv::Vec3b::all(0), panel(50, 80));
     EXPECT_NEAR(127.0, panel(90, 80)[0], 2.0);  // half as bright at 2 m
     EXPECT_EQ(panel(90, 80)[0], panel(90, 80)[2]);

@@ -98,7 +98,8 @@ struct Furnished {
     for (const SegmentUpdate& update : room.updates) map.apply_update(update);
   }
   Subject from_above(const Highlight& highlight) const {
-    return {map, {}, depth_camera, FixedViewpoint{{0.0, -8.0, 2.0}, {0.0, 0.0, 2.001}}, highlight};
+    return {map,      0, {}, depth_camera, FixedViewpoint{{0.0, -8.0, 2.0}, {0.0, 0.0, 2.001}},
+            highlight};
   }
 };
 
@@ -151,8 +152,8 @@ TEST(Highlight, OfSegmentsThatAreNotThereDimsEverything) {
 TEST(Highlight, ComesCloserToSegments) {
   const Furnished room;
   const Intrinsics intrinsics = pinhole(480, 270, 0.9);
-  const auto chunks = room.map.chunks();
-  const Eigen::Matrix3d R_WV = look_down(room.map.up().up_W(), 0.0, 1.0);
+  const auto chunks = room.map.chunks(0);
+  const Eigen::Matrix3d R_WV = look_down(room.map.up(0).up_W(), 0.0, 1.0);
   const auto desk = close_up(chunks, {kDesk}, R_WV, intrinsics);
   const auto both = close_up(chunks, {kDesk, kFloor}, R_WV, intrinsics);
   ASSERT_TRUE(desk && both);

@@ -32,12 +32,12 @@ struct Furnished {
     }
     for (const CameraPose& pose : room.poses) {
       map.add_pose(pose);
-      depth_camera.update(pose, map.up().up_W());
+      depth_camera.update(pose, map.up(0).up_W());
     }
   }
 
   Subject seen(const Viewpoint& viewpoint) const {
-    return {map, map.received_track(), depth_camera, viewpoint};
+    return {map, 0, map.received_track(0), depth_camera, viewpoint};
   }
 };
 
@@ -50,7 +50,7 @@ double share_of(const cv::Mat3b& image, const cv::Vec3b& color) {
 TEST(MapRenderer, DrawsAnEmptyMap) {
   const ReceivedMap map(1);
   const cv::Mat3b figure =
-      MapRenderer(small()).draw_figure({map, {}, {}, FollowViewpoint{}}, "nothing");
+      MapRenderer(small()).draw_figure({map, 0, {}, {}, FollowViewpoint{}}, "nothing");
   EXPECT_EQ(cv::Size(480, 270), figure.size());
   EXPECT_GT(share_of(figure, palette::kBackground), 0.8);
 }
@@ -102,8 +102,9 @@ TEST(MapRenderer, ShowsOnlyTheNewestRevisionOfEachSlice) {
   const Viewpoint view = FixedViewpoint{{0.0, -8.0, 2.0}, {0.0, 0.0, 2.001}};
   const auto difference = [&] {
     const MapRenderer renderer(small());
-    return cv::norm(renderer.draw_map({corrected, {}, {}, view}, Coloring::kSegments),
-                    renderer.draw_map({expected, {}, {}, view}, Coloring::kSegments), cv::NORM_INF);
+    return cv::norm(renderer.draw_map({corrected, 0, {}, {}, view}, Coloring::kSegments),
+                    renderer.draw_map({expected, 0, {}, {}, view}, Coloring::kSegments),
+                    cv::NORM_INF);
   };
   EXPECT_GT(difference(), 0.0);
   for (std::size_t i = 0; i < room.slices.size(); i += 3) {
@@ -151,8 +152,25 @@ TEST(MapRenderer, RefusesAConfigurationOutOfItsBounds) {
 
 TEST(Caption, SaysWhatIsShown) {
   const Furnished room(false);
-  EXPECT_NE(std::string::npos, caption(room.map).find("0 segments   16 slices   lag 16"))
-      << caption(room.map);
+  EXPECT_NE(std::string::npos, caption(room.map, 0).find("0 segments   16 slices   lag 16"))
+      << caption(room.map, 0);
+}
+
+TEST(Caption, TellsThePartOfAMapOfSeveral) {
+  const SyntheticMap room = make_room(4.0, 0.04);
+  ReceivedMap map(1'000);
+  for (CloudSlice slice : room.slices) {
+    slice.part = slice.id == 3 ? 2 : 0;
+    if (slice.part == 2) slice.points_W.resize(7);
+    slice.in_volume = slice.id == 3;
+    map.add_slice(slice);
+  }
+  EXPECT_EQ(0U,
+            final_caption(map, 2).find("part 2: 7 points   all 2 parts: 0 segments   16 slices"))
+      << final_caption(map, 2);
+  EXPECT_EQ(0U, final_caption(map, 0).find("part 0: ")) << final_caption(map, 0);
+  EXPECT_NE(std::string::npos, caption(map, 2).find("100 % may change")) << caption(map, 2);
+  EXPECT_EQ(std::string::npos, caption(map, 0).find("may change")) << caption(map, 0);
 }
 
 TEST(Chart, RoundsUpToOneTwoOrFive) {

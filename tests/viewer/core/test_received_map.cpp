@@ -59,8 +59,8 @@ using Labels = std::vector<std::uint32_t>;
 TEST(ReceivedMap, IsEmptyAtFirst) {
   const ReceivedMap map(kMapSession);
   EXPECT_EQ(nullptr, map.slice(0));
-  EXPECT_TRUE(map.chunks().empty());
-  EXPECT_FALSE(map.received_track().X_WC.has_value());
+  EXPECT_TRUE(map.chunks(0).empty());
+  EXPECT_FALSE(map.received_track(0).X_WC.has_value());
   EXPECT_EQ(0, map.lag_slices());
 }
 
@@ -365,7 +365,7 @@ TEST(ReceivedMap, ShowsARevisionWithItsSegmentsUntilTheNextHasThem) {
   apply(map, update_of_revision(0, 1, {2, 2, 2, 2}), 0);  // late: the run of revision 1 is newer
   EXPECT_EQ(Labels({2, 2, 2, 6}), labels_of(map, 0));
   EXPECT_EQ(4, map.counts().points);
-  EXPECT_EQ(4U, map.chunks().front().points_W.size());
+  EXPECT_EQ(4U, map.chunks(0).front().points_W.size());
   EXPECT_EQ(0, map.lag_slices());
 }
 
@@ -408,12 +408,12 @@ TEST(ReceivedMap, CountsWhatMayStillChange) {
   patch.in_volume = true;
   map.add_slice(patch);
   map.add_slice(slice_of(1, 2));
-  EXPECT_EQ(3, map.counts().points_in_volume);
+  EXPECT_EQ(3, map.points(0).in_volume);
   apply(map, update_of(0, {1, 1, 1}), 0);
   map.add_slice(slice_of(0, 3, 1));
-  EXPECT_EQ(3, map.counts().points_in_volume);  // what is shown
+  EXPECT_EQ(3, map.points(0).in_volume);  // what is shown
   apply(map, update_of_revision(0, 1, {1, 1, 1}), 1);
-  EXPECT_EQ(0, map.counts().points_in_volume);
+  EXPECT_EQ(0, map.points(0).in_volume);
   EXPECT_EQ(5, map.counts().points);
 }
 
@@ -440,7 +440,7 @@ TEST(ReceivedMap, CutsSlicesIntoChunksThatHoldEveryPointOnceInItsBox) {
   ReceivedMap map(kMapSession);
   map.add_slice(slice_of(0, static_cast<int>(2 * PointChunk::kMaxPoints + 1)));
   map.add_slice(slice_of(5, 3));
-  const std::vector<PointChunk> chunks = map.chunks();
+  const std::vector<PointChunk> chunks = map.chunks(0);
   ASSERT_EQ(4U, chunks.size());
   std::size_t total = 0;
   for (const PointChunk& chunk : chunks) {
@@ -470,7 +470,7 @@ TEST(ReceivedMap, FollowsTheCameraWhileItIsTracked) {
   lost.state = TrackingState::kLost;
   EXPECT_FALSE(map.add_pose(lost));
   EXPECT_FALSE(map.add_pose(pose_at(1'050, 5.0)));  // late
-  const CameraTrack track = map.received_track();
+  const CameraTrack track = map.received_track(0);
   EXPECT_DOUBLE_EQ(1.0, track.X_WC->translation().z());
   EXPECT_EQ(100, map.utime() - map.first_utime());
   // 1 m in steps of at least 2 cm; rounding may make a step 3 cm.
@@ -490,7 +490,7 @@ TEST(ReceivedMap, TakesThePosesOfTheSlicesWhereNoneWasHeard) {
   for (int i = 8; i <= 22; ++i) {  // received from 0.8 s to 2.2 s
     map.add_pose(pose_at(i * kSecond_us / 10, 0.1 * i));
   }
-  const CameraTrack track = map.received_track();
+  const CameraTrack track = map.received_track(0);
   ASSERT_EQ(17U, track.path_W.size());
   EXPECT_EQ(Eigen::Vector3f(100.0F, 0.0F, 0.0F), track.path_W.front());
   for (std::size_t i = 1; i + 1 < track.path_W.size(); ++i) EXPECT_EQ(0.0F, track.path_W[i].x());
@@ -498,7 +498,7 @@ TEST(ReceivedMap, TakesThePosesOfTheSlicesWhereNoneWasHeard) {
   EXPECT_EQ(3.0, track.X_WC->translation().z());  // newer than the received poses
   EXPECT_EQ(0, map.first_utime());
 
-  const CameraTrack known = map.slice_track();
+  const CameraTrack known = map.slice_track(0);
   ASSERT_EQ(4U, known.path_W.size());
   for (int i = 0; i < 4; ++i) EXPECT_EQ(static_cast<float>(i), known.path_W[i].z());
 }
@@ -553,9 +553,140 @@ TEST(ReceivedMap, PutsPatchesWhereTheLastCorrectionDoesInWhateverOrder) {
     EXPECT_EQ(map.slice(0)->points_W()[0].x, 1.5F);
     EXPECT_EQ(map.slice(1)->points_W()[0].x, 1.0F + 2.5F);
     EXPECT_EQ(map.counts().points, 7);
-    for (const PointChunk& chunk : map.chunks()) {
+    for (const PointChunk& chunk : map.chunks(0)) {
       EXPECT_EQ(chunk.box_W.min().x(), chunk.points_W[0].x) << "it is drawn where it is";
     }
+  }
+}
+
+/// `num_points` points of a patch in a part, whose points lie at x = id + 1000 part.
+CloudSlice patch_in_part(std::int32_t id, std::int32_t part, int num_points) {
+  CloudSlice slice = slice_of(id, num_points);
+  slice.part = part;
+  slice.X_WP.t_WP[0] = 1000.0F * static_cast<float>(part);
+  slice.X_WC.translation().x() = 1000.0 * part;
+  return slice;
+}
+
+/// Brings a patch of part 1 into part 0.
+CloudSlice correction_that_joins(std::int32_t id, std::int32_t patch) {
+  CloudSlice slice = correction_of(id, 1, patch, 5.0);
+  slice.part = 0;
+  return slice;
+}
+
+CameraPose pose_in_part(std::int32_t part, std::int64_t utime) {
+  CameraPose pose = pose_at(utime, 0.0);
+  pose.part = part;
+  pose.X_WC.translation().x() = 1000.0 * part;
+  return pose;
+}
+
+std::int64_t num_points(const std::vector<PointChunk>& chunks) {
+  std::int64_t count = 0;
+  for (const PointChunk& chunk : chunks) count += std::ssize(chunk.points_W);
+  return count;
+}
+
+TEST(ReceivedMap, KeepsThePartsOfTheMapApart) {
+  ReceivedMap map(kMapSession);
+  EXPECT_TRUE(map.parts().empty());
+  map.add_slice(patch_in_part(0, 0, 3));
+  CloudSlice in_volume = patch_in_part(1, 1, 5);
+  in_volume.in_volume = true;
+  for (CloudPoint& point : in_volume.points_W) {
+    point.ny = -0.96F;
+    point.nx = 0.28F;
+  }
+  map.add_slice(in_volume);
+  EXPECT_EQ(map.parts(), (std::set<std::int32_t>{0, 1}));
+  EXPECT_EQ(map.counts().points, 8);
+  EXPECT_EQ(map.points(0).shown, 3);
+  EXPECT_EQ(map.points(0).in_volume, 0);
+  EXPECT_EQ(map.points(1).shown, 5);
+  EXPECT_EQ(map.points(1).in_volume, 5);
+  EXPECT_EQ(map.points(2).shown, 0);
+  ASSERT_EQ(map.chunks(1).size(), 1U);
+  EXPECT_EQ(map.chunks(1).front().points_W[0].x, 1001.0F);
+  EXPECT_EQ(num_points(map.chunks(0)), 3);
+  EXPECT_TRUE(map.chunks(2).empty());
+  EXPECT_NEAR(map.up(0).up_W().x(), 0.0, 1e-6);
+  EXPECT_NEAR(map.up(1).up_W().x(), 0.28, 1e-3);
+  EXPECT_EQ(map.up(2).up_W(), -Eigen::Vector3d::UnitY());
+}
+
+TEST(ReceivedMap, PosesBelongToThePartInWhichTheyWereReceived) {
+  ReceivedMap map(kMapSession);
+  map.add_slice(patch_in_part(0, 0, 3));
+  map.add_slice(patch_in_part(1, 1, 3));
+  EXPECT_TRUE(map.add_pose(pose_in_part(0, 500)));
+  EXPECT_TRUE(map.add_pose(pose_in_part(1, 2'000)));
+  for (const std::int32_t part : {0, 1}) {
+    for (const CameraTrack& track : {map.received_track(part), map.slice_track(part)}) {
+      ASSERT_FALSE(track.path_W.empty());
+      for (const Eigen::Vector3f& p_W : track.path_W) {
+        EXPECT_EQ(p_W.x(), 1000.0F * static_cast<float>(part));
+      }
+      EXPECT_EQ(track.X_WC->translation().x(), 1000.0 * part);
+    }
+    EXPECT_EQ(map.received_track(part).path_W.size(), 2U);
+  }
+  EXPECT_TRUE(map.received_track(2).path_W.empty());
+  map.add_slice(correction_that_joins(2, 1));
+  EXPECT_EQ(map.slice_track(0).path_W.size(), 2U)
+      << "with that of the correction, but not of slice 1";
+  for (const Eigen::Vector3f& p_W : map.received_track(0).path_W) EXPECT_EQ(p_W.x(), 0.0F);
+}
+
+TEST(ReceivedMap, ShowsThePartInWhichTheCameraIs) {
+  ReceivedMap map(kMapSession);
+  EXPECT_EQ(map.camera_part(), 0);
+  map.add_slice(patch_in_part(0, 0, 3));
+  map.add_slice(patch_in_part(1, 1, 3));
+  EXPECT_EQ(map.camera_part(), 1) << "that of the newest slice, as there is no pose";
+  map.add_pose(pose_in_part(0, 500));
+  EXPECT_EQ(map.camera_part(), 0);
+  EXPECT_EQ(map.newest_part(), 1) << "whatever poses came";
+  map.add_pose(pose_in_part(1, 600));
+  EXPECT_EQ(map.camera_part(), 1);
+  map.add_pose(pose_in_part(2, 700));
+  EXPECT_EQ(map.camera_part(), 1) << "there is nothing in part 2 yet";
+  map.add_slice(patch_in_part(2, 2, 0));
+  EXPECT_EQ(map.camera_part(), 1) << "nor in a slice without points";
+  map.add_slice(patch_in_part(3, 2, 1));
+  EXPECT_EQ(map.camera_part(), 2);
+  map.add_pose(pose_in_part(0, 800));
+  EXPECT_EQ(map.camera_part(), 0);
+  EXPECT_EQ(map.newest_part(), 2);
+}
+
+TEST(ReceivedMap, APartThatIsJoinedIsShownInTheOtherInWhateverOrder) {
+  CloudSlice revision = patch_in_part(2, 1, 7);
+  revision.revision = 1;
+  CloudSlice after = patch_in_part(3, 0, 11);  // of a patch of part 1, sent after the loop
+  after.correction = 1;
+  CloudSlice joins = correction_that_joins(4, 1);
+  joins.motions.push_back({2, joins.motions[0].X_WP});
+  std::vector<CloudSlice> stream = {patch_in_part(0, 0, 3), patch_in_part(1, 1, 5),
+                                    patch_in_part(2, 1, 2), revision,
+                                    patch_in_part(3, 1, 9), joins};
+  after.revision = 1;
+  stream.push_back(after);
+  std::mt19937 random(3);
+  for (int round = 0; round < 50; ++round) {
+    std::ranges::shuffle(stream, random);
+    ReceivedMap map(kMapSession);
+    for (std::size_t i = 0; i < stream.size(); ++i) {
+      if (i == 2) map.add_pose(pose_in_part(1, 500));
+      map.add_slice(stream[i]);
+    }
+    EXPECT_EQ(map.parts(), std::set<std::int32_t>{0});
+    EXPECT_EQ(map.points(0).shown, 3 + 5 + 7 + 11);
+    EXPECT_EQ(num_points(map.chunks(0)), 3 + 5 + 7 + 11);
+    EXPECT_EQ(map.camera_part(), 0) << "part 1 is no more, whatever the newest pose says";
+    EXPECT_EQ(map.newest_part(), 0);
+    EXPECT_EQ(map.slice(1)->points_W()[0].x, 1.0F + 5.0F);
+    EXPECT_EQ(map.received_track(0).path_W.size(), 3U) << "without poses of part 1";
   }
 }
 

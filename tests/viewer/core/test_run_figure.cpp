@@ -23,12 +23,12 @@ class RunFigureTest : public ::testing::Test {
     }
     for (const CameraPose& pose : room_.poses) {
       map_.add_pose(pose);
-      depth_camera_.update(pose, map_.up().up_W());
+      depth_camera_.update(pose, map_.up(0).up_W());
     }
   }
 
   Subject subject(const Viewpoint& viewpoint) const {
-    return {map_, map_.received_track(), depth_camera_, viewpoint};
+    return {map_, 0, map_.received_track(0), depth_camera_, viewpoint};
   }
   const CameraView& view() const { return room_.views.back(); }
 
@@ -66,6 +66,16 @@ TEST_F(RunFigureTest, DrawsTheMapOnlyWhenItMust) {
   seen.highlight = {1};
   figure.draw(seen, &view(), "a", RunFigure::Map::kMayBeOld);
   EXPECT_TRUE(figure.has_drawn_map());
+}
+
+TEST_F(RunFigureTest, DrawsAnotherPartOfTheMapAnew) {
+  RunFigure figure(renderer_);
+  Subject seen = subject(OverviewViewpoint{});
+  const cv::Mat3b first = figure.draw(seen, &view(), "a", RunFigure::Map::kMayBeOld);
+  seen.part = 1;  // there is nothing
+  const cv::Mat3b nothing = figure.draw(seen, &view(), "a", RunFigure::Map::kMayBeOld);
+  EXPECT_TRUE(figure.has_drawn_map());
+  EXPECT_GT(difference(first, nothing), 0.0);
 }
 
 TEST_F(RunFigureTest, HasTheWholeFrustumInThePictureWhereverTheCameraIs) {

@@ -102,7 +102,7 @@ TEST(Splat, FindsInEachPixelWhatASearchOverAllPointsFinds) {
   const SplatConfig config{.radius_vox = 2.0, .max_radius_px = 1000.0};
 
   const ReceivedMap map = map_of(points);
-  const VisibilityImage found = splat_points(map.chunks(), camera, config);
+  const VisibilityImage found = splat_points(map.chunks(0), camera, config);
   const std::vector<Reference> expected = reference_picture(points, camera, config);
 
   // A ray that meets the rim of a disc within the rounding of single precision may fall on either
@@ -129,7 +129,7 @@ TEST(Splat, ProjectsAPointWhereThePinholeModelSays) {
   const VirtualCamera camera = camera_at_origin(101, 101);  // f = 50.5, c = 50
   // u = 50.5 * 0.4 / 2 + 50 = 60.1, v = 50.5 * -0.2 / 2 + 50 = 44.95; radius 0.25 px.
   const ReceivedMap map = map_of({facing(0.4F, -0.2F, 2.0F)});
-  const VisibilityImage image = splat_points(map.chunks(), camera, {});
+  const VisibilityImage image = splat_points(map.chunks(0), camera, {});
   for (int v = 0; v < 101; ++v) {
     for (int u = 0; u < 101; ++u) EXPECT_EQ(image.empty(u, v), u != 60 || v != 45);
   }
@@ -153,7 +153,7 @@ TEST(Splat, LeavesNoHoleInASampledPlane) {
         Eigen::Vector3d(0.7, 0.0, -0.1), Eigen::Vector3d(0.0, 0.5, -1.0)}) {
     const VirtualCamera camera{pinhole(160, 120, 0.9),
                                look_at(eye_W, Eigen::Vector3d::Zero(), {0.0, -1.0, 0.0})};
-    const VisibilityImage image = splat_points(map.chunks(), camera, config);
+    const VisibilityImage image = splat_points(map.chunks(0), camera, config);
     const Intrinsics& k = camera.intrinsics;
     const auto plane_depth_m = [&](double u, double v) {
       const Eigen::Vector3d ray_V((u - k.cx) / k.fx, (v - k.cy) / k.fy, 1.0);
@@ -187,7 +187,7 @@ TEST(Splat, DrawsTheNearerOfTwoAndOfEqualsTheFirst) {
   const VirtualCamera camera = camera_at_origin(11, 11);
   const ReceivedMap map = map_of({facing(0.0F, 0.0F, 3.0F), facing(0.0F, 0.0F, 2.0F),
                                   facing(0.0F, 0.0F, 2.0F), facing(0.0F, 0.0F, 2.5F)});
-  const VisibilityImage image = splat_points(map.chunks(), camera, {});
+  const VisibilityImage image = splat_points(map.chunks(0), camera, {});
   EXPECT_EQ(1U, image.point(5, 5));
 }
 
@@ -197,7 +197,7 @@ TEST(Splat, CullsBackFacesAndWhatIsBehindOrNotANumber) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const auto drawn = [&](const CloudPoint& p, const SplatConfig& config = {}) {
     const ReceivedMap map = map_of({p});
-    return !splat_points(map.chunks(), camera, config).empty(5, 5);
+    return !splat_points(map.chunks(0), camera, config).empty(5, 5);
   };
   EXPECT_TRUE(drawn(facing(0.0F, 0.0F, 2.0F)));
   EXPECT_FALSE(drawn(point(0.0F, 0.0F, 2.0F, away)));
@@ -219,7 +219,7 @@ TEST(Splat, SkipsNoChunkThatReachesIntoThePicture) {
     VirtualCamera camera{pinhole(120, 90, 0.9), Pose::Identity()};
     camera.X_WV.linear() = look_down({0.0, -1.0, 0.0}, yaw_rad, 0.3);
     camera.X_WV.translation() = Eigen::Vector3d(0.2, 0.1, 2.0);
-    std::vector<PointChunk> chunks = by_slice.chunks();
+    std::vector<PointChunk> chunks = by_slice.chunks(0);
     const VisibilityImage culled = splat_points(chunks, camera, {});
     Eigen::AlignedBox3f box_W;
     for (const PointChunk& chunk : chunks) box_W.extend(chunk.box_W);
@@ -239,7 +239,7 @@ TEST(Splat, DrawsTheSameOnAnyNumberOfThreads) {
                              look_at({0.5, -2.0, -3.0}, {0.0, 0.0, 2.0}, {0.0, -1.0, 0.0})};
   const auto draw = [&](std::size_t threads) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-    return splat_points(map.chunks(), camera, {});
+    return splat_points(map.chunks(0), camera, {});
   };
   const VisibilityImage one = draw(1);
   const VisibilityImage four = draw(4);

@@ -132,11 +132,11 @@ TEST(CameraAround, PassesOverPointsThatAreNotFinite) {
     spoilt.add_slice(slice);
   }
   const auto eye_W = [](const ReceivedMap& map) -> Eigen::Vector3d {
-    return camera_at(OverviewViewpoint{}, map, {}, 640, 480, {}).X_WV.translation();
+    return camera_at(OverviewViewpoint{}, map, 0, {}, 640, 480, {}).X_WV.translation();
   };
   // Every second point is looked at; without two in a slice the others are shifted by one.
   EXPECT_LT((eye_W(clean) - eye_W(spoilt)).norm(), 0.05);
-  for (const PointChunk& chunk : spoilt.chunks()) {
+  for (const PointChunk& chunk : spoilt.chunks(0)) {
     EXPECT_TRUE(chunk.box_W.min().allFinite() && chunk.box_W.max().allFinite());
   }
 }
@@ -184,10 +184,10 @@ TEST(FollowViewpoint, SeesTheCameraAndTheMapAboutItFromBehindAndAbove) {
   for (const CloudSlice& slice : room.slices) map.add_slice(slice);
   SmoothedCamera depth_camera;
   const CameraPose& pose = room.poses[room.poses.size() / 2];
-  depth_camera.update(pose, map.up().up_W());
+  depth_camera.update(pose, map.up(0).up_W());
 
   const ViewpointConfig config;
-  const VirtualCamera camera = camera_at(FollowViewpoint{}, map, depth_camera, 640, 480, config);
+  const VirtualCamera camera = camera_at(FollowViewpoint{}, map, 0, depth_camera, 640, 480, config);
   const Eigen::Vector3d forward_W = camera.X_WV.linear().col(2);
   const Eigen::Vector3d from_camera_W = camera.X_WV.translation() - pose.X_WC.translation();
   EXPECT_LT(from_camera_W.dot(depth_camera.heading_W()), 0.0);

@@ -174,6 +174,136 @@ TEST_F(ViewerTest, DrawsTheSameFinalPicturesOfPatchesFromTheirNewestRevisionsAlo
   }
 }
 
+/// Slices and updates of the patched room, twice: in part 0, and a minute later in part 1, which
+/// lies a kilometre away along x of W. The final slice comes last.
+SyntheticMap room_in_two_parts() {
+  constexpr std::int64_t kMinute_us = 60'000'000;
+  const SyntheticMap room = make_patched_room(2.5, 0.1);
+  const std::int32_t num_patches = room.slices.back().id;
+  SyntheticMap map;
+  for (const std::int32_t part : {0, 1}) {
+    for (std::size_t i = 0; i < room.slices.size(); ++i) {
+      CloudSlice slice = room.slices[i];
+      SegmentUpdate update = room.updates[i];
+      const bool is_final = slice.kind == SliceKind::kFinal;
+      if (is_final && part == 0) continue;
+      slice.part = part;
+      slice.id += part * num_patches;
+      slice.utime += part * kMinute_us;
+      slice.revision_sum *= 2;
+      slice.X_WC.translation().x() += 1000.0 * part;
+      if (!is_final) slice.X_WP.t_WP[0] = 1000.0F * static_cast<float>(part);
+      update.slice_id = slice.id;
+      update.utime = slice.utime;
+      update.sequence += part * std::ssize(room.updates);
+      update.num_slices += part * num_patches;
+      map.slices.push_back(std::move(slice));
+      map.updates.push_back(std::move(update));
+    }
+  }
+  return map;
+}
+
+/// The correction by which a loop brings part 1 of room_in_two_parts() beside part 0.
+CloudSlice correction_that_joins(const SyntheticMap& map) {
+  CloudSlice correction = map.slices.back();
+  correction.id += 1;
+  correction.kind = SliceKind::kCorrection;
+  correction.correction = 1;
+  correction.part = 0;
+  PatchPose X_WP;
+  X_WP.t_WP[0] = 6.0F;
+  std::set<std::int32_t> patches;
+  for (const CloudSlice& slice : map.slices) {
+    if (slice.part == 1 && slice.kind == SliceKind::kPatch) patches.insert(slice.id);
+  }
+  for (const std::int32_t patch : patches) correction.motions.push_back({patch, X_WP});
+  return correction;
+}
+
+TEST_F(ViewerTest, DrawsFinalPicturesOfEachPartOfTheMapInWhateverOrderItCame) {
+  const SyntheticMap map = room_in_two_parts();
+  std::vector<Message> messages(map.slices.begin(), map.slices.end());
+  messages.insert(messages.end(), map.updates.begin(), map.updates.end());
+  const std::vector<std::string> names{"final.png",           "map_final.png",
+                                       "segments_final.png",  "final.part0.png",
+                                       "map_final.part0.png", "segments_final.part0.png"};
+  std::vector<std::string> expected;
+  std::mt19937 random(1);
+  for (int trial = 0; trial < 4; ++trial) {
+    if (trial == 2) {  // the camera's last poses change nothing
+      CameraPose pose = room_.poses.back();
+      pose.utime = map.slices.back().utime + 1'000'000;
+      messages.emplace_back(pose);
+    }
+    if (trial > 0) std::ranges::shuffle(messages, random);
+    ViewerProcess viewer = make_viewer();
+    for (const Message& message : messages) viewer.add(message, kNow_s);
+    viewer.write_finals(kNow_s, true);
+    EXPECT_TRUE(viewer.finished());
+    EXPECT_EQ(0U, captions_.back().find("part 1: ")) << captions_.back();
+    EXPECT_FALSE(exists("final.part1.png"));
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      if (trial == 0) expected.push_back(read(names[i]));
+      EXPECT_FALSE(expected[i].empty()) << names[i];
+      EXPECT_TRUE(expected[i] == read(names[i])) << names[i] << ", trial " << trial;
+      fs::remove(folder_ / names[i]);
+    }
+  }
+  // Of another part nothing is in the picture.
+  ViewerProcess alone = make_viewer();
+  for (std::size_t i = 0; i < map.slices.size(); ++i) {
+    if (map.slices[i].part != 0) continue;
+    alone.add(map.slices[i], kNow_s);
+    alone.add(map.updates[i], kNow_s);
+  }
+  alone.close();
+  EXPECT_TRUE(expected[4] == read("map_final.png"));
+  EXPECT_TRUE(expected[5] == read("segments_final.png"));
+  EXPECT_FALSE(exists("map_final.part0.png"));
+}
+
+TEST_F(ViewerTest, ShowsThePartInWhichTheCameraIs) {
+  const SyntheticMap map = room_in_two_parts();
+  ViewerProcess viewer = make_viewer();
+  for (const CloudSlice& slice : map.slices) viewer.add(slice, kNow_s);
+  viewer.draw_snapshot_now();
+  EXPECT_NE(std::string::npos, captions_.back().find(" s   part 1: ")) << captions_.back();
+  CameraPose pose = room_.poses.back();
+  pose.utime = map.slices.back().utime + 1;
+  viewer.add(pose, kNow_s);
+  viewer.draw_snapshot_now();
+  EXPECT_NE(std::string::npos, captions_.back().find(" s   part 0: ")) << captions_.back();
+}
+
+TEST_F(ViewerTest, LeavesNoFinalPicturesOfAPartThatHasBeenJoined) {
+  const SyntheticMap map = room_in_two_parts();
+  ViewerProcess viewer = make_viewer();
+  for (const CloudSlice& slice : map.slices) viewer.add(slice, kNow_s);
+  for (const SegmentUpdate& update : map.updates) viewer.add(update, kNow_s);
+  viewer.write_finals(kNow_s, false);
+  EXPECT_TRUE(exists("segments_final.part0.png"));
+  const std::string before = read("final.png");
+  viewer.add(correction_that_joins(map), kNow_s);
+  viewer.write_finals(kLater_s, false);
+  EXPECT_FALSE(exists("final.part0.png"));
+  EXPECT_FALSE(exists("map_final.part0.png"));
+  EXPECT_FALSE(exists("segments_final.part0.png"));
+  EXPECT_TRUE(before != read("final.png"));
+  EXPECT_EQ(std::string::npos, captions_.back().find("part")) << captions_.back();
+}
+
+TEST_F(ViewerTest, NamesThePartsOfASessionThatAnotherFollows) {
+  const SyntheticMap map = room_in_two_parts();
+  ViewerProcess viewer = make_viewer();
+  for (const CloudSlice& slice : map.slices) viewer.add(slice, kNow_s);
+  add_session(viewer, 1'001, 1, kNow_s);
+  viewer.write_finals(kLater_s, false);
+  EXPECT_TRUE(exists("final_1000.png"));
+  EXPECT_TRUE(exists("final_1000.part0.png"));
+  EXPECT_FALSE(exists("final.part0.png"));
+}
+
 TEST_F(ViewerTest, WaitsForTheRevisionsThatTheFinalSliceTellsOf) {
   const SyntheticMap room = make_patched_room(2.5, 0.1);
   ViewerProcess viewer = make_viewer();

@@ -64,22 +64,22 @@ VirtualCamera camera_around(std::span<const PointChunk> chunks, const Eigen::Mat
   return fit_points(points_W, kOutliers, R_WV, intrinsics, config.margin_px, all_of_these_W);
 }
 
-VirtualCamera overview(const ReceivedMap& map, const Intrinsics& intrinsics,
+VirtualCamera overview(const ReceivedMap& map, std::int32_t part, const Intrinsics& intrinsics,
                        const ViewpointConfig& config,
                        std::span<const Eigen::Vector3d> all_of_these_W) {
   const Eigen::Matrix3d R_WV =
-      look_down(map.up().up_W(), config.overview_yaw_rad, config.overview_pitch_rad);
-  return camera_around(map.chunks(), R_WV, intrinsics, config, all_of_these_W);
+      look_down(map.up(part).up_W(), config.overview_yaw_rad, config.overview_pitch_rad);
+  return camera_around(map.chunks(part), R_WV, intrinsics, config, all_of_these_W);
 }
 
-VirtualCamera follow(const ReceivedMap& map, const SmoothedCamera& depth_camera,
+VirtualCamera follow(const ReceivedMap& map, std::int32_t part, const SmoothedCamera& depth_camera,
                      const Intrinsics& intrinsics, const ViewpointConfig& config,
                      std::span<const Eigen::Vector3d> all_of_these_W) {
-  const Eigen::Vector3d up_W = map.up().up_W();
+  const Eigen::Vector3d up_W = map.up(part).up_W();
   const Eigen::Vector3d forward_W = std::cos(config.follow_pitch_rad) * depth_camera.heading_W() -
                                     std::sin(config.follow_pitch_rad) * up_W;
   const Eigen::Matrix3d R_WV = look_at(Eigen::Vector3d::Zero(), forward_W, up_W).linear();
-  std::vector<Eigen::Vector3d> points_W = sample(map.chunks(), forward_W);
+  std::vector<Eigen::Vector3d> points_W = sample(map.chunks(part), forward_W);
   std::erase_if(points_W, [&](const Eigen::Vector3d& p_W) {
     return (p_W - depth_camera.position_W()).norm() > config.follow_radius_m;
   });
@@ -130,18 +130,18 @@ std::optional<VirtualCamera> close_up(std::span<const PointChunk> chunks,
   return fit_points(points_W, 0.0, R_WV, intrinsics, kSurroundings * intrinsics.height);
 }
 
-VirtualCamera camera_at(const Viewpoint& viewpoint, const ReceivedMap& map,
+VirtualCamera camera_at(const Viewpoint& viewpoint, const ReceivedMap& map, std::int32_t part,
                         const SmoothedCamera& depth_camera, int width_px, int height_px,
                         const ViewpointConfig& config,
                         std::span<const Eigen::Vector3d> all_of_these_W) {
   const Intrinsics intrinsics = pinhole(width_px, height_px, config.field_of_view_rad);
   if (const auto* fixed = std::get_if<FixedViewpoint>(&viewpoint)) {
-    return {intrinsics, look_at(fixed->eye_W, fixed->target_W, map.up().up_W())};
+    return {intrinsics, look_at(fixed->eye_W, fixed->target_W, map.up(part).up_W())};
   }
   if (std::holds_alternative<FollowViewpoint>(viewpoint) && depth_camera.has_pose()) {
-    return follow(map, depth_camera, intrinsics, config, all_of_these_W);
+    return follow(map, part, depth_camera, intrinsics, config, all_of_these_W);
   }
-  return overview(map, intrinsics, config, all_of_these_W);
+  return overview(map, part, intrinsics, config, all_of_these_W);
 }
 
 }  // namespace kintsugi::viewer

@@ -49,10 +49,10 @@ std::optional<VirtualCamera> close_up(std::span<const PointChunk> chunks,
                                       const std::set<std::uint32_t>& segments,
                                       const Eigen::Matrix3d& R_WV, const Intrinsics& intrinsics);
 
-/// The virtual camera at a viewpoint; the overview instead of following a camera without a pose. A
-/// few outliers of the map may lie beside the picture, and at a fixed viewpoint anything; but not
-/// `all_of_these_W`, metres: the frustum of the depth camera.
-VirtualCamera camera_at(const Viewpoint& viewpoint, const ReceivedMap& map,
+/// The virtual camera at a viewpoint of one part of the map; the overview instead of following a
+/// camera without a pose. A few outliers of the map may lie beside the picture, and at a fixed
+/// viewpoint anything; but not `all_of_these_W`, metres: the frustum of the depth camera.
+VirtualCamera camera_at(const Viewpoint& viewpoint, const ReceivedMap& map, std::int32_t part,
                         const SmoothedCamera& depth_camera, int width_px, int height_px,
                         const ViewpointConfig& config,
                         std::span<const Eigen::Vector3d> all_of_these_W = {});

@@ -43,7 +43,7 @@ Layout layout_of(int width, int height, bool has_close_up) {
 }
 
 bool has_highlighted(const Subject& subject) {
-  const std::vector<PointChunk> chunks = subject.map.chunks();
+  const std::vector<PointChunk> chunks = subject.map.chunks(subject.part);
   return !subject.highlight.empty() && std::ranges::any_of(chunks, [&](const PointChunk& chunk) {
     return std::ranges::any_of(chunk.labels,
                                [&](std::uint32_t id) { return subject.highlight.contains(id); });
@@ -103,8 +103,8 @@ std::vector<MapPicture> MapRenderer::map_pictures(const Subject& subject, cv::Si
     all_of_these_W.assign(corners_W.begin(), corners_W.end());
   }
   const VirtualCamera camera =
-      camera_at(subject.viewpoint, subject.map, subject.depth_camera, size.width, size.height,
-                config_.viewpoint, all_of_these_W);
+      camera_at(subject.viewpoint, subject.map, subject.part, subject.depth_camera, size.width,
+                size.height, config_.viewpoint, all_of_these_W);
   return pictures(subject, camera, colorings);
 }
 
@@ -113,7 +113,8 @@ std::vector<MapPicture> MapRenderer::close_ups(const Subject& subject, const Eig
                                                const std::vector<Coloring>& colorings) const {
   const Intrinsics intrinsics =
       pinhole(size.width, size.height, config_.viewpoint.field_of_view_rad);
-  const auto camera = close_up(subject.map.chunks(), subject.highlight, R_WV, intrinsics);
+  const auto camera =
+      close_up(subject.map.chunks(subject.part), subject.highlight, R_WV, intrinsics);
   if (!camera) return {};
   std::vector<MapPicture> drawn = pictures(subject, *camera, colorings);
   for (MapPicture& picture : drawn) {
@@ -125,7 +126,7 @@ std::vector<MapPicture> MapRenderer::close_ups(const Subject& subject, const Eig
 
 std::vector<MapPicture> MapRenderer::pictures(const Subject& subject, const VirtualCamera& camera,
                                               const std::vector<Coloring>& colorings) const {
-  const Panel panel(subject.map.chunks(), camera, config_.splat, config_.supersampling,
+  const Panel panel(subject.map.chunks(subject.part), camera, config_.splat, config_.supersampling,
                     subject.highlight);
   std::vector<MapPicture> drawn;
   for (const Coloring coloring : colorings) {
@@ -154,22 +155,27 @@ cv::Mat3b MapRenderer::finish(const MapPicture& picture, const CameraTrack& trac
   return image;
 }
 
-std::string caption(const ReceivedMap& map) {
+std::string caption(const ReceivedMap& map, std::int32_t part) {
   const double time_s = 1e-6 * static_cast<double>(map.utime() - map.first_utime());
-  std::string text = format("%.1f s   ", time_s) + final_caption(map);
-  const MapCounts& counts = map.counts();
-  if (counts.points_in_volume > 0) {
-    text += format("   %.0f %% may change", 100.0 * static_cast<double>(counts.points_in_volume) /
-                                                static_cast<double>(counts.points));
+  std::string text = format("%.1f s   ", time_s) + final_caption(map, part);
+  const PointCounts points = map.points(part);
+  if (points.in_volume > 0) {
+    text += format("   %.0f %% may change", 100.0 * static_cast<double>(points.in_volume) /
+                                                static_cast<double>(points.shown));
   }
   return text;
 }
 
-std::string final_caption(const ReceivedMap& map) {
+std::string final_caption(const ReceivedMap& map, std::int32_t part) {
   const MapCounts& counts = map.counts();
-  return with_thousands(counts.points) + " points   " + with_thousands(counts.segments) +
-         " segments   " + with_thousands(counts.slices) + " slices   lag " +
-         std::to_string(map.lag_slices());
+  const std::size_t num_parts = map.parts().size();
+  std::string text = with_thousands(map.points(part).shown) + " points   ";
+  if (num_parts > 1) {
+    text = "part " + std::to_string(part) + ": " + text + "all " + std::to_string(num_parts) +
+           " parts: ";
+  }
+  return text + with_thousands(counts.segments) + " segments   " + with_thousands(counts.slices) +
+         " slices   lag " + std::to_string(map.lag_slices());
 }
 
 }  // namespace kintsugi::viewer

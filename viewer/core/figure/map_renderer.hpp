@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -21,6 +22,7 @@ namespace kintsugi::viewer {
 /// What a picture shows, and from where. Refers to the map and the camera.
 struct Subject {
   const ReceivedMap& map;
+  std::int32_t part;  ///< of the map; nothing else of it is shown
   CameraTrack track;
   const SmoothedCamera& depth_camera;
   Viewpoint viewpoint;
@@ -58,8 +60,8 @@ class MapRenderer {
 
   const Config& config() const { return config_; }
 
-  /// The whole map with the camera's path, left in true colour, right in the colours of the
-  /// segments; a caption. When segments are highlighted, a close-up of them is below.
+  /// The whole part of the map with the camera's path, left in true colour, right in the colours of
+  /// the segments; a caption. When segments are highlighted, a close-up of them is below.
   cv::Mat3b draw_figure(const Subject& subject, const std::string& caption) const;
 
   /// The map alone in one coloring, filling the picture.
@@ -86,10 +88,11 @@ class MapRenderer {
   Config config_;
 };
 
-/// Caption of a picture of the run: map time, points, segments, slices, lag.
-std::string caption(const ReceivedMap& map);
+/// Caption of a picture of the run: map time, points, segments, slices, lag. Of a map of several
+/// parts the points are those of `part`, all else is of the whole map.
+std::string caption(const ReceivedMap& map, std::int32_t part);
 
 /// Caption of a final picture: without the time, which depends on the poses received.
-std::string final_caption(const ReceivedMap& map);
+std::string final_caption(const ReceivedMap& map, std::int32_t part);
 
 }  // namespace kintsugi::viewer

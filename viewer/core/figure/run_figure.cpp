@@ -50,7 +50,8 @@ cv::Mat3b RunFigure::draw(const Subject& subject, const CameraView* view,
   }
   const MapRenderer::Config& config = renderer_.config();
   const Layout layout = layout_of(config.width_px, config.height_px, *view);
-  const Origin origin{subject.map.map_session(), subject.highlight, layout.maps[0].size()};
+  const Origin origin{subject.map.map_session(), subject.part, subject.highlight,
+                      layout.maps[0].size()};
   has_drawn_map_ = map == Map::kNew || !may_be_used(origin, subject);
   if (has_drawn_map_) {
     draw_maps(subject, origin.size);
@@ -59,8 +60,8 @@ cv::Mat3b RunFigure::draw(const Subject& subject, const CameraView* view,
 
   cv::Mat3b figure(config.height_px, config.width_px, palette::kPanelGap);
   figure.colRange(0, layout.legend.br().x).setTo(cv::Scalar(palette::kCaptionBar));
-  draw_camera_panel(subject.map.chunks(), *view, layout.camera.size(), subject.highlight,
-                    {config.label_ids, config.splat})
+  draw_camera_panel(subject.map.chunks(subject.part), *view, layout.camera.size(),
+                    subject.highlight, {config.label_ids, config.splat})
       .copyTo(figure(layout.camera));
   draw_caption(figure, layout.caption, caption);
   draw_caption(figure, layout.legend, kLegend);

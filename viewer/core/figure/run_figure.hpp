@@ -39,6 +39,7 @@ class RunFigure {
   /// Of the map pictures that are kept.
   struct Origin {
     std::int64_t map_session = 0;
+    std::int32_t part = 0;
     Highlight highlight;
     cv::Size size;
     bool operator==(const Origin&) const = default;

@@ -28,6 +28,11 @@ class ReceivedPoses {
   /// False when the pose is not used: camera lost or starting, or not newer than the last pose.
   bool add(const CameraPose& pose);
 
+  /// Device time of the newest pose; nothing: there is none.
+  std::optional<std::int64_t> newest_utime() const {
+    return newest_ ? std::optional(newest_->utime) : std::nullopt;
+  }
+
   /// The poses received, with those of `known` (in order of time) that fall into gaps.
   CameraTrack track(const std::vector<TimedPose>& known) const;
 

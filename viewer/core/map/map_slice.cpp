@@ -13,12 +13,13 @@ MapSlice::MapSlice(CloudSlice slice, const PatchPlace& place)
       in_volume_(slice.in_volume),
       resolution_m_(slice.resolution_m),
       X_WC_(slice.X_WC),
+      part_of_camera_(slice.part),
       is_patch_(slice.kind == SliceKind::kPatch),
       points_W_(std::move(slice.points_W)),
       labels_(points_W_.size(), kNoSegment),
       label_updates_(points_W_.size(), 0U),
       chunk_boxes_W_(chunk_boxes_of(points_W_)) {
-  if (is_patch_) put(place);
+  put(place);
 }
 
 void MapSlice::move_to(const PatchPlace& place) {

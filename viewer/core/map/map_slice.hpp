@@ -16,8 +16,8 @@ namespace kintsugi::viewer {
 /// do not depend on the order in which updates arrive.
 class MapSlice {
  public:
-  /// `place`: of a patch, where its frame P is (PatchMotions).
-  explicit MapSlice(CloudSlice slice, const PatchPlace& place = {});
+  /// `place`: where its points are (PatchMotions::place_of()).
+  MapSlice(CloudSlice slice, const PatchPlace& place);
 
   /// Moves the points of a patch, unless it is where a newer correction has put it. The same in
   /// every order of corrections.
@@ -26,7 +26,11 @@ class MapSlice {
   std::int64_t utime() const { return utime_; }
   std::int32_t id() const { return id_; }
   std::int32_t revision() const { return revision_; }
+  /// The part of the map in which its points are by now.
+  std::int32_t part() const { return place_.part; }
+  /// Of the camera, in the part that the slice was sent for: a correction does not move it.
   const Pose& X_WC() const { return X_WC_; }
+  std::int32_t part_of_camera() const { return part_of_camera_; }
   /// It may still change, as long as the mapper observes it.
   bool in_volume() const { return in_volume_; }
   const std::vector<CloudPoint>& points_W() const { return points_W_; }
@@ -58,6 +62,7 @@ class MapSlice {
   bool in_volume_;
   float resolution_m_;
   Pose X_WC_;
+  std::int32_t part_of_camera_;
   bool is_patch_;
   PatchPlace place_;
   std::vector<CloudPoint> points_P_;  // as received; empty where P is W

@@ -39,9 +39,9 @@ void ReceivedMap::move_patches(const CloudSlice& correction) {
   for (const auto& [id, place] : motions_.learn(correction)) {
     const auto found = slices_.find(id);
     if (found == slices_.end()) continue;
-    up_.remove(found->second.shown().points_W());
+    note_hidden(found->second.shown());
     found->second.for_each([&place = place](MapSlice& slice) { slice.move_to(place); });
-    up_.add(found->second.shown().points_W());
+    note_shown(found->second.shown());
   }
 }
 
@@ -60,15 +60,19 @@ void ReceivedMap::advance(SliceRevisions& slice) {
 void ReceivedMap::note_shown(const MapSlice& slice) {
   const auto num_points = static_cast<std::int64_t>(slice.points_W().size());
   counts_.points += num_points;
-  if (slice.in_volume()) counts_.points_in_volume += num_points;
-  up_.add(slice.points_W());
+  Part& part = parts_[slice.part()];
+  part.points.shown += num_points;
+  if (slice.in_volume()) part.points.in_volume += num_points;
+  part.up.add(slice.points_W());
 }
 
 void ReceivedMap::note_hidden(const MapSlice& slice) {
   const auto num_points = static_cast<std::int64_t>(slice.points_W().size());
   counts_.points -= num_points;
-  if (slice.in_volume()) counts_.points_in_volume -= num_points;
-  up_.remove(slice.points_W());
+  Part& part = parts_.at(slice.part());
+  part.points.shown -= num_points;
+  if (slice.in_volume()) part.points.in_volume -= num_points;
+  part.up.remove(slice.points_W());
 }
 
 bool ReceivedMap::accept_segmenter(std::int64_t session) {
@@ -199,15 +203,22 @@ bool ReceivedMap::apply_run(MapSlice& slice, const NumberedRun& run) {
 }
 
 bool ReceivedMap::add_pose(const CameraPose& pose) {
-  if (!poses_.add(pose)) return false;
+  if (!poses_[pose.part].add(pose)) return false;
   note_time(pose.utime);
   return true;
 }
 
-std::vector<TimedPose> ReceivedMap::slice_poses() const {
+CameraTrack ReceivedMap::received_track(std::int32_t part) const {
+  const auto found = poses_.find(part);
+  if (found == poses_.end()) return slice_track(part);
+  return found->second.track(slice_poses(part));
+}
+
+std::vector<TimedPose> ReceivedMap::slice_poses(std::int32_t part) const {
   std::vector<TimedPose> poses;
   poses.reserve(slices_.size());
   for (const auto& [id, slice] : slices_) {
+    if (slice.newest().part_of_camera() != part) continue;
     poses.push_back({slice.newest().utime(), slice.newest().X_WC()});
   }
   std::ranges::stable_sort(poses, {}, &TimedPose::utime);
@@ -242,10 +253,50 @@ const MapSlice* ReceivedMap::slice(std::int32_t id) const {
   return found == slices_.end() ? nullptr : &found->second.shown();
 }
 
-std::vector<PointChunk> ReceivedMap::chunks() const {
+std::set<std::int32_t> ReceivedMap::parts() const {
+  std::set<std::int32_t> parts;
+  for (const auto& [number, part] : parts_) {
+    if (part.points.shown > 0) parts.insert(number);
+  }
+  return parts;
+}
+
+std::int32_t ReceivedMap::camera_part() const {
+  const auto newest = std::ranges::max_element(
+      poses_, {}, [](const auto& of_part) { return of_part.second.newest_utime(); });
+  if (newest != poses_.end() && has_points(newest->first)) return newest->first;
+  return newest_part();
+}
+
+std::int32_t ReceivedMap::newest_part() const {
+  std::int32_t part = 0;
+  std::optional<std::int64_t> newest_utime;
+  for (const auto& [id, slice] : slices_) {
+    const MapSlice& shown = slice.shown();
+    if (shown.points_W().empty() || shown.utime() < newest_utime) continue;
+    newest_utime = shown.utime();
+    part = shown.part();
+  }
+  return part;
+}
+
+std::vector<PointChunk> ReceivedMap::chunks(std::int32_t part) const {
   std::vector<PointChunk> chunks;
-  for (const auto& [id, slice] : slices_) slice.shown().append_chunks(chunks);
+  for (const auto& [id, slice] : slices_) {
+    if (slice.shown().part() == part) slice.shown().append_chunks(chunks);
+  }
   return chunks;
+}
+
+PointCounts ReceivedMap::points(std::int32_t part) const {
+  const auto found = parts_.find(part);
+  return found == parts_.end() ? PointCounts{} : found->second.points;
+}
+
+const UpDirection& ReceivedMap::up(std::int32_t part) const {
+  static const UpDirection kOfNothing;
+  const auto found = parts_.find(part);
+  return found == parts_.end() ? kOfNothing : found->second.up;
 }
 
 }  // namespace kintsugi::viewer

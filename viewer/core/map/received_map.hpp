@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include "lcmtypes/messages.hpp"
@@ -17,13 +18,18 @@
 
 namespace kintsugi::viewer {
 
+/// Points that are shown now.
+struct PointCounts {
+  std::int64_t shown = 0;
+  std::int64_t in_volume = 0;  ///< of these: may still change
+};
+
 /// What a ReceivedMap holds now, and what it has been given since it began.
 struct MapCounts {
-  std::int64_t slices = 0;            ///< held now
-  std::int64_t points = 0;            ///< shown now
-  std::int64_t points_in_volume = 0;  ///< of these: may still change
-  std::int64_t labelled_slices = 0;   ///< held now, their newest revision with its update applied
-  std::int64_t segments = 0;          ///< in the whole map, according to the newest update
+  std::int64_t slices = 0;           ///< held now
+  std::int64_t points = 0;           ///< shown now
+  std::int64_t labelled_slices = 0;  ///< held now, their newest revision with its update applied
+  std::int64_t segments = 0;         ///< in the whole map, according to the newest update
 
   std::int64_t updates = 0;           ///< applied, or kept until their slice arrives
   std::int64_t repeated_updates = 0;  ///< said nothing new
@@ -42,6 +48,10 @@ struct MapCounts {
 /// Labels for a revision that has not arrived are kept until it does; labels for one that has been
 /// replaced are ignored. The full state that a segmenter sends to late joiners changes nothing in a
 /// map that is up to date. The cost of a message does not grow with the map.
+///
+/// The map may have several parts (CloudSlice::part), far apart in W: a picture shows one of them.
+/// A correction brings patches from one part into another. Camera poses stay in the part in which
+/// they were received: where they are in another part is not known.
 ///
 /// A segmenter session with a larger number replaces the one before, after a restart. The old
 /// labels remain visible until the new ones arrive, slice by slice, but slices with old labels
@@ -84,17 +94,32 @@ class ReceivedMap {
 
   const MapSlice* slice(std::int32_t id) const;  ///< as it is shown; nullptr: not here
 
-  std::vector<PointChunk> chunks() const;  ///< of all slices as they are shown, by slice id
+  /// The parts that have points.
+  std::set<std::int32_t> parts() const;
+  /// The part in which the camera is, according to the newest pose; as long as that part has no
+  /// points, or no pose is known, newest_part().
+  std::int32_t camera_part() const;
+  /// The part of the newest slice with points, the same in every viewer with all slices; 0 when no
+  /// slice has points.
+  std::int32_t newest_part() const;
 
-  const UpDirection& up() const { return up_; }
-
+  // Of one part of the map:
+  std::vector<PointChunk> chunks(std::int32_t part) const;  ///< as they are shown, by slice id
+  PointCounts points(std::int32_t part) const;
+  const UpDirection& up(std::int32_t part) const;
   /// The path through the poses received, and those that came with slices in gaps between them.
-  CameraTrack received_track() const { return poses_.track(slice_poses()); }
+  CameraTrack received_track(std::int32_t part) const;
   /// The path through the poses that came with slices: the same in every viewer with all slices.
-  CameraTrack slice_track() const { return track_through(slice_poses()); }
+  CameraTrack slice_track(std::int32_t part) const { return track_through(slice_poses(part)); }
 
  private:
   static constexpr std::size_t kMaxPendingBytes = std::size_t{1} << 29U;  ///< 130 million labels
+
+  /// What is shown of one part.
+  struct Part {
+    PointCounts points;
+    UpDirection up;
+  };
 
   /// What the final slice tells of the whole map.
   struct Announcement {
@@ -115,9 +140,10 @@ class ReceivedMap {
   void advance(SliceRevisions& slice);
   void note_shown(const MapSlice& slice);
   void note_hidden(const MapSlice& slice);
+  bool has_points(std::int32_t part) const { return points(part).shown > 0; }
   void note_final(const CloudSlice& slice);
   void move_patches(const CloudSlice& correction);
-  std::vector<TimedPose> slice_poses() const;
+  std::vector<TimedPose> slice_poses(std::int32_t part) const;
 
   std::int64_t map_session_;
   std::int64_t segmenter_session_ = 0;
@@ -132,8 +158,8 @@ class ReceivedMap {
   MapCounts counts_;
   std::optional<std::int64_t> utime_;
   std::optional<std::int64_t> first_utime_;
-  UpDirection up_;
-  ReceivedPoses poses_;
+  std::map<std::int32_t, Part> parts_;           // by number
+  std::map<std::int32_t, ReceivedPoses> poses_;  // by part
 };
 
 }  // namespace kintsugi::viewer

@@ -1,0 +1,86 @@
+#include <gtest/gtest.h>
+
+#include "viewer/session/map_session.hpp"
+
+namespace kintsugi::viewer {
+namespace {
+
+constexpr std::int64_t kSession = 1'000;
+constexpr double kPartDistance_m = 1000.0;
+
+Pose pose_in_part(std::int32_t part) {
+  Pose X_WC = Pose::Identity();
+  X_WC.translation().x() = kPartDistance_m * part;
+  return X_WC;
+}
+
+CameraPose camera_pose(std::int32_t part, std::int64_t utime) {
+  CameraPose pose;
+  pose.utime = utime;
+  pose.session = kSession;
+  pose.state = TrackingState::kTracking;
+  pose.X_WC = pose_in_part(part);
+  pose.part = part;
+  return pose;
+}
+
+CameraView camera_view(std::int32_t part, std::int64_t utime) {
+  CameraView view;
+  view.utime = utime;
+  view.session = kSession;
+  view.state = TrackingState::kTracking;
+  view.X_WC = pose_in_part(part);
+  return view;
+}
+
+CloudSlice patch(std::int32_t id, std::int32_t part, std::int64_t utime) {
+  CloudSlice slice;
+  slice.session = kSession;
+  slice.id = id;
+  slice.kind = SliceKind::kPatch;
+  slice.part = part;
+  slice.utime = utime;
+  slice.resolution_m = 0.01F;
+  slice.X_WC = pose_in_part(part);
+  slice.points_W.resize(1);
+  return slice;
+}
+
+void expect_paths_apart(const MapSession& session) {
+  for (const std::int32_t part : {0, 1}) {
+    const CameraTrack track = session.map().received_track(part);
+    for (const Eigen::Vector3f& p_W : track.path_W) {
+      EXPECT_EQ(p_W.x(), static_cast<float>(kPartDistance_m) * static_cast<float>(part));
+    }
+  }
+}
+
+TEST(MapSession, FollowsTheCameraInEachPartOfTheMap) {
+  MapSession session(kSession, 0.0);
+  session.use(patch(0, 0, 1'000), 0.0);
+  session.use(camera_pose(0, 2'000));
+  EXPECT_FALSE(session.depth_camera(1).has_pose());
+  session.use(camera_pose(1, 3'000));
+  EXPECT_EQ(session.depth_camera(0).position_W().x(), 0.0) << "it did not go there";
+  EXPECT_EQ(session.depth_camera(1).position_W().x(), kPartDistance_m);
+  session.use(patch(1, 2, 4'000), 0.0);
+  EXPECT_EQ(session.depth_camera(2).position_W().x(), 2 * kPartDistance_m) << "as the slice says";
+}
+
+TEST(MapSession, AViewIsInThePartOfTheNewestPose) {
+  MapSession session(kSession, 0.0);
+  session.use(patch(0, 0, 1'000), 0.0);
+  session.use(camera_view(0, 2'000));
+  EXPECT_EQ(session.map().received_track(0).path_W.size(), 2U) << "in place of a pose";
+  session.use(camera_pose(1, 3'000));
+  session.use(camera_view(1, 3'000));  // there is nothing in part 1 yet
+  EXPECT_EQ(session.map().received_track(1).path_W.size(), 1U) << "it is the same pose";
+  session.use(camera_view(1, 4'000));
+  EXPECT_EQ(session.view()->utime, 4'000);
+  session.use(camera_pose(0, 6'000));
+  session.use(camera_view(1, 5'000));  // late
+  expect_paths_apart(session);
+}
+
+}  // namespace
+}  // namespace kintsugi::viewer
