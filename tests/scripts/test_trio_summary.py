@@ -44,6 +44,13 @@ class Summary(FolderTest):
         self.assertRegex(self.said, r"(?s)segments\.ply .*part1\.ply +the same of part 1.*part2\.ply .*part10\.ply ")
         self.assertIn(self.folder.file("trajectory.part1.txt") + " ", self.said)
 
+    def test_counts_part_0_once_when_its_pictures_have_its_number(self):
+        for name in ("segments.ply", "segments.part1.ply", "final.png", "final.part0.png"):
+            (self.folder.path / name).touch()
+        show_summary(self.folder, [])
+        self.assertIn("the map has 2 parts", self.said)
+        self.assertRegex(self.said, r"final\.part0\.png +the same of part 0")
+
     def test_says_nothing_of_parts_when_there_is_one(self):
         (self.folder.path / "segments.ply").touch()
         show_summary(self.folder, [])

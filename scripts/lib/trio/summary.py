@@ -25,10 +25,10 @@ def show_summary(folder, processes):
     cpu = ", ".join(f"{p.name} {p.cpu_s:.2f} s" for p in processes if p.cpu_s is not None)
     memory = ", ".join(f"{p.name} {p.peak_memory_MB} MB" for p in processes if p.peak_memory_MB is not None)
     write(STDOUT, f"  CPU: {cpu}\n  memory at most: {memory}\n")
-    parts = later_parts(folder)
+    parts = named_parts(folder)
     if parts:
-        say(f"the camera stayed lost, so the map has {len(parts) + 1} parts, each in a frame W of its own; "
-            "final.png shows the last")
+        say(f"the camera stayed lost, so the map has {len({0, *parts})} parts, and nobody knows where they are relative "
+            "to each other; final.png shows the last")
     say("written:")
     for name, text in WRITTEN_FILES:
         show_file(folder, name, text)
@@ -44,8 +44,9 @@ def show_file(folder, name, text):
         write(STDOUT, f"  {folder.file(name):<28} {text}\n")
 
 
-def later_parts(folder):
-    """The numbers of the parts of the map after part 0, whose files have plain names."""
+def named_parts(folder):
+    """The parts of the map that have files with their number in the name: those after part 0, and part 0 where the
+    plain names of the pictures belong to a later one."""
     found = (re.search(r"\.part(\d+)\.", file.name) for file in folder.path.glob("*.part*.*"))
     return sorted({int(match[1]) for match in found if match})
 
