@@ -66,7 +66,7 @@ enum class SliceKind : std::int8_t {
 /// poses are absolute: PatchMotions (patch_motions.hpp) has the rule which one counts.
 struct CloudSlice {
   std::int64_t utime = 0;    ///< device time of the frame at which it left or was so, microseconds
-  std::int64_t session = 0;  ///< one part of one run of a mapper; > 0
+  std::int64_t session = 0;  ///< one run of a mapper; > 0
   std::string map_name;      ///< distinguishes mappers on one bus
   /// Sequence number of its first chunk, and how many chunks it has. Set by the receiver, not by
   /// the sender; num_chunks is 0 when the slice was not received from a stream.
@@ -86,8 +86,7 @@ struct CloudSlice {
   /// nobody knows where two parts are relative to each other: they lie apart in W, farther than any
   /// map is large. This is the part in which the surface is by now; of a correction that in which
   /// its patches are after it. Joined parts have the number of the first of them.
-  std::int32_t part = 0;      ///< from 0, < session
-  bool part_follows = false;  ///< of the final slice: the run goes on with another part
+  std::int32_t part = 0;
   float resolution_m = 0.0F;  ///< voxel size, > 0
   Pose X_WC = Pose::Identity();
   /// Of a patch: the pose of its frame P as of correction number `correction`. Of a correction:
@@ -133,6 +132,7 @@ struct CameraView {
   std::int64_t frame_index = 0;
   TrackingState state = TrackingState::kStarting;
   Pose X_WC = Pose::Identity();  ///< when lost, the last known pose
+  std::int32_t part = 0;         ///< as CameraPose::part
   Intrinsics intrinsics;         ///< of the camera's depth image, without distortion
   /// `depth_mm` has every depth_step-th pixel of the depth image along u and v: (i, j) is the pixel
   /// u = i * depth_step + depth_step / 2, v = j * depth_step + depth_step / 2, in integers.

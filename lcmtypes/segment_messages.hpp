@@ -111,7 +111,7 @@ struct SegmentUpdate {
   std::string map_name;
   std::int32_t slice_id = 0;
   std::int32_t slice_revision = 0;
-  /// The final slice and all earlier ones are in the map, and no other part of the run follows.
+  /// The final slice and all earlier ones are in the map.
   bool is_final = false;
   std::int32_t num_slices = 0;        ///< in the map after this update
   std::int64_t num_points = 0;        ///< in the map after this update

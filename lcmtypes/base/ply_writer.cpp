@@ -47,18 +47,23 @@ PlyWriter::PlyWriter(const std::filesystem::path& path, std::vector<PlyElement> 
   }
   const bool counts_are_known =
       std::ranges::all_of(elements, [](const PlyElement& e) { return e.count.has_value(); });
+  std::vector<std::int64_t> known_counts;
   for (PlyElement& element : elements) {
+    known_counts.push_back(element.count.value_or(0));
     List& list = lists_.emplace_back(List{std::move(element), 0, 0, nullptr});
-    if (counts_are_known) {
-      continue;
-    }
+    if (counts_are_known) continue;
     list.temporary = std::make_unique<AtomicFile>(temporary_name(path, list.element.name));
     list.temporary->stream();  // fails now when the folder cannot be written to
   }
-  if (counts_are_known) write_header();
+  if (counts_are_known) write_header(file_, known_counts);
 }
 
 PlyWriter::~PlyWriter() = default;
+
+/// Then the records are in the file itself; or it is complete.
+bool PlyWriter::counts_are_known() const {
+  return std::ranges::all_of(lists_, [](const List& list) { return list.temporary == nullptr; });
+}
 
 void PlyWriter::write_record(std::size_t element, const char* record, std::size_t size) {
   List& list = lists_.at(element);
@@ -68,49 +73,74 @@ void PlyWriter::write_record(std::size_t element, const char* record, std::size_
   list.record_bytes = size;
 }
 
-void PlyWriter::write_header() {
-  std::ostream& out = file_.stream();
+void PlyWriter::write_header(AtomicFile& file, const std::vector<std::int64_t>& counts) const {
+  std::ostream& out = file.stream();
   out << "ply\nformat binary_little_endian 1.0\n";
   for (const std::string& comment : comments_) out << "comment " << comment << '\n';
-  for (const List& list : lists_) {
-    const std::int64_t count = list.element.count.value_or(list.count);
-    out << "element " << list.element.name << ' ' << count << '\n';
-    for (const std::string& property : list.element.properties) {
+  for (std::size_t i = 0; i < lists_.size(); ++i) {
+    out << "element " << lists_[i].element.name << ' ' << counts[i] << '\n';
+    for (const std::string& property : lists_[i].element.properties) {
       out << "property " << property << '\n';
     }
   }
   out << "end_header\n";
 }
 
-void PlyWriter::commit(const Rewrite& rewrite) {
+std::vector<std::int64_t> PlyWriter::commit(const Rewrite& rewrite) {
+  std::vector<std::int64_t> counts;
   for (const List& list : lists_) {
+    counts.push_back(list.count);
     if (list.count == list.element.count.value_or(list.count)) continue;
     throw std::logic_error("PlyWriter: " + std::to_string(list.count) + " records of element " +
                            list.element.name + " were appended, expected " +
                            std::to_string(*list.element.count));
   }
-  if (std::ranges::any_of(lists_, [](const List& list) { return list.temporary != nullptr; })) {
-    for (std::size_t i = 0; rewrite && i < lists_.size(); ++i) rewrite_records(i, rewrite);
-    write_header();
-    for (List& list : lists_) {
-      list.temporary->stream().flush();
-      copy(list.temporary->partial_path(), std::max<std::size_t>(list.record_bytes, 1),
-           file_.stream(), [](std::span<char> bytes) { return bytes; });
-      list.temporary.reset();
-    }
+  if (!counts_are_known()) {
+    counts = write_all(file_, path_, rewrite);
+    for (List& list : lists_) list.temporary.reset();
   }
   file_.commit();
+  return counts;
 }
 
-/// The header comes before the records and has their number: those that stay are written to another
-/// temporary file first.
-void PlyWriter::rewrite_records(std::size_t element, const Rewrite& rewrite) {
-  List& list = lists_[element];
-  list.temporary->stream().flush();
-  auto kept = std::make_unique<AtomicFile>(temporary_name(path_, list.element.name + ".kept"));
+std::vector<std::int64_t> PlyWriter::write_copy(const std::filesystem::path& path,
+                                                const Rewrite& rewrite) {
+  if (counts_are_known()) throw std::logic_error("PlyWriter: the records are in the file already");
+  AtomicFile file(path);
+  std::vector<std::int64_t> counts = write_all(file, path, rewrite);
+  file.commit();
+  return counts;
+}
+
+/// The header comes before the records and has their number: where some are dropped, those that
+/// stay are written to another temporary file first.
+std::vector<std::int64_t> PlyWriter::write_all(AtomicFile& file, const std::filesystem::path& path,
+                                               const Rewrite& rewrite) {
+  std::vector<std::int64_t> counts;
+  std::vector<std::unique_ptr<AtomicFile>> kept;
+  for (std::size_t i = 0; i < lists_.size(); ++i) {
+    List& list = lists_[i];
+    list.temporary->stream().flush();
+    counts.push_back(list.count);
+    if (!rewrite) continue;
+    kept.push_back(std::make_unique<AtomicFile>(temporary_name(path, list.element.name + ".kept")));
+    counts.back() = write_kept(i, rewrite, *kept.back());
+    kept.back()->stream().flush();
+  }
+  write_header(file, counts);
+  for (std::size_t i = 0; i < lists_.size(); ++i) {
+    const AtomicFile& from = rewrite ? *kept[i] : *lists_[i].temporary;
+    copy(from.partial_path(), std::max<std::size_t>(lists_[i].record_bytes, 1), file.stream(),
+         [](std::span<char> bytes) { return bytes; });
+  }
+  return counts;
+}
+
+std::int64_t PlyWriter::write_kept(std::size_t element, const Rewrite& rewrite, AtomicFile& kept) {
+  const List& list = lists_[element];
   std::int64_t record = 0;
   std::int64_t num_kept = 0;
-  copy(list.temporary->partial_path(), std::max<std::size_t>(list.record_bytes, 1), kept->stream(),
+  copy(list.temporary->partial_path(), std::max<std::size_t>(list.record_bytes, 1), kept.stream(),
        [&](std::span<char> bytes) {
          std::size_t end = 0;
          for (std::size_t at = 0; at < bytes.size(); at += list.record_bytes) {
@@ -122,8 +152,7 @@ void PlyWriter::rewrite_records(std::size_t element, const Rewrite& rewrite) {
          }
          return bytes.first(end);
        });
-  list.temporary = std::move(kept);
-  list.count = num_kept;
+  return num_kept;
 }
 
 }  // namespace kintsugi

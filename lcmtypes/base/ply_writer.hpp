@@ -53,8 +53,7 @@ class PlyWriter {
     write_record(element, record.data(), record.size());
   }
 
-  /// Records of element number `element`: those that were appended; after commit(), those in the
-  /// file.
+  /// Records of element number `element` that were appended.
   std::int64_t count(std::size_t element) const { return lists_.at(element).count; }
 
   /// Changes a record that was appended: number `record` of element number `element`, its bytes.
@@ -63,9 +62,16 @@ class PlyWriter {
       std::function<bool(std::size_t element, std::int64_t record, std::span<char> bytes)>;
 
   /// Completes the file; nothing can be appended afterwards. `rewrite`, if there is one, is called
-  /// with every record, in order; not where the counts of all elements are known.
+  /// with every record, in order; not where the counts of all elements are known. Returns the
+  /// numbers of records in the file, by element.
   /// @throws std::logic_error when an element has not as many records as its count says
-  void commit(const Rewrite& rewrite = {});
+  std::vector<std::int64_t> commit(const Rewrite& rewrite = {});
+
+  const std::filesystem::path& path() const { return path_; }
+
+  /// Before commit(): writes another file of the same records, as commit() would.
+  /// @throws std::logic_error where the counts of all elements are known
+  std::vector<std::int64_t> write_copy(const std::filesystem::path& path, const Rewrite& rewrite);
 
  private:
   struct List {
@@ -75,9 +81,12 @@ class PlyWriter {
     std::unique_ptr<AtomicFile> temporary;  ///< never committed; null: counts are known
   };
 
+  bool counts_are_known() const;
   void write_record(std::size_t element, const char* record, std::size_t size);
-  void rewrite_records(std::size_t element, const Rewrite& rewrite);
-  void write_header();
+  std::vector<std::int64_t> write_all(AtomicFile& file, const std::filesystem::path& path,
+                                      const Rewrite& rewrite);
+  std::int64_t write_kept(std::size_t element, const Rewrite& rewrite, AtomicFile& kept);
+  void write_header(AtomicFile& file, const std::vector<std::int64_t>& counts) const;
 
   std::filesystem::path path_;
   AtomicFile file_;

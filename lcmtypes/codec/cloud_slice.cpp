@@ -36,7 +36,6 @@ struct Bulk<CloudSlice> {
     to.superseded = from.superseded != 0;
     to.revision_sum = from.revision_sum;
     to.part = from.part;
-    to.part_follows = from.part_follows != 0;
     to.correction = from.correction;
     to.resolution_m = from.resolution_m;
     to.map_name = from.map_name;
@@ -85,7 +84,7 @@ struct Bulk<CloudSlice> {
     check.range("kind", static_cast<int>(slice.kind), 0, static_cast<int>(SliceKind::kCorrection));
     check.not_negative("revision_sum", slice.revision_sum);
     if (slice.superseded && counts[0] > 0) check.fail("total_points", counts[0], "0, superseded");
-    check.range<std::int64_t>("part", slice.part, 0, slice.session - 1);
+    check.not_negative("part", slice.part);
     check.range("resolution_m", slice.resolution_m, kMinResolution_m, kMaxResolution_m);
     check.pose("X_WC", slice.X_WC);
     check.text("map_name", slice.map_name);

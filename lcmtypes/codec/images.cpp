@@ -109,6 +109,7 @@ struct Bulk<CameraView> : PlacedByByte<camera_view_t> {
     to.map_name = from.map_name;
     to.frame_index = from.frame_index;
     to.state = static_cast<decltype(to.state)>(from.state);
+    to.part = from.part;
     to.depth_step = from.depth_step;
   }
   static void header_to_wire(const CameraView& view, camera_view_t& wire) {
@@ -135,6 +136,7 @@ struct Bulk<CameraView> : PlacedByByte<camera_view_t> {
     check.text("map_name", view.map_name);
     check.not_negative("frame_index", view.frame_index);
     check_state(check, view.state);
+    check.not_negative("part", view.part);
     check.pose("X_WC", view.X_WC);
     check_intrinsics(check, view.intrinsics);
     check.range("depth_step", view.depth_step, 1,

@@ -26,18 +26,10 @@ std::string problem_text(const char* process, const std::string& problem) {
                          : std::string(" | PROBLEM of the ") + process + ": " + problem;
 }
 
-/// Each part of a run of the mapper has a session, the next number.
-std::int64_t first_session(const MapperStatus& status) { return status.session - status.part; }
-
-template <class Status>
-std::int64_t first_session(const Status& status) {
-  return status.session;
-}
-
 /// Each run of a process has larger session numbers than the one before it.
 template <class Status>
 bool is_later_run(const std::optional<Status>& before, const Status& status) {
-  return before && first_session(status) > first_session(*before);
+  return before && status.session > before->session;
 }
 
 }  // namespace

@@ -53,7 +53,7 @@ std::string text_of(const MapperStatus& status) {
     text += state_text(status.state);
     text += format(" %.1f Hz", status.frame_rate_hz);
   }
-  if (status.part > 0) text += format(", part %d", status.part);
+  if (status.parts > 1) text += format(", %d parts, in part %d", status.parts, status.part);
   if (!status.finished && !status.loss_reason.empty()) text += " (" + status.loss_reason + ")";
   text += some(status.frames_lost, "lost") + some(status.frames_dropped, "dropped") +
           some(status.loops, "loops closed") + some(status.loops_contradicted, "contradicted") +

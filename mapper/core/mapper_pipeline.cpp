@@ -39,6 +39,7 @@ LoopClosure::Config loop_config(const MapperPipeline::Config& config) {
   loops.closer.verifier.voxel_m = voxel_m;
   loops.closer.verifier.registration = config.tracker.registration;
   loops.closer.graph.max_drift_share = config.tracker.max_drift_share;
+  loops.max_speed = config.tracker.max_speed;
   loops.reach_m = config.integrator.max_depth_m;
   loops.closer.graph.near_m = config.integrator.max_depth_m;
   return loops;
@@ -82,6 +83,7 @@ void MapperPipeline::Config::validate() const {
   check_range("max_kept_mb", max_kept_mb, 0.0, 1e6);
   check_range("patch_side_m", patch_side_m, 0.0, 100.0);
   patch_schedule.validate();
+  check_range("restart_after_s", restart_after_s, 0.0, 1e6);
   check_range("finest_tracking_width_px", finest_tracking_width_px, 16, 16384);
 }
 
@@ -93,6 +95,7 @@ MapperPipeline::MapperPipeline(const Config& config)
       tracker_(config.tracker),
       noise_(config.noise.value_or(DepthNoise())),
       relocalizer_(config.relocalizer),
+      restart_rule_(config.given_path.empty() ? config.restart_after_s : 0.0),
       tiles_(config.patch_side_m, config.volume.resolution_m),
       slice_worker_(worker_config(config, tiles_)) {
   if (config.patch_side_m > 0.0) {
@@ -114,6 +117,10 @@ FrameResult MapperPipeline::process(const RgbdFrame& measured) {
   const TrackingInput input = prepare(frame);
   clock.end_of(&StageTimes::prepare_ms);
   result.tracking = locate(input);
+  if (restart_rule_.is_due(frame.utime, result.tracking.state)) {
+    result.part_begun = begin_part(std::move(result.tracking));
+    result.tracking = locate(input);
+  }
   clock.end_of(&StageTimes::track_ms);
   if (is_located(result.tracking.state)) {
     const auto keyframe = result.tracking.found_by_keyframe;
@@ -121,7 +128,7 @@ FrameResult MapperPipeline::process(const RgbdFrame& measured) {
       go_over_to(*keyframe, result.tracking.X_WC, input);
     }
     X_WC_ = result.tracking.X_WC;
-    result.slices_left = shift(X_WC_);
+    result.slices_left = shift(X_WC_.translation());
     if (reactivation_) {
       reactivation_->tidy();
       bring_back_visible(input);
@@ -144,6 +151,7 @@ FrameResult MapperPipeline::process(const RgbdFrame& measured) {
     submit_patches(frame);
     clock.end_of(&StageTimes::patches_ms);
   }
+  result.part = part();
   result.times = clock.wall();
   result.cpu_times = clock.cpu();
   result.slices = slice_worker_.take_finished();
@@ -153,24 +161,43 @@ FrameResult MapperPipeline::process(const RgbdFrame& measured) {
 std::vector<CloudSlice> MapperPipeline::finish() {
   if (loops_) correct(loops_->finish());
   if (reactivation_) clear_known(slots_of([](BlockSlot) { return true; }));
-  // After the last frame, at which a batch of patches may have ended.
-  slice_worker_.submit(volume_.detach_all(), patch_schedule_ ? utime_ + 1 : utime_,
-                       corrected(X_WC_));
+  SliceCamera camera = camera_now();
+  if (patch_schedule_) ++camera.utime;  // at the last frame a batch of patches may have ended
+  slice_worker_.submit(volume_.detach_all(), camera);
   return slice_worker_.drain();
 }
 
-Trajectory MapperPipeline::corrected_path() const {
-  return loops_ ? loops_->corrected_path() : path_;
+std::map<int, Trajectory> MapperPipeline::corrected_paths() const {
+  return loops_ ? loops_->corrected_paths() : paths_;
+}
+
+/// The camera has been lost for long: what it sees from now on has a place of its own in W, and
+/// what it saw leaves the volume.
+PartBegun MapperPipeline::begin_part(TrackingResult lost) {
+  const Pose origin = origin_of_part(part_ + 1);
+  shift(origin.translation());
+  volume_.center_at(origin.translation());
+  if (patch_schedule_) depart_all_patches();
+  ++part_;
+  if (loops_) loops_->begin_part();
+  X_WC_ = origin;
+  tracker_ = Tracker(config_.tracker);  // how much of its view the camera saw before says nothing
+  model_.reset();
+  return {.part = part_, .lost = std::move(lost)};
 }
 
 std::optional<MapCorrection> MapperPipeline::correct(std::optional<MapCorrection> correction) {
   if (!correction) return std::nullopt;
-  slice_worker_.submit(loops_->deformation(), utime_, corrected(X_WC_), volume_.resolution_m());
+  slice_worker_.submit(loops_->deformation(), camera_now(), volume_.resolution_m());
   return correction;
 }
 
-Pose MapperPipeline::corrected(const Pose& X_UC) const {
-  return loops_ ? loops_->deformation().at(loops_->keyframe()) * X_UC : X_UC;
+Pose MapperPipeline::corrected(const Pose& X_UC) const { return place_of(seen_at()).X_WU * X_UC; }
+
+/// Where what was seen at a keyframe is by now; where loops are not closed, in a part of the map.
+MapDeformation::Place MapperPipeline::place_of(int seen_at) const {
+  if (loops_) return loops_->deformation().place(seen_at);
+  return {.X_WU = Pose::Identity(), .part = seen_at};
 }
 
 RgbdFrame MapperPipeline::cleaned(const RgbdFrame& frame) {
@@ -218,7 +245,8 @@ TrackingResult MapperPipeline::locate_on_given_path(std::int64_t utime) const {
 }
 
 TrackingResult MapperPipeline::start(const TrackingInput& input) {
-  TrackingResult result;  // kStarting at the identity
+  TrackingResult result;  // kStarting
+  result.X_WC = origin_of_part(part_);
   const double covered = covered_share(input.surface_C.front(), result.X_WC, region_of(volume_));
   result.quality.covered_share = covered;
   if (covered >= config_.tracker.loss.min_covered_share) {
@@ -244,10 +272,10 @@ std::optional<TrackingResult> MapperPipeline::find_again(const TrackingInput& in
   return found;
 }
 
-int MapperPipeline::shift(const Pose& X_WC) {
+int MapperPipeline::shift(const Eigen::Vector3d& camera_W) {
   TsdfVolume::BeforeLeaving before_leaving;
   if (reactivation_) before_leaving = [this](const auto& leaving) { clear_known(leaving); };
-  std::vector<DetachedBlocks> left = volume_.shift_to(X_WC.translation(), before_leaving);
+  std::vector<DetachedBlocks> left = volume_.shift_to(camera_W, before_leaving);
   for (DetachedBlocks& blocks : left) take_left(std::move(blocks));
   return static_cast<int>(left.size()) + (reactivation_ ? let_go_of_far_surface() : 0);
 }
@@ -301,34 +329,38 @@ void MapperPipeline::clear_known(const std::vector<BlockSlot>& leaving) {
 void MapperPipeline::take_left(DetachedBlocks left, bool waits) {
   if (patch_schedule_) patch_schedule_->note_left(left.coords, volume_);
   if (reactivation_) reactivation_->keep(left);
-  slice_worker_.submit(std::move(left), utime_, corrected(X_WC_), waits);
+  slice_worker_.submit(std::move(left), camera_now(), waits);
 }
 
 void MapperPipeline::submit_patches(const RgbdFrame& frame) {
-  std::optional<PatchBatch> batch =
-      patch_schedule_->next(volume_, frame.utime, loops_ ? loops_->keyframe() : 0);
+  std::optional<PatchBatch> batch = patch_schedule_->next(volume_, frame.utime, seen_at());
   if (!batch) return;
   submit_patches(*std::move(batch));
+}
+
+/// The volume is empty, and what is seen from now on is of other patches.
+void MapperPipeline::depart_all_patches() {
+  submit_patches(patch_schedule_->depart_all(reactivation_ ? reactivation_->open_tiles()
+                                                           : std::vector<TileCoord>()));
 }
 
 void MapperPipeline::submit_patches(PatchBatch batch) {
   if (reactivation_) reactivation_->close_departed(batch);
   std::vector<BlockSlot> slots;
   for (PatchBatch::Patch& patch : batch.patches) {
-    if (loops_) patch.X_WP = loops_->deformation().at(patch.keyframe);
+    patch.place = place_of(patch.keyframe);
     if (!patch.in_volume) continue;
     tiles_.for_each_block(patch.tile, [&](const BlockCoord& coord) {
       const BlockSlot slot = volume_.find(coord);
       if (slot != kNoBlock) slots.push_back(slot);
     });
   }
-  slice_worker_.submit(std::move(batch), volume_.snapshot(std::move(slots)), utime_,
-                       corrected(X_WC_));
+  slice_worker_.submit(std::move(batch), volume_.snapshot(std::move(slots)), camera_now());
 }
 
 void MapperPipeline::update_model(const RgbdFrame& frame, const TrackingInput& input,
                                   TrackingResult& located) {
-  if (!loops_) path_.push_back({input.utime, X_WC_});
+  if (!loops_) paths_[part_].push_back({input.utime, X_WC_});
   if (!config_.given_path.empty()) return;  // the model is only for tracking
   if (loops_) loops_->release_left(volume_, X_WC_);
   if (reactivation_) {
@@ -354,7 +386,7 @@ void MapperPipeline::restore(Reactivation::Returned returned) {
     patch_schedule_->note_returned(visit.tile, keyframe, volume_);
     visits.push_back(visit);
   }
-  slice_worker_.submit(std::move(visits), utime_, corrected(X_WC_), volume_.resolution_m());
+  slice_worker_.submit(std::move(visits), camera_now(), volume_.resolution_m());
 }
 
 /// Where a keyframe would be due but is there already, and its surface is kept: the frame is
@@ -394,7 +426,7 @@ bool MapperPipeline::go_over_to_known_surface(const TrackingInput& input) {
 void MapperPipeline::go_over_to(int keyframe, const Pose& X_NC, const TrackingInput& input) {
   clear_known(slots_of([](BlockSlot) { return true; }));
   take_left(volume_.detach_all(SliceKind::kPatch), false);
-  submit_patches(patch_schedule_->depart_all(reactivation_->open_tiles()));
+  depart_all_patches();
   X_WC_ = X_NC;
   loops_->go_to(keyframe);
   volume_.shift_to(X_NC.translation());

@@ -1,9 +1,11 @@
 #pragma once
 // From depth and colour frames to the camera's path and the slices of the map.
 //
-// Frames: W map (the camera at the first frame, or that of the given poses), C depth camera.
+// Frames: W map (the camera at the first frame, or that of the given poses; of later parts see
+// origin_of_part()), C depth camera.
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -14,6 +16,7 @@
 #include "mapper/core/fusion/integrator.hpp"
 #include "mapper/core/fusion/raycaster.hpp"
 #include "mapper/core/loop_closure/loop_closure.hpp"
+#include "mapper/core/loop_closure/map_part.hpp"
 #include "mapper/core/reactivation/covered_surface.hpp"
 #include "mapper/core/reactivation/reactivation.hpp"
 #include "mapper/core/relocalization/relocalizer.hpp"
@@ -22,14 +25,23 @@
 #include "mapper/core/slices/tile.hpp"
 #include "mapper/core/stage_times.hpp"
 #include "mapper/core/tracking/noise_estimator.hpp"
+#include "mapper/core/tracking/restart_rule.hpp"
 #include "mapper/core/tracking/tracker.hpp"
 #include "mapper/core/volume/tsdf_volume.hpp"
 
 namespace kintsugi::mapper {
 
+/// With a frame another part of the map begins.
+struct PartBegun {
+  int part = 0;
+  TrackingResult lost;  ///< what became of the frame in the part before
+};
+
 /// The result of one frame.
 struct FrameResult {
   TrackingResult tracking;
+  int part = 0;  ///< of the map, in which the camera is
+  std::optional<PartBegun> part_begun;
   std::vector<CloudSlice>
       slices;  ///< finished since the frame before; they left at any earlier frame
   std::optional<MapCorrection> correction;  ///< loops were closed
@@ -48,6 +60,7 @@ struct FrameResult {
 ///     Starting --first frame with a surface in the cube--> Tracking
 ///     Tracking --the loss rule rejects the pose--> Lost
 ///     Lost     --found near the last pose (Tracker), or by a keyframe (Relocalizer)--> Tracking
+///     Lost     --for so long that RestartRule is due--> Starting, another part of the map
 ///
 /// Only frames whose pose is known are fused. A lost frame leaves map and last pose unchanged. When
 /// the camera is found elsewhere, the cube moves there, and the blocks that leave it become slices.
@@ -78,6 +91,9 @@ class MapperPipeline {
     bool learn_noise = true;          ///< `noise` is only where the estimate starts
     /// Depth farther than where the noise asks for the largest truncation distance is not used.
     bool limit_range_by_noise = false;
+    /// A camera that is lost for so long begins another part of the map; 0: never. Not with a given
+    /// path, where a lost frame is one without a pose.
+    double restart_after_s = 5.0;
     int finest_tracking_width_px = 320;  ///< images are halved while at least this remains
     Trajectory given_path;  ///< if not empty, replaces tracking; a frame without a pose is lost
 
@@ -108,12 +124,16 @@ class MapperPipeline {
   const LoopClosure* loops() const { return loops_ ? &*loops_ : nullptr; }
   /// Where a patch is in the corrected map, by its number in PatchRun; nothing: its points were
   /// replaced. After finish().
-  std::optional<PatchPose> pose_of_patch(int patch) const {
-    return slice_worker_.pose_of_patch(patch);
+  std::optional<PatchPlace> place_of_patch(int patch) const {
+    return slice_worker_.place_of_patch(patch);
   }
 
-  /// Of the frames whose pose is known, as corrected by the loops that were closed so far.
-  Trajectory corrected_path() const;
+  /// How many parts of the map no loop has joined.
+  int num_parts() const { return loops_ ? loops_->num_parts() : part_ + 1; }
+
+  /// Of the frames whose pose is known, as corrected by the loops that were closed so far; by part
+  /// of the map.
+  std::map<int, Trajectory> corrected_paths() const;
   std::int64_t volume_bytes() const { return static_cast<std::int64_t>(volume_.memory_bytes()); }
   const DepthNoise& noise() const { return noise_.noise(); }
   /// Of what has left and may come back.
@@ -130,16 +150,24 @@ class MapperPipeline {
   TrackingResult locate_on_given_path(std::int64_t utime) const;
   TrackingResult start(const TrackingInput& input);
   void learn_noise(const TrackingInput& input, const Pose& X_WC);
-  int shift(const Pose& X_WC);
+  PartBegun begin_part(TrackingResult lost);
+  int seen_at() const { return loops_ ? loops_->keyframe() : part_; }
+  MapDeformation::Place place_of(int seen_at) const;
+  int part() const { return place_of(seen_at()).part; }
+  int shift(const Eigen::Vector3d& camera_W);
   int let_go_of_far_surface();
   void take_left(DetachedBlocks left, bool waits = true);
   void clear_known(const std::vector<BlockSlot>& leaving);
   std::vector<BlockSlot> slots_of(const std::function<bool(BlockSlot)>& is_chosen) const;
   void submit_patches(const RgbdFrame& frame);
   void submit_patches(PatchBatch batch);
+  void depart_all_patches();
   /// Moves the patches; returns what it was given.
   std::optional<MapCorrection> correct(std::optional<MapCorrection> correction);
   Pose corrected(const Pose& X_UC) const;
+  SliceCamera camera_now() const {
+    return {utime_, corrected(X_WC_), {seen_at(), place_of(seen_at())}};
+  }
   std::optional<TrackingResult> find_again(const TrackingInput& input);
   void update_model(const RgbdFrame& frame, const TrackingInput& input, TrackingResult& located);
   void bring_back_visible(const TrackingInput& input);
@@ -163,15 +191,17 @@ class MapperPipeline {
   LocalNoiseEstimator local_noise_;
   Relocalizer relocalizer_;
   std::optional<LoopClosure> loops_;  ///< none: the map is not corrected
-  Trajectory path_;  ///< of the frames that were located, where loops are not closed
+  RestartRule restart_rule_;
+  int part_ = 0;                     ///< of the map, in which the camera is tracked
+  std::map<int, Trajectory> paths_;  ///< by part, where loops are not closed
   const TileGrid tiles_;
   std::optional<PatchSchedule> patch_schedule_;  ///< none: slices
   std::optional<Reactivation> reactivation_;     ///< none: what has left does not come back
   /// By TsdfVolume::num_moves(): at which keyframe the camera was.
   std::vector<int> keyframe_at_move_;
   SliceWorker slice_worker_;
-  std::optional<Model> model_;    ///< none before the first fused frame
-  Pose X_WC_ = Pose::Identity();  ///< of the last fused frame, as tracked
+  std::optional<Model> model_;     ///< none before the first fused frame of a part
+  Pose X_WC_ = origin_of_part(0);  ///< of the last fused frame, as tracked
   bool has_frames_ = false;
   std::int64_t utime_ = 0;  ///< of the last frame
 };

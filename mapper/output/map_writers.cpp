@@ -4,6 +4,8 @@
 #include <cstring>
 #include <span>
 
+#include "mapper/output/part_file.hpp"
+
 namespace kintsugi::mapper {
 namespace {
 
@@ -36,6 +38,23 @@ bool renumber_face(const PatchRuns& runs, std::span<char> bytes) {
   return true;
 }
 
+/// Part 0 is in the file itself, also where it is empty.
+std::vector<WrittenFile> commit_by_part(PlyWriter& file, PatchRuns& runs,
+                                        const PlaceOfPatch& place_of, std::size_t counted_element,
+                                        const PlyWriter::Rewrite& rewrite) {
+  runs.place(place_of);
+  std::vector<WrittenFile> written;
+  for (const int part : runs.parts()) {
+    if (part == 0) continue;
+    runs.select(part);
+    const std::filesystem::path path = part_file(file.path(), part);
+    written.push_back({path, file.write_copy(path, rewrite)[counted_element]});
+  }
+  runs.select(0);
+  written.insert(written.begin(), {file.path(), file.commit(rewrite)[counted_element]});
+  return written;
+}
+
 }  // namespace
 
 CloudWriter::CloudWriter(const std::filesystem::path& path)
@@ -50,14 +69,12 @@ void CloudWriter::append(const std::vector<CloudPoint>& points, const std::vecto
   }
 }
 
-std::int64_t CloudWriter::num_points() const { return file_.count(kVertices); }
-
-void CloudWriter::commit(const PoseOfPatch& pose_of) {
-  if (!pose_of) return file_.commit();
-  runs_.place(pose_of);
-  file_.commit([this](std::size_t /*element*/, std::int64_t record, std::span<char> bytes) {
-    return move_vertex(runs_, record, bytes, 6);
-  });
+std::vector<WrittenFile> CloudWriter::commit(const PlaceOfPatch& place_of) {
+  return commit_by_part(
+      file_, runs_, place_of, kVertices,
+      [this](std::size_t /*element*/, std::int64_t record, std::span<char> bytes) {
+        return move_vertex(runs_, record, bytes, 6);
+      });
 }
 
 MeshWriter::MeshWriter(const std::filesystem::path& path)
@@ -74,15 +91,12 @@ void MeshWriter::append(const MeshPiece& piece, const std::vector<PatchRun>& run
   for (const MeshPiece::Triangle& t : piece.triangles) file_.append(kFaces, kCorners, t);
 }
 
-std::int64_t MeshWriter::num_triangles() const { return file_.count(kFaces); }
-
-void MeshWriter::commit(const PoseOfPatch& pose_of) {
-  if (!pose_of) return file_.commit();
-  runs_.place(pose_of);
-  file_.commit([this](std::size_t element, std::int64_t record, std::span<char> bytes) {
-    return element == kVertices ? move_vertex(runs_, record, bytes, 3)
-                                : renumber_face(runs_, bytes);
-  });
+std::vector<WrittenFile> MeshWriter::commit(const PlaceOfPatch& place_of) {
+  return commit_by_part(file_, runs_, place_of, kFaces,
+                        [this](std::size_t element, std::int64_t record, std::span<char> bytes) {
+                          return element == kVertices ? move_vertex(runs_, record, bytes, 3)
+                                                      : renumber_face(runs_, bytes);
+                        });
 }
 
 }  // namespace kintsugi::mapper

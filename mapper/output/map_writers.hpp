@@ -13,6 +13,11 @@
 
 namespace kintsugi::mapper {
 
+struct WrittenFile {
+  std::filesystem::path path;
+  std::int64_t count = 0;  ///< of its points, or triangles
+};
+
 /// Writes the points of slices: x y z nx ny nz (metres, W), red green blue, weight. 31 bytes per
 /// point on disk, none in memory. Throws like PlyWriter.
 ///
@@ -21,11 +26,11 @@ class CloudWriter {
  public:
   explicit CloudWriter(const std::filesystem::path& path);
 
-  /// `runs`: the patches of the points; empty: they are in W.
+  /// `runs` as PatchRuns takes them.
   void append(const std::vector<CloudPoint>& points, const std::vector<PatchRun>& runs = {});
-  /// Completes the file.
-  void commit(const PoseOfPatch& pose_of = {});
-  std::int64_t num_points() const;
+  /// Completes the file: the points of part 0 of the map. Those of each other part get a file of
+  /// their own (part_file()). Returns the files.
+  std::vector<WrittenFile> commit(const PlaceOfPatch& place_of = {});
 
  private:
   PlyWriter file_;
@@ -41,9 +46,8 @@ class MeshWriter {
 
   /// Pieces in the order in which a MeshExtractor gave them, and the patches of their vertices.
   void append(const MeshPiece& piece, const std::vector<PatchRun>& runs = {});
-  /// Completes the file.
-  void commit(const PoseOfPatch& pose_of = {});
-  std::int64_t num_triangles() const;
+  /// As CloudWriter::commit().
+  std::vector<WrittenFile> commit(const PlaceOfPatch& place_of = {});
 
  private:
   PlyWriter file_;

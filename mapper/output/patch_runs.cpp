@@ -2,40 +2,56 @@
 
 #include <algorithm>
 
-#include "lcmtypes/patch_motions.hpp"
-
 namespace kintsugi::mapper {
 
 void PatchRuns::append(std::size_t num_points, const std::vector<PatchRun>& runs) {
-  const auto add = [&](std::size_t count, int patch) {
+  const auto add = [&](const PatchRun& run) {
     const std::int64_t begin = runs_.empty() ? 0 : runs_.back().end;
-    if (runs_.empty() || runs_.back().patch != patch) runs_.push_back({begin, patch, {}, 0});
-    runs_.back().end += static_cast<std::int64_t>(count);
+    const bool goes_on =
+        !runs_.empty() && runs_.back().patch == run.patch && runs_.back().part == run.part;
+    if (!goes_on) runs_.push_back({.end = begin, .patch = run.patch, .part = run.part});
+    runs_.back().end += static_cast<std::int64_t>(run.num_points);
   };
-  if (runs.empty()) add(num_points, kNoPatch);
-  for (const PatchRun& run : runs) add(run.num_points, run.patch);
+  if (runs.empty()) add({.num_points = num_points});
+  for (const PatchRun& run : runs) add(run);
 }
 
-void PatchRuns::place(const PoseOfPatch& pose_of) {
+void PatchRuns::place(const PlaceOfPatch& place_of) {
+  for (Run& run : runs_) {
+    const bool was_moved = place_of && run.patch != kNoPatch;
+    run.place =
+        was_moved ? place_of(run.patch) : PatchPlace{.X_WP = {}, .correction = 0, .part = run.part};
+  }
+}
+
+std::set<int> PatchRuns::parts() const {
+  std::set<int> parts;
+  for (const Run& run : runs_) {
+    if (run.place) parts.insert(run.place->part);
+  }
+  return parts;
+}
+
+void PatchRuns::select(int part) {
   std::int64_t begin = 0;
   std::int64_t num_dropped = 0;
   for (Run& run : runs_) {
-    run.X_WP = run.patch == kNoPatch ? PatchPose() : pose_of(run.patch);
+    run.is_kept = run.place && run.place->part == part;
     run.num_dropped = num_dropped;
-    if (!run.X_WP) num_dropped += run.end - begin;
+    if (!run.is_kept) num_dropped += run.end - begin;
     begin = run.end;
   }
 }
 
 std::optional<CloudPoint> PatchRuns::moved(std::int64_t number, const CloudPoint& point) const {
   const Run& run = run_of(number);
-  if (!run.X_WP) return std::nullopt;
-  return kintsugi::moved({&point, 1}, *run.X_WP).front();
+  if (!run.is_kept) return std::nullopt;
+  return kintsugi::moved({&point, 1}, run.place->X_WP).front();
 }
 
 std::optional<std::int64_t> PatchRuns::number_of_kept(std::int64_t number) const {
   const Run& run = run_of(number);
-  return run.X_WP ? std::optional(number - run.num_dropped) : std::nullopt;
+  return run.is_kept ? std::optional(number - run.num_dropped) : std::nullopt;
 }
 
 const PatchRuns::Run& PatchRuns::run_of(std::int64_t number) const {

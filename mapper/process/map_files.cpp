@@ -2,12 +2,10 @@
 
 #include <spdlog/spdlog.h>
 
-#include "mapper/output/part_file.hpp"
-
 namespace kintsugi::mapper {
 
 template <typename Writer>
-MapFiles::Output<Writer>::Output(const std::string& name) : name(name), path(name) {
+MapFiles::Output<Writer>::Output(const std::string& path) : path(path) {
   if (!path.empty()) writer.emplace(path);
 }
 
@@ -17,26 +15,10 @@ void MapFiles::Output<Writer>::attempt(const std::function<void(Writer&)>& actio
   try {
     action(*writer);
   } catch (const std::exception& error) {
-    note_failure(error);
+    spdlog::error("{}: given up, mapping goes on: {}", path, error.what());
+    writer.reset();
+    failed = true;
   }
-}
-
-template <typename Writer>
-void MapFiles::Output<Writer>::begin_part(int part) {
-  if (name.empty()) return;
-  path = part_file(name, part).string();
-  try {
-    writer.emplace(path);
-  } catch (const std::exception& error) {
-    note_failure(error);
-  }
-}
-
-template <typename Writer>
-void MapFiles::Output<Writer>::note_failure(const std::exception& error) {
-  spdlog::error("{}: given up, mapping goes on: {}", path, error.what());
-  writer.reset();
-  failed = true;
 }
 
 MapFiles::MapFiles(const std::string& cloud, const std::string& mesh)
@@ -57,20 +39,17 @@ std::function<void(const MeshPiece&, const std::vector<PatchRun>&)> MapFiles::me
   };
 }
 
-void MapFiles::commit(const PoseOfPatch& pose_of) {
+void MapFiles::commit(const PlaceOfPatch& place_of) {
   cloud_.attempt([&](CloudWriter& writer) {
-    writer.commit(pose_of);
-    spdlog::info("cloud of {} points in {}", writer.num_points(), cloud_.path);
+    for (const auto& [path, count] : writer.commit(place_of)) {
+      spdlog::info("cloud of {} points in {}", count, path.string());
+    }
   });
   mesh_.attempt([&](MeshWriter& writer) {
-    writer.commit(pose_of);
-    spdlog::info("mesh of {} triangles in {}", writer.num_triangles(), mesh_.path);
+    for (const auto& [path, count] : writer.commit(place_of)) {
+      spdlog::info("mesh of {} triangles in {}", count, path.string());
+    }
   });
-}
-
-void MapFiles::begin_part(int part) {
-  cloud_.begin_part(part);
-  mesh_.begin_part(part);
 }
 
 }  // namespace kintsugi::mapper

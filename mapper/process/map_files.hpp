@@ -22,33 +22,26 @@ class MapFiles {
   /// @throws std::system_error when a file cannot be written
   MapFiles(const std::string& cloud, const std::string& mesh);
 
-  /// Takes the points of this part that have left the volume; empty when there is no cloud file. To
-  /// be called from one thread, which need not be that of the others.
+  /// Takes the points that have left the volume; empty when there is no cloud file. To be called
+  /// from one thread, which need not be that of the others.
   std::function<void(const std::vector<CloudPoint>&, const std::vector<PatchRun>&)> points_sink();
   /// The same with pieces of the mesh.
   std::function<void(const MeshPiece&, const std::vector<PatchRun>&)> mesh_sink();
 
-  /// Completes the files, with patches where `pose_of` has them; nothing can be added until
-  /// begin_part().
-  void commit(const PoseOfPatch& pose_of = {});
-
-  /// Begins the files of another part. Never fails: see above.
-  void begin_part(int part);
+  /// Completes the files, with patches where `place_of` has them; nothing can be added afterwards.
+  void commit(const PlaceOfPatch& place_of = {});
 
   bool failed() const { return cloud_.failed || mesh_.failed; }
 
  private:
   template <typename Writer>
   struct Output {
-    std::string name;  ///< of part 0
-    std::string path;  ///< of this part
+    std::string path;
     std::optional<Writer> writer;
     bool failed = false;
 
-    explicit Output(const std::string& name);
+    explicit Output(const std::string& path);
     void attempt(const std::function<void(Writer&)>& action);
-    void begin_part(int part);
-    void note_failure(const std::exception& error);
   };
 
   Output<CloudWriter> cloud_;

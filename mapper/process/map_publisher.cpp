@@ -12,8 +12,11 @@
 namespace kintsugi::mapper {
 
 MapPublisher::MapPublisher(const Config& config, SessionStore& store)
-    : config_(config), store_(store), bus_(config.lcm_url) {
-  begin_part(0, config_.session);
+    : config_(config),
+      store_(store),
+      bus_(config.lcm_url),
+      slice_stream_(slice_stream(config.session, config.map_name)),
+      view_stream_(bus_, channels::kCameraView, config.session, stream_config(config.map_name)) {
   if (config_.publish_frames) {
     frame_stream_ = std::make_unique<StreamPublisher>(bus_, channels::kRgbdFrame, config_.session,
                                                       stream_config(config_.map_name));
@@ -62,21 +65,10 @@ void MapPublisher::answer(const ResendRequest& request) {
   if (stream != slice_streams_.end()) stream->second->request(request);
 }
 
-void MapPublisher::begin_part(int part, std::int64_t session) {
-  earlier_parts_ = published();
-  this_part_ = {};
-  part_ = part;
-  session_ = session;
-  slice_stream_ = &slice_stream(session, config_.map_name);
-  view_stream_ = std::make_unique<StreamPublisher>(bus_, channels::kCameraView, session,
-                                                   stream_config(config_.map_name));
-}
-
 MapPublisher::Published MapPublisher::published() const {
-  const std::int64_t chunks = slice_stream_ == nullptr ? 0 : slice_stream_->chunks_published();
-  return {.slices = earlier_parts_.slices + this_part_.slices,
-          .points = earlier_parts_.points + this_part_.points,
-          .chunks = earlier_parts_.chunks + chunks};
+  return {.slices = slices_published_,
+          .points = points_published_,
+          .chunks = slice_stream_.chunks_published()};
 }
 
 template <SmallMessage Message>
@@ -86,42 +78,40 @@ void MapPublisher::publish(const std::string& channel, const Message& message) {
   bus_.publish(channel, bytes);
 }
 
-void MapPublisher::publish_slices(std::vector<CloudSlice> slices, bool part_follows) {
+void MapPublisher::publish_slices(std::vector<CloudSlice> slices) {
   for (CloudSlice& slice : slices) {
-    slice.session = session_;
+    slice.session = config_.session;
     slice.map_name = config_.map_name;
-    slice.part = part_;
-    slice.part_follows = part_follows && slice.kind == SliceKind::kFinal;
-    this_part_.points += static_cast<std::int64_t>(slice.points_W.size());
-    ++this_part_.slices;
+    points_published_ += static_cast<std::int64_t>(slice.points_W.size());
+    ++slices_published_;
     if (slice.kind == SliceKind::kPatch) {
-      slice_stream_->publish_patch(std::move(slice), config_.supersede_patches);
+      slice_stream_.publish_patch(std::move(slice), config_.supersede_patches);
     } else {
-      slice_stream_->publish(std::move(slice));
+      slice_stream_.publish(std::move(slice));
     }
   }
 }
 
 void MapPublisher::publish_pose(CameraPose pose) {
-  pose.session = session_;
+  pose.session = config_.session;
   publish(channels::kCameraPose, pose);
 }
 
 void MapPublisher::publish_view(CameraView view) {
-  if (view_stream_->queued_bytes() > 0) return;
-  view.session = session_;
+  if (view_stream_.queued_bytes() > 0) return;
+  view.session = config_.session;
   view.map_name = config_.map_name;
-  view_stream_->publish(std::move(view));
+  view_stream_.publish(std::move(view));
 }
 
 void MapPublisher::publish_status(MapperStatus status) {
   status.utime = wall_clock_us();
-  status.session = session_;
+  status.session = config_.session;
   status.map_name = config_.map_name;
-  status.slices_published +=
-      this_part_.slices;  // those of a completed session were published earlier
-  status.points_published += this_part_.points;
-  status.chunks_published = slice_stream_->chunks_published();
+  // Those of a completed session were published earlier.
+  status.slices_published += slices_published_;
+  status.points_published += points_published_;
+  status.chunks_published = slice_stream_.chunks_published();
   status.queue_bytes = static_cast<std::int64_t>(queued_bytes());
   for (const auto& [session, stream] : slice_streams_) {
     const StreamPublisherCounts counts = stream->counts();
@@ -148,7 +138,7 @@ void MapPublisher::flush() {
 }
 
 double MapPublisher::time_since_request_s() const {
-  double time_s = slice_stream_->time_since_request_s();
+  double time_s = slice_stream_.time_since_request_s();
   for (const auto& [session, stream] : slice_streams_) {
     time_s = std::min(time_s, stream->time_since_request_s());
   }

@@ -36,7 +36,7 @@ class MapPublisher {
   struct Config {
     std::string lcm_url;  ///< empty: LCM's default
     std::string map_name;
-    std::int64_t session = 0;  ///< of part 0
+    std::int64_t session = 0;
     bool publish_frames = false;
     /// A patch that waits is not sent when a newer revision follows; what is sent then depends on
     /// the time that sending takes.
@@ -50,12 +50,7 @@ class MapPublisher {
   /// @throws std::runtime_error when the bus cannot be opened, with a remedy
   MapPublisher(const Config& config, SessionStore& store);
 
-  /// From now on everything belongs to another part of the run, except raw frames. What was
-  /// published before is still sent, and sent again.
-  void begin_part(int part, std::int64_t session);
-
-  /// @param part_follows another part will begin, so that the final slice is not the end of the run
-  void publish_slices(std::vector<CloudSlice> slices, bool part_follows = false);
+  void publish_slices(std::vector<CloudSlice> slices);
   void publish_pose(CameraPose pose);
   /// Left out when the view before still waits.
   void publish_view(CameraView view);
@@ -78,7 +73,6 @@ class MapPublisher {
   /// Time since the last request for a resend, seconds.
   double time_since_request_s() const;
 
-  /// In all parts.
   Published published() const;
 
  private:
@@ -98,13 +92,11 @@ class MapPublisher {
   Bus bus_;
   std::mutex mutex_;                              ///< guards slice_streams_ while it grows
   std::map<std::int64_t, Stream> slice_streams_;  ///< by session: of this run, and in the log
-  StreamPublisher* slice_stream_ = nullptr;       ///< of this part; the others only resend
+  StreamPublisher& slice_stream_;                 ///< of this run; the others only resend
   Stream frame_stream_;                           ///< null: frames are not published
-  Stream view_stream_;                            ///< of this part
-  int part_ = 0;
-  std::int64_t session_ = 0;  ///< of this part
-  Published this_part_;       ///< without chunks
-  Published earlier_parts_;
+  StreamPublisher view_stream_;
+  std::int64_t slices_published_ = 0;
+  std::int64_t points_published_ = 0;
   std::optional<BusThread>
       bus_thread_;  ///< last: stops before the members that it uses are destroyed
 };

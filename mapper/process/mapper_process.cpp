@@ -55,19 +55,16 @@ MapperPipeline::Config pipeline_config(const Options& options, MapFiles& map_fil
   return config;
 }
 
-/// One file for each part.
-void write_path_files(const std::string& name, const std::vector<Trajectory>& paths) {
+/// One file for each part; that of part 0 also where it is empty.
+void write_path_files(const std::string& name, std::map<int, Trajectory> paths) {
   if (name.empty()) return;
-  for (std::size_t part = 0; part < paths.size(); ++part) {
-    AtomicFile file(part_file(name, static_cast<int>(part)));
-    write_tum(file.stream(), paths[part]);
+  paths.try_emplace(0);
+  for (const auto& [part, path] : paths) {
+    AtomicFile file(part_file(name, part));
+    write_tum(file.stream(), path);
     file.commit();
+    spdlog::info("camera path of {} poses in {}", path.size(), part_file(name, part).string());
   }
-}
-
-/// With a given path a lost frame is one without a pose: another part would not help.
-double restart_after_s(const Options& options) {
-  return options.pipeline.given_path.empty() ? options.restart_after_s : 0.0;
 }
 
 }  // namespace
@@ -80,8 +77,7 @@ MapperProcess::MapperProcess(const Options& options, SessionStore& store, Resump
       map_files_(options.cloud_file, options.mesh_file),
       pipeline_(pipeline_config(options, map_files_)),
       publisher_(publisher_config(options, resumption.session()), store),
-      views_(options.view_rate_hz),
-      restart_rule_(restart_after_s(options)) {
+      views_(options.view_rate_hz) {
   if (!options.timings_file.empty()) frame_log_.emplace(options.timings_file);
   if (options.store_frames) {
     const std::int64_t session = resumption.session();
@@ -120,18 +116,20 @@ void MapperProcess::map_frame(const TimedFrame& read) {
   const RgbdFrame& frame = read.frame;
   Stopwatch stopwatch;
   if (frame_store_) frame_store_->add(frame);
-  FrameResult result = pipeline_->process(frame);
-  std::size_t num_slices = 0;
-  if (restart_rule_.is_due(frame.utime, result.tracking.state)) {
-    num_slices = restart(frame, std::move(result));
-    result = pipeline_->process(frame);
-  }
+  FrameResult result = pipeline_.process(frame);
   const TrackingResult& tracking = result.tracking;
+  part_ = result.part;
+  if (result.part_begun) {
+    log_part(*result.part_begun, frame);
+    statistics_.begin_part();
+  }
   log_change_of_state(result, frame);
+  const int num_parts_before = std::exchange(num_parts_, pipeline_.num_parts());
   if (result.correction) log_correction(*result.correction, frame);
-  if (is_located(tracking.state)) paths_.back().push_back({frame.utime, tracking.X_WC});
+  log_joined(frame, num_parts_before);
+  if (is_located(tracking.state)) paths_[result.part].push_back({frame.utime, tracking.X_WC});
 
-  num_slices += result.slices.size();
+  const std::size_t num_slices = result.slices.size();
   const double mapped_ms = stopwatch.elapsed_ms();
   publisher_.publish_frame(frame);
   publish_result(frame, result);
@@ -141,46 +139,21 @@ void MapperProcess::map_frame(const TimedFrame& read) {
   timings.publish_ms = timings.frame_ms - mapped_ms;
   measure(read, timings);
   statistics_.add(tracking, timings);
-  if (frame_log_) frame_log_->append(frame, statistics_.part(), tracking, num_slices, timings);
+  if (frame_log_) frame_log_->append(frame, result.part, tracking, num_slices, timings);
   if (resumption_.was_mapped(frame.utime)) ++frames_resumed_;
   last_utime_ = frame.utime;
 }
 
-/// Ends this part with a frame that is lost in it, and begins the next. Returns the number of
-/// slices that were published.
-std::size_t MapperProcess::restart(const RgbdFrame& frame, FrameResult lost) {
-  spdlog::warn("frame {}: part {} of the map ends here, lost for {:g} s (--restart-after), {}",
-               frame.frame_index, statistics_.part(), options_.restart_after_s,
-               reason_text(lost.tracking));
-  // The pose first: a run that is resumed then ends the part at this frame, too.
-  const std::size_t num_slices = lost.slices.size();
-  publish_result(frame, lost);
-  const std::size_t num_last_slices = finish_part(true);
-  commit_map_files();
-  begin_part();
-  return num_slices + num_last_slices;
-}
-
-void MapperProcess::begin_part() {
-  statistics_.begin_part();
-  const int part = statistics_.part();
-  const std::int64_t session = resumption_.begin_part(part);
-  publisher_.begin_part(part, session);
-  pipeline_.reset();  // before the next one takes as much memory
-  map_files_.begin_part(part);
-  pipeline_.emplace(pipeline_config(options_, map_files_));
-  paths_.emplace_back();
-  extraction_ms_ = 0.0;
-  last_state_ = TrackingState::kStarting;
-  spdlog::info("part {} of the map begins in a frame W of its own, session {}", part, session);
-}
-
 void MapperProcess::publish_result(const RgbdFrame& frame, FrameResult& result) {
   const TrackingResult& tracking = result.tracking;
-  if (!resumption_.has_pose(statistics_.part(), frame.utime)) {
-    publisher_.publish_pose({frame.utime, 0, frame.frame_index, tracking.state, tracking.X_WC});
+  if (!resumption_.was_mapped(frame.utime)) {
+    publisher_.publish_pose(
+        {frame.utime, 0, frame.frame_index, tracking.state, tracking.X_WC, result.part});
   }
-  if (auto view = views_.next(frame, tracking)) publisher_.publish_view(*std::move(view));
+  if (auto view = views_.next(frame, tracking)) {
+    view->part = result.part;
+    publisher_.publish_view(*std::move(view));
+  }
   publisher_.publish_slices(std::move(result.slices));
 }
 
@@ -190,16 +163,16 @@ void MapperProcess::measure(const TimedFrame& read, FrameTimings& timings) {
   timings.convert_ms = read.convert_ms;
   const double cpu_ms = process_cpu_ms();
   timings.cpu_ms = cpu_ms - std::exchange(cpu_ms_, cpu_ms);
-  const double extraction_ms = pipeline_->extraction_ms();
+  const double extraction_ms = pipeline_.extraction_ms();
   timings.extract_ms = extraction_ms - std::exchange(extraction_ms_, extraction_ms);
 }
 
 void MapperProcess::publish_rest() {
   finished_ = resumption_.has_caught_up(last_utime_);
   if (finished_) {
-    finish_part(false);
+    publisher_.publish_slices(pipeline_.finish());
+    num_parts_ = pipeline_.num_parts();
   } else {
-    corrected_paths_.push_back(pipeline_->corrected_path());
     spdlog::warn(
         "stopped before all frames that were mapped before are mapped again: resume once more");
   }
@@ -207,27 +180,20 @@ void MapperProcess::publish_rest() {
   publish_status();
 }
 
-/// Publishes the end of this part of the map. Returns the number of slices.
-std::size_t MapperProcess::finish_part(bool part_follows) {
-  std::vector<CloudSlice> rest = pipeline_->finish();
-  const std::size_t num_slices = rest.size();
-  publisher_.publish_slices(std::move(rest), part_follows);
-  corrected_paths_.push_back(pipeline_->corrected_path());
-  return num_slices;
-}
-
 void MapperProcess::commit_map_files() {
-  map_files_.commit([&](int patch) { return pipeline_->pose_of_patch(patch); });
+  map_files_.commit([&](int patch) { return pipeline_.place_of_patch(patch); });
 }
 
 void MapperProcess::write_paths() const {
-  write_path_files(options_.output_path_file, corrected_paths_);
+  write_path_files(options_.output_path_file, pipeline_.corrected_paths());
   write_path_files(options_.online_path_file, paths_);
 }
 
 void MapperProcess::publish_status() {
   MapperStatus status;
   statistics_.report(status);
+  status.part = part_;
+  status.parts = num_parts_;
   // The pose of a disconnected camera is unknown.
   said_interrupted_ = reader_.interrupted();
   if (said_interrupted_) status.state = TrackingState::kLost;
@@ -238,18 +204,18 @@ void MapperProcess::publish_status() {
   const SourceStatus source = reader_.status();
   status.frames_total = source.frames_total;
   status.frames_dropped = source.counts.frames_dropped;
-  status.keyframes = pipeline_->num_keyframes();
-  if (const LoopClosure* const loops = pipeline_->loops()) {
+  status.keyframes = pipeline_.num_keyframes();
+  if (const LoopClosure* const loops = pipeline_.loops()) {
     status.loops = loops->num_loops();
     status.loops_contradicted = loops->num_contradicted();
     status.corrections = loops->deformation().number();
   }
-  const DepthNoise& noise = pipeline_->noise();
+  const DepthNoise& noise = pipeline_.noise();
   status.noise_base_m = noise.base_m;
   status.noise_share = noise.share;
   status.noise_growth_per_m = noise.growth_per_m;
-  status.blocks = pipeline_->num_blocks();
-  status.volume_bytes = pipeline_->volume_bytes();
+  status.blocks = pipeline_.num_blocks();
+  status.volume_bytes = pipeline_.volume_bytes();
   publisher_.publish_status(std::move(status));
   status_clock_ = Stopwatch();
 }
@@ -291,12 +257,25 @@ void MapperProcess::log_change_of_state(const FrameResult& result, const RgbdFra
   }
 }
 
+void MapperProcess::log_part(const PartBegun& begun, const RgbdFrame& frame) const {
+  spdlog::warn(
+      "frame {}: lost for {:g} s (--restart-after), {}; part {} of the map begins, apart from the "
+      "others until a loop joins them",
+      frame.frame_index, options_.pipeline.restart_after_s, reason_text(begun.lost), begun.part);
+}
+
 void MapperProcess::log_correction(const MapCorrection& correction, const RgbdFrame& frame) {
   spdlog::info("frame {}: {} loops closed so far, keyframes moved by up to {:.0f} mm{}",
                frame.frame_index, correction.loops.size(), 1e3 * correction.largest_motion_m,
                correction.num_contradicted == 0
                    ? ""
                    : fmt::format("; {} loops contradicted", correction.num_contradicted));
+}
+
+void MapperProcess::log_joined(const RgbdFrame& frame, int num_parts_before) const {
+  if (num_parts_ >= num_parts_before) return;
+  spdlog::info("frame {}: loops have joined parts of the map: {}", frame.frame_index,
+               num_parts_ == 1 ? "it is one again" : fmt::format("{} are still apart", num_parts_));
 }
 
 void MapperProcess::log_summary() const {
@@ -313,22 +292,15 @@ void MapperProcess::log_summary() const {
   const MapPublisher::Published published = publisher_.published();
   spdlog::info("{} slices, {} points, {} messages published", published.slices, published.points,
                published.chunks);
-  if (const LoopClosure* const loops = pipeline_->loops(); loops && loops->num_loops() > 0) {
+  if (const LoopClosure* const loops = pipeline_.loops(); loops && loops->num_loops() > 0) {
     spdlog::info("{} loops closed, {} contradicted; the map was corrected {} times",
                  loops->num_loops(), loops->num_contradicted(), loops->deformation().number());
   }
-  if (const std::int64_t kept = pipeline_->kept_bytes(); kept > 0) {
+  if (const std::int64_t kept = pipeline_.kept_bytes(); kept > 0) {
     spdlog::info("{:.0f} MB kept of what left the volume, for when the camera comes back",
                  1e-6 * static_cast<double>(kept));
   }
-  if (paths_.size() > 1) log_parts();
-  for (const std::string& name : {options_.output_path_file, options_.online_path_file}) {
-    if (name.empty()) continue;
-    for (std::size_t part = 0; part < paths_.size(); ++part) {
-      spdlog::info("camera path of {} poses in {}", paths_[part].size(),
-                   part_file(name, static_cast<int>(part)).string());
-    }
-  }
+  if (statistics_.parts().size() > 1) log_parts();
 }
 
 void MapperProcess::log_parts() const {
@@ -336,7 +308,9 @@ void MapperProcess::log_parts() const {
   for (const RunStatistics::Part& part : statistics_.parts()) {
     text += fmt::format("{}{} of {}", text.empty() ? "" : ", ", part.frames_tracked, part.frames);
   }
-  spdlog::info("{} parts, frames located in each: {}", paths_.size(), text);
+  spdlog::info("{} parts, frames located in each: {}; {}", statistics_.parts().size(), text,
+               num_parts_ == 1 ? "loops have joined them all"
+                               : fmt::format("{} are apart from each other", num_parts_));
 }
 
 void MapperProcess::throw_failures() const {

@@ -1,7 +1,7 @@
 #pragma once
 
+#include <map>
 #include <optional>
-#include <vector>
 
 #include "lcmtypes/base/stopwatch.hpp"
 #include "lcmtypes/trajectory.hpp"
@@ -12,16 +12,14 @@
 #include "mapper/process/map_files.hpp"
 #include "mapper/process/map_publisher.hpp"
 #include "mapper/process/options.hpp"
-#include "mapper/process/restart_rule.hpp"
 #include "mapper/process/run_statistics.hpp"
 #include "mapper/session/resumption.hpp"
 #include "mapper/session/stored_frames.hpp"
 
 namespace kintsugi::mapper {
 
-/// Reads frames, maps them, and publishes the result on the bus. A camera that stays lost begins
-/// another part (RestartRule): a map of its own, with a session and files of its own. Its frame W
-/// is the camera at its first frame, which is the one at which the part before it was given up.
+/// Reads frames, maps them, and publishes the result on the bus. Parts of the map that no loop has
+/// joined at the end have files of their own.
 class MapperProcess {
  public:
   /// Opens the device and the bus. `store` and `resumption` must outlive this.
@@ -39,19 +37,18 @@ class MapperProcess {
  private:
   void map_frames();
   void map_frame(const TimedFrame& read);
-  std::size_t restart(const RgbdFrame& frame, FrameResult lost);
-  void begin_part();
   void publish_result(const RgbdFrame& frame, FrameResult& result);
   void measure(const TimedFrame& read, FrameTimings& timings);
   void publish_rest();
-  std::size_t finish_part(bool part_follows);
   void commit_map_files();
   void write_paths() const;
   void publish_status();
   void publish_status_when_due();
   void log_start() const;
   void log_change_of_state(const FrameResult& result, const RgbdFrame& frame);
+  void log_part(const PartBegun& begun, const RgbdFrame& frame) const;
   static void log_correction(const MapCorrection& correction, const RgbdFrame& frame);
+  void log_joined(const RgbdFrame& frame, int num_parts_before) const;
   void log_summary() const;
   void log_parts() const;
   void throw_failures() const;
@@ -59,19 +56,18 @@ class MapperProcess {
   const Options options_;
   Resumption& resumption_;
   FrameReader reader_;
-  MapFiles map_files_;                      ///< before pipeline_, whose worker writes to it
-  std::optional<MapperPipeline> pipeline_;  ///< of this part; always there
+  MapFiles map_files_;  ///< before pipeline_, whose worker writes to it
+  MapperPipeline pipeline_;
   MapPublisher publisher_;
   CameraViews views_;
-  RestartRule restart_rule_;
   RunStatistics statistics_;
   std::optional<FrameLog> frame_log_;
   std::optional<FrameStore> frame_store_;
-  /// Of each part, the frames that were tracked or given: as believed at each frame, and as
-  /// corrected at its end.
-  std::vector<Trajectory> paths_{1};
-  std::vector<Trajectory> corrected_paths_;
+  /// Of the frames that were tracked or given, as believed at each frame; by part of the map.
+  std::map<int, Trajectory> paths_;
   TrackingState last_state_ = TrackingState::kStarting;
+  int part_ = 0;                ///< of the map, in which the camera is
+  int num_parts_ = 1;           ///< that no loop has joined, after the last frame
   double cpu_ms_ = 0.0;         ///< of the process, at the last frame
   double extraction_ms_ = 0.0;  ///< of the pipeline, at the last frame
   Stopwatch run_clock_;

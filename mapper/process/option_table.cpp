@@ -91,7 +91,7 @@ OptionGroup mapping_group(Options& o) {
            {"--no-loop-closure", &o.no_loop_closure, kMustMatch,
             "do not correct the map where the camera comes back to a place"},
            {"--restart-after",
-            &o.restart_after_s,
+            &o.pipeline.restart_after_s,
             kMustMatch,
             "a camera that stays lost for this long begins another part of the map; 0: never",
             "s",
@@ -132,7 +132,7 @@ OptionGroup bus_options(Options& o) {
            {"--session",
             &o.session,
             kMayDiffer,
-            "number of this run, followed by those of further parts; 0: from the clock, or that "
+            "number of this run; 0: from the clock, or that "
             "of the resumed session",
             "",
             {0, 9.2e18}},

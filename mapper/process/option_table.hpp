@@ -23,7 +23,6 @@ struct Options {
   double volume_size_m = 0.0;    ///< side of the cube; 0: that of TsdfVolume::Config
   double resolution_m = 0.0;     ///< side of a voxel; 0: that of TsdfVolume::Config
   bool no_loop_closure = false;  ///< the map is not corrected
-  double restart_after_s = 5.0;  ///< lost for so long: another part begins; 0: never
   std::string sensor;            ///< see noise_of_sensor(); empty: by the size of the image
   std::string depth_noise;  ///< "BASE,SHARE,GROWTH", fixed; empty: as of the sensor, and learned
   std::string given_path_file;   ///< TUM; empty: track

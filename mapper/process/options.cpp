@@ -99,13 +99,11 @@ void complete_volume(Options& options) {
 
 /// How the map is handed out.
 void complete_slices(Options& options) {
-  // A large patch is sent again for a small part that is new; many small ones are many messages.
-  constexpr double kPatchSide_m = 0.25;
   if (options.slices != "patch" && options.slices != "shift") {
     throw std::invalid_argument("--slices is '" + options.slices + "', must be patch or shift");
   }
   options.pipeline.close_loops = !options.no_loop_closure;
-  options.pipeline.patch_side_m = options.slices == "patch" ? kPatchSide_m : 0.0;
+  options.pipeline.patch_side_m = options.slices == "patch" ? kUsualPatchSide_m : 0.0;
 }
 
 /// The noise that --depth-noise gives.

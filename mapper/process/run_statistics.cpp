@@ -51,7 +51,6 @@ void RunStatistics::report(MapperStatus& status) {
   const double elapsed_s = 1e-3 * report_clock_.lap_ms();
   const auto frames = static_cast<double>(frame_times_ms_.size());
   const auto mean = [frames](double sum) { return frames > 0.0 ? sum / frames : 0.0; };
-  status.part = part();
   status.state = state_;
   status.loss_reason = loss_reason_;
   status.undetermined = undetermined_;

@@ -19,13 +19,12 @@ class RunStatistics {
     std::int64_t frames_tracked = 0;
   };
 
-  /// The frames that follow are of another part.
+  /// The frames that follow are of another part, as far as is known.
   void begin_part();
   /// One mapped frame.
   void add(const TrackingResult& tracking, const FrameTimings& timings);
 
-  /// Of the current part, from 0.
-  int part() const { return static_cast<int>(parts_.size()) - 1; }
+  /// As they began; loops may have joined some.
   const std::vector<Part>& parts() const { return parts_; }
   std::int64_t frames() const { return frames_; }
   std::int64_t frames_tracked() const { return frames_tracked_; }
@@ -35,7 +34,7 @@ class RunStatistics {
   double mean_frame_ms() const { return mean_over_run(frame_ms_); }
   double mean_cpu_ms() const { return mean_over_run(cpu_ms_); }
 
-  /// Fills part, state, frame counts, rate and times, these over the frames since the last call.
+  /// Fills state, frame counts, rate and times, these over the frames since the last call.
   void report(MapperStatus& status);
 
  private:

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 #include <memory>
-#include <vector>
+#include <optional>
 
 #include "mapper/session/mapping_options.hpp"
 #include "mapper/session/session_store.hpp"
@@ -11,16 +11,15 @@
 namespace kintsugi::mapper {
 
 /// Decides whether a run is a new one, or continues the last one of its log, which was interrupted.
-/// A run has a session for each of its parts: their numbers follow that of part 0 without gaps.
 ///
 /// The log does not contain the state of the mapper. A resumed run maps the same frames again, from
-/// the first one of part 0 on, to restore it; slices that the log already contains are not sent
+/// the first one on, to restore it; slices that the log already contains are not sent
 /// again.
 class Resumption {
  public:
   struct Config {
     MappingOptions options;
-    std::int64_t session = 0;  ///< of part 0; 0: by the clock, or that of the log
+    std::int64_t session = 0;  ///< 0: by the clock, or that of the log
     double max_range_m = 6.5;  ///< of stored frames that are mapped again
   };
 
@@ -33,12 +32,7 @@ class Resumption {
   /// cannot repeat them; unless the log contains them, a new run begins, with a warning.
   std::unique_ptr<FrameSource> attach(std::unique_ptr<FrameSource> source);
 
-  /// Of part 0.
   std::int64_t session() const { return session_; }
-  /// Begins a part after part 0 in the log, unless that was done before the interruption. Returns
-  /// its session.
-  /// @throws std::runtime_error when another run of the log has that session
-  std::int64_t begin_part(int part);
 
   /// The last session of the log if its run is complete, so that there is nothing to map; else
   /// null.
@@ -47,13 +41,9 @@ class Resumption {
   /// Time of the last frame that was mapped before the interruption; -1: none.
   std::int64_t last_mapped_utime() const { return last_mapped_utime_; }
   /// Time of the last raw frame in the log; -1: none.
-  std::int64_t last_stored_utime() const {
-    return continued_.empty() ? -1 : continued_.front().last_frame_utime;
-  }
+  std::int64_t last_stored_utime() const { return continued_ ? continued_->last_frame_utime : -1; }
   /// Whether the frame of this time was mapped before the interruption.
   bool was_mapped(std::int64_t utime) const { return utime <= last_mapped_utime_; }
-  /// Whether the pose of the frame of this time is in the log, as one of this part.
-  bool has_pose(int part, std::int64_t utime) const;
   /// Whether a run whose last mapped frame has this time has repeated all frames that were mapped
   /// before the interruption.
   bool has_caught_up(std::int64_t last_utime) const;
@@ -61,17 +51,14 @@ class Resumption {
  private:
   void begin_run(std::int64_t session);
   void continue_last_run();
-  bool has_all_slices(const StoredSession& part) const;
+  bool has_all_slices() const;
   bool has_all_frames() const;
-  /// Mapping had ended, and the rest was being published.
-  bool had_ended() const;
-  std::vector<std::int64_t> mapped_utimes() const;
   std::unique_ptr<FrameSource> stored_frames_before(std::unique_ptr<FrameSource> camera) const;
 
   SessionStore& store_;
   const Config config_;
   std::int64_t session_ = 0;
-  std::vector<StoredSession> continued_;  ///< the parts in the log; empty: a new run
+  std::optional<StoredSession> continued_;  ///< none: a new run
   std::int64_t last_mapped_utime_ = -1;
 };
 

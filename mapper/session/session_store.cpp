@@ -26,11 +26,7 @@ void SessionStore::read_event(const LogEvent& event, const LogPlace& place) {
 }
 
 void SessionStore::begin_session(std::int64_t session, const MappingOptions& options) {
-  log_.begin(kOptionsChannel, encode_options(session, 0, options));
-}
-
-void SessionStore::begin_part(std::int64_t session, int part, const MappingOptions& options) {
-  log_.append(kOptionsChannel, encode_options(session, part, options));
+  log_.begin(kOptionsChannel, encode_options(session, options));
 }
 
 StoredStream& SessionStore::stream(const std::string& channel, std::int64_t session) {

@@ -29,12 +29,9 @@ class SessionStore {
   /// The sessions in the log when it was opened, oldest first.
   const std::vector<StoredSession>& sessions() const { return reader_.sessions(); }
 
-  /// Begins a run with the session of its part 0. In a new log its options are on disk afterwards.
+  /// Begins a run. In a new log its options are on disk afterwards.
   /// @throws std::runtime_error when they cannot be written to a new log, which is then removed
   void begin_session(std::int64_t session, const MappingOptions& options);
-
-  /// Begins the session of a later part of the run. Never fails.
-  void begin_part(std::int64_t session, int part, const MappingOptions& options);
 
   /// Appends a message that is not a chunk of a stream. Never fails.
   void add(const std::string& channel, ByteView message) { log_.append(channel, message); }

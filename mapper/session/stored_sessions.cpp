@@ -18,10 +18,8 @@ StoredSession read_options(ByteView data) {
     if (!number.is_number_integer()) throw std::runtime_error("session is not a whole number");
     StoredSession session;
     session.session = number.get<std::int64_t>();
-    session.part = json.value("part", 0);
-    if (session.part < 0 || session.part >= session.session) {
-      throw std::runtime_error("part is " + std::to_string(session.part) + " of session " +
-                               std::to_string(session.session) + ", expected 0 to session - 1");
+    if (session.session <= 0) {
+      throw std::runtime_error("session is " + std::to_string(session.session) + ", expected > 0");
     }
     session.options = json.at("options").get<MappingOptions>();
     return session;
@@ -33,9 +31,8 @@ StoredSession read_options(ByteView data) {
 
 }  // namespace
 
-Bytes encode_options(std::int64_t session, int part, const MappingOptions& options) {
-  const std::string text =
-      nlohmann::json{{"session", session}, {"part", part}, {"options", options}}.dump();
+Bytes encode_options(std::int64_t session, const MappingOptions& options) {
+  const std::string text = nlohmann::json{{"session", session}, {"options", options}}.dump();
   return {text.begin(), text.end()};
 }
 
@@ -86,7 +83,6 @@ StoredChunk StoredSessionReader::read_slice_chunk(const LogEvent& event) {
   StoredSession& of = session(chunk.header.session);
   if (chunk.header.kind == SliceKind::kFinal) {
     of.final_slice_begun = true;
-    of.part_follows = chunk.header.part_follows;
     of.slice_chunks_end = chunk.sequence - chunk.index + chunk.count;
   }
   return {event.channel, of.session, chunk.sequence};

@@ -12,26 +12,23 @@
 
 namespace kintsugi::mapper {
 
-/// Channel of the first event of each session, in the log only: its number, its part and its
-/// options as JSON.
+/// Channel of the first event of each session, in the log only: its number and its options
+/// as JSON.
 inline constexpr char kOptionsChannel[] = "MAPPER_OPTIONS";
 
 /// The data of the event on kOptionsChannel.
-Bytes encode_options(std::int64_t session, int part, const MappingOptions& options);
+Bytes encode_options(std::int64_t session, const MappingOptions& options);
 
-/// One session of a log. The parts of a run have consecutive numbers.
+/// One session of a log.
 struct StoredSession {
   std::int64_t session = 0;
-  int part = 0;  ///< of its run
   MappingOptions options;
   std::vector<std::int64_t> mapped_utimes;  ///< times of the mapped frames, ascending
   bool final_slice_begun = false;           ///< mapping had ended, the rest was being published
-  bool part_follows = false;                ///< the final slice said so
   std::int64_t slice_chunks_end = 0;        ///< one past the last chunk of the final slice; 0: open
-  /// One past the last chunk of a raw frame stored whole. Those of all parts are in part 0.
-  std::int64_t frame_chunks_end = 0;
-  std::int64_t last_frame_utime = -1;  ///< of that frame
-  std::int64_t last_event_utime = 0;   ///< wall clock
+  std::int64_t frame_chunks_end = 0;        ///< one past the last chunk of a raw frame stored whole
+  std::int64_t last_frame_utime = -1;       ///< of that frame
+  std::int64_t last_event_utime = 0;        ///< wall clock
   std::optional<MapperStatus> last_status;
 };
 

@@ -60,6 +60,7 @@ Options parse_command_line(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     std::exit(app.exit(error));
   }
+  options.pipeline.patch_side_m = kUsualPatchSide_m;  // the map is corrected
   if (volume_size->count() > 0) {
     options.pipeline.volume.region = RegionShape::kCube;
   } else {
@@ -89,15 +90,16 @@ std::string in_mm(std::optional<double> metres) {
 }
 
 void print_header() {
-  std::cout << "| disturbance | frames | located | fused wrongly | worst, mm | off reference | "
-               "worst, mm | good | refused | "
-               "recovered / never | until found, median / max, s | ATE, mm | frame, median / max, "
-               "ms |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
+  std::cout
+      << "| disturbance | frames | located | parts | fused wrongly | worst, mm | off reference | "
+         "worst, mm | good | refused | "
+         "recovered / never | until found, median / max, s | ATE, mm | frame, median / max, "
+         "ms |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
 }
 
 void print_row(const std::string& name, const RecoveryMeasures& m) {
-  std::cout << "| " << name << " | " << m.frames << " | " << m.located << " | " << m.misplaced
-            << " | " << in_mm(m.worst_misplacement_m) << " | " << m.off << " | "
+  std::cout << "| " << name << " | " << m.frames << " | " << m.located << " | " << m.parts << " | "
+            << m.misplaced << " | " << in_mm(m.worst_misplacement_m) << " | " << m.off << " | "
             << in_mm(m.worst_error_m) << " | " << m.good << " | " << m.refused << std::fixed
             << std::setprecision(1) << " (" << (m.good > 0 ? 100.0 * m.refused / m.good : 0.0)
             << " %) | " << m.recoveries << " / " << m.never_recovered << std::setprecision(2)

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "segmenter/evaluation/trajectory/trajectory_error.hpp"
 
@@ -16,7 +17,7 @@ void measure_errors(const std::vector<FrameOutcome>& outcomes,
   for (const FrameOutcome& outcome : outcomes) {
     const auto& reference = X_WC_reference.at(outcome.planned.frame);
     measures.located += outcome.located ? 1 : 0;
-    if (outcome.located && reference) {
+    if (outcome.located && outcome.part == 0 && reference) {
       const double error_m = pose_error_m(outcome.tracking.X_WC, *reference);
       measures.off += error_m > kWrong_m ? 1 : 0;
       measures.worst_error_m = std::max(measures.worst_error_m, error_m);
@@ -28,8 +29,9 @@ void measure_errors(const std::vector<FrameOutcome>& outcomes,
   }
 }
 
-/// The pose at which a frame was fused, and its true pose.
+/// The pose at which a frame was fused, the part of the map, and its true pose.
 struct Fused {
+  int part;
   Pose X_WC;
   Pose X_WC_true;
 };
@@ -41,6 +43,7 @@ double misplacement_m(const Fused& frame, const std::vector<Fused>& right) {
   double nearest_m = std::numeric_limits<double>::infinity();
   double by_nearest_m = 0.0;
   for (const Fused& other : right) {
+    if (other.part != frame.part) continue;
     const double distance_m = pose_error_m(frame.X_WC_true, other.X_WC_true);
     const double error_m = pose_error_m(other.X_WC.inverse() * frame.X_WC,
                                         other.X_WC_true.inverse() * frame.X_WC_true);
@@ -50,7 +53,7 @@ double misplacement_m(const Fused& frame, const std::vector<Fused>& right) {
       by_nearest_m = error_m;
     }
   }
-  return nearest_m < kSamePlace_m ? least_m : by_nearest_m;  // 0 for the first frame
+  return nearest_m < kSamePlace_m ? least_m : by_nearest_m;  // 0 for the first frame of a part
 }
 
 void measure_misplacement(const std::vector<FrameOutcome>& outcomes,
@@ -65,14 +68,15 @@ void measure_misplacement(const std::vector<FrameOutcome>& outcomes,
     for (std::size_t i = 0; i < paths.size(); ++i) {
       const auto& X_WC = paths[i]->at(outcome.planned.frame);
       if (X_WC)
-        error_m = std::min(error_m, misplacement_m({outcome.tracking.X_WC, *X_WC}, right[i]));
+        error_m = std::min(error_m,
+                           misplacement_m({outcome.part, outcome.tracking.X_WC, *X_WC}, right[i]));
     }
     if (std::isinf(error_m)) continue;  // the true pose of the frame is unknown
     measures.worst_misplacement_m = std::max(measures.worst_misplacement_m, error_m);
     measures.misplaced += error_m > kWrong_m ? 1 : 0;
     for (std::size_t i = 0; error_m <= kWrong_m && i < paths.size(); ++i) {
       const auto& X_WC = paths[i]->at(outcome.planned.frame);
-      if (X_WC) right[i].push_back({outcome.tracking.X_WC, *X_WC});
+      if (X_WC) right[i].push_back({outcome.part, outcome.tracking.X_WC, *X_WC});
     }
   }
 }
@@ -101,7 +105,7 @@ std::optional<double> ate_of(const std::vector<FrameOutcome>& outcomes,
   Trajectory truth;
   for (const FrameOutcome& outcome : outcomes) {
     const auto& X_WC = X_WC_true.at(outcome.planned.frame);
-    if (!outcome.located || !X_WC) continue;
+    if (!outcome.located || outcome.part != 0 || !X_WC) continue;
     estimate.push_back({outcome.planned.utime, outcome.tracking.X_WC});
     truth.push_back({outcome.planned.utime, *X_WC});
   }
@@ -126,6 +130,11 @@ RecoveryMeasures measure(const std::vector<FrameOutcome>& outcomes,
                          const std::vector<std::optional<Pose>>& X_WC_true) {
   RecoveryMeasures measures;
   measures.frames = static_cast<int>(outcomes.size());
+  std::set<int> parts;
+  for (const FrameOutcome& outcome : outcomes) {
+    if (outcome.located) parts.insert(outcome.part);
+  }
+  measures.parts = static_cast<int>(parts.size());
   measure_errors(outcomes, X_WC_reference, measures);
   measure_misplacement(outcomes, X_WC_reference, X_WC_true, measures);
   measure_recoveries(outcomes, measures);

@@ -14,10 +14,12 @@ struct RecoveryMeasures {
   int located = 0;
   /// Frames fused wrongly: more than kWrong_m from where correctly fused frames of the same place
   /// put them. Drift over a long path does not count. For a recording neither the reference nor the
-  /// truth is exact, so a frame counts only if it is wrong by both.
+  /// truth is exact, so a frame counts only if it is wrong by both. Frames are compared with those
+  /// of the same part of the map.
   int misplaced = 0;
   double worst_misplacement_m = 0.0;
-  int off = 0;                     ///< located more than kWrong_m off the reference, with drift
+  int parts = 0;                   ///< of the map, that no loop has joined in the end
+  int off = 0;                     ///< in part 0, more than kWrong_m off the reference, with drift
   double worst_error_m = 0.0;      ///< of the located frames, against the reference
   int good = 0;                    ///< see is_good()
   int refused = 0;                 ///< good but not located

@@ -2,7 +2,10 @@
 
 #include <cmath>
 #include <cstdint>
+#include <map>
+#include <tuple>
 #include <unordered_set>
+#include <utility>
 
 #include "lcmtypes/base/stopwatch.hpp"
 
@@ -58,6 +61,18 @@ class SeenSpace {
   std::unordered_set<std::int64_t> cells_;
 };
 
+/// Where the frames are in the end.
+void correct(std::vector<FrameOutcome>& outcomes, const std::map<int, Trajectory>& paths) {
+  std::map<std::int64_t, std::pair<int, Pose>> located;
+  for (const auto& [part, path] : paths) {
+    for (const StampedPose& pose : path) located[pose.utime] = {part, pose.X_WC};
+  }
+  for (FrameOutcome& outcome : outcomes) {
+    if (!outcome.located) continue;
+    std::tie(outcome.part, outcome.tracking.X_WC) = located.at(outcome.planned.utime);
+  }
+}
+
 }  // namespace
 
 std::vector<FrameOutcome> run_plan(const Recording& recording, const Plan& plan, bool with_color,
@@ -80,6 +95,8 @@ std::vector<FrameOutcome> run_plan(const Recording& recording, const Plan& plan,
     if (outcome.located && X_WC_true) seen.add(frame, *X_WC_true);
     outcomes.push_back(std::move(outcome));
   }
+  pipeline.finish();
+  correct(outcomes, pipeline.corrected_paths());
   return outcomes;
 }
 

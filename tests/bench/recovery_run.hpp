@@ -12,8 +12,9 @@ namespace kintsugi::mapper::bench {
 
 struct FrameOutcome {
   PlannedFrame planned;
-  TrackingResult tracking;
+  TrackingResult tracking;  ///< its pose as corrected at the end of the run
   bool located = false;
+  int part = 0;             ///< of the map, at the end of the run
   double view_known = 0.0;  ///< share of the valid pixels of the frame that were fused before, 0..1
   double frame_ms = 0.0;    ///< wall time of process()
 };

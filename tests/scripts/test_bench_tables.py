@@ -19,11 +19,11 @@ STAGES = """# folder:///somewhere, 300 frames
 | of these, slice worker | - / - / 0.25 | - / - / 0.25 |
 """
 
-RECOVERY = """| disturbance | frames | located | fused wrongly | worst, mm | off reference | worst, mm | good | refused |
-|---|---|---|---|---|---|---|---|---|
-| none | 200 | 200 | 0 | 0.5 | 0 | 0.5 | 200 | 0 (0.0 %) |
-| jump | 100 | 97 | 1 | 31.0 | 2 | 99.0 | 90 | 3 (3.3 %) |
-| covered | 200 | 90 | 0 | 11.0 | 0 | 11.0 | 90 | 2 (2.2 %) |
+RECOVERY = """| disturbance | frames | located | parts | fused wrongly | worst, mm | off reference | worst, mm | good | refused |
+|---|---|---|---|---|---|---|---|---|---|
+| none | 200 | 200 | 1 | 0 | 0.5 | 0 | 0.5 | 200 | 0 (0.0 %) |
+| jump | 100 | 97 | 2 | 1 | 31.0 | 2 | 99.0 | 90 | 3 (3.3 %) |
+| covered | 200 | 90 | 1 | 0 | 11.0 | 0 | 11.0 | 90 | 2 (2.2 %) |
 """
 
 EXACT = """
@@ -100,7 +100,7 @@ class Sections(unittest.TestCase):
         sums, table = tables.parse_tables(mapping.recovery_table({"a": tables.first_table(RECOVERY)}))
         self.assertEqual(sums, [{"input": "a", "frames": "300", "located": "187", "wrong": "1", "worst, mm": "31.0",
                                  "refused": "5"}])
-        self.assertEqual(table[1], {"disturbance": "jump", "a: located": "97 of 100", "a: wrong (worst, mm)": "1 (31.0)",
+        self.assertEqual(table[1], {"disturbance": "jump", "a: located": "97 of 100 in 2 parts", "a: wrong (worst, mm)": "1 (31.0)",
                                     "a: refused": "3"})
 
     def test_exact_has_a_row_for_each_preset(self):

@@ -32,7 +32,6 @@ inline CloudSlice example_slice(int num_points, std::int32_t id = 7) {
   slice.ends_batch = true;
   slice.revision_sum = 12;
   slice.part = 2;
-  slice.part_follows = true;
   slice.resolution_m = 0.01F;
   slice.X_WC = example_pose();
   slice.correction = 3;
@@ -149,6 +148,7 @@ inline CameraView example_view(int color_bytes) {
   view.frame_index = 165;
   view.state = TrackingState::kTracking;
   view.X_WC = example_pose();
+  view.part = 2;
   view.intrinsics = {52.5, 52.6, 31.9, 23.9, 66, 50, {}};
   view.depth_step = 8;
   for (int i = 0; i < view.depth_width() * view.depth_height(); ++i) {

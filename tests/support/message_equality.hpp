@@ -11,14 +11,14 @@ inline bool equal(const Pose& a, const Pose& b) { return a.matrix() == b.matrix(
 
 inline bool operator==(const CloudSlice& a, const CloudSlice& b) {
   const auto& [utime, session, map_name, sequence, num_chunks, id, revision, kind, in_volume,
-               ends_batch, superseded, revision_sum, part, part_follows, resolution_m, X_WC, X_WP,
-               correction, points_W, motions] = a;
+               ends_batch, superseded, revision_sum, part, resolution_m, X_WC, X_WP, correction,
+               points_W, motions] = a;
   return utime == b.utime && session == b.session && map_name == b.map_name && id == b.id &&
          revision == b.revision && kind == b.kind && in_volume == b.in_volume &&
          ends_batch == b.ends_batch && superseded == b.superseded &&
-         revision_sum == b.revision_sum && part == b.part && part_follows == b.part_follows &&
-         resolution_m == b.resolution_m && equal(X_WC, b.X_WC) && X_WP == b.X_WP &&
-         correction == b.correction && points_W == b.points_W && motions == b.motions;
+         revision_sum == b.revision_sum && part == b.part && resolution_m == b.resolution_m &&
+         equal(X_WC, b.X_WC) && X_WP == b.X_WP && correction == b.correction &&
+         points_W == b.points_W && motions == b.motions;
 }
 
 inline bool operator==(const SegmentUpdate& a, const SegmentUpdate& b) {
@@ -32,12 +32,12 @@ inline bool operator==(const SegmentUpdate& a, const SegmentUpdate& b) {
 }
 
 inline bool operator==(const CameraView& a, const CameraView& b) {
-  const auto& [utime, session, map_name, frame_index, state, X_WC, intrinsics, depth_step, depth_mm,
-               color_jpeg] = a;
+  const auto& [utime, session, map_name, frame_index, state, X_WC, part, intrinsics, depth_step,
+               depth_mm, color_jpeg] = a;
   return utime == b.utime && session == b.session && map_name == b.map_name &&
          frame_index == b.frame_index && state == b.state && equal(X_WC, b.X_WC) &&
-         intrinsics == b.intrinsics && depth_step == b.depth_step && depth_mm == b.depth_mm &&
-         color_jpeg == b.color_jpeg;
+         part == b.part && intrinsics == b.intrinsics && depth_step == b.depth_step &&
+         depth_mm == b.depth_mm && color_jpeg == b.color_jpeg;
 }
 
 inline bool operator==(const CameraPose& a, const CameraPose& b) {

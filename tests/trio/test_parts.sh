@@ -17,7 +17,7 @@ two_rooms=(--private --device "folder://$work/rooms" --replay --resolution 0.02 
 
 run_trio "${two_rooms[@]}" --out quiet
 for name in segments.ply segments.part1.ply segments.part1.json trajectory.txt trajectory.part1.txt final.png \
-  final_7.png; do
+  final.part0.png; do
   expect_file "quiet/$name"
 done
 expect_no_partial_files quiet

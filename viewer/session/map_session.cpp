@@ -73,7 +73,7 @@ void MapSession::use(CameraView view) {
   pose.utime = view.utime;
   pose.state = view.state;
   pose.X_WC = view.X_WC;
-  pose.part = camera_part_;  // a view does not tell its part
+  pose.part = view.part;
   if (view.utime > camera_utime_) use(pose);
   map_.note_time(view.utime);
   view_ = std::move(view);

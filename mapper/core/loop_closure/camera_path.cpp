@@ -24,13 +24,13 @@ void CameraPath::add(std::int64_t utime, const Pose& X_UC, int keyframe, bool ju
   steps_.push_back({utime, X_UC});
 }
 
-Trajectory CameraPath::corrected(const MapDeformation& deformation) const {
-  Trajectory path;
-  path.reserve(steps_.size());
+std::map<int, Trajectory> CameraPath::corrected(const MapDeformation& deformation) const {
+  std::map<int, Trajectory> paths;
   for (std::size_t s = 0; s < stays_.size(); ++s) {
     const bool is_last = s + 1 == stays_.size();
     const std::size_t end = is_last ? steps_.size() : stays_[s + 1].first;
     const bool goes_over = !is_last && !stays_[s + 1].jumped;
+    Trajectory& path = paths[deformation.part_of(stays_[s].keyframe)];
     const Pose here = deformation.at(stays_[s].keyframe);
     const Pose next = goes_over ? deformation.at(stays_[s + 1].keyframe) : here;
     const std::int64_t begin_utime = steps_[stays_[s].first].utime;
@@ -43,7 +43,7 @@ Trajectory CameraPath::corrected(const MapDeformation& deformation) const {
                                             : here * step.X_UC});
     }
   }
-  return path;
+  return paths;
 }
 
 }  // namespace kintsugi::mapper

@@ -2,6 +2,7 @@
 // The camera's path, which follows when the keyframes on it are moved.
 
 #include <cstdint>
+#include <map>
 #include <vector>
 
 #include "lcmtypes/trajectory.hpp"
@@ -19,10 +20,10 @@ class CameraPath {
   /// Length, without jumps, metres.
   double length_m() const { return length_m_; }
 
-  /// The path in the corrected map. Between the moment when the camera came to a keyframe and the
-  /// one when it came to the next, the correction goes over linearly from that of the one to that
-  /// of the other, unless it jumped.
-  Trajectory corrected(const MapDeformation& deformation) const;
+  /// The path in the corrected map, by part of the map. Between the moment when the camera came to
+  /// a keyframe and the one when it came to the next, the correction goes over linearly from that
+  /// of the one to that of the other, unless it jumped.
+  std::map<int, Trajectory> corrected(const MapDeformation& deformation) const;
 
  private:
   struct Step {

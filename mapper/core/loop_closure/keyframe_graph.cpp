@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <stdexcept>
 #include <string>
 
@@ -14,6 +15,10 @@ namespace {
 /// Registrations have errors that are alike for all pixels, and so not in their information: of the
 /// surfaces that voxels describe.
 constexpr double kSurfaceError_vox = 0.25;
+
+/// Loops that agree, from different later keyframes, to join two parts: one more than in one part,
+/// where the bound on drift is further evidence.
+constexpr std::size_t kLoopsToJoin = 3;
 
 /// The larger of the distance (m) and of the angle (rad), which are about the same for what is a
 /// metre away.
@@ -38,13 +43,17 @@ void KeyframeGraph::Config::validate() const {
 
 KeyframeGraph::KeyframeGraph(const Config& config) : config_((config.validate(), config)) {}
 
-void KeyframeGraph::add(const Pose& X_UK, double path_m, std::optional<int> from) {
+void KeyframeGraph::add(const Pose& X_UK, double path_m, std::optional<int> from, double unseen_m) {
   Pose X_WU = Pose::Identity();
+  int part = static_cast<int>(parts_.size());
   if (from) {
     check_number(*from);
     X_WU = X_WK_[*from] * nodes_[*from].X_UK.inverse(Eigen::Isometry);
+    part = nodes_[*from].part;
+  } else {
+    parts_.push_back({.first = size(), .unseen_m = unseen_m, .joined = part});
   }
-  nodes_.push_back({X_UK, path_m});
+  nodes_.push_back({X_UK, path_m, part});
   X_WK_.push_back(X_WU * X_UK);
 }
 
@@ -64,6 +73,7 @@ void KeyframeGraph::check_number(int number) const {
 }
 
 int KeyframeGraph::offer(const Loop& loop) {
+  if (part_of(loop.later) != part_of(loop.earlier)) return offer_to_join(loop);
   if (!is_plausible(loop)) return 0;
   const auto agrees = [&](const Loop& other) { return agree(loop, other); };
   int num_confirmed = 0;
@@ -85,8 +95,77 @@ bool KeyframeGraph::is_plausible(const Loop& loop) const {
   return drift_m <= config_.max_drift_share * path_m + config_.voxel_m;
 }
 
+int KeyframeGraph::offer_to_join(const Loop& loop) {
+  if (!is_reachable(loop)) return 0;
+  pending_.push_back(loop);
+  const auto found = std::stable_partition(pending_.begin(), pending_.end() - 1,
+                                           [&](const Loop& other) { return !agree(loop, other); });
+  std::set<int> supporters;
+  for (auto it = found; it != pending_.end(); ++it) supporters.insert(it->later);
+  std::set<int> rivals;
+  for (auto it = pending_.begin(); it != found; ++it) {
+    if (are_rivals(loop, *it)) rivals.insert(it->later);
+  }
+  if (supporters.size() < kLoopsToJoin || supporters.size() <= 2 * rivals.size()) return 0;
+  join(*std::min_element(found, pending_.end(),
+                         [](const Loop& a, const Loop& b) { return a.sigma_m < b.sigma_m; }));
+  const auto num_confirmed = static_cast<int>(pending_.end() - found);
+  confirmed_.insert(confirmed_.end(), found, pending_.end());
+  pending_.erase(found, pending_.end());
+  return num_confirmed;
+}
+
+/// Whether the camera can have gone from where it was before a part to where the loop puts the
+/// beginning of that part.
+bool KeyframeGraph::is_reachable(const Loop& loop) const {
+  const Part& part = parts_[nodes_[loop.later].part];
+  const int before = part.first - 1;
+  if (before < 0 || part_of(before) != part_of(loop.earlier)) return true;  // not known
+  const Pose X_EB = X_WK_[loop.earlier].inverse(Eigen::Isometry) * X_WK_[before];
+  const Pose X_LF = X_WK_[loop.later].inverse(Eigen::Isometry) * X_WK_[part.first];
+  const double distance_m = (loop.X_EL * X_LF.translation() - X_EB.translation()).norm();
+  const double path_m = nodes_[loop.later].path_m - nodes_[loop.earlier].path_m;
+  return distance_m <= part.unseen_m + config_.max_drift_share * path_m + config_.voxel_m;
+}
+
+/// Whether two loops between the same parts put them to places too far from each other for both to
+/// be right.
+bool KeyframeGraph::are_rivals(const Loop& a, const Loop& b) const {
+  if (part_of(a.later) != part_of(b.later) || part_of(a.earlier) != part_of(b.earlier)) {
+    return false;
+  }
+  const Pose X_LaLb = X_WK_[a.later].inverse(Eigen::Isometry) * X_WK_[b.later];
+  const Pose X_EaEb = X_WK_[a.earlier].inverse(Eigen::Isometry) * X_WK_[b.earlier];
+  const Pose X_LaLb_loops = a.X_EL.inverse(Eigen::Isometry) * X_EaEb * b.X_EL;
+  const double path_m = std::abs(nodes_[a.later].path_m - nodes_[b.later].path_m) +
+                        std::abs(nodes_[a.earlier].path_m - nodes_[b.earlier].path_m);
+  return size_of(X_LaLb.inverse(Eigen::Isometry) * X_LaLb_loops) >
+         uncertainty_m(a, b, X_LaLb_loops) + config_.max_drift_share * path_m;
+}
+
+/// Moves the later of the two parts to where the loop puts it.
+void KeyframeGraph::join(const Loop& loop) {
+  const int later = part_of(loop.later);
+  const int earlier = part_of(loop.earlier);
+  const int moving = std::max(later, earlier);
+  const Pose X_WE = X_WK_[loop.earlier];
+  const Pose X_WL = X_WK_[loop.later];
+  const Pose motion_W =
+      moving == later
+          ? Pose(X_WE * loop.X_EL * X_WL.inverse(Eigen::Isometry))
+          : Pose(X_WL * loop.X_EL.inverse(Eigen::Isometry) * X_WE.inverse(Eigen::Isometry));
+  for (int i = 0; i < size(); ++i) {
+    if (part_of(i) == moving) X_WK_[i] = motion_W * X_WK_[i];
+  }
+  for (Part& part : parts_) {
+    if (part.joined == moving) part.joined = std::min(later, earlier);
+  }
+}
+
 bool KeyframeGraph::agree(const Loop& a, const Loop& b) const {
   if (a.later == b.later) return false;  // one view may look like another place as a whole
+  const auto are_of_one_part = [&](int i, int j) { return nodes_[i].part == nodes_[j].part; };
+  if (!are_of_one_part(a.later, b.later) || !are_of_one_part(a.earlier, b.earlier)) return false;
   const auto distance_m = [&](int i, int j) {
     return std::abs(nodes_[i].path_m - nodes_[j].path_m);
   };
@@ -95,11 +174,15 @@ bool KeyframeGraph::agree(const Loop& a, const Loop& b) const {
   const Pose X_LaLb_tracked = nodes_[a.later].X_UK.inverse(Eigen::Isometry) * nodes_[b.later].X_UK;
   const Pose X_EaEb = nodes_[a.earlier].X_UK.inverse(Eigen::Isometry) * nodes_[b.earlier].X_UK;
   const Pose X_LaLb = a.X_EL.inverse(Eigen::Isometry) * X_EaEb * b.X_EL;
+  return size_of(X_LaLb_tracked.inverse(Eigen::Isometry) * X_LaLb) <= uncertainty_m(a, b, X_LaLb);
+}
+
+/// Of the way from one later keyframe to the other over both loops, metres (and radians).
+double KeyframeGraph::uncertainty_m(const Loop& a, const Loop& b, const Pose& X_LaLb) const {
   // The uncertainty of a rotation moves what is as far away as both keyframes are from each other.
   const double lever = 1.0 + X_LaLb.translation().norm();
   const double sigma_m = lever * std::hypot(a.sigma_m, b.sigma_m);
-  return size_of(X_LaLb_tracked.inverse(Eigen::Isometry) * X_LaLb) <=
-         config_.optimizer.contradicted_sigmas * sigma_m + config_.voxel_m;
+  return config_.optimizer.contradicted_sigmas * sigma_m + config_.voxel_m;
 }
 
 double KeyframeGraph::optimize() {
@@ -122,8 +205,18 @@ double KeyframeGraph::optimize() {
   }
 }
 
+std::vector<int> KeyframeGraph::parts() const {
+  std::vector<int> parts;
+  parts.reserve(nodes_.size());
+  for (int i = 0; i < size(); ++i) parts.push_back(part_of(i));
+  return parts;
+}
+
 PoseGraph KeyframeGraph::pose_graph() const {
-  PoseGraph graph{X_WK_, tracked_};
+  PoseGraph graph{.X_WN = X_WK_, .edges = tracked_, .fixed = {}};
+  for (int part = 0; part < static_cast<int>(parts_.size()); ++part) {
+    if (parts_[part].joined == part) graph.fixed.push_back(parts_[part].first);
+  }
   for (const Loop& loop : confirmed_) {
     // Two surfaces were compared.
     graph.edges.push_back(

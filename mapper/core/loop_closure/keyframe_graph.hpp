@@ -14,11 +14,19 @@ namespace kintsugi::mapper {
 /// U is the uncorrected map, in which the camera is tracked; W the corrected one, the same at
 /// first.
 ///
-/// A loop counts only when it is confirmed: when another loop, from another later keyframe, agrees
-/// with it. For that both later keyframes must have been near each other on the camera's path, and
-/// both earlier ones, too, so that the poses between them are as precise as tracking in one volume;
-/// then the way from one later keyframe to the other over both loops is where tracking has it, but
-/// for the uncertainty of the loops. Loops that lead farther than tracking can drift are refused.
+/// A keyframe to which the camera was not tracked from another one begins a part of the map
+/// (origin_of_part()). Parts are joined by loops between them.
+///
+/// A loop in one part counts only when it is confirmed: when another loop, from another later
+/// keyframe, agrees with it. For that both later keyframes must have been near each other on the
+/// camera's path, and both earlier ones, too, so that the poses between them are as precise as
+/// tracking in one volume; then the way from one later keyframe to the other over both loops is
+/// where tracking has it, but for the uncertainty of the loops. Loops that lead farther than
+/// tracking can drift are refused.
+///
+/// Between two parts there is no such bound, only that on how far the camera can have gone while it
+/// was lost, and places that look alike would join them wrongly. So three loops that agree join two
+/// parts, if they are more than twice as many as those that would put them elsewhere.
 class KeyframeGraph {
  public:
   struct Config {
@@ -37,16 +45,17 @@ class KeyframeGraph {
   explicit KeyframeGraph(const Config& config);
 
   /// Adds keyframe number size(). `path_m` is the length of the camera's path up to it; `from` the
-  /// keyframe from which the camera came, with which it is corrected until loops say more.
+  /// keyframe from which the camera came, with which it is corrected until loops say more. Without
+  /// one it begins a part, and the camera may have gone `unseen_m` since the keyframe before.
   /// @throws std::invalid_argument when there is no keyframe `from`
-  void add(const Pose& X_UK, double path_m, std::optional<int> from);
+  void add(const Pose& X_UK, double path_m, std::optional<int> from, double unseen_m = 0.0);
 
   /// Adds a motion that was tracked; X_FT is taken from the poses in U.
   /// @throws std::invalid_argument when a keyframe does not exist, or both are the same
   void add_tracked(int from, int to, const Matrix6d& information_T);
 
   /// Takes a loop, and returns how many are confirmed by it, itself among them: 0, 2 or more, or 1
-  /// when it agrees with confirmed ones.
+  /// when it agrees with confirmed ones. Loops that are confirmed between two parts join them.
   int offer(const Loop& loop);
 
   /// Moves the keyframes to where motions and confirmed loops want them. Loops that are
@@ -59,6 +68,9 @@ class KeyframeGraph {
   const Pose& X_WK(int number) const { return X_WK_[number]; }
   const std::vector<Pose>& poses_W() const { return X_WK_; }
   double path_m(int number) const { return nodes_[number].path_m; }
+  /// The part of the map in which a keyframe is: of parts that are joined the first one.
+  int part_of(int number) const { return parts_[nodes_[number].part].joined; }
+  std::vector<int> parts() const;                                ///< part_of() each keyframe
   const std::vector<Loop>& loops() const { return confirmed_; }  ///< confirmed
   int num_contradicted() const { return num_contradicted_; }     ///< so far
 
@@ -66,15 +78,27 @@ class KeyframeGraph {
   struct Node {
     Pose X_UK;
     double path_m;
+    int part;  ///< in which it was tracked
+  };
+  struct Part {
+    int first;        ///< keyframe
+    double unseen_m;  ///< how far the camera may have gone between the keyframe before and that one
+    int joined;       ///< the first of the parts that it is joined with, or itself
   };
 
   void check_number(int number) const;
   bool is_plausible(const Loop& loop) const;
+  int offer_to_join(const Loop& loop);
+  bool is_reachable(const Loop& loop) const;
+  bool are_rivals(const Loop& a, const Loop& b) const;
+  void join(const Loop& loop);
+  double uncertainty_m(const Loop& a, const Loop& b, const Pose& X_LaLb) const;
   bool agree(const Loop& a, const Loop& b) const;
   PoseGraph pose_graph() const;
 
   Config config_;
   std::vector<Node> nodes_;
+  std::vector<Part> parts_;
   std::vector<Pose> X_WK_;
   std::vector<PoseEdge> tracked_;
   std::vector<Loop> confirmed_;

@@ -12,7 +12,7 @@ void KeyframeTree::add(std::optional<int> from, double distance_m) {
 
 std::vector<bool> KeyframeTree::within(int keyframe, double reach_m) const {
   std::vector<bool> is_within(nodes_.size(), false);
-  if (nodes_.empty()) return is_within;
+  if (keyframe >= size()) return is_within;
   std::vector<std::pair<int, double>> open = {{keyframe, 0.0}};
   while (!open.empty()) {
     const auto [at, distance_m] = open.back();

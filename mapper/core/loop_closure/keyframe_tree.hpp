@@ -8,14 +8,15 @@ namespace kintsugi::mapper {
 /// From which keyframe the camera came to which.
 class KeyframeTree {
  public:
-  /// Adds keyframe number size(), `distance_m` from that from which the camera came to it.
+  /// Adds keyframe number size(), `distance_m` from that from which the camera came to it; without
+  /// one no way leads to it.
   void add(std::optional<int> from, double distance_m);
 
   /// Whether a keyframe is this one, or the camera's way to it from this one was not longer than
-  /// `reach_m`; by number.
+  /// `reach_m`; by number. Of one that is not there yet: none.
   std::vector<bool> within(int keyframe, double reach_m) const;
 
-  /// The keyframe from which the camera came to this one; itself for the first.
+  /// The keyframe from which the camera came to this one; itself for one without.
   int from(int keyframe) const { return nodes_[keyframe].from; }
   int size() const { return static_cast<int>(nodes_.size()); }
 

@@ -93,14 +93,17 @@ void LoopCloser::run() {
 
 std::optional<MapCorrection> LoopCloser::work_on(const NewKeyframe& added) {
   keyframes_.push_back(added.keyframe);
-  graph_.add(added.keyframe->X_WC, added.path_m, added.from);
+  graph_.add(added.keyframe->X_WC, added.path_m, added.from, added.unseen_m);
   add_tracked(added);
   int num_confirmed = 0;
   for (const Loop& loop : matches_of(added)) num_confirmed += graph_.offer(loop);
   if (num_confirmed == 0) return std::nullopt;
   const double largest_motion_m = graph_.optimize();
-  return MapCorrection{graph_.poses_W(), graph_.loops(), graph_.num_contradicted(),
-                       largest_motion_m};
+  return MapCorrection{.X_WK = graph_.poses_W(),
+                       .parts = graph_.parts(),
+                       .loops = graph_.loops(),
+                       .num_contradicted = graph_.num_contradicted(),
+                       .largest_motion_m = largest_motion_m};
 }
 
 void LoopCloser::add_tracked(const NewKeyframe& added) {
@@ -137,9 +140,11 @@ std::vector<Loop> LoopCloser::matches_of(const NewKeyframe& added) const {
     }
   }
   std::ranges::stable_sort(loops, {}, &Loop::sigma_m);
-  if (loops.size() > static_cast<std::size_t>(config_.max_matches)) {
-    loops.resize(config_.max_matches);
-  }
+  int num_in_part = 0;
+  std::erase_if(loops, [&](const Loop& loop) {
+    const bool is_in_part = graph_.part_of(loop.earlier) == graph_.part_of(later);
+    return is_in_part && ++num_in_part > config_.max_matches;
+  });
   return loops;
 }
 

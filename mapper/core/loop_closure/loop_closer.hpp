@@ -21,8 +21,10 @@ namespace kintsugi::mapper {
 struct NewKeyframe {
   int number = 0;
   std::shared_ptr<const Keyframe> keyframe;
-  double path_m = 0.0;            ///< length of the camera's path up to it
-  std::optional<int> from;        ///< the keyframe from which the camera was tracked to this one
+  double path_m = 0.0;  ///< length of the camera's path up to it
+  /// The keyframe from which the camera was tracked to this one; none: it begins a part of the map,
+  std::optional<int> from;
+  double unseen_m = 0.0;          ///< and the camera may have gone so far since the one before it
   Matrix6d information;           ///< of its pose in the volume, see Registration
   std::vector<int> similar;       ///< keyframes that look alike, released ones only
   std::vector<bool> is_released;  ///< by number: whether its surface has left the volume
@@ -32,6 +34,7 @@ struct NewKeyframe {
 /// Where the keyframes are after loops were closed.
 struct MapCorrection {
   std::vector<Pose> X_WK;         ///< of all keyframes up to the newest that was known
+  std::vector<int> parts;         ///< in which they are, see KeyframeGraph::part_of()
   std::vector<Loop> loops;        ///< all that are confirmed
   int num_contradicted = 0;       ///< loops that were given up, so far
   double largest_motion_m = 0.0;  ///< of a keyframe, since the correction before
@@ -57,7 +60,7 @@ class LoopCloser {
     KeyframeGraph::Config graph;
     double delay_s = 2.0;     ///< from a keyframe to the correction that it brings, device time
     int max_by_position = 3;  ///< candidates that would see the same
-    int max_matches = 2;      ///< of a keyframe
+    int max_matches = 2;  ///< of a keyframe in its part; with other parts all count, as rivals do
     /// Two keyframes that were tracked in the same volume and have at least this share of their
     /// surface in common hold each other: half of it, as with the next keyframe on a path.
     double min_common_share = 0.5;

@@ -1,6 +1,7 @@
 #include "mapper/core/loop_closure/loop_closure.hpp"
 
 #include <algorithm>
+#include <set>
 #include <utility>
 
 #include "lcmtypes/base/argument_check.hpp"
@@ -27,11 +28,28 @@ void LoopClosure::Config::validate() const {
   check_range("least_motion_vox", least_motion_vox, 0.0, 1e3);
   check_range("reach_m", reach_m, 0.0, 1e3);
   check_range("voxel_m", voxel_m, 1e-4, 1.0);
+  check_range("max_speed", max_speed, 0.0, 1e6);
   check_range("max_similar", max_similar, 0, 1000);
 }
 
 LoopClosure::LoopClosure(const Config& config, KeyframeMap& keyframes)
-    : config_((config.validate(), config)), keyframes_(keyframes), closer_(config.closer) {}
+    : config_((config.validate(), config)), keyframes_(keyframes), closer_(config.closer) {
+  begin_part();
+}
+
+void LoopClosure::begin_part() {
+  if (begins_part_) return;
+  keyframes_.release_if([](const Keyframe&) { return true; });
+  last_at_ = keyframes_.size();
+  begins_part_ = true;
+  deformation_.add({.X_WU = Pose::Identity(), .part = num_begun_++});
+}
+
+int LoopClosure::num_parts() const {
+  std::set<int> parts;
+  for (int k = 0; k < deformation_.size(); ++k) parts.insert(deformation_.part_of(k));
+  return static_cast<int>(parts.size());
+}
 
 void LoopClosure::release_left(const TsdfVolume& volume, const Pose& X_UC) {
   const auto near = keyframes_.find_near(X_UC);
@@ -71,30 +89,38 @@ void LoopClosure::go_to(int keyframe) {
 void LoopClosure::follow(const TrackingResult& located, bool is_keyframe, std::int64_t utime,
                          const DepthNoise& noise) {
   const Pose& X_UC = located.X_WC;
-  const bool jumped = std::exchange(went_, false) || located.found_by_keyframe.has_value();
+  const bool jumped =
+      std::exchange(went_, false) || begins_part_ || located.found_by_keyframe.has_value();
   if (located.found_by_keyframe) last_at_ = *located.found_by_keyframe;
   if (is_keyframe) {
     compare_newest();
     const int number = keyframes_.size() - 1;
     path_.add(utime, X_UC, number, jumped);
+    const bool begins_part = std::exchange(begins_part_, false);
+    const auto from = begins_part ? std::nullopt : std::optional(last_at_);
     newest_ = NewKeyframe{.number = number,
                           .keyframe = keyframes_.share(number),
                           .path_m = path_.length_m(),
-                          .from = number == 0 ? std::nullopt : std::optional(last_at_),
+                          .from = from,
+                          .unseen_m = begins_part ? unseen_m(utime) : 0.0,
                           .information = located.information_C,
                           .similar = {},
                           .is_released = keyframes_.is_released(),
                           .noise = noise};
     newest_utime_ = utime;
-    tree_.add(newest_->from,
-              newest_->from ? (keyframes_[last_at_].X_WC.translation() - X_UC.translation()).norm()
-                            : 0.0);
-    deformation_.add(deformation_.at(tree_.from(number)));
+    tree_.add(from,
+              from ? (keyframes_[*from].X_WC.translation() - X_UC.translation()).norm() : 0.0);
+    if (from) deformation_.add(deformation_.place(*from));
     last_at_ = number;
     return;
   }
   last_at_ = keyframes_.find_near(X_UC).value_or(last_at_);
   path_.add(utime, X_UC, last_at_, jumped);
+}
+
+/// How far the camera can have gone since the newest keyframe.
+double LoopClosure::unseen_m(std::int64_t utime) const {
+  return config_.max_speed * 1e-6 * static_cast<double>(utime - newest_utime_);
 }
 
 void LoopClosure::compare_newest() {
@@ -133,16 +159,19 @@ std::optional<MapCorrection> LoopClosure::finish() {
 
 std::optional<MapCorrection> LoopClosure::apply_if_above(double least_motion_vox) {
   if (!waiting_ || motion_m(*waiting_) <= least_motion_vox * config_.voxel_m) return std::nullopt;
-  std::vector<Pose> X_WU;
-  for (std::size_t k = 0; k < static_cast<std::size_t>(tree_.size()); ++k) {
-    if (k < waiting_->X_WK.size()) {
-      const Pose& X_UK = keyframes_[static_cast<int>(k)].X_WC;
-      X_WU.push_back(waiting_->X_WK[k] * X_UK.inverse(Eigen::Isometry));
-    } else {
-      X_WU.push_back(Pose(X_WU[tree_.from(static_cast<int>(k))]));
+  std::vector<MapDeformation::Place> places;
+  for (int k = 0; k < deformation_.size(); ++k) {
+    const auto known = static_cast<std::size_t>(k);
+    if (known < waiting_->X_WK.size()) {
+      const Pose X_WU = waiting_->X_WK[known] * keyframes_[k].X_WC.inverse(Eigen::Isometry);
+      places.push_back({X_WU, waiting_->parts[known]});
+    } else if (k < tree_.size() && tree_.from(k) != k) {
+      places.push_back(MapDeformation::Place(places[tree_.from(k)]));
+    } else {  // it begins a part
+      places.push_back(deformation_.place(k));
     }
   }
-  deformation_ = MapDeformation(deformation_.number() + 1, std::move(X_WU));
+  deformation_ = MapDeformation(deformation_.number() + 1, std::move(places));
   return std::exchange(waiting_, std::nullopt);
 }
 

@@ -2,6 +2,7 @@
 // Loop closure of one run: from located frames to corrections.
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -29,7 +30,8 @@ class LoopClosure {
     double least_motion_vox = 0.1;
     double reach_m = 5.0;  ///< how far a keyframe's surface is from it, m
     double voxel_m = 4.5 / 512;
-    int max_similar = 6;  ///< keyframes that look alike, for each new one
+    int max_similar = 6;     ///< keyframes that look alike, for each new one
+    double max_speed = 2.0;  ///< m/s, of a camera that is lost, see Tracker
 
     /// @throws std::invalid_argument naming field, value and bound
     void validate() const;
@@ -38,6 +40,9 @@ class LoopClosure {
   /// `keyframes` outlives this object.
   /// @throws std::invalid_argument if the configuration is not valid
   LoopClosure(const Config& config, KeyframeMap& keyframes);
+
+  /// The frames that follow are of another part of the map; all keyframes are released.
+  void begin_part();
 
   /// To be called before a located frame may become a keyframe: releases the keyframes whose
   /// surface is not in the volume any more, so that the camera gets a new one where it comes back
@@ -79,10 +84,17 @@ class LoopClosure {
 
   /// By the corrections that were taken so far.
   const MapDeformation& deformation() const { return deformation_; }
-  Trajectory corrected_path() const { return path_.corrected(deformation_); }
+  /// By part of the map.
+  std::map<int, Trajectory> corrected_paths() const { return path_.corrected(deformation_); }
 
-  /// The keyframe at which the camera is, or was last; 0 before the first.
+  /// The keyframe at which the camera is, or was last; at the beginning of a part the one that
+  /// comes.
   int keyframe() const { return last_at_; }
+
+  /// The part of the map in which the camera is.
+  int part() const { return deformation_.part_of(last_at_); }
+  /// How many parts of the map no loop has joined.
+  int num_parts() const;
 
   int num_loops() const { return num_loops_; }                ///< that count
   int num_contradicted() const { return num_contradicted_; }  ///< that were given up
@@ -91,6 +103,7 @@ class LoopClosure {
 
  private:
   void compare_newest();
+  double unseen_m(std::int64_t utime) const;
   std::optional<MapCorrection> apply_if_above(double least_motion_vox);
   void note(std::optional<MapCorrection> newest);
   double motion_m(const MapCorrection& correction) const;
@@ -105,7 +118,9 @@ class LoopClosure {
   int last_at_ = 0;  ///< the keyframe near which the camera is, or was
   MapDeformation deformation_;
   KeyframeTree tree_;
-  bool went_ = false;  ///< go_to() was called since the last frame
+  bool went_ = false;         ///< go_to() was called since the last frame
+  bool begins_part_ = false;  ///< with the next keyframe
+  int num_begun_ = 0;         ///< parts
   int num_loops_ = 0;
   int num_contradicted_ = 0;
   std::optional<MapCorrection> waiting_;        ///< the newest, not applied yet

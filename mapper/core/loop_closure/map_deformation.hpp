@@ -10,33 +10,52 @@
 namespace kintsugi::mapper {
 
 /// How a correction moves what was seen at each keyframe: U is the uncorrected map, in which the
-/// camera is tracked and the volume is, W the corrected one.
+/// camera is tracked and the volume is, W the corrected one. And the part of the map to which that
+/// belongs by now.
 class MapDeformation {
  public:
+  struct Place {
+    Pose X_WU = Pose::Identity();
+    int part = 0;  ///< see origin_of_part()
+  };
+
   /// Nothing is moved.
   MapDeformation() = default;
 
   /// @param number of the correction, from 1
-  /// @param X_WU by keyframe
-  MapDeformation(int number, std::vector<Pose> X_WU) : number_(number), X_WU_(std::move(X_WU)) {}
+  /// @param places by keyframe
+  MapDeformation(int number, std::vector<Place> places)
+      : number_(number), places_(std::move(places)) {}
 
   int number() const { return number_; }  ///< 0: nothing was corrected so far
 
-  /// Of what was seen at this keyframe; of one that is not known, that of the newest.
-  Pose at(int keyframe) const {
-    if (X_WU_.empty()) return Pose::Identity();
-    return X_WU_[std::min(static_cast<std::size_t>(keyframe), X_WU_.size() - 1)];
+  /// X_WU of what was seen at this keyframe; of one that is not known, that of the newest.
+  Pose at(int keyframe) const { return place(keyframe).X_WU; }
+  /// The part in which that is.
+  int part_of(int keyframe) const { return place(keyframe).part; }
+  Place place(int keyframe) const {
+    if (places_.empty()) return {};
+    return places_[std::min(static_cast<std::size_t>(keyframe), places_.size() - 1)];
   }
 
-  /// Of what was seen at the newest keyframe.
-  Pose newest() const { return X_WU_.empty() ? Pose::Identity() : X_WU_.back(); }
+  /// Number of keyframes that are known.
+  int size() const { return static_cast<int>(places_.size()); }
+
+  /// X_WU of what was seen at the newest keyframe.
+  Pose newest() const { return places_.empty() ? Pose::Identity() : places_.back().X_WU; }
 
   /// Adds a keyframe, which is moved like this.
-  void add(const Pose& X_WU) { X_WU_.push_back(X_WU); }
+  void add(const Place& place) { places_.push_back(place); }
 
  private:
   int number_ = 0;
-  std::vector<Pose> X_WU_;
+  std::vector<Place> places_;
+};
+
+/// At which keyframe something was seen, and where that is by now.
+struct SeenAt {
+  int keyframe = 0;
+  MapDeformation::Place place;
 };
 
 }  // namespace kintsugi::mapper

@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <stdexcept>
@@ -89,14 +90,17 @@ void PoseGraph::validate() const {
   for (std::size_t i = 0; i < X_WN.size(); ++i) {
     if (!X_WN[i].matrix().allFinite()) refuse("node " + std::to_string(i) + " is not finite");
   }
+  const auto check_node = [this](const std::string& name, int node) {
+    if (node >= 0 && static_cast<std::size_t>(node) < X_WN.size()) return;
+    refuse(name + " is at node " + std::to_string(node) + ", there are " +
+           std::to_string(X_WN.size()));
+  };
+  for (const int node : fixed) check_node("what is fixed", node);
   for (std::size_t i = 0; i < edges.size(); ++i) {
     const PoseEdge& edge = edges[i];
     const std::string name = "edge " + std::to_string(i);
-    for (const int node : {edge.from, edge.to}) {
-      if (node >= 0 && static_cast<std::size_t>(node) < X_WN.size()) continue;
-      refuse(name + " is at node " + std::to_string(node) + ", there are " +
-             std::to_string(X_WN.size()));
-    }
+    check_node(name, edge.from);
+    check_node(name, edge.to);
     if (edge.from == edge.to) {
       refuse(name + " is from node " + std::to_string(edge.from) + " to itself");
     }
@@ -131,11 +135,11 @@ Vector6d pose_error(const Pose& X_FT_measured, const Pose& X_FT) {
 
 OptimizedPoses optimize(const PoseGraph& graph, const PoseGraphConfig& config) {
   config.validate();
-  graph.validate();
   OptimizedPoses result;
   result.X_WN = graph.X_WN;
   result.converged = true;
   if (graph.X_WN.empty()) return result;
+  graph.validate();
 
   std::vector<Parameters> nodes;
   nodes.reserve(graph.X_WN.size());
@@ -149,7 +153,9 @@ OptimizedPoses optimize(const PoseGraph& graph, const PoseGraphConfig& config) {
   for (Parameters& node : nodes) {
     problem.AddParameterBlock(node.data(), kNumParameters, &manifold);
   }
-  problem.SetParameterBlockConstant(nodes.front().data());
+  for (const int node : graph.fixed) {
+    problem.SetParameterBlockConstant(nodes[static_cast<std::size_t>(node)].data());
+  }
   for (const PoseEdge& edge : graph.edges) {
     auto* const error =
         new WeightedError{edge.X_FT.translation(), Eigen::Quaterniond(edge.X_FT.linear()),
@@ -165,7 +171,11 @@ OptimizedPoses optimize(const PoseGraph& graph, const PoseGraphConfig& config) {
 
   result.converged = summary.termination_type == ceres::CONVERGENCE;
   result.num_iterations = static_cast<int>(summary.iterations.size()) - 1;
-  for (std::size_t i = 1; i < nodes.size(); ++i) result.X_WN[i] = pose_of(nodes[i]);
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    if (std::ranges::find(graph.fixed, static_cast<int>(i)) == graph.fixed.end()) {
+      result.X_WN[i] = pose_of(nodes[i]);
+    }
+  }
   for (std::size_t i = 0; i < graph.edges.size(); ++i) {
     const PoseEdge& edge = graph.edges[i];
     const Pose X_FT = result.X_WN[static_cast<std::size_t>(edge.from)].inverse(Eigen::Isometry) *

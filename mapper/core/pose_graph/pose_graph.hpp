@@ -22,8 +22,9 @@ struct PoseEdge {
 
 /// Keyframes, and what is known of the motion between them.
 struct PoseGraph {
-  std::vector<Pose> X_WN;  ///< poses of the nodes as they are believed; the first one never moves
+  std::vector<Pose> X_WN;  ///< poses of the nodes as they are believed
   std::vector<PoseEdge> edges;
+  std::vector<int> fixed = {0};  ///< nodes that never move: one of those that edges connect
 
   /// @throws std::invalid_argument naming the edge or node, the value and what was expected
   void validate() const;
@@ -58,8 +59,8 @@ struct OptimizedPoses {
 /// Moves the nodes to where the edges want them: the poses of least summed squared error, weighted
 /// by the information of the edges. On one thread; the same graph gives the same bits.
 ///
-/// A node without a path of edges to the first one keeps its believed pose relative to the nodes
-/// that it does have edges with, as far as these allow.
+/// A node without a path of edges to a fixed one keeps its believed pose relative to the nodes that
+/// it does have edges with, as far as these allow.
 /// @throws std::invalid_argument when graph or configuration are not valid
 OptimizedPoses optimize(const PoseGraph& graph, const PoseGraphConfig& config = {});
 

@@ -12,15 +12,15 @@ constexpr double kLeastMotion_vox = 0.1;  // a smaller one is no error
 
 }  // namespace
 
-std::vector<PatchRun> PatchMaker::keep(const ExtractedSurface& left) {
+std::vector<PatchRun> PatchMaker::keep(const ExtractedSurface& left, const SeenAt& seen_at) {
   for (const auto& [tile, points_W] : by_tile(left)) {
-    std::vector<CloudPoint>& left_W = patch_at(tile).left_W;
+    std::vector<CloudPoint>& left_W = patch_at(tile, seen_at).left_W;
     left_W.insert(left_W.end(), points_W.begin(), points_W.end());
   }
   std::vector<PatchRun> runs;
   runs.reserve(left.blocks.size());
   for (const ExtractedSurface::Block& block : left.blocks) {
-    runs.push_back({block.num_points, patch_at(grid_.tile_of(block.coord)).number});
+    runs.push_back({block.num_points, patch_at(grid_.tile_of(block.coord), seen_at).number});
   }
   return runs;
 }
@@ -40,24 +40,23 @@ std::vector<PatchRun> PatchMaker::patches_of(const MeshPiece& piece, double reso
 }
 
 /// The patch of a tile that may be sent again; a new one where there is none.
-PatchMaker::Patch& PatchMaker::patch_at(const TileCoord& tile) {
+PatchMaker::Patch& PatchMaker::patch_at(const TileCoord& tile, const SeenAt& seen_at) {
   Patch& patch = patches_[tile];
   if (patch.number != kNoPatch) return patch;
   patch.number = static_cast<int>(places_.size());
-  // It moves like the one before it until it is known where it was seen.
-  Place place = places_.empty() ? Place() : places_.back();
-  place.tile = tile;
-  place.id = kNoId;
-  places_.push_back(place);
+  places_.push_back({.tile = tile,
+                     .keyframe = seen_at.keyframe,
+                     .X_WP = seen_at.place.X_WU,
+                     .part = seen_at.place.part});
   newest_[tile] = patch.number;
   return patch;
 }
 
 std::vector<CloudSlice> PatchMaker::reopen(std::span<const TileVisit> visits,
-                                           const CloudSlice& header) {
+                                           const CloudSlice& header, const SeenAt& seen_at) {
   std::vector<CloudSlice> ended;
   for (const TileVisit& visit : visits) {
-    Patch& patch = patch_at(visit.tile);
+    Patch& patch = patch_at(visit.tile, seen_at);
     if (visit.number != TileVisit::kOpen) {
       if (places_[patch.number].id != kNoId) ended.push_back(revision_of(patch, header));
       places_[patch.number].is_void = true;
@@ -83,15 +82,17 @@ CloudSlice PatchMaker::revision_of(Patch& patch, const CloudSlice& header) {
   slice.kind = SliceKind::kPatch;
   slice.id = place.id;
   slice.X_WP = place.X_WP;
+  slice.part = place.part;
   slice.correction = correction_;
   slice.revision = ++patch.revision;
   revision_sum_ += slice.revision > 0 ? 1 : 0;
   return slice;
 }
 
-std::optional<PatchPose> PatchMaker::pose_of(int patch) const {
+std::optional<PatchPlace> PatchMaker::place_of(int patch) const {
   const Place& place = places_.at(patch);
-  return place.is_void ? std::nullopt : std::optional(place.X_WP);
+  if (place.is_void) return std::nullopt;
+  return PatchPlace{.X_WP = place.X_WP, .correction = correction_, .part = place.part};
 }
 
 std::vector<CloudSlice> PatchMaker::make(const PatchBatch& batch, const ExtractedSurface& in_volume,
@@ -99,7 +100,7 @@ std::vector<CloudSlice> PatchMaker::make(const PatchBatch& batch, const Extracte
   auto present_W = by_tile(in_volume);
   std::vector<CloudSlice> slices;
   for (const PatchBatch::Patch& due : batch.patches) {
-    Patch& patch = patch_at(due.tile);
+    Patch& patch = patch_at(due.tile, {due.keyframe, due.place});
     Place& place = places_[patch.number];
     place.keyframe = due.keyframe;
     std::vector<CloudPoint> points_W = due.in_volume ? patch.left_W : std::move(patch.left_W);
@@ -109,7 +110,8 @@ std::vector<CloudSlice> PatchMaker::make(const PatchBatch& batch, const Extracte
     }
     if (place.id != kNoId || !points_W.empty()) {
       if (place.id == kNoId) place.id = next_id_++;
-      place.X_WP = due.X_WP;
+      place.X_WP = due.place.X_WU;
+      place.part = due.place.part;
       CloudSlice& slice = slices.emplace_back(revision_of(patch, header));
       slice.in_volume = due.in_volume;
       slice.points_W = std::move(points_W);
@@ -125,24 +127,31 @@ std::vector<CloudSlice> PatchMaker::make(const PatchBatch& batch, const Extracte
 std::vector<CloudSlice> PatchMaker::correct(const MapDeformation& deformation,
                                             const CloudSlice& header) {
   correction_ = deformation.number();
-  CloudSlice slice = header;
-  slice.kind = SliceKind::kCorrection;
-  slice.ends_batch = true;
-  slice.correction = correction_;
+  std::map<int, std::vector<PatchMotion>> motions;  // by part
   for (Place& place : places_) {
-    const PatchPose X_WP = deformation.at(place.keyframe);
+    const auto [X_WU, part] = deformation.place(place.keyframe);
+    const PatchPose X_WP = X_WU;
     if (place.id == kNoId || place.is_void || place.X_WP == X_WP) continue;
     const double moved_m =
         motion_m(place.tile, place.X_WP.pose(), X_WP.pose(), header.resolution_m);
     if (moved_m <= kLeastMotion_vox * header.resolution_m) continue;
     place.X_WP = X_WP;
-    slice.motions.push_back({place.id, X_WP});
+    place.part = part;
+    motions[part].push_back({place.id, X_WP});
   }
-  if (slice.motions.empty()) return {};
-  std::ranges::sort(slice.motions, {}, &PatchMotion::id);
-  slice.X_WP = deformation.newest();
-  slice.id = next_id_++;
-  return {std::move(slice)};
+  std::vector<CloudSlice> slices;
+  for (auto& [part, of_part] : motions) {
+    CloudSlice& slice = slices.emplace_back(header);
+    slice.kind = SliceKind::kCorrection;
+    slice.ends_batch = true;
+    slice.correction = correction_;
+    slice.part = part;
+    slice.X_WP = deformation.newest();
+    slice.id = next_id_++;
+    slice.motions = std::move(of_part);
+    std::ranges::sort(slice.motions, {}, &PatchMotion::id);
+  }
+  return slices;
 }
 
 /// The largest distance that a corner of the tile moves, metres.
@@ -163,7 +172,7 @@ std::vector<CloudSlice> PatchMaker::finish(const CloudSlice& header) {
   PatchBatch everything;
   for (const auto& [tile, patch] : patches_) {
     const Place& place = places_[patch.number];
-    everything.patches.push_back({tile, false, place.keyframe, place.X_WP.pose()});
+    everything.patches.push_back({tile, false, place.keyframe, {place.X_WP.pose(), place.part}});
   }
   std::vector<CloudSlice> slices = make(everything, {}, header);
   CloudSlice& last = slices.emplace_back(header);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "lcmtypes/messages.hpp"
+#include "lcmtypes/patch_motions.hpp"
 #include "mapper/core/extraction/mesh_extractor.hpp"
 #include "mapper/core/extraction/surface_extractor.hpp"
 #include "mapper/core/loop_closure/map_deformation.hpp"
@@ -29,8 +30,9 @@ class PatchMaker {
  public:
   explicit PatchMaker(const TileGrid& grid) : grid_(grid) {}
 
-  /// Takes surface that has left the volume. Returns the patches of its points.
-  std::vector<PatchRun> keep(const ExtractedSurface& left);
+  /// Takes surface that has left the volume. Returns the patches of its points. A patch that was
+  /// never sent was seen where the camera is: `seen_at`.
+  std::vector<PatchRun> keep(const ExtractedSurface& left, const SeenAt& seen_at = {});
 
   /// The patches of the vertices of a mesh: that of the tile in which each one is, as it is now or
   /// was when it left.
@@ -39,11 +41,12 @@ class PatchMaker {
   /// Continues the patches of visits that are in the volume again, with all their blocks. Where
   /// there was another patch until now, which has no surface any more, it ends: gives its last
   /// revision. `header` as for make().
-  std::vector<CloudSlice> reopen(std::span<const TileVisit> visits, const CloudSlice& header);
+  std::vector<CloudSlice> reopen(std::span<const TileVisit> visits, const CloudSlice& header,
+                                 const SeenAt& seen_at = {});
 
   /// Where a patch was sent to, by its number in PatchRun; nothing: the points with this number
   /// count no more.
-  std::optional<PatchPose> pose_of(int patch) const;
+  std::optional<PatchPlace> place_of(int patch) const;
 
   /// The patches of a batch; `in_volume` has the surface of their tiles that is in the volume.
   /// `header` has the fields that are the same in all of them. A patch that never had points is
@@ -51,8 +54,9 @@ class PatchMaker {
   std::vector<CloudSlice> make(const PatchBatch& batch, const ExtractedSurface& in_volume,
                                const CloudSlice& header);
 
-  /// Moves the patches with the keyframes at which they were seen. Gives the correction slice with
-  /// those that move by more than a tenth of a voxel; nothing where none does.
+  /// Moves the patches with the keyframes at which they were seen. Gives a correction slice for
+  /// each part of the map with those that move by more than a tenth of a voxel; nothing where none
+  /// does.
   std::vector<CloudSlice> correct(const MapDeformation& deformation, const CloudSlice& header);
 
   /// The last revision of every patch that is not departed, and the final slice.
@@ -72,6 +76,7 @@ class PatchMaker {
     std::int32_t id = kNoId;
     int keyframe = 0;  ///< with which it moves
     PatchPose X_WP;
+    int part = 0;          ///< of the map
     bool is_void = false;  ///< the patch goes on under another number
   };
 
@@ -81,7 +86,7 @@ class PatchMaker {
   };
 
   std::map<TileCoord, std::vector<CloudPoint>> by_tile(const ExtractedSurface& surface) const;
-  Patch& patch_at(const TileCoord& tile);
+  Patch& patch_at(const TileCoord& tile, const SeenAt& seen_at);
   CloudSlice revision_of(Patch& patch, const CloudSlice& header);
   double motion_m(const TileCoord& tile, const Pose& X_WP_before, const Pose& X_WP_after,
                   double resolution_m) const;

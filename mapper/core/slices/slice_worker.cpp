@@ -17,13 +17,18 @@ std::size_t num_blocks_held(const DetachedBlocks& blocks) {
   return blocks.coords.size() + blocks.apron_coords.size();
 }
 
-CloudSlice header_of(SliceKind kind, float resolution_m, std::int64_t utime, const Pose& X_WC) {
+CloudSlice header_of(SliceKind kind, float resolution_m, const SliceCamera& camera) {
   CloudSlice header;
-  header.utime = utime;
+  header.utime = camera.utime;
+  header.part = camera.at.place.part;
   header.kind = kind;
   header.resolution_m = resolution_m;
-  header.X_WC = X_WC;
+  header.X_WC = camera.X_WC;
   return header;
+}
+
+std::vector<PatchRun> no_patch(std::size_t num_points, const CloudSlice& header) {
+  return {{.num_points = num_points, .patch = kNoPatch, .part = header.part}};
 }
 
 }  // namespace
@@ -50,35 +55,38 @@ SliceWorker::~SliceWorker() {
   thread_.join();
 }
 
-void SliceWorker::submit(DetachedBlocks blocks, std::int64_t utime, const Pose& X_WC, bool waits) {
+void SliceWorker::submit(DetachedBlocks blocks, const SliceCamera& camera, bool waits) {
   Job job;
-  job.header = header_of(blocks.kind, blocks.resolution_m, utime, X_WC);
+  job.header = header_of(blocks.kind, blocks.resolution_m, camera);
+  job.camera = camera;
   job.blocks = std::move(blocks);
   job.waits = waits;
   enqueue(std::move(job));
 }
 
-void SliceWorker::submit(PatchBatch batch, DetachedBlocks in_volume, std::int64_t utime,
-                         const Pose& X_WC) {
+void SliceWorker::submit(PatchBatch batch, DetachedBlocks in_volume, const SliceCamera& camera) {
   Job job;
-  job.header = header_of(in_volume.kind, in_volume.resolution_m, utime, X_WC);
+  job.header = header_of(in_volume.kind, in_volume.resolution_m, camera);
+  job.camera = camera;
   job.blocks = std::move(in_volume);
   job.batch = std::move(batch);
   enqueue(std::move(job));
 }
 
-void SliceWorker::submit(MapDeformation deformation, std::int64_t utime, const Pose& X_WC,
+void SliceWorker::submit(MapDeformation deformation, const SliceCamera& camera,
                          float resolution_m) {
   Job job;
-  job.header = header_of(SliceKind::kCorrection, resolution_m, utime, X_WC);
+  job.header = header_of(SliceKind::kCorrection, resolution_m, camera);
+  job.camera = camera;
   job.deformation = std::move(deformation);
   enqueue(std::move(job));
 }
 
-void SliceWorker::submit(std::vector<TileVisit> returned, std::int64_t utime, const Pose& X_WC,
+void SliceWorker::submit(std::vector<TileVisit> returned, const SliceCamera& camera,
                          float resolution_m) {
   Job job;
-  job.header = header_of(SliceKind::kPatch, resolution_m, utime, X_WC);
+  job.header = header_of(SliceKind::kPatch, resolution_m, camera);
+  job.camera = camera;
   job.returned = std::move(returned);
   enqueue(std::move(job));
 }
@@ -153,15 +161,17 @@ std::vector<CloudSlice> SliceWorker::work_on(Job& job) {
   if (job.deformation) {
     return patches_.value().correct(*job.deformation, job.header);
   }
-  if (!job.returned.empty()) return patches_.value().reopen(job.returned, job.header);
+  if (!job.returned.empty())
+    return patches_.value().reopen(job.returned, job.header, job.camera.at);
   ExtractedSurface surface = extractor_.extract_blocks(job.blocks);
   if (job.batch) return patches_.value().make(*job.batch, surface, job.header);
-  const std::vector<PatchRun> runs = patches_ ? patches_->keep(surface) : std::vector<PatchRun>();
+  const std::vector<PatchRun> runs = patches_ ? patches_->keep(surface, job.camera.at)
+                                              : no_patch(surface.points_W.size(), job.header);
   if (config_.on_points) config_.on_points(surface.points_W, runs);
   if (config_.on_mesh) {
     const MeshPiece piece = mesh_extractor_.extract(job.blocks);
     config_.on_mesh(piece, patches_ ? patches_->patches_of(piece, job.header.resolution_m)
-                                    : std::vector<PatchRun>());
+                                    : no_patch(piece.vertices.size(), job.header));
   }
   return slices_of_left(job, std::move(surface));
 }

@@ -22,6 +22,13 @@
 
 namespace kintsugi::mapper {
 
+/// The camera when slices were made.
+struct SliceCamera {
+  std::int64_t utime = 0;
+  Pose X_WC = Pose::Identity();
+  SeenAt at = {};  ///< where it is
+};
+
 /// Extracts the surface of blocks and makes numbered slices of it, on a thread of its own, so that
 /// tracking does not wait. With one thread and one queue, slices are finished in the order of
 /// submission.
@@ -39,7 +46,7 @@ class SliceWorker {
     /// this waits for an empty queue. 8,192 blocks are 32 MB, about three slices of a room.
     std::size_t max_queued_blocks = 8'192;
     /// Called with the points that have left the volume, in order, on the worker's thread, and the
-    /// patches that they are of (none where there are no patches); may be empty. Exceptions from it
+    /// patches that they are of; may be empty. Exceptions from it
     /// are treated like those from extraction.
     std::function<void(const std::vector<CloudPoint>&, const std::vector<PatchRun>&)> on_points;
     /// The same with each piece of the mesh and its vertices; if empty, no mesh is made.
@@ -55,24 +62,23 @@ class SliceWorker {
   SliceWorker(const SliceWorker&) = delete;
   SliceWorker& operator=(const SliceWorker&) = delete;
 
-  /// Queues blocks that left at `utime` when the camera was at `X_WC`. Final blocks end the run.
+  /// Queues blocks that left when the camera was there. Final blocks end the run.
   /// @throws what extraction of an earlier slice threw
   /// `waits`: for room in the queue. Blocks of a volume that is emptied need not: they take no more
   /// memory than they did, and the next one of this size comes much later.
-  void submit(DetachedBlocks blocks, std::int64_t utime, const Pose& X_WC, bool waits = true);
+  void submit(DetachedBlocks blocks, const SliceCamera& camera, bool waits = true);
 
   /// Queues patches; `in_volume` are copies of those blocks of their tiles that are in the volume.
   /// @throws as above
-  void submit(PatchBatch batch, DetachedBlocks in_volume, std::int64_t utime, const Pose& X_WC);
+  void submit(PatchBatch batch, DetachedBlocks in_volume, const SliceCamera& camera);
 
   /// Queues a correction of the patches; see PatchMaker::correct(). For patches only.
   /// @throws as above
-  void submit(MapDeformation deformation, std::int64_t utime, const Pose& X_WC, float resolution_m);
+  void submit(MapDeformation deformation, const SliceCamera& camera, float resolution_m);
 
   /// Queues the return of visits to the volume; see PatchMaker::reopen(). For patches only.
   /// @throws as above
-  void submit(std::vector<TileVisit> returned, std::int64_t utime, const Pose& X_WC,
-              float resolution_m);
+  void submit(std::vector<TileVisit> returned, const SliceCamera& camera, float resolution_m);
 
   /// Slices finished since the last call, without waiting.
   /// @throws what extraction of a slice threw
@@ -81,9 +87,9 @@ class SliceWorker {
   /// Waits for all submitted slices, then as take_finished().
   std::vector<CloudSlice> drain();
 
-  /// See PatchMaker::pose_of(); after drain().
-  std::optional<PatchPose> pose_of_patch(int patch) const {
-    return patches_.value().pose_of(patch);
+  /// See PatchMaker::place_of(); after drain().
+  std::optional<PatchPlace> place_of_patch(int patch) const {
+    return patches_.value().place_of(patch);
   }
 
   /// Time spent extracting so far, milliseconds.
@@ -95,8 +101,9 @@ class SliceWorker {
     std::optional<PatchBatch> batch;            ///< none: the blocks have left
     std::optional<MapDeformation> deformation;  ///< there are no blocks
     std::vector<TileVisit> returned;            ///< if there are any, there are no blocks
-    CloudSlice header;                          ///< of its slices
-    bool waits = true;                          ///< its blocks count in the queue
+    SliceCamera camera;
+    CloudSlice header;  ///< of its slices
+    bool waits = true;  ///< its blocks count in the queue
   };
 
   void enqueue(Job job);

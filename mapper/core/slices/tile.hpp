@@ -8,6 +8,9 @@
 
 namespace kintsugi::mapper {
 
+/// A large patch is sent again for a small part that is new; many small ones are many messages.
+inline constexpr double kUsualPatchSide_m = 0.25;
+
 /// Coordinates of a tile, a cube of whole blocks, in tiles from W's origin. Ordered by z, then y,
 /// then x.
 struct TileCoord {

@@ -64,9 +64,14 @@ double TsdfVolume::longest_range_m(const Config& config) {
 
 TsdfVolume::TsdfVolume(const Config& config, const Eigen::Vector3d& center_W)
     : config_((config.validate(), config)), table_(side_blocks_of(config)) {
-  check_position(center_W);
   region_.shape = config_.region;
   region_.side = side_blocks_of(config_);
+  center_at(center_W);
+}
+
+void TsdfVolume::center_at(const Eigen::Vector3d& center_W) {
+  check_position(center_W);
+  assert(num_blocks_ == 0);
   const double block_m = config_.resolution_m * kBlockSide;
   const auto lowest_block = [&](double center_m) {
     return static_cast<int>(std::lround(center_m / block_m - 0.5 * region_.side));

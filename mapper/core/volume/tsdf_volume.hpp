@@ -62,6 +62,11 @@ class TsdfVolume {
   explicit TsdfVolume(const Config& config,
                       const Eigen::Vector3d& center_W = Eigen::Vector3d::Zero());
 
+  /// Moves the region there, as in the constructor, whatever the threshold of shift_to().
+  /// @pre it is empty
+  /// @throws std::invalid_argument as shift_to()
+  void center_at(const Eigen::Vector3d& center_W);
+
   const Config& config() const { return config_; }
   float resolution_m() const { return static_cast<float>(config_.resolution_m); }
   /// The smallest; see truncation_by_depth().

@@ -22,8 +22,6 @@ cv::Mat_<std::uint16_t> SyntheticRecording::depth(int index, DepthUnit unit) {
   return depth;
 }
 
-cv::Mat_<cv::Vec3b> SyntheticRecording::color(int index) {
-  return sequence_.truth(index).color_rgb.clone();
-}
+cv::Mat_<cv::Vec3b> SyntheticRecording::color(int index) { return sequence_.color_rgb(index); }
 
 }  // namespace kintsugi::mapper

@@ -87,7 +87,7 @@ void FolderWriter::write_frame(int frame) {
   const std::string time = seconds(sequence_.utime(frame));
   const RenderedFrame& truth = sequence_.truth(frame);
   cv::Mat color_bgr;
-  cv::cvtColor(truth.color_rgb, color_bgr, cv::COLOR_RGB2BGR);
+  cv::cvtColor(sequence_.color_rgb(frame), color_bgr, cv::COLOR_RGB2BGR);
   write_png(folder_ / "depth" / (time + ".png"), sequence_.depth_mm(frame));
   write_png(folder_ / "rgb" / (time + ".png"), color_bgr);
   write_png(folder_ / "normals" / (time + ".png"), normal_picture(truth));

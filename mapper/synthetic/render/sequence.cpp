@@ -22,6 +22,8 @@ Sequence::Sequence(const Config& config)
   check_range("synthetic: start", config_.start, 0, on_path - 1);
   num_frames_ = config_.frames.value_or(on_path - config_.start);
   check_range("synthetic: frames", num_frames_, 1, on_path - config_.start);
+  check_range("synthetic: covered", config_.covered.second, config_.covered.first, num_frames_);
+  check_range("synthetic: covered", config_.covered.first, 0, num_frames_);
 }
 
 int Sequence::frames_on_path() const {
@@ -54,7 +56,19 @@ const RenderedFrame& Sequence::truth(int frame) {
   return last_;
 }
 
+bool Sequence::is_covered(int frame) const {
+  return frame >= config_.covered.first && frame < config_.covered.second;
+}
+
+cv::Mat Sequence::color_rgb(int frame) {
+  if (!is_covered(frame)) return truth(frame).color_rgb.clone();
+  return cv::Mat3b(intrinsics_.height, intrinsics_.width, cv::Vec3b());
+}
+
 cv::Mat_<std::uint16_t> Sequence::depth_mm(int frame) {
+  if (is_covered(frame)) {
+    return cv::Mat_<std::uint16_t>(intrinsics_.height, intrinsics_.width, std::uint16_t{0});
+  }
   return sensor_->apply(truth(frame), config_.start + frame);
 }
 

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include <opencv2/core.hpp>
 
@@ -30,7 +31,10 @@ class Sequence {
     std::uint32_t seed = 1;          ///< for the noise of the sensor and the shake of the hand
     int start = 0;                   ///< first frame, >= 0 and on the path
     std::optional<int> frames;       ///< how many, >= 1 and on the path; absent: to the path's end
-    std::string ground_truth;        ///< folder for write_ground_truth(); empty: none
+    /// Meanwhile something is in front of the camera: black, without depth. From the first of these
+    /// frames to the one before the second.
+    std::pair<int, int> covered = {0, 0};
+    std::string ground_truth;  ///< folder for write_ground_truth(); empty: none
 
     /// From the options of a `synthetic://scene?key=value&...` address, as known_options() lists
     /// them.
@@ -62,10 +66,13 @@ class Sequence {
 
   /// As the sensor sees it, millimetres, 0 is invalid.
   cv::Mat_<std::uint16_t> depth_mm(int frame);
+  /// As the camera sees it: true, but where it is covered.
+  cv::Mat color_rgb(int frame);
 
  private:
   int frames_on_path() const;
   void check_index(int frame) const;
+  bool is_covered(int frame) const;
 
   Config config_;
   SceneWithPath content_;

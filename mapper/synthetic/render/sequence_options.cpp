@@ -30,6 +30,14 @@ struct Argument {
     return parsed;
   }
 
+  /// "FROM:TO".
+  std::pair<int, int> range() const {
+    const std::size_t colon = value.find(':');
+    if (colon == std::string::npos) fail("FROM:TO");
+    return {Argument{key, value.substr(0, colon)}.number<int>(),
+            Argument{key, value.substr(colon + 1)}.number<int>()};
+  }
+
   bool is_on() const {
     if (value != "on" && value != "off") fail("on or off");
     return value == "on";
@@ -56,8 +64,8 @@ std::string joined_sensor_names() {
   return list;
 }
 
-const std::array<Option, 9>& options_table() {
-  static const std::array<Option, 9> kTable = {{
+const std::array<Option, 10>& options_table() {
+  static const std::array<Option, 10> kTable = {{
       {"sensor", joined_sensor_names(), [](Config& c, const Argument& a) { c.sensor = a.value; }},
       {"noise", "on|off", [](Config& c, const Argument& a) { c.noise = a.is_on(); }},
       {"speed", "N", [](Config& c, const Argument& a) { c.speed = a.number<double>(); }},
@@ -66,6 +74,7 @@ const std::array<Option, 9>& options_table() {
       {"seed", "N", [](Config& c, const Argument& a) { c.seed = a.number<std::uint32_t>(); }},
       {"start", "N", [](Config& c, const Argument& a) { c.start = a.number<int>(); }},
       {"frames", "N", [](Config& c, const Argument& a) { c.frames = a.number<int>(); }},
+      {"covered", "FROM:TO", [](Config& c, const Argument& a) { c.covered = a.range(); }},
       {"ground_truth", "FOLDER", [](Config& c, const Argument& a) { c.ground_truth = a.value; }},
   }};
   return kTable;

@@ -124,9 +124,14 @@ def recovery_table(tables):
     rows = [[name] for name in (row["disturbance"] for row in next(iter(tables.values())))]
     for table in tables.values():
         for row, cells in zip(rows, table, strict=True):
-            row += [f"{cells['located']} of {cells['frames']}", f"{cells['fused wrongly']} ({cells['worst, mm']})",
+            row += [located(cells), f"{cells['fused wrongly']} ({cells['worst, mm']})",
                     cells["refused"].split(" ")[0]]
     return sums + "\n" + markdown(header, rows)
+
+
+def located(cells):
+    parts = "" if cells["parts"] == "1" else f" in {cells['parts']} parts"
+    return f"{cells['located']} of {cells['frames']}{parts}"
 
 
 def disturbed_sums(table):

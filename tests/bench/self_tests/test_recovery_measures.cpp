@@ -51,6 +51,21 @@ TEST(RecoveryMeasures, ToldApartFromDriftAWrongFusionDisagreesWithItsSurrounding
   EXPECT_GT(measures.worst_misplacement_m, 0.2 - 1e-9);
 }
 
+TEST(RecoveryMeasures, PartsOfTheMapAreNotComparedWithEachOther) {
+  const std::vector<std::optional<Pose>> truth = {at(0), at(0.1), at(5), at(5.1)};
+  std::vector<FrameOutcome> outcomes = {outcome(0, true, 0), outcome(1, true, 0.1),
+                                        outcome(2, true, 1'000), outcome(3, true, 1'000.1)};
+  outcomes[2].part = outcomes[3].part = 1;
+  const RecoveryMeasures apart = measure(outcomes, truth, truth);
+  EXPECT_EQ(apart.parts, 2);
+  EXPECT_EQ(apart.misplaced, 0);
+  EXPECT_EQ(apart.off, 0);
+  outcomes[3].tracking.X_WC = at(1'000.2);
+  EXPECT_EQ(measure(outcomes, truth, truth).misplaced, 1) << "within its part";
+  outcomes[2].part = outcomes[3].part = 0;
+  EXPECT_EQ(measure(outcomes, truth, truth).misplaced, 2) << "joined wrongly";
+}
+
 TEST(RecoveryMeasures, TimesALossFromItsFirstGoodFrame) {
   const std::vector<std::optional<Pose>> reference(10, at(0));
   const RecoveryMeasures measures =

@@ -71,19 +71,19 @@ TEST(Progress, ReportsLosses) {
                     HasSubstr("5 chunks MISSING"), HasSubstr("2 bad messages")));
 }
 
-TEST(Progress, NamesThePartAndDoesNotTakeItForARestart) {
+TEST(Progress, NamesThePartsUntilTheyAreJoined) {
   Progress progress;
   MapperStatus status = mapper(250, false);
   progress.update(status, 0);
   EXPECT_THAT(progress.line(0), Not(HasSubstr("part")));
-  ++status.session;
   status.part = 1;
+  status.parts = 2;
   progress.update(status, 0);
-  EXPECT_THAT(progress.line(0), AllOf(HasSubstr("part 1"), Not(HasSubstr("restarted"))));
-  status.session = 99;
+  EXPECT_THAT(progress.line(0), HasSubstr(", 2 parts, in part 1"));
   status.part = 0;
+  status.parts = 1;
   progress.update(status, 0);
-  EXPECT_THAT(progress.line(0), HasSubstr("mapper restarted"));
+  EXPECT_THAT(progress.line(0), Not(HasSubstr("part")));
 }
 
 TEST(Progress, ReportsTheLogRestartsAndProblems) {

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "lcmtypes/patch_motions.hpp"
+#include "mapper/core/loop_closure/map_part.hpp"
 #include "mapper/core/mapper_pipeline.hpp"
 #include "segmenter/evaluation/trajectory/trajectory_error.hpp"
 #include "tests/mapper/core/synthetic_frames.hpp"
@@ -25,19 +26,27 @@ struct Walk {
   std::vector<CloudSlice> slices;
   std::vector<CloudPoint> points_W;  ///< that left the volume, where the corrected map has them
   Trajectory online_path;
-  Trajectory corrected_path;
+  std::map<int, Trajectory> corrected_paths;  ///< by part of the map
   Trajectory true_path;
   std::vector<int> num_keyframes;  ///< after each lap
   int num_loops = 0;
   int num_contradicted = 0;
+  int num_parts = 0;  ///< at the end
 };
 
-Walk walk(bool close_loops, int num_laps = 1) {
+struct Way {
+  bool close_loops = true;
+  int num_laps = 1;
+  int num_frames = kFramesOfLap;         ///< of each lap
+  std::pair<int, int> covered = {0, 0};  ///< from this frame to the one before that
+};
+
+Walk walk(const Way& way) {
   Walk result;
   std::vector<std::pair<std::vector<CloudPoint>, std::vector<PatchRun>>> left;
   MapperPipeline::Config config;
   config.patch_side_m = 0.25;
-  config.close_loops = close_loops;
+  config.close_loops = way.close_loops;
   config.volume.resolution_m = 0.015;
   config.volume.max_memory_mb = 8.0;  // of the rooms in view
   config.slices.on_points = [&](const auto& points, const auto& runs) {
@@ -47,20 +56,24 @@ Walk walk(bool close_loops, int num_laps = 1) {
   const auto take = [&](std::vector<CloudSlice> slices) {
     std::ranges::move(slices, std::back_inserter(result.slices));
   };
-  for (int lap = 0; lap < num_laps; ++lap) {
+  for (int lap = 0; lap < way.num_laps; ++lap) {
     constexpr int kStep = 4;
     const SyntheticRun rooms =
-        synthetic_run("loop", kFramesOfLap, true, kStep, lap * kFramesOfLap * kStep);
+        synthetic_run("loop", way.num_frames, true, kStep, lap * kFramesOfLap * kStep);
     std::ranges::copy(rooms.true_path, std::back_inserter(result.true_path));
-    for (const RgbdFrame& frame : rooms.frames) {
-      FrameResult frame_result = pipeline.process(frame);
+    for (std::size_t i = 0; i < rooms.frames.size(); ++i) {
+      const RgbdFrame& frame = rooms.frames[i];
+      const bool is_covered =
+          std::cmp_greater_equal(i, way.covered.first) && std::cmp_less(i, way.covered.second);
+      FrameResult frame_result = pipeline.process(is_covered ? testing::blank(frame) : frame);
       take(std::move(frame_result.slices));
       result.online_path.push_back({frame.utime, frame_result.tracking.X_WC});
     }
     result.num_keyframes.push_back(pipeline.num_keyframes());
   }
   take(pipeline.finish());
-  result.corrected_path = pipeline.corrected_path();
+  result.corrected_paths = pipeline.corrected_paths();
+  result.num_parts = pipeline.num_parts();
   if (pipeline.loops() != nullptr) {
     result.num_loops = pipeline.loops()->num_loops();
     result.num_contradicted = pipeline.loops()->num_contradicted();
@@ -69,8 +82,8 @@ Walk walk(bool close_loops, int num_laps = 1) {
     std::size_t first = 0;
     for (const PatchRun& run : runs) {
       const auto points_P = std::span(points).subspan(first, run.num_points);
-      if (const auto X_WP = pipeline.pose_of_patch(run.patch)) {
-        std::ranges::copy(moved(points_P, *X_WP), std::back_inserter(result.points_W));
+      if (const auto place = pipeline.place_of_patch(run.patch)) {
+        std::ranges::copy(moved(points_P, place->X_WP), std::back_inserter(result.points_W));
       }
       first += run.num_points;
     }
@@ -116,11 +129,12 @@ void expect_numbered_without_gaps(const std::vector<CloudSlice>& slices) {
 
 /// One test, because the walk takes some seconds.
 TEST(PipelineLoops, BringTheEndOfTheWalkToItsBeginningInEveryReceiver) {
-  const Walk closed = walk(true);
+  const Walk closed = walk({});
   EXPECT_GE(closed.num_loops, 2);
   EXPECT_EQ(closed.num_contradicted, 0);
-  ASSERT_EQ(closed.corrected_path.size(), closed.true_path.size());
-  EXPECT_LT(error_m(closed.corrected_path, closed), 0.6 * error_m(closed.online_path, closed));
+  ASSERT_EQ(closed.corrected_paths.at(0).size(), closed.true_path.size());
+  EXPECT_LT(error_m(closed.corrected_paths.at(0), closed),
+            0.6 * error_m(closed.online_path, closed));
 
   const auto is_correction = [](const CloudSlice& slice) {
     return slice.kind == SliceKind::kCorrection;
@@ -133,9 +147,10 @@ TEST(PipelineLoops, BringTheEndOfTheWalkToItsBeginningInEveryReceiver) {
 
 /// Where the camera walks the same way again, it sees the surface that is there.
 TEST(PipelineLoops, AddNothingToTheMapWhenTheyAreWalkedAgain) {
-  const Walk once = walk(true);
-  const Walk twice = walk(true, 2);
-  EXPECT_LT(error_m(twice.corrected_path, twice), 1.1 * error_m(once.corrected_path, once));
+  const Walk once = walk({});
+  const Walk twice = walk({.num_laps = 2});
+  EXPECT_LT(error_m(twice.corrected_paths.at(0), twice),
+            1.1 * error_m(once.corrected_paths.at(0), once));
   EXPECT_LT(twice.points_W.size(), 1.05 * once.points_W.size());
   EXPECT_GT(twice.points_W.size(), 0.95 * once.points_W.size()) << "and nothing is lost";
   EXPECT_LT(twice.num_keyframes[1], 1.1 * twice.num_keyframes[0]);
@@ -143,10 +158,47 @@ TEST(PipelineLoops, AddNothingToTheMapWhenTheyAreWalkedAgain) {
   expect_numbered_without_gaps(twice.slices);
 }
 
+constexpr std::pair<int, int> kSixSeconds = {300, 345};  // covered: longer than restart_after_s
+
+/// A camera that was lost for long goes on in another part of the map. Where it comes back to the
+/// first one, they become one map.
+TEST(PipelineLoops, JoinThePartsOfTheMap) {
+  const Walk gap = walk({.covered = kSixSeconds});
+  EXPECT_EQ(gap.num_parts, 1);
+  ASSERT_EQ(gap.corrected_paths.size(), 1U);
+  const Trajectory& path = gap.corrected_paths.at(0);
+  EXPECT_EQ(path.size(), gap.true_path.size() - (kSixSeconds.second - kSixSeconds.first));
+  EXPECT_LT(error_m(path, gap), 0.02);
+  EXPECT_EQ(gap.num_contradicted, 0);
+
+  const auto joins = [](const CloudSlice& slice) {
+    return slice.kind == SliceKind::kCorrection && slice.part == 0 && !slice.motions.empty();
+  };
+  EXPECT_TRUE(std::ranges::any_of(gap.slices, joins));
+  EXPECT_EQ(sorted_positions(received_points(gap.slices)), sorted_positions(gap.points_W));
+  const auto is_far = [](const CloudPoint& point) { return std::abs(point.x) > 100.0F; };
+  EXPECT_TRUE(std::ranges::none_of(gap.points_W, is_far)) << "no patch is left behind";
+  expect_numbered_without_gaps(gap.slices);
+}
+
+TEST(PipelineLoops, LeavePartsApartWhereTheCameraDoesNotComeBack) {
+  const Walk gap = walk({.num_frames = 500, .covered = kSixSeconds});
+  EXPECT_EQ(gap.num_parts, 2);
+  ASSERT_EQ(gap.corrected_paths.size(), 2U);
+  const Eigen::Vector3d middle = origin_of_part(1).translation();
+  for (const StampedPose& pose : gap.corrected_paths.at(1)) {
+    EXPECT_LT((pose.X_WC.translation() - middle).norm(), 100.0);
+  }
+  for (const CloudSlice& slice : gap.slices) {
+    if (slice.kind != SliceKind::kPatch || slice.points_W.empty()) continue;
+    ASSERT_EQ(slice.part, slice.points_W.front().x > 500.0F ? 1 : 0);
+  }
+}
+
 TEST(PipelineLoops, AreNotClosedWhenSwitchedOff) {
-  const Walk open = walk(false);
+  const Walk open = walk({.close_loops = false});
   EXPECT_EQ(open.num_loops, 0);
-  EXPECT_EQ(error_m(open.corrected_path, open), error_m(open.online_path, open));
+  EXPECT_EQ(error_m(open.corrected_paths.at(0), open), error_m(open.online_path, open));
   for (const CloudSlice& slice : open.slices) {
     EXPECT_NE(slice.kind, SliceKind::kCorrection);
     EXPECT_TRUE(slice.X_WP.is_identity());

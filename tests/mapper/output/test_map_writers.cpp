@@ -76,8 +76,7 @@ TEST(CloudWriter, WritesWhatAReaderOfPlyExpects) {
   writer.append({});
   writer.append({example_point(2)});
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "map.ply"));
-  writer.commit();
-  EXPECT_EQ(writer.num_points(), 3);
+  EXPECT_EQ(writer.commit().at(0).count, 3);
   Bytes bytes(read_file(folder.path() / "map.ply"));
   for (const char* expected :
        {"ply", "format binary_little_endian 1.0", "element vertex 3", "property float x",
@@ -116,8 +115,7 @@ TEST(MeshWriter, WritesWhatAReaderOfPlyExpects) {
   writer.append({.vertices = {{1, 2, 3, {4, 5, 6}}, {7, 8, 9, {1, 1, 1}}, {0, 0, 0, {2, 2, 2}}},
                  .triangles = {{0, 1, 2}}});
   writer.append({.vertices = {{5, 5, 5, {3, 3, 3}}}, .triangles = {{2, 1, 3}, {3, 0, 2}}});
-  writer.commit();
-  EXPECT_EQ(writer.num_triangles(), 3);
+  EXPECT_EQ(writer.commit().at(0).count, 3);
   EXPECT_EQ(num_files(folder.path()), 1);
   Bytes bytes(read_file(folder.path() / "mesh.ply"));
   for (const char* expected :
@@ -208,7 +206,7 @@ TEST(CloudWriter, MovesPointsOfPatchesWhenTheFileIsCompleted) {
   writer.commit([](int patch) {
     Pose X_WP = Pose::Identity();
     X_WP.translation().z() = patch == 7 ? 100.0 : 200.0;
-    return PatchPose(X_WP);
+    return PatchPlace{.X_WP = X_WP, .correction = 1, .part = 0};
   });
   const std::vector<CloudPoint> read = read_cloud(path);
   ASSERT_EQ(read.size(), 7U);
@@ -238,14 +236,14 @@ TEST(MeshWriter, MovesVerticesOfPatchesAndLeavesTriangles) {
   writer.commit([](int) {
     Pose X_WP = Pose::Identity();
     X_WP.translation().x() = 10.0;
-    return PatchPose(X_WP);
+    return PatchPlace{.X_WP = X_WP, .correction = 1, .part = 0};
   });
   EXPECT_EQ(read_file(moved), read_file(still));
 }
 
 /// Patch 1 was replaced.
-std::optional<PatchPose> all_but_patch_1(int patch) {
-  return patch == 1 ? std::nullopt : std::optional(PatchPose());
+std::optional<PatchPlace> all_but_patch_1(int patch) {
+  return patch == 1 ? std::nullopt : std::optional(PatchPlace());
 }
 
 TEST(CloudWriter, DropsPointsOfPatchesThatCountNoMore) {
@@ -254,11 +252,47 @@ TEST(CloudWriter, DropsPointsOfPatchesThatCountNoMore) {
   std::vector<CloudPoint> points(10'000);
   for (int i = 0; i < 10'000; ++i) points[i] = example_point(i);
   writer.append(points, {{3'000, 0}, {4'000, 1}, {2'000, kNoPatch}, {1'000, 2}});
-  writer.commit(all_but_patch_1);
-  EXPECT_EQ(writer.num_points(), 6'000);
+  EXPECT_EQ(writer.commit(all_but_patch_1).at(0).count, 6'000);
   points.erase(points.begin() + 3'000, points.begin() + 7'000);
   EXPECT_EQ(read_cloud(folder.path() / "map.ply"), points);
   EXPECT_EQ(num_files(folder.path()), 1);
+}
+
+/// Patch 2 is in part 3 of the map, the others in part 0.
+std::optional<PatchPlace> patch_2_in_part_3(int patch) {
+  return PatchPlace{.X_WP = {}, .correction = 0, .part = patch == 2 ? 3 : 0};
+}
+
+TEST(CloudWriter, WritesAFileForEachPartOfTheMap) {
+  const kintsugi::testing::TemporaryFolder folder;
+  CloudWriter writer(folder.path() / "map.ply");
+  writer.append({example_point(1), example_point(2), example_point(3)}, {{1, 1}, {2, 2}});
+  writer.append({example_point(4)}, {{.num_points = 1, .patch = kNoPatch, .part = 3}});
+  const std::vector<WrittenFile> written = writer.commit(patch_2_in_part_3);
+  ASSERT_EQ(written.size(), 2U);
+  EXPECT_EQ(written[0].count, 1);
+  EXPECT_EQ(written[1].path, folder.path() / "map.part3.ply");
+  EXPECT_EQ(written[1].count, 3);
+  EXPECT_EQ(read_cloud(folder.path() / "map.ply"), (std::vector{example_point(1)}));
+  EXPECT_EQ(read_cloud(written[1].path),
+            (std::vector{example_point(2), example_point(3), example_point(4)}));
+  EXPECT_EQ(num_files(folder.path()), 2) << "no temporary file is left";
+}
+
+TEST(MeshWriter, WritesAFileForEachPartOfTheMap) {
+  const kintsugi::testing::TemporaryFolder folder;
+  MeshWriter writer(folder.path() / "mesh.ply");
+  MeshPiece piece;
+  for (int i = 0; i < 6; ++i) piece.vertices.push_back({static_cast<float>(i), 0, 0, {}});
+  piece.triangles = {{0, 1, 2}, {3, 4, 5}};
+  writer.append(piece, {{3, 1}, {3, 2}});
+  writer.commit(patch_2_in_part_3);
+  MeshWriter expected(folder.path() / "expected.ply");
+  piece.vertices.erase(piece.vertices.begin(), piece.vertices.begin() + 3);
+  piece.triangles = {{0, 1, 2}};
+  expected.append(piece);
+  expected.commit();
+  EXPECT_EQ(read_file(folder.path() / "mesh.part3.ply"), read_file(folder.path() / "expected.ply"));
 }
 
 TEST(MeshWriter, DropsFacesOfVerticesThatCountNoMore) {
@@ -268,8 +302,7 @@ TEST(MeshWriter, DropsFacesOfVerticesThatCountNoMore) {
   for (int i = 0; i < 6; ++i) piece.vertices.push_back({static_cast<float>(i), 0, 0, {}});
   piece.triangles = {{0, 1, 4}, {1, 2, 4}, {4, 5, 0}, {2, 3, 4}};
   writer.append(piece, {{2, 0}, {2, 1}, {2, 2}});
-  writer.commit(all_but_patch_1);
-  EXPECT_EQ(writer.num_triangles(), 2);
+  EXPECT_EQ(writer.commit(all_but_patch_1).at(0).count, 2);
   Bytes bytes(read_file(folder.path() / "mesh.ply"));
   while (bytes.line() != "end_header") {
   }

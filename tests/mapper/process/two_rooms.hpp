@@ -34,7 +34,7 @@ inline void write_two_rooms(const std::filesystem::path& folder) {
   for (const char* other : {"depth.txt", "rgb.txt"}) std::filesystem::remove(folder / other);
 }
 
-/// Flags that map it in two parts, sessions 7 and 8. The second begins 0.2 s after the change.
+/// Flags that map it in two parts. The second begins 0.2 s after the change.
 inline std::vector<std::string> map_two_rooms(const std::filesystem::path& folder) {
   return {"--device",        "folder://" + folder.string(),
           "--restart-after", "0.2",

@@ -1,5 +1,5 @@
 // The built program and a camera that is suddenly in another room: the map goes on in another part,
-// which is a session of its own on the bus, in the files, in the log and when it is resumed.
+// on the bus, in the files, in the log and when it is resumed.
 
 #include <algorithm>
 #include <fstream>
@@ -86,37 +86,37 @@ class Parts : public ::testing::Test {
 
 kintsugi::testing::TemporaryFolder* Parts::rooms_ = nullptr;
 
-TEST_F(Parts, ACameraThatStaysLostBeginsAnotherSession) {
+TEST_F(Parts, ACameraThatStaysLostBeginsAnotherPartFarAway) {
   const Listener listener;
   EXPECT_EQ(run({}), 0);
   ASSERT_TRUE(Listener::wait_until([&] { return listener.heard_the_end(); }));
 
   const auto poses = listener.poses();
-  constexpr std::size_t last_of_part0 = kFramesInEachRoom + kNumLost;
-  ASSERT_EQ(poses.size(), kNumFrames + 1U) << "the frame between is in both parts";
+  constexpr std::size_t first_of_part1 = kFramesInEachRoom + kNumLost;
+  ASSERT_EQ(poses.size(), static_cast<std::size_t>(kNumFrames));
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    EXPECT_EQ(poses[i].session, i <= last_of_part0 ? 7 : 8);
-    const bool is_lost = i >= kFramesInEachRoom && i <= last_of_part0;
+    EXPECT_EQ(poses[i].session, 7);
+    EXPECT_EQ(poses[i].part, i < first_of_part1 ? 0 : 1) << i;
+    const bool is_lost = i >= kFramesInEachRoom && i < first_of_part1;
     EXPECT_EQ(poses[i].state, is_lost ? TrackingState::kLost : TrackingState::kTracking) << i;
+    const double distance_m = (poses[i].X_WC.translation() - poses[0].X_WC.translation()).norm();
+    EXPECT_EQ(distance_m > 500.0, poses[i].part == 1) << i;
   }
-  EXPECT_EQ(poses[last_of_part0 + 1].utime, poses[last_of_part0].utime);
-  EXPECT_TRUE(poses[last_of_part0 + 1].X_WC.isApprox(Pose::Identity())) << "a frame W of its own";
 
-  for (const std::int64_t session : {7, 8}) {
-    std::vector<CloudSlice> slices = listener.slices();
-    std::erase_if(slices, [&](const CloudSlice& slice) { return slice.session != session; });
-    ASSERT_FALSE(slices.empty());
-    EXPECT_EQ(slices.back().kind, SliceKind::kFinal);
-    EXPECT_EQ(slices.back().part_follows, session == 7);
-    EXPECT_TRUE(testing::ids_have_no_gap(slices));
-    for (const CloudSlice& slice : slices) EXPECT_EQ(slice.part, session - 7);
+  const std::vector<CloudSlice> slices = listener.slices();
+  EXPECT_EQ(slices.back().kind, SliceKind::kFinal);
+  EXPECT_TRUE(testing::ids_have_no_gap(slices));
+  std::set<std::int32_t> parts;
+  for (const CloudSlice& slice : slices) {
+    if (slice.points_W.empty()) continue;
+    parts.insert(slice.part);
+    EXPECT_EQ(slice.points_W.front().x > 500.0F, slice.part == 1);
+    EXPECT_EQ(slice.X_WC.translation().x() > 500.0, slice.part == 1);
   }
-  for (const MapperStatus& status : listener.statuses()) {
-    EXPECT_EQ(status.part, status.session - 7);
-    EXPECT_FALSE(status.finished && status.session == 7) << "the run goes on";
-  }
+  EXPECT_EQ(parts, (std::set<std::int32_t>{0, 1}));
   const MapperStatus status = listener.statuses().back();
-  EXPECT_EQ(status.session, 8);
+  EXPECT_EQ(status.part, 1);
+  EXPECT_EQ(status.parts, 2);
   EXPECT_EQ(status.frames_read, kNumFrames);
   EXPECT_EQ(status.frames_lost, kNumLost);
   EXPECT_EQ(status.frames_relocalised, 0) << "it never was in the second room before";
@@ -137,8 +137,9 @@ TEST_F(Parts, EveryPartHasFilesAndTheSummaryNamesThem) {
     frames_of_part1 += line.find(",1,tracking,") != std::string::npos ? 1 : 0;
   }
   EXPECT_EQ(frames_of_part1, kFramesInEachRoom - kNumLost);
-  EXPECT_THAT(said(), HasSubstr("part 0 of the map ends here, lost for 0.2 s"));
-  EXPECT_THAT(said(), HasSubstr("2 parts, frames located in each: 16 of 22, 10 of 10"));
+  EXPECT_THAT(said(), HasSubstr("lost for 0.2 s (--restart-after)"));
+  EXPECT_THAT(said(),
+              HasSubstr("2 parts, frames located in each: 16 of 22, 10 of 10; 2 are apart"));
 }
 
 TEST_F(Parts, ThereIsOneWithoutTheOptionAndWithGivenPoses) {
@@ -152,22 +153,17 @@ TEST_F(Parts, ThereIsOneWithoutTheOptionAndWithGivenPoses) {
 TEST_F(Parts, ARunThatIsResumedInAnyPartEndsAsOneWithoutInterruption) {
   ASSERT_EQ(run({"--store", folder_ / "whole.lcm"}), 0);
   const StoredRun whole = read_stored_run(folder_ / "whole.lcm");
-  const auto is_pose = [](std::int64_t session, int number) {
-    return [session, number, seen = 0](const LogEvent& event) mutable {
-      return event.channel == channels::kCameraPose &&
-             decode<CameraPose>(event.data).session == session && ++seen == number;
+  const auto is_pose = [](int number) {
+    return [number, seen = 0](const LogEvent& event) mutable {
+      return event.channel == channels::kCameraPose && ++seen == number;
     };
   };
-  const auto begins_part1 = [seen = 0](const LogEvent& event) mutable {
-    return event.channel == kOptionsChannel && ++seen == 2;
-  };
-  cut_after("whole.lcm", "in-part0.lcm", is_pose(7, 12));
-  cut_after("whole.lcm", "lost.lcm", is_pose(7, kFramesInEachRoom + kNumLost));
-  cut_after("whole.lcm", "before-part1.lcm", is_pose(7, kFramesInEachRoom + kNumLost + 1));
-  cut_after("whole.lcm", "begins-part1.lcm", begins_part1);
-  cut_after("whole.lcm", "in-part1.lcm", is_pose(8, 5));
-  for (const char* log :
-       {"in-part0.lcm", "lost.lcm", "before-part1.lcm", "begins-part1.lcm", "in-part1.lcm"}) {
+  constexpr int kLast = kFramesInEachRoom + kNumLost;  // of part 0
+  cut_after("whole.lcm", "in-part0.lcm", is_pose(12));
+  cut_after("whole.lcm", "lost.lcm", is_pose(kLast));
+  cut_after("whole.lcm", "begins-part1.lcm", is_pose(kLast + 1));
+  cut_after("whole.lcm", "in-part1.lcm", is_pose(kLast + 5));
+  for (const char* log : {"in-part0.lcm", "lost.lcm", "begins-part1.lcm", "in-part1.lcm"}) {
     EXPECT_EQ(run({"--resume", folder_ / log, "--cloud", folder_ / "cloud.ply"}), 0) << log << '\n'
                                                                                      << said();
     const StoredRun resumed = read_stored_run(folder_ / log);
@@ -182,10 +178,10 @@ TEST_F(Parts, AWholeRunThatIsResumedServesAllItsParts) {
   ASSERT_EQ(run({"--store", folder_ / "run.lcm"}), 0);
   const Listener listener;
   EXPECT_EQ(run({"--resume", folder_ / "run.lcm", "--linger", "1"}), 0) << said();
-  EXPECT_THAT(said(), HasSubstr("session 8 is complete"));
-  std::set<std::int64_t> sessions;
-  for (const CloudSlice& slice : listener.slices()) sessions.insert(slice.session);
-  EXPECT_EQ(sessions, (std::set<std::int64_t>{7, 8}));
+  EXPECT_THAT(said(), HasSubstr("session 7 is complete"));
+  std::set<std::int32_t> parts;
+  for (const CloudSlice& slice : listener.slices()) parts.insert(slice.part);
+  EXPECT_EQ(parts, (std::set<std::int32_t>{0, 1}));
   EXPECT_EQ(listener.statuses().back().part, 1);
 }
 

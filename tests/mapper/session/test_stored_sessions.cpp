@@ -22,16 +22,14 @@ void read_options(const std::string& text) {
 TEST(StoredSessionReader, RefusesOptionsThatAreNone) {
   for (const char* text :
        {"", "no json", "[1, 2]", "{}", R"({"session": 7})", R"({"session": "7", "options": {}})",
-        R"({"session": 1e300, "options": {}})", R"({"session": 7, "part": 7, "options": {}})",
-        R"({"session": 7, "part": -1, "options": {}})",
-        R"({"session": 7, "part": [], "options": {}})", R"({"session": 7, "options": {"a": 1}})",
+        R"({"session": 1e300, "options": {}})", R"({"session": 0, "options": {}})",
+        R"({"session": -1, "options": {}})", R"({"session": 7, "options": {"a": 1}})",
         "{\"session\": 7, \"options\": {\"\xff\": \"\"}}"}) {
     EXPECT_THAT([&] { read_options(text); },
                 ThrowsMessage<std::runtime_error>(HasSubstr("MAPPER_OPTIONS cannot be read")))
         << text;
   }
   EXPECT_NO_THROW(read_options(R"({"session": 7, "options": {"resolution": "0.01"}})"));
-  EXPECT_NO_THROW(read_options(R"({"session": 7, "part": 6, "options": {}})"));
 }
 
 }  // namespace

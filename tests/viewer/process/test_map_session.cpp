@@ -28,6 +28,7 @@ CameraView camera_view(std::int32_t part, std::int64_t utime) {
   CameraView view;
   view.utime = utime;
   view.session = kSession;
+  view.part = part;
   view.state = TrackingState::kTracking;
   view.X_WC = pose_in_part(part);
   return view;
@@ -67,7 +68,7 @@ TEST(MapSession, FollowsTheCameraInEachPartOfTheMap) {
   EXPECT_EQ(session.depth_camera(2).position_W().x(), 2 * kPartDistance_m) << "as the slice says";
 }
 
-TEST(MapSession, AViewIsInThePartOfTheNewestPose) {
+TEST(MapSession, AViewStandsForAPoseOfItsPart) {
   MapSession session(kSession, 0.0);
   session.use(patch(0, 0, 1'000), 0.0);
   session.use(camera_view(0, 2'000));

@@ -19,8 +19,10 @@ CameraPath two_stays(bool jumped) {
   return path;
 }
 
+MapDeformation up_at_keyframe_1(int part = 0) { return {1, {{at(0.0), 0}, {at(0.0, 0.5), part}}}; }
+
 TEST(CameraPath, StaysAsTrackedWithoutACorrection) {
-  const Trajectory path = two_stays(false).corrected(MapDeformation());
+  const Trajectory path = two_stays(false).corrected(MapDeformation()).at(0);
   ASSERT_EQ(path.size(), 10U);
   for (int i = 0; i < 10; ++i) {
     EXPECT_EQ(path[i].utime, 1000 * i);
@@ -29,7 +31,7 @@ TEST(CameraPath, StaysAsTrackedWithoutACorrection) {
 }
 
 TEST(CameraPath, GoesOverFromOneCorrectionToTheNextLinearly) {
-  const Trajectory path = two_stays(false).corrected({1, {at(0.0), at(0.0, 0.5)}});
+  const Trajectory path = two_stays(false).corrected(up_at_keyframe_1()).at(0);
   for (int i = 0; i < 10; ++i) {
     EXPECT_NEAR(path[i].X_WC.translation().y(), i < 5 ? 0.1 * i : 0.5, 1e-12) << "frame " << i;
   }
@@ -37,12 +39,24 @@ TEST(CameraPath, GoesOverFromOneCorrectionToTheNextLinearly) {
 
 TEST(CameraPath, JumpsWhereTheCameraDid) {
   const CameraPath jump = two_stays(true);
-  const Trajectory path = jump.corrected({1, {at(0.0), at(0.0, 0.5)}});
+  const Trajectory path = jump.corrected(up_at_keyframe_1()).at(0);
   for (int i = 0; i < 10; ++i) {
     EXPECT_NEAR(path[i].X_WC.translation().y(), i < 5 ? 0.0 : 0.5, 1e-12) << "frame " << i;
   }
   EXPECT_NEAR(two_stays(false).length_m(), 0.9, 1e-12);
   EXPECT_NEAR(jump.length_m(), 0.8, 1e-12) << "without the jump";
+}
+
+TEST(CameraPath, IsInPartsUntilTheyAreJoined) {
+  const CameraPath path = two_stays(true);
+  const std::map<int, Trajectory> apart = path.corrected(up_at_keyframe_1(1));
+  ASSERT_EQ(apart.size(), 2U);
+  EXPECT_EQ(apart.at(0).size(), 5U);
+  EXPECT_EQ(apart.at(1).size(), 5U);
+  EXPECT_EQ(apart.at(1).front().utime, 5'000);
+  const std::map<int, Trajectory> joined = path.corrected(up_at_keyframe_1(0));
+  ASSERT_EQ(joined.size(), 1U);
+  EXPECT_EQ(joined.at(0).size(), 10U);
 }
 
 }  // namespace

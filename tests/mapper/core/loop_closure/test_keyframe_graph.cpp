@@ -1,4 +1,7 @@
+#include <optional>
+#include <set>
 #include <stdexcept>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -98,6 +101,79 @@ TEST_F(OutAndBack, WhatComesAfterACorrectionMovesWithTheKeyframeItComesFrom) {
   graph.optimize();
   graph.add(drifted(40) * at(0.0, 0.25), 20.25, 40);
   EXPECT_TRUE((graph.X_WK(40) * at(0.0, 0.25)).isApprox(graph.X_WK(41), 1e-9));
+}
+
+/// Along x and, after the camera was lost, along the same way again, which nobody knows.
+class TwoParts : public ::testing::Test {
+ protected:
+  static constexpr int kLength = 20;  // keyframes of each part
+  static constexpr double kUnseen_m = 12.0;
+
+  TwoParts() {
+    for (int i = 0; i < 2 * kLength; ++i) {
+      const bool begins = i % kLength == 0;
+      graph.add(X_UK(i), kStep_m * i, begins ? std::nullopt : std::optional(i - 1), kUnseen_m);
+      if (!begins) graph.add_tracked(i - 1, i, precise());
+    }
+  }
+  static Pose truth(int i) { return at(kStep_m * (i % kLength)); }
+  static Pose X_UK(int i) { return at(i < kLength ? 0.0 : 1'000.0) * truth(i); }
+  /// Keyframe kLength + i is where keyframe i was, or `shift` from there.
+  static Loop loop(int i, const Pose& shift = Pose::Identity()) {
+    return {kLength + i, i, shift, precise(), kSigma_m};
+  }
+  int num_parts() const {
+    const std::vector<int> parts = graph.parts();
+    return static_cast<int>(std::set(parts.begin(), parts.end()).size());
+  }
+
+  KeyframeGraph graph{{}};
+};
+
+TEST_F(TwoParts, AreJoinedByThreeLoopsThatAgree) {
+  EXPECT_EQ(graph.offer(loop(3)), 0);
+  EXPECT_EQ(graph.offer(loop(4)), 0);
+  EXPECT_EQ(graph.offer(loop(4)), 0) << "from the same keyframe";
+  EXPECT_EQ(num_parts(), 2);
+  EXPECT_EQ(graph.offer(loop(5)), 4) << "and that one counts twice";
+  EXPECT_EQ(num_parts(), 1);
+  graph.optimize();
+  for (int i = 0; i < 2 * kLength; ++i) {
+    EXPECT_TRUE(graph.X_WK(i).isApprox(truth(i), 1e-6)) << i;
+    EXPECT_EQ(graph.part_of(i), 0);
+  }
+}
+
+TEST_F(TwoParts, StayApartAsLongAsOtherPlacesLookTheSame) {
+  const Pose elsewhere = at(4.0);
+  graph.offer(loop(3));
+  graph.offer(loop(4));
+  graph.offer(loop(6, elsewhere));
+  graph.offer(loop(7, elsewhere));
+  EXPECT_EQ(graph.offer(loop(5)), 0) << "three are not more than twice two";
+  EXPECT_EQ(graph.offer(loop(8)), 0);
+  EXPECT_EQ(num_parts(), 2);
+  EXPECT_EQ(graph.offer(loop(2)), 5);
+  EXPECT_EQ(num_parts(), 1);
+}
+
+TEST_F(TwoParts, AreNotJoinedWhereTheCameraCannotHaveGone) {
+  // The second part would begin 15 m from where the first one ended.
+  const Pose shift = at(-5.5);
+  for (const int i : {3, 4, 5, 6}) EXPECT_EQ(graph.offer(loop(i, shift)), 0);
+  EXPECT_EQ(num_parts(), 2);
+}
+
+TEST_F(TwoParts, KeepTheirPlacesWhenOnlyOneIsCorrected) {
+  graph.add(X_UK(0), kStep_m * 40.0, 19);
+  graph.add(X_UK(1), kStep_m * 41.0, 40);
+  graph.add_tracked(40, 41, precise());
+  graph.offer({40, 0, at(0.01), precise(), kSigma_m});
+  graph.offer({41, 1, at(0.01), precise(), kSigma_m});
+  graph.optimize();
+  for (int i = kLength; i < 2 * kLength; ++i) {
+    EXPECT_TRUE(graph.X_WK(i).isApprox(X_UK(i), 1e-12)) << i;
+  }
 }
 
 TEST_F(OutAndBack, RefusesMotionsOfKeyframesThatAreNotThere) {

@@ -196,6 +196,13 @@ TEST_F(TwoRounds, TheFirstNodeNeverMoves) {
   EXPECT_EQ(optimize(graph_).X_WN.front().matrix(), graph_.X_WN.front().matrix());
 }
 
+TEST_F(TwoRounds, FixedNodesNeverMoveAndTheOthersDo) {
+  graph_.fixed = {3};
+  const OptimizedPoses optimized = optimize(graph_);
+  EXPECT_EQ(optimized.X_WN[3].matrix(), graph_.X_WN[3].matrix());
+  EXPECT_FALSE(optimized.X_WN.front().isApprox(graph_.X_WN.front(), 1e-6));
+}
+
 TEST_F(TwoRounds, TooFewIterationsAreSaid) {
   const OptimizedPoses optimized = optimize(graph_, {.max_iterations = 1});
   EXPECT_FALSE(optimized.converged);
@@ -226,6 +233,7 @@ TEST(PoseGraph, RefusesEdgesThatCannotBe) {
               HasSubstr("edge 0 has a pose"));
   EXPECT_THAT(refused([](PoseGraph& g) { g.X_WN[2].translation().x() = INFINITY; }),
               HasSubstr("node 2"));
+  EXPECT_THAT(refused([](PoseGraph& g) { g.fixed = {0, 7}; }), HasSubstr("fixed is at node 7"));
 }
 
 }  // namespace

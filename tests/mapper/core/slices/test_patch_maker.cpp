@@ -84,7 +84,7 @@ TEST_F(Patches, GoOnWhenTheirBlocksComeBack) {
   const int before = maker.keep(surface({{0, {2}}})).front().patch;
   maker.make({{{kHere, false}}}, {}, header());
   maker.reopen(std::vector<TileVisit>{{kHere, 0}}, header());
-  EXPECT_FALSE(maker.pose_of(before).has_value()) << "what was kept of it counts no more";
+  EXPECT_FALSE(maker.place_of(before).has_value()) << "what was kept of it counts no more";
   const auto slices = maker.make({{{kHere}}}, surface({{0, {3}}}), header());
   ASSERT_EQ(slices.size(), 1U);
   EXPECT_EQ(slices[0].id, 0) << "the same patch";
@@ -94,7 +94,7 @@ TEST_F(Patches, GoOnWhenTheirBlocksComeBack) {
 
   const int after = maker.keep(surface({{0, {4}}})).front().patch;
   EXPECT_NE(after, before);
-  EXPECT_TRUE(maker.pose_of(after).has_value());
+  EXPECT_TRUE(maker.place_of(after).has_value());
   const auto last = maker.finish(header());
   EXPECT_THAT(weights(last[0]), ElementsAre(4));
   EXPECT_EQ(last[0].revision, 3);
@@ -105,7 +105,7 @@ TEST_F(Patches, GoOnWhenPartOfAnOpenOneComesBack) {
   maker.make({{{kHere}}}, surface({{0, {1}}}), header());
   const int before = maker.keep(surface({{0, {2}}})).front().patch;
   maker.reopen(std::vector<TileVisit>{{kHere}}, header());
-  EXPECT_FALSE(maker.pose_of(before).has_value());
+  EXPECT_FALSE(maker.place_of(before).has_value());
   const auto slices = maker.make({{{kHere}}}, surface({{0, {3}}}), header());
   EXPECT_EQ(slices.at(0).id, 0);
   EXPECT_EQ(slices.at(0).revision, 1);
@@ -157,11 +157,11 @@ TEST_F(Patches, EndWithTheirLastRevisionsAndTheirSum) {
   EXPECT_EQ(slices[3].revision_sum, 3);
 }
 
-MapDeformation correction(int number, double y0, double y1) {
-  std::vector<Pose> X_WU(2, Pose::Identity());
-  X_WU[0].translation().y() = y0;
-  X_WU[1].translation().y() = y1;
-  return {number, X_WU};
+MapDeformation correction(int number, double y0, double y1, int part0 = 0, int part1 = 0) {
+  std::vector<MapDeformation::Place> places = {{.part = part0}, {.part = part1}};
+  places[0].X_WU.translation().y() = y0;
+  places[1].X_WU.translation().y() = y1;
+  return {number, places};
 }
 
 TEST_F(Patches, MoveWithTheKeyframesAtWhichTheyWereSeen) {
@@ -177,7 +177,7 @@ TEST_F(Patches, MoveWithTheKeyframesAtWhichTheyWereSeen) {
   EXPECT_EQ(first[0].motions[0].id, 1);
   EXPECT_FLOAT_EQ(first[0].motions[0].X_WP.t_WP[1], 0.02F);
 
-  const auto revised = maker.make({{{kHere, true, 1, correction(1, 0.0, 0.02).at(1)}}},
+  const auto revised = maker.make({{{kHere, true, 1, correction(1, 0.0, 0.02).place(1)}}},
                                   surface({{0, {3}}}), header());
   EXPECT_EQ(revised[0].correction, 1);
   EXPECT_FLOAT_EQ(revised[0].X_WP.t_WP[1], 0.02F) << "seen again, at the later keyframe";
@@ -193,6 +193,27 @@ TEST_F(Patches, MoveAlsoAfterTheyHaveLeftForGood) {
   EXPECT_EQ(slices[0].motions[0].id, 0);
 }
 
+TEST_F(Patches, AreInThePartOfTheMapOfTheirKeyframe) {
+  const auto seen = [](int keyframe, int part) {
+    return correction(1, 0.01, 0.02, 0, part).place(keyframe);
+  };
+  const auto slices = maker.make({{{kHere, true, 0, seen(0, 1)}, {kThere, true, 1, seen(1, 1)}}},
+                                 surface({{0, {1}}, {1, {2}}}), header());
+  EXPECT_EQ(slices[0].part, 0);
+  EXPECT_EQ(slices[1].part, 1);
+  const auto apart = maker.correct(correction(2, 0.03, 0.04, 0, 1), header());
+  ASSERT_EQ(apart.size(), 2U) << "a correction is of one part";
+  for (const int part : {0, 1}) {
+    EXPECT_EQ(apart[part].part, part);
+    ASSERT_EQ(apart[part].motions.size(), 1U);
+    EXPECT_EQ(apart[part].motions[0].id, part);
+  }
+  const auto joined = maker.correct(correction(3, 0.03, 0.06, 0, 0), header());
+  ASSERT_EQ(joined.size(), 1U);
+  EXPECT_EQ(joined[0].part, 0);
+  EXPECT_EQ(joined[0].motions[0].id, 1);
+}
+
 TEST_F(Patches, OfATenthOfAVoxelStayUntilItIsMore) {
   maker.make({{{kHere, true, 0}}}, surface({{0, {1}}}), header());
   EXPECT_THAT(maker.correct(correction(1, 0.0009, 0.0), header()), IsEmpty());
@@ -206,8 +227,8 @@ TEST_F(Patches, TellWhichOfThemThePointsAndVerticesThatLeftAreOf) {
   const auto runs = maker.keep(surface({{0, {1, 1}}, {1, {2}}}));
   ASSERT_EQ(runs.size(), 2U);
   EXPECT_EQ(runs[0].num_points, 2U);
-  EXPECT_FLOAT_EQ(maker.pose_of(runs[0].patch)->t_WP[1], 0.01F);
-  EXPECT_FLOAT_EQ(maker.pose_of(runs[1].patch)->t_WP[1], 0.02F);
+  EXPECT_FLOAT_EQ(maker.place_of(runs[0].patch)->X_WP.t_WP[1], 0.01F);
+  EXPECT_FLOAT_EQ(maker.place_of(runs[1].patch)->X_WP.t_WP[1], 0.02F);
 
   MeshPiece piece;
   for (const float x : {0.01F, 0.07F, 0.09F, 5.0F}) piece.vertices.push_back({.x = x});

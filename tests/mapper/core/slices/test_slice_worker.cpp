@@ -35,7 +35,8 @@ TEST(SliceWorker, ExtractsWhatItIsGivenWithItsTimeAndPose) {
   SliceWorker worker({});
   Pose X_WC = Pose::Identity();
   X_WC.translation() << 1, 2, 3;
-  worker.submit(plane_blocks(SliceKind::kShiftMinusY), 12345, X_WC);
+  worker.submit(plane_blocks(SliceKind::kShiftMinusY),
+                {.utime = 12345, .X_WC = X_WC, .at = {.keyframe = 0, .place = {.part = 2}}});
   const std::vector<CloudSlice> slices = worker.drain();
   ASSERT_EQ(slices.size(), 1U);
   EXPECT_EQ(slices[0].id, 0);
@@ -57,7 +58,7 @@ TEST(SliceWorker, KeepsTheOrderWhenItIsOutrun) {
     for (CloudSlice& slice : more) slices.push_back(std::move(slice));
   };
   for (int i = 0; i < 30; ++i) {
-    worker.submit(plane_blocks(SliceKind::kShiftPlusX), i, Pose::Identity());
+    worker.submit(plane_blocks(SliceKind::kShiftPlusX), {.utime = i, .X_WC = Pose::Identity()});
     collect(worker.take_finished());
   }
   collect(worker.drain());
@@ -72,7 +73,7 @@ TEST(SliceWorker, KeepsTheOrderWhenItIsOutrun) {
 TEST(SliceWorker, CanBeLeftWithWorkQueued) {
   SliceWorker worker({});
   for (int i = 0; i < 5; ++i) {
-    worker.submit(plane_blocks(SliceKind::kFinal), i, Pose::Identity());
+    worker.submit(plane_blocks(SliceKind::kFinal), {.utime = i, .X_WC = Pose::Identity()});
   }
 }
 

@@ -95,6 +95,13 @@ TEST(TsdfVolume, MovesToWithinHalfABlockOfTheCamera) {
   }
 }
 
+TEST(TsdfVolume, CanBeCenteredAnewAlsoWithinTheThreshold) {
+  TsdfVolume volume(ten_blocks());
+  const Eigen::Vector3d near_W(0.5 * kBlock_m, -0.5 * kBlock_m, 900.0);
+  volume.center_at(near_W);
+  EXPECT_EQ(volume.center_W(), TsdfVolume(ten_blocks(), near_W).center_W());
+}
+
 TEST(TsdfVolume, NamesTheDirectionInWhichItMoved) {
   TsdfVolume volume(ten_blocks());
   const auto fill = [&volume] {

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "mapper/process/restart_rule.hpp"
+#include "mapper/core/tracking/restart_rule.hpp"
 
 namespace kintsugi::mapper {
 namespace {

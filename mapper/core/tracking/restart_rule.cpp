@@ -1,4 +1,4 @@
-#include "mapper/process/restart_rule.hpp"
+#include "mapper/core/tracking/restart_rule.hpp"
 
 #include <algorithm>
 #include <cmath>
