@@ -16,10 +16,6 @@ namespace {
 /// surfaces that voxels describe.
 constexpr double kSurfaceError_vox = 0.25;
 
-/// Loops that agree, from different later keyframes, to join two parts: one more than in one part,
-/// where the bound on drift is further evidence.
-constexpr std::size_t kLoopsToJoin = 3;
-
 /// The larger of the distance (m) and of the angle (rad), which are about the same for what is a
 /// metre away.
 double size_of(const Pose& X) { return std::max(X.translation().norm(), rotation_angle_rad(X)); }
@@ -73,7 +69,10 @@ void KeyframeGraph::check_number(int number) const {
 }
 
 int KeyframeGraph::offer(const Loop& loop) {
-  if (part_of(loop.later) != part_of(loop.earlier)) return offer_to_join(loop);
+  if (part_of(loop.later) != part_of(loop.earlier)) {
+    if (is_reachable(loop)) pending_.push_back(loop);
+    return 0;
+  }
   if (!is_plausible(loop)) return 0;
   const auto agrees = [&](const Loop& other) { return agree(loop, other); };
   int num_confirmed = 0;
@@ -95,24 +94,30 @@ bool KeyframeGraph::is_plausible(const Loop& loop) const {
   return drift_m <= config_.max_drift_share * path_m + config_.voxel_m;
 }
 
-int KeyframeGraph::offer_to_join(const Loop& loop) {
-  if (!is_reachable(loop)) return 0;
-  pending_.push_back(loop);
-  const auto found = std::stable_partition(pending_.begin(), pending_.end() - 1,
-                                           [&](const Loop& other) { return !agree(loop, other); });
-  std::set<int> supporters;
-  for (auto it = found; it != pending_.end(); ++it) supporters.insert(it->later);
+std::vector<Loop> KeyframeGraph::agreeing_to_join(const Loop& loop) const {
+  if (part_of(loop.later) == part_of(loop.earlier) || !is_reachable(loop)) return {};
+  std::vector<Loop> agreeing = {loop};
+  std::set<int> supporters = {loop.later};
   std::set<int> rivals;
-  for (auto it = pending_.begin(); it != found; ++it) {
-    if (are_rivals(loop, *it)) rivals.insert(it->later);
+  for (const Loop& other : pending_) {
+    if (agree(loop, other)) {
+      agreeing.push_back(other);
+      supporters.insert(other.later);
+    } else if (are_rivals(loop, other)) {
+      rivals.insert(other.later);
+    }
   }
-  if (supporters.size() < kLoopsToJoin || supporters.size() <= 2 * rivals.size()) return 0;
-  join(*std::min_element(found, pending_.end(),
-                         [](const Loop& a, const Loop& b) { return a.sigma_m < b.sigma_m; }));
-  const auto num_confirmed = static_cast<int>(pending_.end() - found);
-  confirmed_.insert(confirmed_.end(), found, pending_.end());
-  pending_.erase(found, pending_.end());
-  return num_confirmed;
+  return supporters.size() > 2 * rivals.size() ? agreeing : std::vector<Loop>();
+}
+
+void KeyframeGraph::join(const std::vector<Loop>& loops) {
+  move_part(*std::ranges::min_element(loops, {}, &Loop::sigma_m));
+  confirmed_.insert(confirmed_.end(), loops.begin(), loops.end());
+  std::erase_if(pending_, [&](const Loop& pending) {
+    return std::ranges::any_of(loops, [&](const Loop& loop) {
+      return loop.later == pending.later && loop.earlier == pending.earlier;
+    });
+  });
 }
 
 /// Whether the camera can have gone from where it was before a part to where the loop puts the
@@ -128,8 +133,6 @@ bool KeyframeGraph::is_reachable(const Loop& loop) const {
   return distance_m <= part.unseen_m + config_.max_drift_share * path_m + config_.voxel_m;
 }
 
-/// Whether two loops between the same parts put them to places too far from each other for both to
-/// be right.
 bool KeyframeGraph::are_rivals(const Loop& a, const Loop& b) const {
   if (part_of(a.later) != part_of(b.later) || part_of(a.earlier) != part_of(b.earlier)) {
     return false;
@@ -144,7 +147,7 @@ bool KeyframeGraph::are_rivals(const Loop& a, const Loop& b) const {
 }
 
 /// Moves the later of the two parts to where the loop puts it.
-void KeyframeGraph::join(const Loop& loop) {
+void KeyframeGraph::move_part(const Loop& loop) {
   const int later = part_of(loop.later);
   const int earlier = part_of(loop.earlier);
   const int moving = std::max(later, earlier);

@@ -25,8 +25,8 @@ namespace kintsugi::mapper {
 /// tracking can drift are refused.
 ///
 /// Between two parts there is no such bound, only that on how far the camera can have gone while it
-/// was lost, and places that look alike would join them wrongly. So three loops that agree join two
-/// parts, if they are more than twice as many as those that would put them elsewhere.
+/// was lost. There agreeing loops are only proposed, if they are more than twice as many as those
+/// that would put the parts elsewhere; JoinRule decides.
 class KeyframeGraph {
  public:
   struct Config {
@@ -55,8 +55,20 @@ class KeyframeGraph {
   void add_tracked(int from, int to, const Matrix6d& information_T);
 
   /// Takes a loop, and returns how many are confirmed by it, itself among them: 0, 2 or more, or 1
-  /// when it agrees with confirmed ones. Loops that are confirmed between two parts join them.
+  /// when it agrees with confirmed ones. A loop between two parts confirms none.
   int offer(const Loop& loop);
+
+  /// After a loop between two parts was offered: the loops that agree with it, itself among them,
+  /// if they are to be preferred to those that do not; else none. Of a loop in one part none.
+  std::vector<Loop> agreeing_to_join(const Loop& loop) const;
+
+  /// Confirms loops between two parts: moves the later part to where the most certain of them puts
+  /// it.
+  void join(const std::vector<Loop>& loops);
+
+  /// Whether two loops between the same parts put them to places too far from each other for both
+  /// to be right.
+  bool are_rivals(const Loop& a, const Loop& b) const;
 
   /// Moves the keyframes to where motions and confirmed loops want them. Loops that are
   /// contradicted are removed first, one after the other, the worst one first.
@@ -88,10 +100,8 @@ class KeyframeGraph {
 
   void check_number(int number) const;
   bool is_plausible(const Loop& loop) const;
-  int offer_to_join(const Loop& loop);
   bool is_reachable(const Loop& loop) const;
-  bool are_rivals(const Loop& a, const Loop& b) const;
-  void join(const Loop& loop);
+  void move_part(const Loop& loop);
   double uncertainty_m(const Loop& a, const Loop& b, const Pose& X_LaLb) const;
   bool agree(const Loop& a, const Loop& b) const;
   PoseGraph pose_graph() const;

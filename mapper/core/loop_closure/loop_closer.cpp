@@ -7,17 +7,14 @@
 #include "lcmtypes/base/argument_check.hpp"
 #include "lcmtypes/base/stopwatch.hpp"
 #include "lcmtypes/base/thread_priority.hpp"
+#include "mapper/core/loop_closure/common_view.hpp"
 
 namespace kintsugi::mapper {
-namespace {
-
-constexpr int kSampleStep_px = 8;  // of a keyframe's surface, to see what two have in common
-
-}  // namespace
 
 void LoopCloser::Config::validate() const {
   verifier.validate();
   graph.validate();
+  join.validate();
   check_range("delay_s", delay_s, 0.0, 3600.0);
   check_range("max_by_position", max_by_position, 0, 1000);
   check_range("max_matches", max_matches, 1, 1000);
@@ -27,6 +24,7 @@ void LoopCloser::Config::validate() const {
 LoopCloser::LoopCloser(const Config& config)
     : config_((config.validate(), config)),
       verifier_(config.verifier),
+      join_rule_(config.join, verifier_),
       graph_(config.graph),
       thread_([this] { run(); }) {}
 
@@ -96,7 +94,10 @@ std::optional<MapCorrection> LoopCloser::work_on(const NewKeyframe& added) {
   graph_.add(added.keyframe->X_WC, added.path_m, added.from, added.unseen_m);
   add_tracked(added);
   int num_confirmed = 0;
-  for (const Loop& loop : matches_of(added)) num_confirmed += graph_.offer(loop);
+  for (const Loop& loop : matches_of(added)) {
+    num_confirmed += graph_.offer(loop);
+    num_confirmed += join(graph_.agreeing_to_join(loop), added.noise);
+  }
   if (num_confirmed == 0) return std::nullopt;
   const double largest_motion_m = graph_.optimize();
   return MapCorrection{.X_WK = graph_.poses_W(),
@@ -104,6 +105,13 @@ std::optional<MapCorrection> LoopCloser::work_on(const NewKeyframe& added) {
                        .loops = graph_.loops(),
                        .num_contradicted = graph_.num_contradicted(),
                        .largest_motion_m = largest_motion_m};
+}
+
+/// Returns how many loops are confirmed.
+int LoopCloser::join(const std::vector<Loop>& loops, const DepthNoise& noise) {
+  if (loops.empty() || !join_rule_.holds(loops, graph_, keyframes_, noise)) return 0;
+  graph_.join(loops);
+  return static_cast<int>(loops.size());
 }
 
 void LoopCloser::add_tracked(const NewKeyframe& added) {
@@ -168,27 +176,7 @@ std::vector<int> LoopCloser::candidates_for(const NewKeyframe& added) const {
 }
 
 double LoopCloser::common_share(int later, int earlier, const Pose& X_EL) const {
-  const Keyframe& L = *keyframes_[later];
-  const Keyframe& E = *keyframes_[earlier];
-  // Views in opposite directions have no surface in common; most pairs end here.
-  if (X_EL.linear()(2, 2) <= 0.0) return 0.0;
-  int num_points = 0;
-  int num_common = 0;
-  for (int v = kSampleStep_px / 2; v < L.camera.height; v += kSampleStep_px) {
-    for (int u = kSampleStep_px / 2; u < L.camera.width; u += kSampleStep_px) {
-      if (!(L.depth_m(v, u) > 0.0)) continue;
-      ++num_points;
-      const Eigen::Vector3d p_E = X_EL * L.point(v, u);
-      if (!(p_E.z() > 0.0)) continue;
-      const double u_E = E.camera.fx * p_E.x() / p_E.z() + E.camera.cx;
-      const double v_E = E.camera.fy * p_E.y() / p_E.z() + E.camera.cy;
-      if (!(u_E >= 0.0 && v_E >= 0.0 && u_E < E.camera.width && v_E < E.camera.height)) continue;
-      const double seen_m = E.depth_m(static_cast<int>(v_E), static_cast<int>(u_E));
-      // Half and double: the rest is for the registration to find out.
-      if (seen_m > 0.5 * p_E.z() && seen_m < 2.0 * p_E.z()) ++num_common;
-    }
-  }
-  return num_points == 0 ? 0.0 : static_cast<double>(num_common) / num_points;
+  return kintsugi::mapper::common_share(*keyframes_[later], *keyframes_[earlier], X_EL);
 }
 
 }  // namespace kintsugi::mapper

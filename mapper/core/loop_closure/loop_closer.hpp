@@ -11,6 +11,7 @@
 #include <thread>
 #include <vector>
 
+#include "mapper/core/loop_closure/join_rule.hpp"
 #include "mapper/core/loop_closure/keyframe_graph.hpp"
 #include "mapper/core/loop_closure/loop_verifier.hpp"
 #include "mapper/core/relocalization/keyframe_map.hpp"
@@ -58,6 +59,7 @@ class LoopCloser {
   struct Config {
     LoopVerifier::Config verifier;
     KeyframeGraph::Config graph;
+    JoinRule::Config join;
     double delay_s = 2.0;     ///< from a keyframe to the correction that it brings, device time
     int max_by_position = 3;  ///< candidates that would see the same
     int max_matches = 2;  ///< of a keyframe in its part; with other parts all count, as rivals do
@@ -97,14 +99,15 @@ class LoopCloser {
 
   void run();
   std::optional<MapCorrection> work_on(const NewKeyframe& added);
+  int join(const std::vector<Loop>& loops, const DepthNoise& noise);
   void add_tracked(const NewKeyframe& added);
   std::vector<int> candidates_for(const NewKeyframe& added) const;
-  /// Share of the points that L sees which E would see, too, with L at this pose in E.
   double common_share(int later, int earlier, const Pose& X_EL) const;
   std::vector<Loop> matches_of(const NewKeyframe& added) const;
 
   const Config config_;
   const LoopVerifier verifier_;
+  const JoinRule join_rule_;
   // Used by thread_ only:
   KeyframeGraph graph_;
   std::vector<std::shared_ptr<const Keyframe>> keyframes_;

@@ -163,7 +163,7 @@ constexpr std::pair<int, int> kSixSeconds = {300, 345};  // covered: longer than
 /// A camera that was lost for long goes on in another part of the map. Where it comes back to the
 /// first one, they become one map.
 TEST(PipelineLoops, JoinThePartsOfTheMap) {
-  const Walk gap = walk({.covered = kSixSeconds});
+  const Walk gap = walk({.num_frames = kFramesOfLap + 90, .covered = kSixSeconds});
   EXPECT_EQ(gap.num_parts, 1);
   ASSERT_EQ(gap.corrected_paths.size(), 1U);
   const Trajectory& path = gap.corrected_paths.at(0);

@@ -130,38 +130,38 @@ class TwoParts : public ::testing::Test {
   KeyframeGraph graph{{}};
 };
 
-TEST_F(TwoParts, AreJoinedByThreeLoopsThatAgree) {
-  EXPECT_EQ(graph.offer(loop(3)), 0);
-  EXPECT_EQ(graph.offer(loop(4)), 0);
-  EXPECT_EQ(graph.offer(loop(4)), 0) << "from the same keyframe";
+TEST_F(TwoParts, AreJoinedByLoopsThatAgree) {
+  for (const int i : {3, 4, 5}) EXPECT_EQ(graph.offer(loop(i)), 0) << "only proposed";
   EXPECT_EQ(num_parts(), 2);
-  EXPECT_EQ(graph.offer(loop(5)), 4) << "and that one counts twice";
+  const std::vector<Loop> loops = graph.agreeing_to_join(loop(5));
+  ASSERT_EQ(loops.size(), 3U);
+  graph.join(loops);
   EXPECT_EQ(num_parts(), 1);
+  EXPECT_EQ(graph.loops().size(), 3U);
   graph.optimize();
   for (int i = 0; i < 2 * kLength; ++i) {
     EXPECT_TRUE(graph.X_WK(i).isApprox(truth(i), 1e-6)) << i;
     EXPECT_EQ(graph.part_of(i), 0);
   }
+  EXPECT_TRUE(graph.agreeing_to_join(loop(5)).empty()) << "they are joined";
 }
 
-TEST_F(TwoParts, StayApartAsLongAsOtherPlacesLookTheSame) {
+TEST_F(TwoParts, AreNotToBeJoinedAsLongAsOtherPlacesLookTheSame) {
   const Pose elsewhere = at(4.0);
-  graph.offer(loop(3));
-  graph.offer(loop(4));
-  graph.offer(loop(6, elsewhere));
-  graph.offer(loop(7, elsewhere));
-  EXPECT_EQ(graph.offer(loop(5)), 0) << "three are not more than twice two";
-  EXPECT_EQ(graph.offer(loop(8)), 0);
-  EXPECT_EQ(num_parts(), 2);
-  EXPECT_EQ(graph.offer(loop(2)), 5);
-  EXPECT_EQ(num_parts(), 1);
+  for (const int i : {3, 4}) graph.offer(loop(i));
+  for (const int i : {6, 7}) graph.offer(loop(i, elsewhere));
+  graph.offer(loop(5));
+  EXPECT_TRUE(graph.agreeing_to_join(loop(5)).empty()) << "three are not more than twice two";
+  graph.offer(loop(8));
+  graph.offer(loop(2));
+  EXPECT_EQ(graph.agreeing_to_join(loop(2)).size(), 5U);
 }
 
 TEST_F(TwoParts, AreNotJoinedWhereTheCameraCannotHaveGone) {
   // The second part would begin 15 m from where the first one ended.
   const Pose shift = at(-5.5);
-  for (const int i : {3, 4, 5, 6}) EXPECT_EQ(graph.offer(loop(i, shift)), 0);
-  EXPECT_EQ(num_parts(), 2);
+  for (const int i : {3, 4, 5, 6}) graph.offer(loop(i, shift));
+  EXPECT_TRUE(graph.agreeing_to_join(loop(6, shift)).empty());
 }
 
 TEST_F(TwoParts, KeepTheirPlacesWhenOnlyOneIsCorrected) {
