@@ -14,8 +14,9 @@
 
 namespace kintsugi {
 
-/// Version of CloudPoint and PatchMotion as packed records. Raise it with every change of their
-/// layout: the order, type or meaning of a field. A receiver refuses records of another version.
+/// Version of CloudPoint, PatchMotion and LoopLink as packed records. Raise it with every change of
+/// their layout: the order, type or meaning of a field. A receiver refuses records of another
+/// version.
 inline constexpr std::int16_t kCloudPointVersion = 1;
 
 /// One surface point of the map in frame W; this is also its layout on the bus and in files
@@ -98,6 +99,8 @@ struct CloudSlice {
   std::vector<CloudPoint> points_W;  ///< of a patch in P
   /// Of a correction: the patches that it moves, by ascending id. Of other slices none.
   std::vector<PatchMotion> motions;
+  /// Of a correction: all loops of its part that count as of then. Of other slices none.
+  std::vector<LoopLink> loops;
 };
 
 /// The pose of the depth camera at one frame.

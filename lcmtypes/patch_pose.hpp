@@ -43,4 +43,16 @@ struct PatchMotion {
 };
 static_assert(sizeof(PatchMotion) == 32, "another layout: raise kCloudPointVersion");
 
+/// A loop: two keyframes that show the same place, and where the camera was at each of them; also
+/// its layout on the bus (32 bytes, little-endian, no padding).
+struct LoopLink {
+  std::int32_t later = 0;    ///< number of a keyframe, >= 0
+  std::int32_t earlier = 0;  ///< of another one
+  float later_W[3] = {};     ///< metres
+  float earlier_W[3] = {};
+
+  bool operator==(const LoopLink&) const = default;
+};
+static_assert(sizeof(LoopLink) == 32, "another layout: raise kCloudPointVersion");
+
 }  // namespace kintsugi

@@ -17,6 +17,7 @@ static_assert(cloud_slice_t::KIND_SHIFT_MINUS_Z == static_cast<int>(SliceKind::k
 static_assert(cloud_slice_t::KIND_PATCH == static_cast<int>(SliceKind::kPatch));
 static_assert(cloud_slice_t::KIND_CORRECTION == static_cast<int>(SliceKind::kCorrection));
 static_assert(sizeof(CloudPoint) == sizeof(PatchMotion));
+static_assert(sizeof(CloudPoint) == sizeof(LoopLink));
 
 template <>
 struct Bulk<CloudSlice> {
@@ -57,9 +58,10 @@ struct Bulk<CloudSlice> {
   static void set_counts(cloud_slice_t& wire, const Counts& counts) {
     wire.total_points = counts[0];
     wire.total_motions = counts[1];
+    wire.total_loops = counts[2];
   }
   static Counts counts(const cloud_slice_t& wire) {
-    return {wire.total_points, wire.total_motions, 0, 0};
+    return {wire.total_points, wire.total_motions, wire.total_loops, 0};
   }
 
   static void set_part(cloud_slice_t& wire, std::int64_t first_byte, std::size_t num_bytes) {
@@ -100,12 +102,19 @@ struct Bulk<CloudSlice> {
       lowest_id = std::int64_t{motion.id} + 1;
       check_patch_pose(check, "motion t_WP", "motion q_WP", motion.X_WP);
     }
+    for (const LoopLink& loop : slice.loops) {
+      check.not_negative("loop later", loop.later);
+      check.not_negative("loop earlier", loop.earlier);
+      for (const float p : loop.later_W) check.position("loop later_W", p);
+      for (const float p : loop.earlier_W) check.position("loop earlier_W", p);
+    }
   }
 
   template <class Slice, class Function>
   static void for_each_vector(Slice& slice, const Function& function) {
     function(slice.points_W);
     function(slice.motions);
+    function(slice.loops);
   }
 
  private:
@@ -122,6 +131,7 @@ struct Bulk<CloudSlice> {
     } else {
       check.not_negative("correction", slice.correction);
       if (counts[1] != 0) check.fail("total_motions", counts[1], "0, as it is no correction");
+      if (counts[2] != 0) check.fail("total_loops", counts[2], "0, as it is no correction");
     }
   }
   static void check_patch_pose(const Check& check, const char* t_WP, const char* q_WP,

@@ -57,8 +57,8 @@ std::string text_of(const MapperStatus& status) {
   if (!status.finished && !status.loss_reason.empty()) text += " (" + status.loss_reason + ")";
   text += some(status.frames_lost, "lost") + some(status.frames_dropped, "dropped") +
           some(status.loops, "loops closed") + some(status.loops_contradicted, "contradicted") +
-          " | " + count(status.slices_published) + " slices " + count(status.points_published) +
-          " points";
+          some(status.corrections, "corrections") + " | " + count(status.slices_published) +
+          " slices " + count(status.points_published) + " points";
   if (status.store_bytes > 0) text += ", store " + megabytes(status.store_bytes);
   if (!status.store_problem.empty()) {
     text += " (" + megabytes(status.store_waiting_bytes) + " NOT ON DISK)";

@@ -67,6 +67,9 @@ inline CloudSlice example_correction(int num_motions, std::int32_t id = 7) {
     X_WP.translation().x() += i;
     correction.motions.push_back({3 + 5 * i, X_WP});
   }
+  if (num_motions > 0) {
+    correction.loops = {{90, 4, {1, 2, 3}, {1.5, 2, 3}}, {91, 4, {4, 5, 6}, {4, 5, 7}}};
+  }
   return correction;
 }
 

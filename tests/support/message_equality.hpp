@@ -12,13 +12,13 @@ inline bool equal(const Pose& a, const Pose& b) { return a.matrix() == b.matrix(
 inline bool operator==(const CloudSlice& a, const CloudSlice& b) {
   const auto& [utime, session, map_name, sequence, num_chunks, id, revision, kind, in_volume,
                ends_batch, superseded, revision_sum, part, resolution_m, X_WC, X_WP, correction,
-               points_W, motions] = a;
+               points_W, motions, loops] = a;
   return utime == b.utime && session == b.session && map_name == b.map_name && id == b.id &&
          revision == b.revision && kind == b.kind && in_volume == b.in_volume &&
          ends_batch == b.ends_batch && superseded == b.superseded &&
          revision_sum == b.revision_sum && part == b.part && resolution_m == b.resolution_m &&
          equal(X_WC, b.X_WC) && X_WP == b.X_WP && correction == b.correction &&
-         points_W == b.points_W && motions == b.motions;
+         points_W == b.points_W && motions == b.motions && loops == b.loops;
 }
 
 inline bool operator==(const SegmentUpdate& a, const SegmentUpdate& b) {

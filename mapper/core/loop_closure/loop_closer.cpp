@@ -94,10 +94,13 @@ std::optional<MapCorrection> LoopCloser::work_on(const NewKeyframe& added) {
   graph_.add(added.keyframe->X_WC, added.path_m, added.from, added.unseen_m);
   add_tracked(added);
   int num_confirmed = 0;
+  std::vector<Loop> joining;  // once for a keyframe, as the rule compares many
   for (const Loop& loop : matches_of(added)) {
     num_confirmed += graph_.offer(loop);
-    num_confirmed += join(graph_.agreeing_to_join(loop), added.noise);
+    std::vector<Loop> agreeing = graph_.agreeing_to_join(loop);
+    if (agreeing.size() > joining.size()) joining = std::move(agreeing);
   }
+  num_confirmed += join(joining, added.noise);
   if (num_confirmed == 0) return std::nullopt;
   const double largest_motion_m = graph_.optimize();
   return MapCorrection{.X_WK = graph_.poses_W(),

@@ -19,6 +19,22 @@ bool has_left(const Keyframe& keyframe, const TsdfVolume& volume) {
   return 2 * static_cast<std::size_t>(num_there) < blocks.size();
 }
 
+std::vector<MapDeformation::PartLoop> links_of(const MapCorrection& correction) {
+  std::vector<MapDeformation::PartLoop> links;
+  links.reserve(correction.loops.size());
+  for (const Loop& loop : correction.loops) {
+    MapDeformation::PartLoop& added = links.emplace_back();
+    added.part = correction.parts[loop.earlier];
+    added.link.later = loop.later;
+    added.link.earlier = loop.earlier;
+    Eigen::Map<Eigen::Vector3f>(added.link.later_W) =
+        correction.X_WK[loop.later].translation().cast<float>();
+    Eigen::Map<Eigen::Vector3f>(added.link.earlier_W) =
+        correction.X_WK[loop.earlier].translation().cast<float>();
+  }
+  return links;
+}
+
 }  // namespace
 
 void LoopClosure::Config::validate() const {
@@ -171,7 +187,7 @@ std::optional<MapCorrection> LoopClosure::apply_if_above(double least_motion_vox
       places.push_back(deformation_.place(k));
     }
   }
-  deformation_ = MapDeformation(deformation_.number() + 1, std::move(places));
+  deformation_ = MapDeformation(deformation_.number() + 1, std::move(places), links_of(*waiting_));
   return std::exchange(waiting_, std::nullopt);
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "lcmtypes/geometry.hpp"
+#include "lcmtypes/patch_pose.hpp"
 
 namespace kintsugi::mapper {
 
@@ -18,14 +19,19 @@ class MapDeformation {
     Pose X_WU = Pose::Identity();
     int part = 0;  ///< see origin_of_part()
   };
+  /// A loop that counts, and the part in which it is.
+  struct PartLoop {
+    int part = 0;
+    LoopLink link;
+  };
 
   /// Nothing is moved.
   MapDeformation() = default;
 
   /// @param number of the correction, from 1
   /// @param places by keyframe
-  MapDeformation(int number, std::vector<Place> places)
-      : number_(number), places_(std::move(places)) {}
+  MapDeformation(int number, std::vector<Place> places, std::vector<PartLoop> loops = {})
+      : number_(number), places_(std::move(places)), loops_(std::move(loops)) {}
 
   int number() const { return number_; }  ///< 0: nothing was corrected so far
 
@@ -44,12 +50,15 @@ class MapDeformation {
   /// X_WU of what was seen at the newest keyframe.
   Pose newest() const { return places_.empty() ? Pose::Identity() : places_.back().X_WU; }
 
+  const std::vector<PartLoop>& loops() const { return loops_; }
+
   /// Adds a keyframe, which is moved like this.
   void add(const Place& place) { places_.push_back(place); }
 
  private:
   int number_ = 0;
   std::vector<Place> places_;
+  std::vector<PartLoop> loops_;
 };
 
 /// At which keyframe something was seen, and where that is by now.

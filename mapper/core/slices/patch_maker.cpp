@@ -150,6 +150,9 @@ std::vector<CloudSlice> PatchMaker::correct(const MapDeformation& deformation,
     slice.id = next_id_++;
     slice.motions = std::move(of_part);
     std::ranges::sort(slice.motions, {}, &PatchMotion::id);
+    for (const MapDeformation::PartLoop& loop : deformation.loops()) {
+      if (loop.part == part) slice.loops.push_back(loop.link);
+    }
   }
   return slices;
 }

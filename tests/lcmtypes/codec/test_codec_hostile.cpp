@@ -329,6 +329,16 @@ TEST(CodecBounds, ACorrectionHasMotionsThatMoveEachPatchOnceAndNoPoints) {
               HasSubstr("motion q_WP is 1.0001, expected a unit quaternion"));
 }
 
+TEST(CodecBounds, OnlyACorrectionHasLoops) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_THAT(refusal(example_patch(1), [](CloudSlice& s) { s.loops.resize(1); }),
+              HasSubstr("total_loops is 1, expected 0, as it is no correction"));
+  EXPECT_THAT(refusal_of_correction([](CloudSlice& s) { s.loops[1].later = -1; }),
+              HasSubstr("loop later is -1"));
+  EXPECT_THAT(refusal_of_correction([&](CloudSlice& s) { s.loops[0].earlier_W[2] = nan; }),
+              HasSubstr("loop earlier_W is nan"));
+}
+
 TEST(CodecBounds, OnlyPatchesAndCorrectionsMove) {
   EXPECT_EQ(refusal(example_patch(1), [](CloudSlice&) {}), "accepted");
   EXPECT_THAT(refusal(example_slice(1), [](CloudSlice& s) { s.X_WP.t_WP[2] = 0.5F; }),

@@ -67,6 +67,23 @@ TEST(MapRenderer, ShowsTheFloorInItsColorFromAbove) {
   EXPECT_NEAR(150, floor[2], 12);
 }
 
+TEST(MapRenderer, DrawsALineBetweenTheTwoPlacesOfALoop) {
+  const Furnished room;
+  Subject subject = room.seen(FixedViewpoint{{0.0, -8.0, 2.0}, {0.0, 0.0, 2.001}});
+  subject.track = {};
+  const auto draw = [&] { return MapRenderer(small()).draw_map(subject, Coloring::kTrue); };
+  EXPECT_EQ(share_of(draw(), palette::kLoop), 0.0);
+  subject.track.loops = {
+      {.later = 3, .earlier = 1, .later_W = {0.5, 0, 2}, .earlier_W = {-0.5, 0, 2}}};
+  const cv::Mat3b long_one = draw();
+  const cv::Vec3b loop = palette::kLoop;
+  for (int i = 0; i < 3; ++i) {  // halfway between them; the edges of a line are blended
+    EXPECT_NEAR(long_one(135, 240)[i], loop[i], 40);
+  }
+  subject.track.loops[0].earlier_W[0] = 0.5;
+  EXPECT_GT(share_of(draw(), palette::kLoop), 0.0) << "a dot where both are the same";
+}
+
 TEST(MapRenderer, ShowsSegmentsInTheirColorsAndGreyWithoutASegmenter) {
   const Viewpoint from_above = FixedViewpoint{{0.0, -8.0, 2.0}, {0.0, 0.0, 2.001}};
   const auto floor_of = [&](const Furnished& room) {

@@ -536,6 +536,24 @@ CloudSlice correction_of(std::int32_t id, std::int32_t number, std::int32_t patc
   return slice;
 }
 
+TEST(ReceivedMap, HasTheLoopsOfThePartsNewestCorrection) {
+  const auto with_loops = [](std::int32_t number, std::int32_t part, std::vector<LoopLink> loops) {
+    CloudSlice slice = correction_of(10 * part + number, number, 0, 0.5);
+    slice.part = part;
+    slice.loops = std::move(loops);
+    return slice;
+  };
+  const LoopLink a{.later = 7, .earlier = 1};
+  const LoopLink b{.later = 8, .earlier = 2};
+  ReceivedMap map(kMapSession);
+  map.add_slice(with_loops(2, 0, {a, b}));
+  map.add_slice(with_loops(1, 0, {a}));  // late
+  map.add_slice(with_loops(1, 1, {b}));
+  EXPECT_EQ(map.slice_track(0).loops, (std::vector{a, b}));
+  EXPECT_EQ(map.received_track(1).loops, (std::vector{b}));
+  EXPECT_TRUE(map.slice_track(2).loops.empty());
+}
+
 TEST(ReceivedMap, PutsPatchesWhereTheLastCorrectionDoesInWhateverOrder) {
   std::vector<CloudSlice> stream = {slice_of(0, 3),
                                     slice_of(0, 5, 1),

@@ -28,6 +28,7 @@ namespace palette {
 // Pictures of the map.
 inline constexpr Rgb kBackground{24, 28, 34};  ///< pixels in which there is no point
 inline constexpr Rgb kCameraPath{255, 190, 40};
+inline constexpr Rgb kLoop{255, 70, 200};
 inline constexpr Rgb kCameraFrustum{120, 255, 80};
 inline constexpr Rgb kUnlabelledPoint{120, 120, 120};
 inline constexpr Rgb kHighlightOutline{255, 255, 255};

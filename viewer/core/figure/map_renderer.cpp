@@ -146,6 +146,7 @@ cv::Mat3b MapRenderer::finish(const MapPicture& picture, const CameraTrack& trac
   cv::Mat3b image = picture.image.clone();
   if (picture.has_camera) {
     draw_path(image, picture.camera, track.path_W);
+    draw_loops(image, picture.camera, track.loops);
     if (const auto camera_in_map = frustum(track)) {
       draw_frustum(image, picture.camera, *camera_in_map);
     }

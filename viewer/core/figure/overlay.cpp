@@ -47,6 +47,23 @@ void draw_path(cv::Mat3b& image, const VirtualCamera& camera,
   }
 }
 
+void draw_loops(cv::Mat3b& image, const VirtualCamera& camera, std::span<const LoopLink> loops) {
+  const Pose X_VW = camera.X_WV.inverse();
+  const int width = line_width(image);
+  const auto point_V = [&](const float* p_W) {
+    return Eigen::Vector3d(X_VW * Eigen::Map<const Eigen::Vector3f>(p_W).cast<double>());
+  };
+  for (const LoopLink& loop : loops) {
+    const Eigen::Vector3d later_V = point_V(loop.later_W);
+    const Eigen::Vector3d earlier_V = point_V(loop.earlier_W);
+    draw_line(image, camera, later_V, earlier_V, palette::kLoop, width);
+    // A line without length that is wider than long is a dot.
+    for (const Eigen::Vector3d& p_V : {later_V, earlier_V}) {
+      draw_line(image, camera, p_V, p_V, palette::kLoop, 4 * width);
+    }
+  }
+}
+
 void draw_frustum(cv::Mat3b& image, const VirtualCamera& camera, const Frustum& frustum) {
   const Pose X_VW = camera.X_WV.inverse();
   const int width = line_width(image);

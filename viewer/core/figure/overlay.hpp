@@ -5,6 +5,7 @@
 
 #include <opencv2/core.hpp>
 
+#include "lcmtypes/patch_pose.hpp"
 #include "viewer/core/camera/frustum.hpp"
 #include "viewer/core/camera/virtual_camera.hpp"
 
@@ -14,6 +15,10 @@ namespace kintsugi::viewer {
 /// is drawn over the map, so that it is visible through walls.
 void draw_path(cv::Mat3b& image, const VirtualCamera& camera,
                std::span<const Eigen::Vector3f> path_W);
+
+/// Draws a line between the two places of the camera of each loop, with a dot at both ends: they
+/// may be close together.
+void draw_loops(cv::Mat3b& image, const VirtualCamera& camera, std::span<const LoopLink> loops);
 
 /// Draws the edges of the frustum of the depth camera, over the map.
 void draw_frustum(cv::Mat3b& image, const VirtualCamera& camera, const Frustum& frustum);

@@ -9,10 +9,11 @@
 
 namespace kintsugi::viewer {
 
-/// Path and last pose of the depth camera, as a picture shows them.
+/// Path and last pose of the depth camera and the loops on its path, as a picture shows them.
 struct CameraTrack {
   std::vector<Eigen::Vector3f> path_W;  ///< positions in order of device time, metres
   std::optional<Pose> X_WC;             ///< newest pose; nothing: no pose is known
+  std::vector<LoopLink> loops = {};
 };
 
 /// A pose at its device time.

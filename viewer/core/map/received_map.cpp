@@ -43,6 +43,20 @@ void ReceivedMap::move_patches(const CloudSlice& correction) {
     found->second.for_each([&place = place](MapSlice& slice) { slice.move_to(place); });
     note_shown(found->second.shown());
   }
+  note_loops(correction);
+}
+
+/// The newest correction of a part has all its loops.
+void ReceivedMap::note_loops(const CloudSlice& correction) {
+  Part& part = parts_[correction.part];
+  if (correction.correction <= part.loops_correction) return;
+  part.loops_correction = correction.correction;
+  part.loops = correction.loops;
+}
+
+std::vector<LoopLink> ReceivedMap::loops(std::int32_t part) const {
+  const auto found = parts_.find(part);
+  return found == parts_.end() ? std::vector<LoopLink>() : found->second.loops;
 }
 
 void ReceivedMap::note_final(const CloudSlice& slice) {
@@ -211,7 +225,15 @@ bool ReceivedMap::add_pose(const CameraPose& pose) {
 CameraTrack ReceivedMap::received_track(std::int32_t part) const {
   const auto found = poses_.find(part);
   if (found == poses_.end()) return slice_track(part);
-  return found->second.track(slice_poses(part));
+  CameraTrack track = found->second.track(slice_poses(part));
+  track.loops = loops(part);
+  return track;
+}
+
+CameraTrack ReceivedMap::slice_track(std::int32_t part) const {
+  CameraTrack track = track_through(slice_poses(part));
+  track.loops = loops(part);
+  return track;
 }
 
 std::vector<TimedPose> ReceivedMap::slice_poses(std::int32_t part) const {

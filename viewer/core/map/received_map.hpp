@@ -110,7 +110,7 @@ class ReceivedMap {
   /// The path through the poses received, and those that came with slices in gaps between them.
   CameraTrack received_track(std::int32_t part) const;
   /// The path through the poses that came with slices: the same in every viewer with all slices.
-  CameraTrack slice_track(std::int32_t part) const { return track_through(slice_poses(part)); }
+  CameraTrack slice_track(std::int32_t part) const;
 
  private:
   static constexpr std::size_t kMaxPendingBytes = std::size_t{1} << 29U;  ///< 130 million labels
@@ -119,6 +119,8 @@ class ReceivedMap {
   struct Part {
     PointCounts points;
     UpDirection up;
+    std::vector<LoopLink> loops;
+    std::int32_t loops_correction = 0;  ///< the correction that told them
   };
 
   /// What the final slice tells of the whole map.
@@ -143,6 +145,8 @@ class ReceivedMap {
   bool has_points(std::int32_t part) const { return points(part).shown > 0; }
   void note_final(const CloudSlice& slice);
   void move_patches(const CloudSlice& correction);
+  void note_loops(const CloudSlice& correction);
+  std::vector<LoopLink> loops(std::int32_t part) const;
   std::vector<TimedPose> slice_poses(std::int32_t part) const;
 
   std::int64_t map_session_;

@@ -214,6 +214,19 @@ TEST_F(Patches, AreInThePartOfTheMapOfTheirKeyframe) {
   EXPECT_EQ(joined[0].motions[0].id, 1);
 }
 
+TEST_F(Patches, AreCorrectedWithTheLoopsOfTheirPart) {
+  const LoopLink here{.later = 5, .earlier = 1};
+  const LoopLink elsewhere{.later = 9, .earlier = 8};
+  maker.make({{{kHere, true, 0}}}, surface({{0, {1}}}), header());
+  MapDeformation::Place moved;
+  moved.X_WU.translation().x() = 0.5;
+  const MapDeformation deformation(1, {moved},
+                                   {{.part = 0, .link = here}, {.part = 1, .link = elsewhere}});
+  const auto slices = maker.correct(deformation, header());
+  ASSERT_EQ(slices.size(), 1U);
+  EXPECT_EQ(slices[0].loops, (std::vector{here}));
+}
+
 TEST_F(Patches, OfATenthOfAVoxelStayUntilItIsMore) {
   maker.make({{{kHere, true, 0}}}, surface({{0, {1}}}), header());
   EXPECT_THAT(maker.correct(correction(1, 0.0009, 0.0), header()), IsEmpty());
