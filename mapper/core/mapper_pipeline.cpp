@@ -267,7 +267,11 @@ std::optional<TrackingResult> MapperPipeline::find_again(const TrackingInput& in
   const auto model_from_pose = [&](const Pose& X_WV) {
     return model_from(X_WV, surface_C.intrinsics, surface_C.depth_m);
   };
-  auto found = relocalizer_.find(input, tracker_, model_from_pose);
+  const auto motion_of = [&](int keyframe) -> Pose {
+    if (!loops_) return Pose::Identity();
+    return place_of(seen_at()).X_WU.inverse(Eigen::Isometry) * place_of(keyframe).X_WU;
+  };
+  auto found = relocalizer_.find(input, tracker_, model_from_pose, motion_of);
   if (found) tracker_.start_at(found->X_WC, input, found->quality.covered_share);
   return found;
 }

@@ -57,10 +57,15 @@ class Relocalizer {
   /// @returns whether the frame became a keyframe
   bool remember(const TrackingInput& frame, const Model& model);
 
+  /// Where the map, as corrected, has what a keyframe saw: its motion to the frame in which the
+  /// camera was tracked last.
+  using MotionOf = std::function<Pose(int keyframe)>;
+
   /// The camera's pose, if the frame can be registered with one of the keyframes that are tried
-  /// now. `tracker` does not change.
+  /// now and the camera can have got there. `tracker` does not change. Without `motion_of` nothing
+  /// was corrected.
   std::optional<TrackingResult> find(const TrackingInput& frame, const Tracker& tracker,
-                                     const ModelFrom& model_from);
+                                     const ModelFrom& model_from, const MotionOf& motion_of = {});
 
   KeyframeMap& keyframes() { return keyframes_; }
   int num_keyframes() const { return keyframes_.size(); }
@@ -68,7 +73,8 @@ class Relocalizer {
  private:
   std::optional<TrackingResult> try_keyframe(int number, const KeyframeAppearance& appearance,
                                              const TrackingInput& frame, const Tracker& tracker,
-                                             const ModelFrom& model_from) const;
+                                             const ModelFrom& model_from,
+                                             const MotionOf& motion_of) const;
   /// `X_WC_features`: the pose from features, if there is one.
   bool is_accepted(const TrackingResult& result, const std::optional<Pose>& X_WC_features,
                    std::optional<double> correlation) const;

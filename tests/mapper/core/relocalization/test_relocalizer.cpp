@@ -52,24 +52,27 @@ class OfficeMap {
         pyramid_from_surface(raycaster_.raycast(volume_, X_WV, office().frames[0].intrinsics), 3),
         X_WV};
   }
-  std::optional<TrackingResult> find(const TrackingInput& frame) {
-    return relocalizer.find(frame, tracker_, [&](const Pose& X_WV) { return seen_from(X_WV); });
+  std::optional<TrackingResult> find(const TrackingInput& frame,
+                                     const Relocalizer::MotionOf& motion_of = {}) {
+    return relocalizer.find(
+        frame, tracker, [&](const Pose& X_WV) { return seen_from(X_WV); }, motion_of);
   }
   /// Calls find() as often as there can be candidates.
-  std::optional<TrackingResult> find_at_last(const TrackingInput& frame) {
+  std::optional<TrackingResult> find_at_last(const TrackingInput& frame,
+                                             const Relocalizer::MotionOf& motion_of = {}) {
     for (int i = 0; i < 9; ++i) {
-      if (auto found = find(frame)) return found;
+      if (auto found = find(frame, motion_of)) return found;
     }
     return std::nullopt;
   }
 
   Relocalizer relocalizer{Relocalizer::Config{}};
+  Tracker tracker{Tracker::Config{}};
 
  private:
   TsdfVolume volume_;
   Integrator integrator_{Integrator::Config{}};
   Raycaster raycaster_{Raycaster::Config{}};
-  Tracker tracker_{Tracker::Config{}};
 };
 
 /// Noise of a single frame and a map of 15 mm voxels leave a few millimetres; a wrong place is off
@@ -178,6 +181,16 @@ TEST(Relocalizer, FindsNothingWithoutKeyframes) {
   const Tracker tracker{Tracker::Config{}};
   EXPECT_FALSE(relocalizer.find(input_from(OfficeMap::office().frames[0]), tracker,
                                 [](const Pose&) { return Model{}; }));
+}
+
+/// The camera was tracked in another part of the map, which was joined with this one.
+TEST(Relocalizer, MeasuresHowFarTheCameraCanHaveGotInTheCorrectedMap) {
+  OfficeMap map(true);
+  const RgbdFrame& frame = OfficeMap::office().frames[1];
+  const Pose X_joined(Eigen::Translation3d(1'000.0, 0.0, 0.0));
+  map.tracker.start_at(X_joined * OfficeMap::office().true_path[1].X_WC, input_from(frame), 1.0);
+  EXPECT_FALSE(map.find_at_last(input_from(frame))) << "a kilometre away";
+  EXPECT_TRUE(map.find_at_last(input_from(frame), [&](int /*keyframe*/) { return X_joined; }));
 }
 
 }  // namespace
