@@ -28,8 +28,8 @@ bool JoinRule::holds(const std::vector<Loop>& loops, const KeyframeGraph& graph,
   std::size_t num_seen = 0;
   for (std::size_t i = 0; i < count; ++i) {
     const Loop& pair = would_see[i * would_see.size() / count];  // spread over all
-    const auto match =
-        verifier_.match(*keyframes[pair.later], *keyframes[pair.earlier], pair.X_EL, noise);
+    const auto match = verifier_.match_expected(*keyframes[pair.later], *keyframes[pair.earlier],
+                                                pair.X_EL, noise);
     if (!match) continue;
     const Loop seen{pair.later, pair.earlier, match->X_EL, match->information_L, match->sigma_m};
     num_seen += graph.are_rivals(best, seen) ? 0 : 1;

@@ -36,6 +36,7 @@ double difference(const Pose& X_AB, const Pose& X_AC) {
 void LoopVerifier::Config::validate() const {
   registration.validate();
   evidence.validate("evidence");
+  expected.validate("expected");
   check_range("max_disagreement_sigmas", max_disagreement_sigmas, 0.0, 1e3);
   check_range("min_correlation", min_correlation, -1.0, 1.0);
   check_range("feature_distance_m", feature_distance_m, 0.0, 100.0);
@@ -53,11 +54,12 @@ std::optional<KeyframeMatch> LoopVerifier::match(const Keyframe& later, const Ke
   const SurfacePyramid surface_E = pyramid_of(earlier, noise, levels);
   const auto X_EL_features =
       pose_from_features(earlier.appearance.features, later.appearance.features);
-  const auto forward = registered(surface_L, surface_E, X_EL_features.value_or(X_EL_start));
+  const auto forward =
+      registered(surface_L, surface_E, X_EL_features.value_or(X_EL_start), config_.evidence);
   if (!forward) return std::nullopt;
   const Pose& X_EL = forward->X_WC;
   if (X_EL_features && !is_near(*X_EL_features, X_EL, config_)) return std::nullopt;
-  const auto backward = registered(surface_E, surface_L, X_EL.inverse());
+  const auto backward = registered(surface_E, surface_L, X_EL.inverse(), config_.evidence);
   if (!backward) return std::nullopt;
   const double sigma_m = std::hypot(forward->quality.sigma_m, backward->quality.sigma_m);
   const double limit_m = config_.max_disagreement_sigmas * sigma_m + config_.voxel_m;
@@ -72,13 +74,26 @@ std::optional<KeyframeMatch> LoopVerifier::match(const Keyframe& later, const Ke
   return KeyframeMatch{X_EL, forward->information_C, forward->quality.sigma_m};
 }
 
+std::optional<KeyframeMatch> LoopVerifier::match_expected(const Keyframe& later,
+                                                          const Keyframe& earlier,
+                                                          const Pose& X_EL_expected,
+                                                          const DepthNoise& noise) const {
+  const int levels = static_cast<int>(config_.registration.iterations.size());
+  const auto found =
+      registered(pyramid_of(later, noise, levels), pyramid_of(earlier, noise, levels),
+                 X_EL_expected, config_.expected);
+  if (!found) return std::nullopt;
+  return KeyframeMatch{found->X_WC, found->information_C, found->quality.sigma_m};
+}
+
 std::optional<Registration> LoopVerifier::registered(const SurfacePyramid& frame,
                                                      const SurfacePyramid& model,
-                                                     const Pose& X_MF_start) const {
+                                                     const Pose& X_MF_start,
+                                                     const Evidence& needed) const {
   const TrackingInput input{.utime = 0, .surface_C = frame, .color_rgb = {}};
   const Model seen{.surface_V = model, .X_WV = Pose::Identity(), .voxel_m = config_.voxel_m};
   Registration found = register_frame_widely(input, seen, {}, X_MF_start, config_.registration);
-  if (find_fault(found.quality, config_.evidence)) return std::nullopt;
+  if (find_fault(found.quality, needed)) return std::nullopt;
   return found;
 }
 

@@ -28,6 +28,8 @@ class LoopVerifier {
   struct Config {
     RegistrationConfig registration;
     Evidence evidence = LossRule::Config{}.found_anew;
+    /// Where other loops say that it is the same place.
+    Evidence expected = LossRule::Config{}.following;
     /// Both directions agree within so many standard deviations of their difference, and a voxel.
     double max_disagreement_sigmas = 3.0;
     double min_correlation = 0.5;  ///< of intensities, as for relocalisation
@@ -49,9 +51,16 @@ class LoopVerifier {
   std::optional<KeyframeMatch> match(const Keyframe& later, const Keyframe& earlier,
                                      const Pose& X_EL_start, const DepthNoise& noise) const;
 
+  /// Where the later keyframe's surface fits that of the earlier one, if other loops put it at
+  /// `X_EL_expected`: as a frame that continues the camera's motion must fit. Nothing if it does
+  /// not.
+  std::optional<KeyframeMatch> match_expected(const Keyframe& later, const Keyframe& earlier,
+                                              const Pose& X_EL_expected,
+                                              const DepthNoise& noise) const;
+
  private:
   std::optional<Registration> registered(const SurfacePyramid& frame, const SurfacePyramid& model,
-                                         const Pose& X_MF_start) const;
+                                         const Pose& X_MF_start, const Evidence& needed) const;
 
   Config config_;
 };
