@@ -138,7 +138,9 @@ class Run {
     std::printf("final slice: %.1f ms\n", stopwatch.elapsed_ms());
     extraction_ms_ = pipeline.extraction_ms();
     if (cloud_) cloud_->commit();
-    if (mesh_) mesh_->commit();
+    if (mesh_) {
+      for (const WrittenFile& file : mesh_->commit()) num_triangles_ += file.count;
+    }
   }
 
   void report() const {
@@ -146,7 +148,7 @@ class Run {
     std::printf("%zu slices, %zu points; worker busy %.0f ms, %.2f us a point; lost %d frames\n",
                 num_slices_, num_points_, extraction_ms_,
                 1e3 * extraction_ms_ / static_cast<double>(num_points_), num_lost_);
-    if (mesh_) std::printf("mesh of %ld triangles\n", static_cast<long>(mesh_->num_triangles()));
+    if (mesh_) std::printf("mesh of %ld triangles\n", static_cast<long>(num_triangles_));
     if (!scene_ || options_.forget_points) return;
     const Pose X_SW = options_.true_poses ? Pose::Identity() : scene_->X_WC(0);
     const SurfaceError error = surface_error(points_W_, scene_->scene(), X_SW);
@@ -216,6 +218,7 @@ class Run {
   double extraction_ms_ = 0.0;
   std::size_t num_slices_ = 0;
   std::size_t num_points_ = 0;
+  std::int64_t num_triangles_ = 0;
   int num_lost_ = 0;
 };
 

@@ -187,7 +187,7 @@ TEST(Relocalizer, FindsNothingWithoutKeyframes) {
 TEST(Relocalizer, MeasuresHowFarTheCameraCanHaveGotInTheCorrectedMap) {
   OfficeMap map(true);
   const RgbdFrame& frame = OfficeMap::office().frames[1];
-  const Pose X_joined(Eigen::Translation3d(1'000.0, 0.0, 0.0));
+  Pose X_joined(Eigen::Translation3d(1'000.0, 0.0, 0.0));
   map.tracker.start_at(X_joined * OfficeMap::office().true_path[1].X_WC, input_from(frame), 1.0);
   EXPECT_FALSE(map.find_at_last(input_from(frame))) << "a kilometre away";
   EXPECT_TRUE(map.find_at_last(input_from(frame), [&](int /*keyframe*/) { return X_joined; }));
