@@ -6,6 +6,7 @@ namespace kintsugi::channels {
 inline constexpr char kCloudSlice[] = "CLOUD_SLICE";
 inline constexpr char kCameraPose[] = "CAMERA_POSE";
 inline constexpr char kCameraView[] = "CAMERA_VIEW";
+inline constexpr char kKeyframe[] = "KEYFRAME";
 inline constexpr char kRgbdFrame[] = "RGBD_FRAME";
 inline constexpr char kSegmentUpdate[] = "SEGMENT_UPDATE";
 inline constexpr char kSegmentQuery[] = "SEGMENT_QUERY";

@@ -14,9 +14,9 @@
 
 namespace kintsugi {
 
-/// Version of CloudPoint, PatchMotion and LoopLink as packed records. Raise it with every change of
-/// their layout: the order, type or meaning of a field. A receiver refuses records of another
-/// version.
+/// Version of CloudPoint, PatchMotion, LoopLink and KeyframeFeature as packed records. Raise it
+/// with every change of their layout: the order, type or meaning of a field. A receiver refuses
+/// records of another version.
 inline constexpr std::int16_t kCloudPointVersion = 1;
 
 /// One surface point of the map in frame W; this is also its layout on the bus and in files
@@ -96,6 +96,9 @@ struct CloudSlice {
   /// The number of corrections of the map so far that X_WP takes into account; of a correction its
   /// own number, from 1, ascending in the session.
   std::int32_t correction = 0;
+  /// Of a patch: the number of the keyframe with which its surface moves when the map is corrected,
+  /// for those whose map this one joins (KeyframeMessage); -1: it is of another mapper's camera.
+  std::int32_t keyframe = 0;
   std::vector<CloudPoint> points_W;  ///< of a patch in P
   /// Of a correction: the patches that it moves, by ascending id. Of other slices none.
   std::vector<PatchMotion> motions;
@@ -145,6 +148,53 @@ struct CameraView {
 
   std::int32_t depth_width() const { return intrinsics.width / depth_step; }    ///< pixels
   std::int32_t depth_height() const { return intrinsics.height / depth_step; }  ///< pixels
+};
+
+/// A corner of a keyframe's image, with an ORB descriptor; also its layout on the bus (44 bytes,
+/// little-endian, no padding).
+struct KeyframeFeature {
+  float ray_x = 0.0F;    ///< x/z in K
+  float ray_y = 0.0F;    ///< y/z
+  float depth_m = 0.0F;  ///< along K's z; 0: not measured
+  std::uint8_t descriptor[32] = {};
+
+  bool operator==(const KeyframeFeature&) const = default;
+};
+static_assert(sizeof(KeyframeFeature) == 44, "another layout: raise kCloudPointVersion");
+
+/// A keyframe of a mapper, for another one whose map it joins: what the camera saw there, and how
+/// it got there. With all keyframes of a mapper, loops to them, and CloudSlice::keyframe, its map
+/// can be put into the other one.
+///
+/// U is the uncorrected map, in which the camera was tracked. The points of a patch are in U, too:
+/// P is U until a correction moves the patch.
+struct KeyframeMessage {
+  std::int64_t utime = 0;      ///< device time of its frame, microseconds
+  std::int64_t session = 0;    ///< of the mapper
+  std::string map_name;        ///< of the mapper
+  std::string join;            ///< name of the map that it joins
+  std::int32_t number = 0;     ///< in its map, ascending
+  std::int32_t previous = -1;  ///< number of the keyframe sent before this one; -1: none was
+  std::int32_t from = -1;  ///< from which the camera was tracked; -1: it begins a part of the map
+  std::int32_t part = 0;   ///< of the map, in which the camera was tracked; see CloudSlice::part
+  double path_m = 0.0;     ///< length of the camera's path up to it
+  /// How far the camera may have gone between the previous keyframe and the beginning of a part.
+  double unseen_m = 0.0;
+  float resolution_m = 0.0F;  ///< voxel size of the map, > 0
+  Pose X_UK = Pose::Identity();
+  /// Of its pose in the volume: of a small motion in K, translation (m) then rotation (rad).
+  Eigen::Matrix<double, 6, 6> information_K = Eigen::Matrix<double, 6, 6>::Zero();
+  /// Of the camera's depth z: its variance is base^2 + (share z)^2 + (growth z^2)^2.
+  double noise_base_m = 0.0;
+  double noise_share = 0.0;
+  double noise_growth_per_m = 0.0;
+  Intrinsics intrinsics;  ///< of the images, without distortion
+  std::vector<std::int32_t>
+      in_volume;  ///< earlier keyframes whose surface is in the volume; ascending
+  std::vector<KeyframeFeature> features;  ///< none without colour
+  /// Depth of the map's surface along K's z, quarters of a millimetre, row after row; 0: none.
+  std::vector<std::uint16_t> depth;
+  std::vector<std::uint8_t> intensity;  ///< the same pixels, 0 black .. 255 white; empty: no colour
 };
 
 /// A picture that the viewer has drawn.

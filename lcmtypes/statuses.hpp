@@ -55,6 +55,8 @@ struct MapperStatus {
   std::int64_t loops = 0;
   std::int64_t loops_contradicted = 0;
   std::int64_t corrections = 0;
+  std::int32_t guests = 0;
+  std::int64_t guest_patches = 0;
   std::int32_t undetermined = 0;
   std::int64_t slices_published = 0;
   std::int64_t points_published = 0;
@@ -86,6 +88,7 @@ struct MapperStatus {
   double extract_ms = 0.0;
   double publish_ms = 0.0;
   std::string map_name;
+  std::string join;
   std::string device;
   std::string loss_reason;
   std::string store_problem;
@@ -114,6 +117,8 @@ struct MapperStatus {
     visit("loops", s.loops...);
     visit("loops_contradicted", s.loops_contradicted...);
     visit("corrections", s.corrections...);
+    visit("guests", s.guests...);
+    visit("guest_patches", s.guest_patches...);
     visit({"undetermined", 0, 6}, s.undetermined...);
     visit("slices_published", s.slices_published...);
     visit("points_published", s.points_published...);
@@ -145,6 +150,7 @@ struct MapperStatus {
     visit("extract_ms", s.extract_ms...);
     visit("publish_ms", s.publish_ms...);
     visit("map_name", s.map_name...);
+    visit("join", s.join...);
     visit("device", s.device...);
     visit("loss_reason", s.loss_reason...);
     visit("store_problem", s.store_problem...);

@@ -38,6 +38,7 @@ struct Bulk<CloudSlice> {
     to.revision_sum = from.revision_sum;
     to.part = from.part;
     to.correction = from.correction;
+    to.keyframe = from.keyframe;
     to.resolution_m = from.resolution_m;
     to.map_name = from.map_name;
   }
@@ -87,6 +88,7 @@ struct Bulk<CloudSlice> {
     check.not_negative("revision_sum", slice.revision_sum);
     if (slice.superseded && counts[0] > 0) check.fail("total_points", counts[0], "0, superseded");
     check.not_negative("part", slice.part);
+    if (slice.keyframe < -1) check.fail("keyframe", slice.keyframe, ">= -1");
     check.range("resolution_m", slice.resolution_m, kMinResolution_m, kMaxResolution_m);
     check.pose("X_WC", slice.X_WC);
     check.text("map_name", slice.map_name);

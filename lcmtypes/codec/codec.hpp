@@ -41,12 +41,14 @@ concept SmallMessage = std::same_as<T, CameraPose> || std::same_as<T, MapperStat
 template <class T>
 concept BulkMessage = std::same_as<T, CloudSlice> || std::same_as<T, SegmentUpdate> ||
     std::same_as<T, SegmentAnswer> || std::same_as<T, RgbdFrameMessage> ||
-    std::same_as<T, CameraView> || std::same_as<T, Snapshot>;
+    std::same_as<T, CameraView> || std::same_as<T, KeyframeMessage> || std::same_as<T, Snapshot>;
 
 // Bounds of the contract. A message outside of them is neither sent nor accepted.
 inline constexpr std::int64_t kMaxPayloadBytes = std::int64_t{1} << 30;  ///< of a bulk message
 inline constexpr std::int64_t kMaxSequence = std::int64_t{1} << 48;
 inline constexpr std::size_t kMaxStringBytes = 1024;
+/// Of the two names in a keyframe, which share a chunk of the smallest size with a long header.
+inline constexpr std::size_t kMaxJoinNameBytes = 256;
 inline constexpr std::size_t kMaxResendRanges = 1024;
 inline constexpr std::size_t kMaxQueriedIds = 4096;
 inline constexpr double kMaxQueryRadius_m = 100.0;

@@ -7,37 +7,10 @@
 #include <kintsugi/snapshot_t.hpp>
 
 #include "lcmtypes/codec/bulk.hpp"
+#include "lcmtypes/codec/intrinsics.hpp"
 
 namespace kintsugi {
 namespace codec {
-
-namespace {
-
-template <class From, class To>
-void copy_intrinsics(const From& from, To& to) {
-  to.fx = from.fx;
-  to.fy = from.fy;
-  to.cx = from.cx;
-  to.cy = from.cy;
-  to.width = from.width;
-  to.height = from.height;
-}
-
-void check_intrinsics(const Check& check, const Intrinsics& intrinsics) {
-  constexpr double kMax_px = kMaxImageSide_px;
-  check.range("width", intrinsics.width, 1, kMaxImageSide_px);
-  check.range("height", intrinsics.height, 1, kMaxImageSide_px);
-  // No camera has a focal length below a pixel, or a principal point far outside the image.
-  check.range("fx", intrinsics.fx, 1.0, 10.0 * kMax_px);
-  check.range("fy", intrinsics.fy, 1.0, 10.0 * kMax_px);
-  check.range("cx", intrinsics.cx, -kMax_px, 2.0 * kMax_px);
-  check.range("cy", intrinsics.cy, -kMax_px, 2.0 * kMax_px);
-  for (const double coefficient : intrinsics.distortion) {
-    check.range("distortion", coefficient, -1e3, 1e3);
-  }
-}
-
-}  // namespace
 
 /// Other people's drivers publish frames, too.
 template <>

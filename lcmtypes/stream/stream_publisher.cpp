@@ -97,6 +97,7 @@ template void StreamPublisher::publish(SegmentUpdate);
 template void StreamPublisher::publish(SegmentAnswer);
 template void StreamPublisher::publish(RgbdFrameMessage);
 template void StreamPublisher::publish(CameraView);
+template void StreamPublisher::publish(KeyframeMessage);
 template void StreamPublisher::publish(Snapshot);
 template void StreamPublisher::publish_state(std::vector<CloudSlice>);
 template void StreamPublisher::publish_state(std::vector<SegmentUpdate>);

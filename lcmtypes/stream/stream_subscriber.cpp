@@ -233,6 +233,7 @@ template class StreamSubscriber<SegmentUpdate>;
 template class StreamSubscriber<SegmentAnswer>;
 template class StreamSubscriber<RgbdFrameMessage>;
 template class StreamSubscriber<CameraView>;
+template class StreamSubscriber<KeyframeMessage>;
 template class StreamSubscriber<Snapshot>;
 
 }  // namespace kintsugi

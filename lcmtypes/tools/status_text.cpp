@@ -54,6 +54,10 @@ std::string text_of(const MapperStatus& status) {
     text += format(" %.1f Hz", status.frame_rate_hz);
   }
   if (status.parts > 1) text += format(", %d parts, in part %d", status.parts, status.part);
+  if (!status.join.empty()) text += ", joins map '" + status.join + "'";
+  if (status.guests > 0) {
+    text += format(", %d guests with ", status.guests) + count(status.guest_patches) + " patches";
+  }
   if (!status.finished && !status.loss_reason.empty()) text += " (" + status.loss_reason + ")";
   text += some(status.frames_lost, "lost") + some(status.frames_dropped, "dropped") +
           some(status.loops, "loops closed") + some(status.loops_contradicted, "contradicted") +

@@ -36,6 +36,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   kintsugi::join_all<kintsugi::SegmentAnswer>(events);
   kintsugi::join_all<kintsugi::RgbdFrameMessage>(events);
   kintsugi::join_all<kintsugi::CameraView>(events);
+  kintsugi::join_all<kintsugi::KeyframeMessage>(events);
   kintsugi::join_all<kintsugi::Snapshot>(events);
   return 0;
 }

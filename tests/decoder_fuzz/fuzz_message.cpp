@@ -50,6 +50,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   decode_bulk<SegmentAnswer>(message);
   decode_bulk<RgbdFrameMessage>(message);
   decode_bulk<CameraView>(message);
+  decode_bulk<KeyframeMessage>(message);
   decode_bulk<Snapshot>(message);
   return 0;
 }

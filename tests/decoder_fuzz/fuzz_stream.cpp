@@ -49,6 +49,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   receive<SegmentAnswer>(channels::kSegmentAnswer, events);
   receive<RgbdFrameMessage>(channels::kRgbdFrame, events);
   receive<CameraView>(channels::kCameraView, events);
+  receive<KeyframeMessage>(channels::kKeyframe, events);
   receive<Snapshot>(channels::kSnapshot, events);
   return 0;
 }

@@ -60,6 +60,7 @@ Seeds log_seeds() {
       {"updates", log_of(channels::kSegmentUpdate, example_update(200, 0), example_update(9, 1))},
       {"answers", log_of(channels::kSegmentAnswer, example_answer(20), example_answer(0))},
       {"frames", log_of(channels::kRgbdFrame, example_frame(1'500, 900), example_frame(40, 0))},
+      {"keyframes", log_of(channels::kKeyframe, example_keyframe(90), example_keyframe(0))},
       {"views", log_of(channels::kCameraView, example_view(3'000), example_view(0))},
       {"pictures", log_of(channels::kSnapshot, example_snapshot(3'000), example_snapshot(50))}};
 }

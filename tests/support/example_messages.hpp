@@ -1,6 +1,7 @@
 #pragma once
 // An example of each message, in which every field differs from its default.
 
+#include <algorithm>
 #include <cstdint>
 #include <random>
 #include <string>
@@ -32,6 +33,7 @@ inline CloudSlice example_slice(int num_points, std::int32_t id = 7) {
   slice.ends_batch = true;
   slice.revision_sum = 12;
   slice.part = 2;
+  slice.keyframe = 13;
   slice.resolution_m = 0.01F;
   slice.X_WC = example_pose();
   slice.correction = 3;
@@ -159,6 +161,42 @@ inline CameraView example_view(int color_bytes) {
   }
   view.color_jpeg = example_bytes(color_bytes);
   return view;
+}
+
+inline KeyframeMessage example_keyframe(int num_features) {
+  KeyframeMessage keyframe;
+  keyframe.utime = 5'700'000;
+  keyframe.session = 42;
+  keyframe.map_name = "robot 2";
+  keyframe.join = "office";
+  keyframe.number = 7;
+  keyframe.previous = 5;
+  keyframe.from = 4;
+  keyframe.part = 1;
+  keyframe.path_m = 12.5;
+  keyframe.unseen_m = 3.0;
+  keyframe.resolution_m = 0.008F;
+  keyframe.X_UK = example_pose();
+  for (int i = 0; i < 36; ++i) {
+    const int row = std::max(i / 6, i % 6);
+    const int column = std::min(i / 6, i % 6);
+    keyframe.information_K(i / 6, i % 6) = row == column ? 1e6 + row : 10.0 * row + column;
+  }
+  keyframe.noise_base_m = 0.001;
+  keyframe.noise_share = 0.002;
+  keyframe.noise_growth_per_m = 0.003;
+  keyframe.intrinsics = {10.5, 10.6, 3.9, 2.9, 8, 6, {}};
+  keyframe.in_volume = {2, 4, 5};
+  for (int i = 0; i < num_features; ++i) {
+    KeyframeFeature& feature = keyframe.features.emplace_back();
+    feature = {0.01F * static_cast<float>(i), -0.2F, i % 3 == 0 ? 0.0F : 1.5F, {}};
+    feature.descriptor[i % 32] = static_cast<std::uint8_t>(i);
+  }
+  for (int i = 0; i < 48; ++i) {
+    keyframe.depth.push_back(static_cast<std::uint16_t>(4000 + 5 * i));
+    keyframe.intensity.push_back(static_cast<std::uint8_t>(3 * i));
+  }
+  return keyframe;
 }
 
 inline Snapshot example_snapshot(int image_bytes) {

@@ -30,6 +30,7 @@ std::map<std::string, std::vector<Bytes>> examples() {
           {channels::kSegmentUpdate, chunks_of(example_update(500), kSmall)},
           {channels::kSegmentQuery, {encode(example_query())}},
           {channels::kSegmentAnswer, chunks_of(example_answer(20), kSmall)},
+          {channels::kKeyframe, chunks_of(example_keyframe(90), kSmall)},
           {channels::kCameraView, chunks_of(example_view(3'000), kSmall)},
           {channels::kSnapshot, chunks_of(example_snapshot(3'000), kSmall)},
           {channels::kMapperStatus, {encode(example_mapper_status())}},

@@ -12,13 +12,14 @@ inline bool equal(const Pose& a, const Pose& b) { return a.matrix() == b.matrix(
 inline bool operator==(const CloudSlice& a, const CloudSlice& b) {
   const auto& [utime, session, map_name, sequence, num_chunks, id, revision, kind, in_volume,
                ends_batch, superseded, revision_sum, part, resolution_m, X_WC, X_WP, correction,
-               points_W, motions, loops] = a;
+               keyframe, points_W, motions, loops] = a;
   return utime == b.utime && session == b.session && map_name == b.map_name && id == b.id &&
          revision == b.revision && kind == b.kind && in_volume == b.in_volume &&
          ends_batch == b.ends_batch && superseded == b.superseded &&
          revision_sum == b.revision_sum && part == b.part && resolution_m == b.resolution_m &&
          equal(X_WC, b.X_WC) && X_WP == b.X_WP && correction == b.correction &&
-         points_W == b.points_W && motions == b.motions && loops == b.loops;
+         keyframe == b.keyframe && points_W == b.points_W && motions == b.motions &&
+         loops == b.loops;
 }
 
 inline bool operator==(const SegmentUpdate& a, const SegmentUpdate& b) {
@@ -38,6 +39,20 @@ inline bool operator==(const CameraView& a, const CameraView& b) {
          frame_index == b.frame_index && state == b.state && equal(X_WC, b.X_WC) &&
          part == b.part && intrinsics == b.intrinsics && depth_step == b.depth_step &&
          depth_mm == b.depth_mm && color_jpeg == b.color_jpeg;
+}
+
+inline bool operator==(const KeyframeMessage& a, const KeyframeMessage& b) {
+  const auto& [utime, session, map_name, join, number, previous, from, part, path_m, unseen_m,
+               resolution_m, X_UK, information_K, noise_base_m, noise_share, noise_growth_per_m,
+               intrinsics, in_volume, features, depth, intensity] = a;
+  return utime == b.utime && session == b.session && map_name == b.map_name && join == b.join &&
+         number == b.number && previous == b.previous && from == b.from && part == b.part &&
+         path_m == b.path_m && unseen_m == b.unseen_m && resolution_m == b.resolution_m &&
+         equal(X_UK, b.X_UK) && information_K == b.information_K &&
+         noise_base_m == b.noise_base_m && noise_share == b.noise_share &&
+         noise_growth_per_m == b.noise_growth_per_m && intrinsics == b.intrinsics &&
+         in_volume == b.in_volume && features == b.features && depth == b.depth &&
+         intensity == b.intensity;
 }
 
 inline bool operator==(const CameraPose& a, const CameraPose& b) {

@@ -55,6 +55,7 @@ std::vector<Subject> subjects() {
           bulk("segment_answer", example_answer(4)),
           bulk("rgbd_frame", example_frame(40, 30)),
           bulk("view", example_view(50)),
+          bulk("keyframe", example_keyframe(3)),
           bulk("snapshot", example_snapshot(50))};
 }
 
@@ -192,6 +193,30 @@ std::string refusal(Message message, const Change& change) {
   return "accepted";
 }
 
+TEST(CodecBounds, AKeyframeIsOneOfAChain) {
+  const auto why = [](const std::function<void(KeyframeMessage&)>& change) {
+    return refusal(example_keyframe(1), change);
+  };
+  EXPECT_THAT(why([](KeyframeMessage& k) { k.previous = k.number; }),
+              HasSubstr("keyframe_t.previous is 7, expected -1 .. 6"));
+  EXPECT_THAT(why([](KeyframeMessage& k) { k.from = k.previous + 1; }), HasSubstr("from is 6"));
+  EXPECT_THAT(why([](KeyframeMessage& k) { k.in_volume.push_back(k.number); }),
+              HasSubstr("in_volume is 7"));
+  EXPECT_THAT(why([](KeyframeMessage& k) { k.depth.pop_back(); }), HasSubstr("num_depths is 47"));
+  EXPECT_THAT(why([](KeyframeMessage& k) { k.intensity.pop_back(); }),
+              HasSubstr("num_intensities is 47"));
+  EXPECT_THAT(why([](KeyframeMessage& k) { k.information_K(0, 0) = -1.0; }),
+              HasSubstr("information is -1"));
+  EXPECT_THAT(why([](KeyframeMessage& k) { k.information_K(0, 1) += 1.0; }),
+              HasSubstr("a symmetric matrix"));
+  EXPECT_THAT(why([](KeyframeMessage& k) { k.information_K(0, 0) = 0.0; }),
+              HasSubstr("information is"));
+  EXPECT_THAT(why([](KeyframeMessage& k) { k.features[0].ray_x = std::nanf(""); }),
+              HasSubstr("ray_x"));
+  EXPECT_THAT(why([](KeyframeMessage& k) { k.join = std::string(257, 'x'); }),
+              HasSubstr("join is 257, expected 0 .. 256"));
+}
+
 TEST(CodecBounds, ErrorsNameTypeFieldValueAndBound) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THAT(refusal(example_slice(1), [](CloudSlice& s) { s.resolution_m = 0; }),
@@ -210,6 +235,8 @@ TEST(CodecBounds, ErrorsNameTypeFieldValueAndBound) {
   EXPECT_THAT(refusal(example_view(1), [](CameraView& v) { v.intrinsics.distortion[0] = 0.1; }),
               HasSubstr("distortion is 0.1"));
   EXPECT_THAT(refusal(example_slice(1), [](CloudSlice& s) { s.part = -1; }), HasSubstr("part"));
+  EXPECT_THAT(refusal(example_slice(1), [](CloudSlice& s) { s.keyframe = -2; }),
+              HasSubstr("keyframe is -2, expected >= -1"));
   EXPECT_THAT(refusal(example_slice(1), [](CloudSlice& s) { s.X_WC.linear() *= 1.001; }),
               AllOf(HasSubstr("X_WC"), HasSubstr("a rotation")));
   EXPECT_THAT(refusal(example_slice(1), [](CloudSlice& s) { s.X_WC.linear().col(0) *= -1.0; }),

@@ -67,6 +67,8 @@ TEST(CodecRoundTrip, BulkMessagesKeepEveryFieldWhateverTheChunkSize) {
   expect_round_trip(example_answer(901));
   expect_round_trip(example_frame(10'001, 0));
   expect_round_trip(example_frame(1, 70'003));
+  expect_round_trip(example_keyframe(0));
+  expect_round_trip(example_keyframe(500));
   expect_round_trip(example_view(0));
   expect_round_trip(example_view(123'457));
   expect_round_trip(example_snapshot(123'457));
@@ -87,6 +89,9 @@ TEST(CodecRoundTrip, LongestNamesLeaveRoomForAPayloadInTheSmallestChunk) {
   answer.map_name = slice.map_name;
   answer.problem = slice.map_name;
   expect_round_trip(answer);
+  KeyframeMessage keyframe = example_keyframe(20);
+  keyframe.map_name = keyframe.join = std::string(kMaxJoinNameBytes, 'x');
+  expect_round_trip(keyframe);
 }
 
 TEST(CodecRoundTrip, PointsMayHaveAnyValue) {

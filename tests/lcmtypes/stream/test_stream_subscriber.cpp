@@ -283,6 +283,7 @@ TEST(Stream, CarriesAllBulkMessages) {
   EXPECT_TRUE(carried(example_update(5'000)));
   EXPECT_TRUE(carried(example_frame(20'000, 9'001)));
   EXPECT_TRUE(carried(example_view(33'333)));
+  EXPECT_TRUE(carried(example_keyframe(500)));
   EXPECT_TRUE(carried(example_snapshot(33'333)));
 }
 
