@@ -58,8 +58,9 @@ void apply_corrections(std::span<CloudSlice* const> slices) {
   for (const CloudSlice* const slice : slices) motions.learn(*slice);
   for (CloudSlice* const slice : slices) {
     if (slice->kind != SliceKind::kPatch) continue;
-    const PatchPose X_WP = motions.place_of(*slice).X_WP;
+    const auto [X_WP, correction, part] = motions.place_of(*slice);
     slice->X_WP = PatchPose();
+    slice->part = part;
     slice->correction = 0;
     if (!X_WP.is_identity()) slice->points_W = moved(slice->points_W, X_WP);
   }

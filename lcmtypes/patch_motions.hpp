@@ -56,7 +56,7 @@ class PatchMotions {
 };
 
 /// Of slices that were read together: moves the points of each patch to where all corrections among
-/// them put it. Their frames P are W then.
+/// them put it, and into that part of the map. Their frames P are W then.
 void apply_corrections(std::span<CloudSlice* const> slices);
 
 }  // namespace kintsugi

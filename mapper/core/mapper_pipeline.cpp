@@ -1,6 +1,8 @@
 #include "mapper/core/mapper_pipeline.hpp"
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <iterator>
 #include <limits>
 #include <utility>
@@ -11,11 +13,14 @@
 #include "mapper/core/frame/covered_share.hpp"
 #include "mapper/core/frame/sensors.hpp"
 #include "mapper/core/fusion/truncation.hpp"
+#include "mapper/core/guests/keyframe_message.hpp"
 #include "mapper/core/relocalization/keyframe_blocks.hpp"
 
 namespace kintsugi::mapper {
 namespace {
 
+/// Of their keyframes, so that those of the camera are compared in time.
+constexpr std::size_t kMaxGuestsWaiting = 2;
 constexpr double kRaysBeyondRange = 1.2;  // the camera may have moved back from what it mapped
 
 Eigen::AlignedBox3d region_of(const TsdfVolume& volume) {
@@ -95,6 +100,7 @@ MapperPipeline::MapperPipeline(const Config& config)
       tracker_(config.tracker),
       noise_(config.noise.value_or(DepthNoise())),
       relocalizer_(config.relocalizer),
+      guests_(config.volume.resolution_m),
       restart_rule_(config.given_path.empty() ? config.restart_after_s : 0.0),
       tiles_(config.patch_side_m, config.volume.resolution_m),
       slice_worker_(worker_config(config, tiles_)) {
@@ -149,6 +155,7 @@ FrameResult MapperPipeline::process(const RgbdFrame& measured) {
   }
   if (patch_schedule_) {
     submit_patches(frame);
+    if (loops_) take_in_guests(kMaxGuestsWaiting);
     clock.end_of(&StageTimes::patches_ms);
   }
   result.part = part();
@@ -159,12 +166,23 @@ FrameResult MapperPipeline::process(const RgbdFrame& measured) {
 }
 
 std::vector<CloudSlice> MapperPipeline::finish() {
-  if (loops_) correct(loops_->finish());
+  if (loops_) {
+    take_in_guests(SIZE_MAX);
+    correct(loops_->finish());
+  }
   if (reactivation_) clear_known(slots_of([](BlockSlot) { return true; }));
   SliceCamera camera = camera_now();
-  if (patch_schedule_) ++camera.utime;  // at the last frame a batch of patches may have ended
+  // At the last frame a batch of patches may have ended, and one of guests' patches after it.
+  if (patch_schedule_) camera.utime += 2;
   slice_worker_.submit(volume_.detach_all(), camera);
   return slice_worker_.drain();
+}
+
+std::optional<KeyframeMessage> MapperPipeline::take_keyframe() {
+  const auto added = loops_ ? loops_->take_new() : std::nullopt;
+  if (!added) return std::nullopt;
+  const auto previous = std::exchange(told_keyframe_, added->number);
+  return keyframe_message(*added, previous, part_, utime_, volume_.resolution_m());
 }
 
 std::map<int, Trajectory> MapperPipeline::corrected_paths() const {
@@ -174,11 +192,12 @@ std::map<int, Trajectory> MapperPipeline::corrected_paths() const {
 /// The camera has been lost for long: what it sees from now on has a place of its own in W, and
 /// what it saw leaves the volume.
 PartBegun MapperPipeline::begin_part(TrackingResult lost) {
-  const Pose origin = origin_of_part(part_ + 1);
+  const int part = loops_ ? loops_->next_part() : part_ + 1;
+  const Pose origin = origin_of_part(part);
   shift(origin.translation());
   volume_.center_at(origin.translation());
   if (patch_schedule_) depart_all_patches();
-  ++part_;
+  part_ = part;
   if (loops_) loops_->begin_part();
   X_WC_ = origin;
   tracker_ = Tracker(config_.tracker);  // how much of its view the camera saw before says nothing
@@ -346,6 +365,14 @@ void MapperPipeline::submit_patches(const RgbdFrame& frame) {
 void MapperPipeline::depart_all_patches() {
   submit_patches(patch_schedule_->depart_all(reactivation_ ? reactivation_->open_tiles()
                                                            : std::vector<TileCoord>()));
+}
+
+void MapperPipeline::take_in_guests(std::size_t max_waiting) {
+  std::vector<GuestPatch> patches = guests_.take_in(*loops_, utime_, max_waiting);
+  if (patches.empty()) return;
+  SliceCamera camera = camera_now();
+  ++camera.utime;  // a batch of this map's patches may have ended at this frame
+  slice_worker_.submit(std::move(patches), camera, volume_.resolution_m());
 }
 
 void MapperPipeline::submit_patches(PatchBatch batch) {

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "lcmtypes/messages.hpp"
@@ -15,6 +16,7 @@
 #include "mapper/core/frame/rgbd_frame.hpp"
 #include "mapper/core/fusion/integrator.hpp"
 #include "mapper/core/fusion/raycaster.hpp"
+#include "mapper/core/guests/guests.hpp"
 #include "mapper/core/loop_closure/loop_closure.hpp"
 #include "mapper/core/loop_closure/map_part.hpp"
 #include "mapper/core/reactivation/covered_surface.hpp"
@@ -113,6 +115,17 @@ class MapperPipeline {
   /// and the pose are unchanged then
   FrameResult process(const RgbdFrame& measured);
 
+  /// The newest keyframe, once, for the mapper whose map this one joins; nothing if there is none
+  /// since the last call. To be called before each frame and before finish().
+  std::optional<KeyframeMessage> take_keyframe();
+
+  /// Takes what guests have sent, other mappers that join this map; it is put into the map after
+  /// the next frames. Then slices and corrections depend on when it came. Does nothing where loops
+  /// are not closed.
+  void add_guest(KeyframeMessage keyframe) { guests_.add(std::move(keyframe)); }
+  void add_guest(CloudSlice slice) { guests_.add(std::move(slice)); }
+  const Guests& guests() const { return guests_; }
+
   /// Ends the run: waits for the slices that are being extracted and returns them; the last one is
   /// the final slice, with all that is still in the volume. process() must not be called
   /// afterwards.
@@ -162,6 +175,7 @@ class MapperPipeline {
   void submit_patches(const RgbdFrame& frame);
   void submit_patches(PatchBatch batch);
   void depart_all_patches();
+  void take_in_guests(std::size_t max_waiting);
   /// Moves the patches; returns what it was given.
   std::optional<MapCorrection> correct(std::optional<MapCorrection> correction);
   Pose corrected(const Pose& X_UC) const;
@@ -191,6 +205,8 @@ class MapperPipeline {
   LocalNoiseEstimator local_noise_;
   Relocalizer relocalizer_;
   std::optional<LoopClosure> loops_;  ///< none: the map is not corrected
+  Guests guests_;
+  std::optional<int> told_keyframe_;  ///< the last one that take_keyframe() gave
   RestartRule restart_rule_;
   int part_ = 0;                     ///< of the map, in which the camera is tracked
   std::map<int, Trajectory> paths_;  ///< by part, where loops are not closed

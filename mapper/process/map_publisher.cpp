@@ -17,6 +17,12 @@ MapPublisher::MapPublisher(const Config& config, SessionStore& store)
       bus_(config.lcm_url),
       slice_stream_(slice_stream(config.session, config.map_name)),
       view_stream_(bus_, channels::kCameraView, config.session, stream_config(config.map_name)) {
+  if (!config_.join.empty()) {
+    // Its heartbeats name the map for which the keyframes are.
+    keyframe_stream_ = std::make_unique<StreamPublisher>(
+        bus_, channels::kKeyframe, config_.session, stream_config(config_.join),
+        &store_.stream(channels::kKeyframe, config_.session));
+  }
   if (config_.publish_frames) {
     frame_stream_ = std::make_unique<StreamPublisher>(bus_, channels::kRgbdFrame, config_.session,
                                                       stream_config(config_.map_name));
@@ -63,6 +69,7 @@ void MapPublisher::answer(const ResendRequest& request) {
   const std::scoped_lock lock(mutex_);
   const auto stream = slice_streams_.find(request.session);
   if (stream != slice_streams_.end()) stream->second->request(request);
+  if (keyframe_stream_) keyframe_stream_->request(request);
 }
 
 MapPublisher::Published MapPublisher::published() const {
@@ -97,6 +104,14 @@ void MapPublisher::publish_pose(CameraPose pose) {
   publish(channels::kCameraPose, pose);
 }
 
+void MapPublisher::publish_keyframe(KeyframeMessage keyframe) {
+  if (!keyframe_stream_) return;
+  keyframe.session = config_.session;
+  keyframe.map_name = config_.map_name;
+  keyframe.join = config_.join;
+  keyframe_stream_->publish(std::move(keyframe));
+}
+
 void MapPublisher::publish_view(CameraView view) {
   if (view_stream_.queued_bytes() > 0) return;
   view.session = config_.session;
@@ -108,6 +123,7 @@ void MapPublisher::publish_status(MapperStatus status) {
   status.utime = wall_clock_us();
   status.session = config_.session;
   status.map_name = config_.map_name;
+  status.join = config_.join;
   // Those of a completed session were published earlier.
   status.slices_published += slices_published_;
   status.points_published += points_published_;
@@ -134,6 +150,7 @@ void MapPublisher::publish_frame(const RgbdFrame& frame) {
 
 void MapPublisher::flush() {
   for (const auto& [session, stream] : slice_streams_) stream->flush();
+  if (keyframe_stream_) keyframe_stream_->flush();
   if (frame_stream_) frame_stream_->flush();
 }
 
@@ -142,6 +159,7 @@ double MapPublisher::time_since_request_s() const {
   for (const auto& [session, stream] : slice_streams_) {
     time_s = std::min(time_s, stream->time_since_request_s());
   }
+  if (keyframe_stream_) time_s = std::min(time_s, keyframe_stream_->time_since_request_s());
   return time_s;
 }
 
@@ -164,6 +182,7 @@ MapPublisher::Config publisher_config(const Options& options, std::int64_t sessi
   MapPublisher::Config config;
   config.lcm_url = options.lcm_url;
   config.map_name = options.map_name;
+  config.join = options.join;
   config.session = session;
   config.publish_frames = options.publish_frames;
   config.supersede_patches = !options.source.replay;

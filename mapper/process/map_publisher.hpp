@@ -19,9 +19,9 @@
 namespace kintsugi::mapper {
 
 /// Publishes the messages of the mapper on the bus, after storing them in its log, and answers
-/// requests for lost chunks. Slices and frames are sent at a limited rate and never dropped, except
-/// views and revisions of patches that a newer one supersedes: the caller waits while has_room() is
-/// false.
+/// requests for lost chunks. Slices, keyframes and frames are sent at a limited rate and never
+/// dropped, except views and revisions of patches that a newer one supersedes: the caller waits
+/// while has_room() is false.
 ///
 /// In a resumed session all slices must be published again from the first one: those in the log are
 /// compared with it and not sent. Requests for the other sessions in the log are answered, too.
@@ -36,6 +36,7 @@ class MapPublisher {
   struct Config {
     std::string lcm_url;  ///< empty: LCM's default
     std::string map_name;
+    std::string join;  ///< name of the map of another mapper, for which keyframes are published
     std::int64_t session = 0;
     bool publish_frames = false;
     /// A patch that waits is not sent when a newer revision follows; what is sent then depends on
@@ -52,6 +53,8 @@ class MapPublisher {
 
   void publish_slices(std::vector<CloudSlice> slices);
   void publish_pose(CameraPose pose);
+  /// Does nothing unless another map is joined.
+  void publish_keyframe(KeyframeMessage keyframe);
   /// Left out when the view before still waits.
   void publish_view(CameraView view);
   void publish_status(MapperStatus status);
@@ -93,6 +96,7 @@ class MapPublisher {
   std::mutex mutex_;                              ///< guards slice_streams_ while it grows
   std::map<std::int64_t, Stream> slice_streams_;  ///< by session: of this run, and in the log
   StreamPublisher& slice_stream_;                 ///< of this run; the others only resend
+  Stream keyframe_stream_;                        ///< null: no other map is joined
   Stream frame_stream_;                           ///< null: frames are not published
   StreamPublisher view_stream_;
   std::int64_t slices_published_ = 0;

@@ -78,6 +78,9 @@ MapperProcess::MapperProcess(const Options& options, SessionStore& store, Resump
       pipeline_(pipeline_config(options, map_files_)),
       publisher_(publisher_config(options, resumption.session()), store),
       views_(options.view_rate_hz) {
+  if (pipeline_.loops() != nullptr) {
+    guest_receiver_.emplace(options.lcm_url, options.map_name, resumption.session());
+  }
   if (!options.timings_file.empty()) frame_log_.emplace(options.timings_file);
   if (options.store_frames) {
     const std::int64_t session = resumption.session();
@@ -116,6 +119,8 @@ void MapperProcess::map_frame(const TimedFrame& read) {
   const RgbdFrame& frame = read.frame;
   Stopwatch stopwatch;
   if (frame_store_) frame_store_->add(frame);
+  publish_new_keyframe();
+  take_guests();
   FrameResult result = pipeline_.process(frame);
   const TrackingResult& tracking = result.tracking;
   part_ = result.part;
@@ -126,6 +131,7 @@ void MapperProcess::map_frame(const TimedFrame& read) {
   log_change_of_state(result, frame);
   const int num_parts_before = std::exchange(num_parts_, pipeline_.num_parts());
   if (result.correction) log_correction(*result.correction, frame);
+  log_guests(frame);
   log_joined(frame, num_parts_before);
   if (is_located(tracking.state)) paths_[result.part].push_back({frame.utime, tracking.X_WC});
 
@@ -142,6 +148,19 @@ void MapperProcess::map_frame(const TimedFrame& read) {
   if (frame_log_) frame_log_->append(frame, result.part, tracking, num_slices, timings);
   if (resumption_.was_mapped(frame.utime)) ++frames_resumed_;
   last_utime_ = frame.utime;
+}
+
+/// For the mapper whose map this one joins.
+void MapperProcess::publish_new_keyframe() {
+  if (options_.join.empty()) return;
+  if (auto keyframe = pipeline_.take_keyframe()) publisher_.publish_keyframe(*std::move(keyframe));
+}
+
+void MapperProcess::take_guests() {
+  if (!guest_receiver_) return;
+  GuestReceiver::News news = guest_receiver_->take();
+  for (KeyframeMessage& keyframe : news.keyframes) pipeline_.add_guest(std::move(keyframe));
+  for (CloudSlice& slice : news.slices) pipeline_.add_guest(std::move(slice));
 }
 
 void MapperProcess::publish_result(const RgbdFrame& frame, FrameResult& result) {
@@ -170,6 +189,7 @@ void MapperProcess::measure(const TimedFrame& read, FrameTimings& timings) {
 void MapperProcess::publish_rest() {
   finished_ = resumption_.has_caught_up(last_utime_);
   if (finished_) {
+    publish_new_keyframe();
     publisher_.publish_slices(pipeline_.finish());
     num_parts_ = pipeline_.num_parts();
   } else {
@@ -210,6 +230,8 @@ void MapperProcess::publish_status() {
     status.loops_contradicted = loops->num_contradicted();
     status.corrections = loops->deformation().number();
   }
+  status.guests = static_cast<std::int32_t>(pipeline_.guests().reports().size());
+  status.guest_patches = pipeline_.guests().num_patches();
   const DepthNoise& noise = pipeline_.noise();
   status.noise_base_m = noise.base_m;
   status.noise_share = noise.share;
@@ -262,6 +284,18 @@ void MapperProcess::log_part(const PartBegun& begun, const RgbdFrame& frame) con
       "frame {}: lost for {:g} s (--restart-after), {}; part {} of the map begins, apart from the "
       "others until a loop joins them",
       frame.frame_index, options_.pipeline.restart_after_s, reason_text(begun.lost), begun.part);
+}
+
+void MapperProcess::log_guests(const RgbdFrame& frame) {
+  for (const GuestReport& guest : pipeline_.guests().reports()) {
+    const std::string who = fmt::format("frame {}: the mapper of map '{}' (session {})",
+                                        frame.frame_index, guest.map_name, guest.session);
+    if (!guest.problem.empty() && guests_refused_.insert(guest.session).second) {
+      spdlog::warn("{} cannot join this map: {}", who, guest.problem);
+    } else if (guest.keyframes > 0 && guests_named_.insert(guest.session).second) {
+      spdlog::info("{} joins this map: a part of its own until a loop joins them", who);
+    }
+  }
 }
 
 void MapperProcess::log_correction(const MapCorrection& correction, const RgbdFrame& frame) {

@@ -2,6 +2,7 @@
 
 #include <map>
 #include <optional>
+#include <set>
 
 #include "lcmtypes/base/stopwatch.hpp"
 #include "lcmtypes/trajectory.hpp"
@@ -9,6 +10,7 @@
 #include "mapper/process/camera_views.hpp"
 #include "mapper/process/frame_log.hpp"
 #include "mapper/process/frame_reader.hpp"
+#include "mapper/process/guest_receiver.hpp"
 #include "mapper/process/map_files.hpp"
 #include "mapper/process/map_publisher.hpp"
 #include "mapper/process/options.hpp"
@@ -37,6 +39,8 @@ class MapperProcess {
  private:
   void map_frames();
   void map_frame(const TimedFrame& read);
+  void publish_new_keyframe();
+  void take_guests();
   void publish_result(const RgbdFrame& frame, FrameResult& result);
   void measure(const TimedFrame& read, FrameTimings& timings);
   void publish_rest();
@@ -47,6 +51,7 @@ class MapperProcess {
   void log_start() const;
   void log_change_of_state(const FrameResult& result, const RgbdFrame& frame);
   void log_part(const PartBegun& begun, const RgbdFrame& frame) const;
+  void log_guests(const RgbdFrame& frame);
   static void log_correction(const MapCorrection& correction, const RgbdFrame& frame);
   void log_joined(const RgbdFrame& frame, int num_parts_before) const;
   void log_summary() const;
@@ -59,6 +64,9 @@ class MapperProcess {
   MapFiles map_files_;  ///< before pipeline_, whose worker writes to it
   MapperPipeline pipeline_;
   MapPublisher publisher_;
+  std::optional<GuestReceiver> guest_receiver_;  ///< none: the map is not corrected by loops
+  std::set<std::int64_t> guests_named_;          ///< sessions that the log has named
+  std::set<std::int64_t> guests_refused_;
   CameraViews views_;
   RunStatistics statistics_;
   std::optional<FrameLog> frame_log_;

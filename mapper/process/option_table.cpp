@@ -117,31 +117,35 @@ OptionGroup output_options(Options& o) {
 }
 
 OptionGroup bus_options(Options& o) {
-  return {"The bus",
-          {{"--publish-frames", &o.publish_frames, kMayDiffer, "publish RGBD_FRAME, too"},
-           {"--view-rate",
-            &o.view_rate_hz,
-            kMayDiffer,
-            "views of the camera for queries by pixel and for the viewer; 0: none",
-            "Hz",
-            {0, 1000}},
-           {"--lcm-url", &o.lcm_url, kMayDiffer, "URL of the LCM bus; empty: LCM's default"},
-           {kMapNameOption, &o.map_name, kMustMatch,
-            "name of the map; of mappers on one bus each needs its own"},
-           // Resumption compares it with the session in the log.
-           {"--session",
-            &o.session,
-            kMayDiffer,
-            "number of this run; 0: from the clock, or that "
-            "of the resumed session",
-            "",
-            {0, 9.2e18}},
-           {"--rate",
-            &o.rate_mb_s,
-            kMayDiffer,
-            "upper limit of the data rate of slices",
-            "MB/s",
-            {0.001, 1e6}}}};
+  return {
+      "The bus",
+      {{"--publish-frames", &o.publish_frames, kMayDiffer, "publish RGBD_FRAME, too"},
+       {"--view-rate",
+        &o.view_rate_hz,
+        kMayDiffer,
+        "views of the camera for queries by pixel and for the viewer; 0: none",
+        "Hz",
+        {0, 1000}},
+       {"--lcm-url", &o.lcm_url, kMayDiffer, "URL of the LCM bus; empty: LCM's default"},
+       {kMapNameOption, &o.map_name, kMustMatch,
+        "name of the map; of mappers on one bus each needs its own"},
+       {"--join", &o.join, kMustMatch,
+        "name of the map of another mapper on the bus, of which this map becomes a part, joined "
+        "where both have seen the same place; empty: none"},
+       // Resumption compares it with the session in the log.
+       {"--session",
+        &o.session,
+        kMayDiffer,
+        "number of this run; 0: from the clock, or that "
+        "of the resumed session",
+        "",
+        {0, 9.2e18}},
+       {"--rate",
+        &o.rate_mb_s,
+        kMayDiffer,
+        "upper limit of the data rate of slices",
+        "MB/s",
+        {0.001, 1e6}}}};
 }
 
 OptionGroup store_options(Options& o) {

@@ -37,6 +37,7 @@ struct Options {
   double view_rate_hz = 10.0;    ///< of CAMERA_VIEW; 0: none
   std::string lcm_url;           ///< empty: LCM's default
   std::string map_name = "map";
+  std::string join;          ///< name of another mapper's map, which this one joins; empty: none
   std::int64_t session = 0;  ///< of part 0, > 0; 0: from the clock, or that of the resumed session
   double rate_mb_s = 10.0;   ///< of slices and frames on the bus, 1e6 bytes per second
   std::string store_file;    ///< LCM log of all published messages; empty: an unnamed one

@@ -1,5 +1,6 @@
 #include "mapper/process/options.hpp"
 
+#include <algorithm>
 #include <iostream>
 #include <sstream>
 #include <stdexcept>
@@ -49,6 +50,26 @@ void pass_ground_truth_to_device(Options& options) {
   device += "ground_truth=" + options.ground_truth_dir;
 }
 
+/// What --join needs.
+void validate_join(const Options& options) {
+  if (options.join == options.map_name) {
+    throw std::invalid_argument("--join is '" + options.join +
+                                "', as --map-name: it names the map of another mapper, and each "
+                                "mapper needs a --map-name of its own");
+  }
+  if (std::max(options.join.size(), options.map_name.size()) > kMaxJoinNameBytes) {
+    throw std::invalid_argument("--join: it and --map-name may have " +
+                                std::to_string(kMaxJoinNameBytes) + " bytes at most");
+  }
+  const bool has_keyframes =
+      options.slices == "patch" && options.pipeline.close_loops && options.given_path_file.empty();
+  if (!has_keyframes) {
+    throw std::invalid_argument(
+        "--join needs a map that is corrected by loops: without --slices shift, "
+        "--no-loop-closure and --trajectory");
+  }
+}
+
 /// @throws std::invalid_argument naming the flag or field, its value and its bound
 void validate(const Options& options) {
   options.source.validate();
@@ -70,6 +91,7 @@ void validate(const Options& options) {
     throw std::invalid_argument("--map-name has " + std::to_string(options.map_name.size()) +
                                 " bytes, must have 1 to " + std::to_string(kMaxStringBytes));
   }
+  if (!options.join.empty()) validate_join(options);
 }
 
 /// The volume, and the depths that it is made for.

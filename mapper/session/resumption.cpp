@@ -43,6 +43,7 @@ void Resumption::continue_last_run() {
   // Missing chunks and the ones after them are made and added again.
   StoredStream& slices = store_.stream(channels::kCloudSlice, session_);
   slices.index().truncate_at_gap();
+  store_.stream(channels::kKeyframe, session_).index().truncate_at_gap();
   ChunkIndex& frames = store_.stream(channels::kRgbdFrame, session_).index();
   frames.truncate_at_gap();
   // Drops a frame of which only a part was stored.
@@ -64,16 +65,23 @@ const StoredSession* Resumption::ended_session() const {
 
 std::unique_ptr<FrameSource> Resumption::attach(std::unique_ptr<FrameSource> source) {
   if (!continued_) return source;
+  if (continued_->last_status && continued_->last_status->guests > 0) {
+    return begin_anew(std::move(source), "what its guests sent cannot be repeated (--join)");
+  }
   if (source->status().frames_total >= 0) {
     return std::make_unique<ResumedSource>(std::move(source), continued_->mapped_utimes,
                                            continued_->final_slice_begun);
   }
   if (has_all_frames()) return stored_frames_before(std::move(source));
+  return begin_anew(std::move(source), "a camera cannot repeat the frames that were mapped");
+}
+
+std::unique_ptr<FrameSource> Resumption::begin_anew(std::unique_ptr<FrameSource> source,
+                                                    const std::string& why) {
   spdlog::warn(
-      "session {} cannot be continued: a camera cannot repeat the frames that were mapped. Its "
-      "slices "
-      "are still sent to those who ask; a new session begins",
-      session_);
+      "session {} cannot be continued: {}. Its slices are still sent to those who ask; a new "
+      "session begins",
+      session_, why);
   begin_run(new_session());
   return source;
 }

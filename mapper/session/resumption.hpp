@@ -52,6 +52,8 @@ class Resumption {
   void begin_run(std::int64_t session);
   void continue_last_run();
   bool has_all_slices() const;
+  std::unique_ptr<FrameSource> begin_anew(std::unique_ptr<FrameSource> source,
+                                          const std::string& why);
   bool has_all_frames() const;
   std::unique_ptr<FrameSource> stored_frames_before(std::unique_ptr<FrameSource> camera) const;
 

@@ -48,6 +48,7 @@ std::optional<StoredChunk> StoredSessionReader::read(const LogEvent& event) {
   sessions_.back().last_event_utime = event.utime;
   if (event.channel == channels::kCloudSlice) return read_slice_chunk(event);
   if (event.channel == channels::kRgbdFrame) return read_frame_chunk(event);
+  if (event.channel == channels::kKeyframe) return read_keyframe_chunk(event);
   if (event.channel == channels::kCameraPose) {
     const auto pose = decode<CameraPose>(event.data);
     auto& utimes = session(pose.session).mapped_utimes;
@@ -86,6 +87,11 @@ StoredChunk StoredSessionReader::read_slice_chunk(const LogEvent& event) {
     of.slice_chunks_end = chunk.sequence - chunk.index + chunk.count;
   }
   return {event.channel, of.session, chunk.sequence};
+}
+
+StoredChunk StoredSessionReader::read_keyframe_chunk(const LogEvent& event) {
+  const auto chunk = decode_chunk<KeyframeMessage>(event.data);
+  return {event.channel, session(chunk.header.session).session, chunk.sequence};
 }
 
 StoredChunk StoredSessionReader::read_frame_chunk(const LogEvent& event) {

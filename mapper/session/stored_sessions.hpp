@@ -54,6 +54,7 @@ class StoredSessionReader {
   void begin_session(const LogEvent& event);
   StoredSession& session(std::int64_t number);
   StoredChunk read_slice_chunk(const LogEvent& event);
+  StoredChunk read_keyframe_chunk(const LogEvent& event);
   StoredChunk read_frame_chunk(const LogEvent& event);
 
   std::vector<StoredSession> sessions_;

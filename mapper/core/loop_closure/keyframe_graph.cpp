@@ -39,7 +39,8 @@ void KeyframeGraph::Config::validate() const {
 
 KeyframeGraph::KeyframeGraph(const Config& config) : config_((config.validate(), config)) {}
 
-void KeyframeGraph::add(const Pose& X_UK, double path_m, std::optional<int> from, double unseen_m) {
+void KeyframeGraph::add(const Pose& X_UK, double path_m, std::optional<int> from,
+                        std::optional<UnseenWay> unseen) {
   Pose X_WU = Pose::Identity();
   int part = static_cast<int>(parts_.size());
   if (from) {
@@ -47,7 +48,9 @@ void KeyframeGraph::add(const Pose& X_UK, double path_m, std::optional<int> from
     X_WU = X_WK_[*from] * nodes_[*from].X_UK.inverse(Eigen::Isometry);
     part = nodes_[*from].part;
   } else {
-    parts_.push_back({.first = size(), .unseen_m = unseen_m, .joined = part});
+    if (unseen) check_number(unseen->before);
+    const int camera = unseen ? parts_[nodes_[unseen->before].part].camera : num_cameras_++;
+    parts_.push_back({.first = size(), .camera = camera, .unseen = unseen, .joined = part});
   }
   nodes_.push_back({X_UK, path_m, part});
   X_WK_.push_back(X_WU * X_UK);
@@ -90,8 +93,21 @@ int KeyframeGraph::offer(const Loop& loop) {
 bool KeyframeGraph::is_plausible(const Loop& loop) const {
   const Pose X_EL = X_WK_[loop.earlier].inverse(Eigen::Isometry) * X_WK_[loop.later];
   const double drift_m = size_of(loop.X_EL.inverse(Eigen::Isometry) * X_EL);
-  const double path_m = nodes_[loop.later].path_m - nodes_[loop.earlier].path_m;
+  const double path_m = path_between_m(loop.later, loop.earlier);
   return drift_m <= config_.max_drift_share * path_m + config_.voxel_m;
+}
+
+/// On what length of path tracking may have drifted between two keyframes. Where two cameras met is
+/// not followed up: at most on both paths as a whole.
+double KeyframeGraph::path_between_m(int a, int b) const {
+  const bool same_camera = parts_[nodes_[a].part].camera == parts_[nodes_[b].part].camera;
+  return same_camera ? std::abs(nodes_[a].path_m - nodes_[b].path_m)
+                     : nodes_[a].path_m + nodes_[b].path_m;
+}
+
+std::pair<int, int> KeyframeGraph::later_and_earlier(int a, int b) const {
+  const bool a_is_later = std::pair(nodes_[a].part, a) > std::pair(nodes_[b].part, b);
+  return a_is_later ? std::pair(a, b) : std::pair(b, a);
 }
 
 std::vector<Loop> KeyframeGraph::agreeing_to_join(const Loop& loop) const {
@@ -124,13 +140,15 @@ void KeyframeGraph::join(const std::vector<Loop>& loops) {
 /// beginning of that part.
 bool KeyframeGraph::is_reachable(const Loop& loop) const {
   const Part& part = parts_[nodes_[loop.later].part];
-  const int before = part.first - 1;
-  if (before < 0 || part_of(before) != part_of(loop.earlier)) return true;  // not known
+  if (!part.unseen) return true;  // another camera's
+  const int before = part.unseen->before;
+  if (part_of(before) != part_of(loop.earlier)) return true;  // not known
   const Pose X_EB = X_WK_[loop.earlier].inverse(Eigen::Isometry) * X_WK_[before];
   const Pose X_LF = X_WK_[loop.later].inverse(Eigen::Isometry) * X_WK_[part.first];
   const double distance_m = (loop.X_EL * X_LF.translation() - X_EB.translation()).norm();
-  const double path_m = nodes_[loop.later].path_m - nodes_[loop.earlier].path_m;
-  return distance_m <= part.unseen_m + config_.max_drift_share * path_m + config_.voxel_m;
+  const double path_m =
+      path_between_m(loop.earlier, before) + path_between_m(part.first, loop.later);
+  return distance_m <= part.unseen->distance_m + config_.max_drift_share * path_m + config_.voxel_m;
 }
 
 bool KeyframeGraph::are_rivals(const Loop& a, const Loop& b) const {
@@ -140,8 +158,7 @@ bool KeyframeGraph::are_rivals(const Loop& a, const Loop& b) const {
   const Pose X_LaLb = X_WK_[a.later].inverse(Eigen::Isometry) * X_WK_[b.later];
   const Pose X_EaEb = X_WK_[a.earlier].inverse(Eigen::Isometry) * X_WK_[b.earlier];
   const Pose X_LaLb_loops = a.X_EL.inverse(Eigen::Isometry) * X_EaEb * b.X_EL;
-  const double path_m = std::abs(nodes_[a.later].path_m - nodes_[b.later].path_m) +
-                        std::abs(nodes_[a.earlier].path_m - nodes_[b.earlier].path_m);
+  const double path_m = path_between_m(a.later, b.later) + path_between_m(a.earlier, b.earlier);
   return size_of(X_LaLb.inverse(Eigen::Isometry) * X_LaLb_loops) >
          uncertainty_m(a, b, X_LaLb_loops) + config_.max_drift_share * path_m;
 }

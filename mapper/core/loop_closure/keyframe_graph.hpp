@@ -2,6 +2,7 @@
 // The keyframes of a map, the motions between them, and the loops that were found.
 
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "mapper/core/loop_closure/loop.hpp"
@@ -9,13 +10,20 @@
 
 namespace kintsugi::mapper {
 
+/// On the way to where a part of the map begins the camera was not tracked.
+struct UnseenWay {
+  int before = 0;           ///< the camera's last keyframe before it
+  double distance_m = 0.0;  ///< how far the camera may have gone since then
+};
+
 /// Where keyframes are, according to tracking and loops.
 ///
 /// U is the uncorrected map, in which the camera is tracked; W the corrected one, the same at
 /// first.
 ///
 /// A keyframe to which the camera was not tracked from another one begins a part of the map
-/// (origin_of_part()). Parts are joined by loops between them.
+/// (origin_of_part()). Parts are joined by loops between them. Those of guests, other mappers whose
+/// keyframes are here, too, are parts like others, of another camera.
 ///
 /// A loop in one part counts only when it is confirmed: when another loop, from another later
 /// keyframe, agrees with it. For that both later keyframes must have been near each other on the
@@ -46,13 +54,19 @@ class KeyframeGraph {
 
   /// Adds keyframe number size(). `path_m` is the length of the camera's path up to it; `from` the
   /// keyframe from which the camera came, with which it is corrected until loops say more. Without
-  /// one it begins a part, and the camera may have gone `unseen_m` since the keyframe before.
-  /// @throws std::invalid_argument when there is no keyframe `from`
-  void add(const Pose& X_UK, double path_m, std::optional<int> from, double unseen_m = 0.0);
+  /// one it begins a part, to which the camera came by an unseen way; without that, too, another
+  /// camera did, which may be anywhere.
+  /// @throws std::invalid_argument when there is no keyframe `from`, or none before the unseen way
+  void add(const Pose& X_UK, double path_m, std::optional<int> from,
+           std::optional<UnseenWay> unseen = {});
 
   /// Adds a motion that was tracked; X_FT is taken from the poses in U.
   /// @throws std::invalid_argument when a keyframe does not exist, or both are the same
   void add_tracked(int from, int to, const Matrix6d& information_T);
+
+  /// Two keyframes, as a loop between them is to have them: of different parts, the one in the
+  /// later part is the later one.
+  std::pair<int, int> later_and_earlier(int a, int b) const;
 
   /// Takes a loop, and returns how many are confirmed by it, itself among them: 0, 2 or more, or 1
   /// when it agrees with confirmed ones. A loop between two parts confirms none.
@@ -93,12 +107,14 @@ class KeyframeGraph {
     int part;  ///< in which it was tracked
   };
   struct Part {
-    int first;        ///< keyframe
-    double unseen_m;  ///< how far the camera may have gone between the keyframe before and that one
-    int joined;       ///< the first of the parts that it is joined with, or itself
+    int first;   ///< keyframe
+    int camera;  ///< that was tracked
+    std::optional<UnseenWay> unseen;
+    int joined;  ///< the first of the parts that it is joined with, or itself
   };
 
   void check_number(int number) const;
+  double path_between_m(int a, int b) const;
   bool is_plausible(const Loop& loop) const;
   bool is_reachable(const Loop& loop) const;
   void move_part(const Loop& loop);
@@ -109,6 +125,7 @@ class KeyframeGraph {
   Config config_;
   std::vector<Node> nodes_;
   std::vector<Part> parts_;
+  int num_cameras_ = 0;
   std::vector<Pose> X_WK_;
   std::vector<PoseEdge> tracked_;
   std::vector<Loop> confirmed_;

@@ -62,6 +62,11 @@ double LoopCloser::busy_ms() const {
   return busy_ms_;
 }
 
+std::size_t LoopCloser::num_queued() const {
+  const std::scoped_lock lock(mutex_);
+  return queue_.size();
+}
+
 void LoopCloser::run() {
   lower_priority_of_thread();
   std::unique_lock lock(mutex_);
@@ -91,7 +96,7 @@ void LoopCloser::run() {
 
 std::optional<MapCorrection> LoopCloser::work_on(const NewKeyframe& added) {
   keyframes_.push_back(added.keyframe);
-  graph_.add(added.keyframe->X_WC, added.path_m, added.from, added.unseen_m);
+  graph_.add(added.keyframe->X_WC, added.path_m, added.from, added.unseen);
   add_tracked(added);
   int num_confirmed = 0;
   std::vector<Loop> joining;  // once for a keyframe, as the rule compares many
@@ -139,12 +144,12 @@ void LoopCloser::add_tracked(const NewKeyframe& added) {
 
 std::vector<Loop> LoopCloser::matches_of(const NewKeyframe& added) const {
   std::vector<Loop> loops;
-  const int later = added.number;
-  for (const int earlier : candidates_for(added)) {
+  for (const int candidate : candidates_for(added)) {
+    const auto [later, earlier] = graph_.later_and_earlier(added.number, candidate);
     const Pose X_EL_believed = graph_.X_WK(earlier).inverse(Eigen::Isometry) * graph_.X_WK(later);
     const bool sees_same =
         common_share(later, earlier, X_EL_believed) >= config_.verifier.evidence.min_overlap_share;
-    const auto match = verifier_.match(*added.keyframe, *keyframes_[earlier],
+    const auto match = verifier_.match(*keyframes_[later], *keyframes_[earlier],
                                        sees_same ? X_EL_believed : Pose::Identity(), added.noise);
     if (match) {
       loops.push_back({later, earlier, match->X_EL, match->information_L, match->sigma_m});
@@ -153,7 +158,7 @@ std::vector<Loop> LoopCloser::matches_of(const NewKeyframe& added) const {
   std::ranges::stable_sort(loops, {}, &Loop::sigma_m);
   int num_in_part = 0;
   std::erase_if(loops, [&](const Loop& loop) {
-    const bool is_in_part = graph_.part_of(loop.earlier) == graph_.part_of(later);
+    const bool is_in_part = graph_.part_of(loop.earlier) == graph_.part_of(loop.later);
     return is_in_part && ++num_in_part > config_.max_matches;
   });
   return loops;

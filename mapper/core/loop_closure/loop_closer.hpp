@@ -2,6 +2,7 @@
 // Loop closure on a thread of its own.
 
 #include <condition_variable>
+#include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <exception>
@@ -23,13 +24,13 @@ struct NewKeyframe {
   int number = 0;
   std::shared_ptr<const Keyframe> keyframe;
   double path_m = 0.0;  ///< length of the camera's path up to it
-  /// The keyframe from which the camera was tracked to this one; none: it begins a part of the map,
+  /// The keyframe from which the camera was tracked to this one; none: it begins a part of the map.
   std::optional<int> from;
-  double unseen_m = 0.0;          ///< and the camera may have gone so far since the one before it
-  Matrix6d information;           ///< of its pose in the volume, see Registration
-  std::vector<int> similar;       ///< keyframes that look alike, released ones only
-  std::vector<bool> is_released;  ///< by number: whether its surface has left the volume
-  DepthNoise noise;               ///< of the camera, now
+  std::optional<UnseenWay> unseen = {};  ///< to that; none: the first part of a camera
+  Matrix6d information;                  ///< of its pose in the volume, see Registration
+  std::vector<int> similar;              ///< keyframes that look alike, released ones only
+  std::vector<bool> is_released;         ///< by number: whether its surface has left the volume
+  DepthNoise noise;                      ///< of the camera, now
 };
 
 /// Where the keyframes are after loops were closed.
@@ -90,6 +91,9 @@ class LoopCloser {
 
   /// Time spent so far, milliseconds.
   double busy_ms() const;
+
+  /// How many keyframes wait, or are being compared.
+  std::size_t num_queued() const;
 
  private:
   struct Job {

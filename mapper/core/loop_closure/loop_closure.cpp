@@ -53,12 +53,13 @@ LoopClosure::LoopClosure(const Config& config, KeyframeMap& keyframes)
   begin_part();
 }
 
-void LoopClosure::begin_part() {
-  if (begins_part_) return;
+int LoopClosure::begin_part() {
+  if (begins_part_) return num_begun_ - 1;
   keyframes_.release_if([](const Keyframe&) { return true; });
   last_at_ = keyframes_.size();
   begins_part_ = true;
   deformation_.add({.X_WU = Pose::Identity(), .part = num_begun_++});
+  return num_begun_ - 1;
 }
 
 int LoopClosure::num_parts() const {
@@ -87,7 +88,7 @@ std::optional<int> LoopClosure::find_released_near(const Pose& X_WC) const {
   std::optional<int> nearest;
   double least = 1.0;
   for (int i = 0; i < keyframes_.size(); ++i) {
-    if (!keyframes_.is_released()[i]) continue;
+    if (!keyframes_.is_released()[i] || keyframes_.is_guest(i)) continue;
     const double distance = keyframes_.in_spacings(X_WK(i), X_WC);
     if (!(distance < least)) continue;
     least = distance;
@@ -118,12 +119,14 @@ void LoopClosure::follow(const TrackingResult& located, bool is_keyframe, std::i
                           .keyframe = keyframes_.share(number),
                           .path_m = path_.length_m(),
                           .from = from,
-                          .unseen_m = begins_part ? unseen_m(utime) : 0.0,
+                          .unseen = begins_part ? unseen_way(utime) : std::nullopt,
                           .information = located.information_C,
                           .similar = {},
                           .is_released = keyframes_.is_released(),
                           .noise = noise};
     newest_utime_ = utime;
+    newest_number_ = number;
+    untold_ = newest_;
     tree_.add(from,
               from ? (keyframes_[*from].X_WC.translation() - X_UC.translation()).norm() : 0.0);
     if (from) deformation_.add(deformation_.place(*from));
@@ -134,20 +137,59 @@ void LoopClosure::follow(const TrackingResult& located, bool is_keyframe, std::i
   path_.add(utime, X_UC, last_at_, jumped);
 }
 
-/// How far the camera can have gone since the newest keyframe.
-double LoopClosure::unseen_m(std::int64_t utime) const {
-  return config_.max_speed * 1e-6 * static_cast<double>(utime - newest_utime_);
+/// Since the newest keyframe.
+std::optional<UnseenWay> LoopClosure::unseen_way(std::int64_t utime) const {
+  if (newest_number_ < 0) return std::nullopt;
+  return UnseenWay{
+      .before = newest_number_,
+      .distance_m = config_.max_speed * 1e-6 * static_cast<double>(utime - newest_utime_)};
+}
+
+std::optional<NewKeyframe> LoopClosure::take_new() {
+  if (untold_) keyframes_.finish_last();
+  return std::exchange(untold_, std::nullopt);
+}
+
+bool LoopClosure::can_take_guest(std::size_t max_waiting) const {
+  return !begins_part_ && closer_.num_queued() < max_waiting;
+}
+
+int LoopClosure::add_guest(NewKeyframe guest, std::shared_ptr<Keyframe> keyframe,
+                           std::int64_t utime) {
+  compare_newest();
+  const Eigen::Vector3d position_U = keyframe->X_WC.translation();
+  keyframes_.add_guest(std::move(keyframe));
+  guest.number = keyframes_.size() - 1;
+  guest.keyframe = keyframes_.share(guest.number);
+  guest.is_released.resize(keyframes_.size(), true);
+  guest.similar = similar_to(guest);
+  if (guest.from) {
+    tree_.add(guest.from, (keyframes_[*guest.from].X_WC.translation() - position_U).norm());
+    deformation_.add(deformation_.place(*guest.from));
+  } else {
+    tree_.add(std::nullopt, 0.0);
+    deformation_.add({.X_WU = Pose::Identity(), .part = num_begun_++});
+  }
+  const int number = guest.number;
+  closer_.add(std::move(guest), utime);
+  return number;
 }
 
 void LoopClosure::compare_newest() {
   if (!newest_) return;
   NewKeyframe added = *std::exchange(newest_, std::nullopt);
-  added.similar = keyframes_.similar_to(
-      added.number, [&](int number) { return number < added.number && added.is_released[number]; });
-  if (added.similar.size() > static_cast<std::size_t>(config_.max_similar)) {
-    added.similar.resize(config_.max_similar);
-  }
+  added.similar = similar_to(added);
   closer_.add(std::move(added), newest_utime_);
+}
+
+/// The keyframes before it that look like it, of those whose surface was not in the volume.
+std::vector<int> LoopClosure::similar_to(const NewKeyframe& added) {
+  std::vector<int> similar = keyframes_.similar_to(
+      added.number, [&](int number) { return number < added.number && added.is_released[number]; });
+  if (similar.size() > static_cast<std::size_t>(config_.max_similar)) {
+    similar.resize(config_.max_similar);
+  }
+  return similar;
 }
 
 std::optional<MapCorrection> LoopClosure::take_due(std::int64_t utime) {

@@ -1,8 +1,10 @@
 #pragma once
 // Loop closure of one run: from located frames to corrections.
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -41,8 +43,9 @@ class LoopClosure {
   /// @throws std::invalid_argument if the configuration is not valid
   LoopClosure(const Config& config, KeyframeMap& keyframes);
 
-  /// The frames that follow are of another part of the map; all keyframes are released.
-  void begin_part();
+  /// The frames that follow are of another part of the map; all keyframes are released. Returns the
+  /// number of the part.
+  int begin_part();
 
   /// To be called before a located frame may become a keyframe: releases the keyframes whose
   /// surface is not in the volume any more, so that the camera gets a new one where it comes back
@@ -74,6 +77,23 @@ class LoopClosure {
   void follow(const TrackingResult& located, bool is_keyframe, std::int64_t utime,
               const DepthNoise& noise);
 
+  /// The newest keyframe that became one before this frame, once; nothing if there is none. To be
+  /// called before each frame: waits for its appearance.
+  std::optional<NewKeyframe> take_new();
+
+  /// Whether a guest's keyframe may be added now: not while the next keyframe begins a part, nor
+  /// while so many wait to be compared that those of the camera would not be in time.
+  bool can_take_guest(std::size_t max_waiting) const;
+
+  /// Adds a keyframe of a guest, another mapper, to be compared with all others. `guest.number` and
+  /// what is found here (`similar`) are filled in; `guest.is_released` has the keyframes that are
+  /// not in the guest's volume, and may be too short: those missing are not. A part begins where
+  /// `guest.from` is empty. Returns its number.
+  int add_guest(NewKeyframe guest, std::shared_ptr<Keyframe> keyframe, std::int64_t utime);
+
+  /// The number that the next part will have.
+  int next_part() const { return num_begun_; }
+
   /// A correction that is due at this time; waits for it.
   /// @throws what closing a loop threw
   std::optional<MapCorrection> take_due(std::int64_t utime);
@@ -103,7 +123,8 @@ class LoopClosure {
 
  private:
   void compare_newest();
-  double unseen_m(std::int64_t utime) const;
+  std::vector<int> similar_to(const NewKeyframe& added);
+  std::optional<UnseenWay> unseen_way(std::int64_t utime) const;
   std::optional<MapCorrection> apply_if_above(double least_motion_vox);
   void note(std::optional<MapCorrection> newest);
   double motion_m(const MapCorrection& correction) const;
@@ -115,7 +136,9 @@ class LoopClosure {
   /// The newest keyframe, until its appearance is known: when the next one comes.
   std::optional<NewKeyframe> newest_;
   std::int64_t newest_utime_ = 0;
-  int last_at_ = 0;  ///< the keyframe near which the camera is, or was
+  int newest_number_ = -1;  ///< of the camera's newest keyframe; those of guests may follow
+  std::optional<NewKeyframe> untold_;  ///< to be given by take_new()
+  int last_at_ = 0;                    ///< the keyframe near which the camera is, or was
   MapDeformation deformation_;
   KeyframeTree tree_;
   bool went_ = false;         ///< go_to() was called since the last frame

@@ -47,9 +47,6 @@ class MapDeformation {
   /// Number of keyframes that are known.
   int size() const { return static_cast<int>(places_.size()); }
 
-  /// X_WU of what was seen at the newest keyframe.
-  Pose newest() const { return places_.empty() ? Pose::Identity() : places_.back().X_WU; }
-
   const std::vector<PartLoop>& loops() const { return loops_; }
 
   /// Adds a keyframe, which is moved like this.

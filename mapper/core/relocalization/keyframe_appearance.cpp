@@ -28,20 +28,6 @@ float mean_of_valid(const cv::Mat_<float>& depth_m) {
   return enough ? static_cast<float>(sum / count) : kNaN;
 }
 
-cv::Mat_<float> thumbnail_of(const cv::Mat_<float>& depth_m) {
-  cv::Mat_<float> thumbnail(kThumbnailRows, kThumbnailCols, kNaN);
-  for (int v = 0; v < kThumbnailRows; ++v) {
-    const cv::Range rows(v * depth_m.rows / kThumbnailRows,
-                         (v + 1) * depth_m.rows / kThumbnailRows);
-    for (int u = 0; u < kThumbnailCols; ++u) {
-      const cv::Range cols(u * depth_m.cols / kThumbnailCols,
-                           (u + 1) * depth_m.cols / kThumbnailCols);
-      thumbnail(v, u) = mean_of_valid(depth_m(rows, cols));
-    }
-  }
-  return thumbnail;
-}
-
 ImageFeatures features_of(const cv::Mat& gray, const SurfaceMap& surface_C, int max_features) {
   ImageFeatures features;
   std::vector<cv::KeyPoint> corners;
@@ -63,6 +49,20 @@ ImageFeatures features_of(const cv::Mat& gray, const SurfaceMap& surface_C, int 
 }
 
 }  // namespace
+
+cv::Mat_<float> thumbnail_of(const cv::Mat_<float>& depth_m) {
+  cv::Mat_<float> thumbnail(kThumbnailRows, kThumbnailCols, kNaN);
+  for (int v = 0; v < kThumbnailRows; ++v) {
+    const cv::Range rows(v * depth_m.rows / kThumbnailRows,
+                         (v + 1) * depth_m.rows / kThumbnailRows);
+    for (int u = 0; u < kThumbnailCols; ++u) {
+      const cv::Range cols(u * depth_m.cols / kThumbnailCols,
+                           (u + 1) * depth_m.cols / kThumbnailCols);
+      thumbnail(v, u) = mean_of_valid(depth_m(rows, cols));
+    }
+  }
+  return thumbnail;
+}
 
 KeyframeAppearance appearance_of(const TrackingInput& frame, int max_features) {
   const SurfaceMap& finest = frame.surface_C.front();

@@ -29,6 +29,9 @@ struct KeyframeAppearance {
 /// With the `max_features` strongest features.
 KeyframeAppearance appearance_of(const TrackingInput& frame, int max_features);
 
+/// The thumbnail of a depth image of at least its size, metres; NaN is invalid.
+cv::Mat_<float> thumbnail_of(const cv::Mat_<float>& depth_m);
+
 /// Mean relative difference of the depths of the cells that are valid in both thumbnails; infinite
 /// where these are less than two fifths of all cells.
 double thumbnail_difference(const cv::Mat_<float>& a_m, const cv::Mat_<float>& b_m);

@@ -80,14 +80,32 @@ void KeyframeMap::add(const Pose& X_WC, const TrackingInput& frame, const Surfac
   keyframes_.push_back(std::make_shared<Keyframe>(
       Keyframe{X_WC, {}, surface_C.intrinsics, raw_from(surface_C.depth_m)}));
   is_released_.push_back(false);
+  is_guest_.push_back(false);
   appearance_of_last_ = std::async(
       std::launch::async,
       [frame, max_features = config_.max_features] { return appearance_of(frame, max_features); });
 }
 
-std::vector<int> KeyframeMap::similar_to(const KeyframeAppearance& appearance,
-                                         const std::function<bool(int)>& is_candidate) {
+void KeyframeMap::add_guest(std::shared_ptr<Keyframe> keyframe) {
   finish_last();
+  index_.add(keyframe->appearance.features.descriptors);
+  keyframes_.push_back(std::move(keyframe));
+  is_released_.push_back(true);
+  is_guest_.push_back(true);
+}
+
+std::vector<int> KeyframeMap::similar_to(const KeyframeAppearance& appearance) {
+  finish_last();
+  return similar_to(appearance, [this](int number) { return !is_guest_[number]; });
+}
+
+std::vector<int> KeyframeMap::similar_to(int number, const std::function<bool(int)>& is_candidate) {
+  finish_last();
+  return similar_to(keyframes_[number]->appearance, is_candidate);
+}
+
+std::vector<int> KeyframeMap::similar_to(const KeyframeAppearance& appearance,
+                                         const std::function<bool(int)>& is_candidate) const {
   std::vector<int> numbers = by_features(appearance, is_candidate);
   for (const int number : by_depth(appearance, is_candidate)) {
     if (std::find(numbers.begin(), numbers.end(), number) == numbers.end()) {
@@ -95,11 +113,6 @@ std::vector<int> KeyframeMap::similar_to(const KeyframeAppearance& appearance,
     }
   }
   return numbers;
-}
-
-std::vector<int> KeyframeMap::similar_to(int number, const std::function<bool(int)>& is_candidate) {
-  finish_last();
-  return similar_to(keyframes_[number]->appearance, is_candidate);
 }
 
 void KeyframeMap::finish_last() {

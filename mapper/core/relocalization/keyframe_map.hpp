@@ -72,6 +72,10 @@ class KeyframeMap {
   /// Adds the frame at X_WC as a keyframe, with the map's surface as seen from there.
   void add(const Pose& X_WC, const TrackingInput& frame, const SurfaceMap& surface_C);
 
+  /// Adds a keyframe of a guest, another mapper: the camera is not looked for there, and its
+  /// surface is never in the volume.
+  void add_guest(std::shared_ptr<Keyframe> keyframe);
+
   /// Releases the keyframes of which this is true. A pose near them may become a keyframe again:
   /// their surface is in the volume no more, so a new one says where the camera is now.
   void release_if(const std::function<bool(const Keyframe&)>& has_left);
@@ -79,25 +83,27 @@ class KeyframeMap {
   /// The surface of a released keyframe is in the volume again.
   void take_back(int number) { is_released_[number] = false; }
   const std::vector<bool>& is_released() const { return is_released_; }  ///< by number
+  bool is_guest(int number) const { return is_guest_[number]; }
 
   /// Numbers of the most similar keyframes, without duplicates: first by the number of shared
-  /// features, most first, then by depth thumbnail, most similar first. Only those of which
-  /// `is_candidate` is true.
-  std::vector<int> similar_to(const KeyframeAppearance& appearance,
-                              const std::function<bool(int)>& is_candidate = any_keyframe);
+  /// features, most first, then by depth thumbnail, most similar first. Not those of guests.
+  std::vector<int> similar_to(const KeyframeAppearance& appearance);
 
-  /// The same for keyframe `number`.
+  /// The same for keyframe `number`, of all for which `is_candidate` is true.
   std::vector<int> similar_to(int number, const std::function<bool(int)>& is_candidate);
 
+  /// Waits for the appearance of the last keyframe.
+  void finish_last();
+
   int size() const { return static_cast<int>(keyframes_.size()); }
-  /// @pre similar_to() was called since the last add().
+  /// @pre similar_to() or finish_last() was called since the last add().
   const Keyframe& operator[](int number) const { return *keyframes_[number]; }
   /// The same, for other threads.
   std::shared_ptr<const Keyframe> share(int number) const { return keyframes_[number]; }
 
  private:
-  static bool any_keyframe(int /*number*/) { return true; }
-  void finish_last();
+  std::vector<int> similar_to(const KeyframeAppearance& appearance,
+                              const std::function<bool(int)>& is_candidate) const;
   std::vector<int> by_features(const KeyframeAppearance& appearance,
                                const std::function<bool(int)>& is_candidate) const;
   std::vector<int> by_depth(const KeyframeAppearance& appearance,
@@ -106,6 +112,7 @@ class KeyframeMap {
   Config config_;
   std::vector<std::shared_ptr<Keyframe>> keyframes_;
   std::vector<bool> is_released_;
+  std::vector<bool> is_guest_;
   DescriptorIndex index_;
   /// Of the last keyframe; valid until it is stored there.
   std::future<KeyframeAppearance> appearance_of_last_;

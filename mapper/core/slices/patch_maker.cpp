@@ -10,6 +10,24 @@ namespace {
 
 constexpr double kLeastMotion_vox = 0.1;  // a smaller one is no error
 
+/// The largest distance that a corner of a box moves, metres.
+double motion_m(const Eigen::AlignedBox3d& box_P, const Pose& X_WP_before, const Pose& X_WP_after) {
+  double largest_m = 0.0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Eigen::Vector3d p_P = box_P.corner(static_cast<Eigen::AlignedBox3d::CornerType>(corner));
+    largest_m = std::max(largest_m, (X_WP_after * p_P - X_WP_before * p_P).norm());
+  }
+  return largest_m;
+}
+
+/// Of no points, the origin: also a patch that has none lies somewhere.
+Eigen::AlignedBox3d box_of(const std::vector<CloudPoint>& points) {
+  if (points.empty()) return Eigen::AlignedBox3d(Eigen::Vector3d(0.0, 0.0, 0.0));
+  Eigen::AlignedBox3d box;
+  for (const CloudPoint& p : points) box.extend(Eigen::Vector3d(p.x, p.y, p.z));
+  return box;
+}
+
 }  // namespace
 
 std::vector<PatchRun> PatchMaker::keep(const ExtractedSurface& left, const SeenAt& seen_at) {
@@ -83,6 +101,7 @@ CloudSlice PatchMaker::revision_of(Patch& patch, const CloudSlice& header) {
   slice.id = place.id;
   slice.X_WP = place.X_WP;
   slice.part = place.part;
+  slice.keyframe = place.guest ? kNotOfCamera : place.keyframe;
   slice.correction = correction_;
   slice.revision = ++patch.revision;
   revision_sum_ += slice.revision > 0 ? 1 : 0;
@@ -124,16 +143,51 @@ std::vector<CloudSlice> PatchMaker::make(const PatchBatch& batch, const Extracte
   return slices;
 }
 
-std::vector<CloudSlice> PatchMaker::correct(const MapDeformation& deformation,
+std::vector<CloudSlice> PatchMaker::take_in(std::vector<GuestPatch> patches,
                                             const CloudSlice& header) {
+  std::vector<CloudSlice> slices;
+  for (GuestPatch& taken : patches) {
+    const auto [found, is_new] = of_guests_.try_emplace(taken.name);
+    Patch& patch = found->second;
+    if (is_new) {
+      patch.number = static_cast<int>(places_.size());
+      places_.emplace_back().id = next_id_++;
+    }
+    Place& place = places_[patch.number];
+    place.guest = {.X_UP = taken.X_UP, .box_P = box_of(taken.points_P)};
+    place.keyframe = taken.at.keyframe;
+    place.X_WP = pose_of(place, taken.at.place.X_WU);
+    place.part = taken.at.place.part;
+    CloudSlice& slice = slices.emplace_back(revision_of(patch, header));
+    slice.in_volume = taken.in_volume;
+    slice.points_W = std::move(taken.points_P);
+  }
+  if (!slices.empty()) slices.back().ends_batch = true;
+  return slices;
+}
+
+/// X_WP, if the keyframe with which the patch moves is moved like this.
+PatchPose PatchMaker::pose_of(const Place& place, const Pose& X_WU) {
+  return place.guest ? Pose(X_WU * place.guest->X_UP) : X_WU;
+}
+
+Eigen::AlignedBox3d PatchMaker::box_P(const Place& place, double resolution_m) const {
+  if (place.guest) return place.guest->box_P;
+  const double side_m = grid_.side_blocks() * kBlockSide * resolution_m;
+  const Eigen::Vector3d low(place.tile.x, place.tile.y, place.tile.z);
+  return {side_m * low, side_m * (low + Eigen::Vector3d::Ones())};
+}
+
+std::vector<CloudSlice> PatchMaker::correct(const MapDeformation& deformation,
+                                            const CloudSlice& header, const Pose& X_WU_now) {
   correction_ = deformation.number();
   std::map<int, std::vector<PatchMotion>> motions;  // by part
   for (Place& place : places_) {
     const auto [X_WU, part] = deformation.place(place.keyframe);
-    const PatchPose X_WP = X_WU;
+    const PatchPose X_WP = pose_of(place, X_WU);
     if (place.id == kNoId || place.is_void || place.X_WP == X_WP) continue;
     const double moved_m =
-        motion_m(place.tile, place.X_WP.pose(), X_WP.pose(), header.resolution_m);
+        motion_m(box_P(place, header.resolution_m), place.X_WP.pose(), X_WP.pose());
     if (moved_m <= kLeastMotion_vox * header.resolution_m) continue;
     place.X_WP = X_WP;
     place.part = part;
@@ -146,7 +200,7 @@ std::vector<CloudSlice> PatchMaker::correct(const MapDeformation& deformation,
     slice.ends_batch = true;
     slice.correction = correction_;
     slice.part = part;
-    slice.X_WP = deformation.newest();
+    slice.X_WP = X_WU_now;
     slice.id = next_id_++;
     slice.motions = std::move(of_part);
     std::ranges::sort(slice.motions, {}, &PatchMotion::id);
@@ -155,20 +209,6 @@ std::vector<CloudSlice> PatchMaker::correct(const MapDeformation& deformation,
     }
   }
   return slices;
-}
-
-/// The largest distance that a corner of the tile moves, metres.
-double PatchMaker::motion_m(const TileCoord& tile, const Pose& X_WP_before, const Pose& X_WP_after,
-                            double resolution_m) const {
-  const double side_m = grid_.side_blocks() * kBlockSide * resolution_m;
-  double largest_m = 0.0;
-  for (int corner = 0; corner < 8; ++corner) {
-    const Eigen::Vector3d p_P =
-        side_m * Eigen::Vector3d(tile.x + (corner & 1), tile.y + ((corner >> 1) & 1),
-                                 tile.z + ((corner >> 2) & 1));
-    largest_m = std::max(largest_m, (X_WP_after * p_P - X_WP_before * p_P).norm());
-  }
-  return largest_m;
 }
 
 std::vector<CloudSlice> PatchMaker::finish(const CloudSlice& header) {

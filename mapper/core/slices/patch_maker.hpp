@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Geometry>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -11,6 +12,7 @@
 #include "mapper/core/extraction/mesh_extractor.hpp"
 #include "mapper/core/extraction/surface_extractor.hpp"
 #include "mapper/core/loop_closure/map_deformation.hpp"
+#include "mapper/core/slices/guest_patch.hpp"
 #include "mapper/core/slices/patch_batch.hpp"
 #include "mapper/core/slices/patch_run.hpp"
 #include "mapper/core/slices/tile.hpp"
@@ -54,28 +56,41 @@ class PatchMaker {
   std::vector<CloudSlice> make(const PatchBatch& batch, const ExtractedSurface& in_volume,
                                const CloudSlice& header);
 
+  /// Takes patches of guests: each gets a number here, with which it is revised and corrected like
+  /// the others. `header` as for make().
+  std::vector<CloudSlice> take_in(std::vector<GuestPatch> patches, const CloudSlice& header);
+
   /// Moves the patches with the keyframes at which they were seen. Gives a correction slice for
   /// each part of the map with those that move by more than a tenth of a voxel; nothing where none
-  /// does.
-  std::vector<CloudSlice> correct(const MapDeformation& deformation, const CloudSlice& header);
+  /// does. `X_WU_now` is where what the camera sees now has moved to.
+  std::vector<CloudSlice> correct(const MapDeformation& deformation, const CloudSlice& header,
+                                  const Pose& X_WU_now = Pose::Identity());
 
   /// The last revision of every patch that is not departed, and the final slice.
   std::vector<CloudSlice> finish(const CloudSlice& header);
 
  private:
   static constexpr std::int32_t kNoId = -1;
+  static constexpr std::int32_t kNotOfCamera = -1;  ///< CloudSlice::keyframe of a guest's patch
   struct Patch {
     int number = kNoPatch;  ///< of its place
     std::int32_t revision = -1;
     std::vector<CloudPoint> left_W;  ///< points that have left the volume
   };
 
+  /// Where the points of a guest's patch are. Those of this mapper are in U and their tile.
+  struct GuestFrame {
+    Pose X_UP;
+    Eigen::AlignedBox3d box_P;  ///< holds the points, metres
+  };
+
   /// Where a patch was sent to, whether it is departed or not.
   struct Place {
-    TileCoord tile;
+    TileCoord tile;  ///< of one of this mapper
+    std::optional<GuestFrame> guest = {};
     std::int32_t id = kNoId;
     int keyframe = 0;  ///< with which it moves
-    PatchPose X_WP;
+    PatchPose X_WP = {};
     int part = 0;          ///< of the map
     bool is_void = false;  ///< the patch goes on under another number
   };
@@ -88,8 +103,8 @@ class PatchMaker {
   std::map<TileCoord, std::vector<CloudPoint>> by_tile(const ExtractedSurface& surface) const;
   Patch& patch_at(const TileCoord& tile, const SeenAt& seen_at);
   CloudSlice revision_of(Patch& patch, const CloudSlice& header);
-  double motion_m(const TileCoord& tile, const Pose& X_WP_before, const Pose& X_WP_after,
-                  double resolution_m) const;
+  static PatchPose pose_of(const Place& place, const Pose& X_WU);
+  Eigen::AlignedBox3d box_P(const Place& place, double resolution_m) const;
 
   const TileGrid grid_;
   std::vector<Place> places_;        ///< of all patches, by number
@@ -97,6 +112,7 @@ class PatchMaker {
   std::map<TileCoord, std::vector<Closed>> closed_;  ///< by TileVisit::number
   std::int32_t correction_ = 0;                      ///< number of the last one
   std::map<TileCoord, Patch> patches_;               ///< those that may be sent again
+  std::map<GuestPatch::Name, Patch> of_guests_;      ///< without points
   std::int32_t next_id_ = 0;
   std::int64_t revision_sum_ = 0;  ///< of the newest revisions
 };

@@ -91,6 +91,15 @@ void SliceWorker::submit(std::vector<TileVisit> returned, const SliceCamera& cam
   enqueue(std::move(job));
 }
 
+void SliceWorker::submit(std::vector<GuestPatch> patches, const SliceCamera& camera,
+                         float resolution_m) {
+  Job job;
+  job.header = header_of(SliceKind::kPatch, resolution_m, camera);
+  job.camera = camera;
+  job.of_guests = std::move(patches);
+  enqueue(std::move(job));
+}
+
 void SliceWorker::enqueue(Job job) {
   std::unique_lock lock(mutex_);
   const std::size_t num_blocks = num_blocks_counted(job);
@@ -159,7 +168,10 @@ void SliceWorker::run() {
 
 std::vector<CloudSlice> SliceWorker::work_on(Job& job) {
   if (job.deformation) {
-    return patches_.value().correct(*job.deformation, job.header);
+    return patches_.value().correct(*job.deformation, job.header, job.camera.at.place.X_WU);
+  }
+  if (!job.of_guests.empty()) {
+    return patches_.value().take_in(std::move(job.of_guests), job.header);
   }
   if (!job.returned.empty())
     return patches_.value().reopen(job.returned, job.header, job.camera.at);

@@ -80,6 +80,10 @@ class SliceWorker {
   /// @throws as above
   void submit(std::vector<TileVisit> returned, const SliceCamera& camera, float resolution_m);
 
+  /// Queues patches of guests; see PatchMaker::take_in(). For patches only.
+  /// @throws as above
+  void submit(std::vector<GuestPatch> patches, const SliceCamera& camera, float resolution_m);
+
   /// Slices finished since the last call, without waiting.
   /// @throws what extraction of a slice threw
   std::vector<CloudSlice> take_finished();
@@ -101,6 +105,7 @@ class SliceWorker {
     std::optional<PatchBatch> batch;            ///< none: the blocks have left
     std::optional<MapDeformation> deformation;  ///< there are no blocks
     std::vector<TileVisit> returned;            ///< if there are any, there are no blocks
+    std::vector<GuestPatch> of_guests;          ///< the same
     SliceCamera camera;
     CloudSlice header;  ///< of its slices
     bool waits = true;  ///< its blocks count in the queue

@@ -146,6 +146,10 @@ TEST(Options, NamesWhatIsWrong) {
   EXPECT_THAT(error_of({"--volume-size", "-4"}), HasSubstr("volume_size_m"));
   EXPECT_THAT(error_of({"--volume-size", "nan"}), HasSubstr("volume_size_m"));
   EXPECT_THAT(error_of({"--map-name", ""}), HasSubstr("--map-name has 0 bytes"));
+  EXPECT_THAT(error_of({"--join", "map"}), HasSubstr("it names the map of another mapper"));
+  EXPECT_THAT(error_of({"--join", "other", "--slices", "shift"}),
+              HasSubstr("--join needs a map that is corrected by loops"));
+  EXPECT_THAT(error_of({"--join", "other", "--no-loop-closure"}), HasSubstr("--join needs"));
   EXPECT_THAT(error_of({"--session", "-5"}), HasSubstr("--session is -5"));
   EXPECT_THAT(error_of({"--trajectory", "/no/such/file"}),
               HasSubstr("/no/such/file: No such file or directory"));

@@ -1,10 +1,15 @@
 // Which session of a log a run continues.
 
+#include <memory>
+#include <optional>
 #include <stdexcept>
 
 #include <gmock/gmock.h>
 
+#include "lcmtypes/channels.hpp"
+#include "lcmtypes/codec/codec.hpp"
 #include "mapper/session/resumption.hpp"
+#include "tests/support/example_messages.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace kintsugi::mapper {
@@ -38,6 +43,49 @@ TEST_F(ResumptionTest, ContinuesTheLastRunOfTheLog) {
   EXPECT_EQ(run.ended_session(), nullptr);
   EXPECT_THAT([&] { Resumption(store, {.options = {}, .session = 9}); },
               ThrowsMessage<std::runtime_error>(HasSubstr("the session to resume is 7")));
+}
+
+/// A recording without frames.
+struct EmptyRecording : FrameSource {
+  std::optional<RgbdFrame> next() override { return std::nullopt; }
+  SourceStatus status() const override {
+    SourceStatus status;
+    status.frames_total = 0;
+    return status;
+  }
+};
+
+TEST_F(ResumptionTest, BeginsAnewWhereGuestsHadJoined) {
+  {
+    SessionStore store(log(false));
+    const Resumption run(store, {.options = {}, .session = 7});
+    MapperStatus status = kintsugi::testing::example_mapper_status();
+    status.session = 7;
+    status.guests = 1;
+    store.add(channels::kMapperStatus, encode(status));
+  }
+  SessionStore store(log(true));
+  Resumption run(store, {.options = {}});
+  EXPECT_EQ(run.session(), 7);
+  auto source = run.attach(std::make_unique<EmptyRecording>());
+  EXPECT_GT(run.session(), 7) << "what guests sent cannot be repeated";
+  EXPECT_EQ(run.last_mapped_utime(), -1);
+  EXPECT_NE(dynamic_cast<EmptyRecording*>(source.get()), nullptr) << "from its beginning";
+}
+
+TEST_F(ResumptionTest, FindsTheKeyframesThatWereSent) {
+  {
+    SessionStore store(log(false));
+    const Resumption run(store, {.options = {}, .session = 7});
+    KeyframeMessage keyframe = kintsugi::testing::example_keyframe(5);
+    keyframe.session = 7;
+    store.stream(channels::kKeyframe, 7)
+        .add(0, encode_chunk(keyframe, 0, 0, kDefaultMaxChunkBytes));
+  }
+  SessionStore store(log(true));
+  const Resumption run(store, {.options = {}});
+  EXPECT_EQ(store.stream(channels::kKeyframe, 7).next_sequence(), 1);
+  EXPECT_TRUE(store.stream(channels::kKeyframe, 7).find(0));
 }
 
 }  // namespace

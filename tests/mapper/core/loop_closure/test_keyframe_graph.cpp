@@ -1,6 +1,7 @@
 #include <optional>
 #include <set>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -112,9 +113,13 @@ class TwoParts : public ::testing::Test {
   TwoParts() {
     for (int i = 0; i < 2 * kLength; ++i) {
       const bool begins = i % kLength == 0;
-      graph.add(X_UK(i), kStep_m * i, begins ? std::nullopt : std::optional(i - 1), kUnseen_m);
+      graph.add(X_UK(i), kStep_m * i, begins ? std::nullopt : std::optional(i - 1), unseen(i));
       if (!begins) graph.add_tracked(i - 1, i, precise());
     }
+  }
+  static std::optional<UnseenWay> unseen(int i) {
+    if (i == 0) return std::nullopt;
+    return UnseenWay{.before = i - 1, .distance_m = kUnseen_m};
   }
   static Pose truth(int i) { return at(kStep_m * (i % kLength)); }
   static Pose X_UK(int i) { return at(i < kLength ? 0.0 : 1'000.0) * truth(i); }
@@ -162,6 +167,59 @@ TEST_F(TwoParts, AreNotJoinedWhereTheCameraCannotHaveGone) {
   const Pose shift = at(-5.5);
   for (const int i : {3, 4, 5, 6}) graph.offer(loop(i, shift));
   EXPECT_TRUE(graph.agreeing_to_join(loop(6, shift)).empty());
+}
+
+/// Two cameras on the same way, whose keyframes come in turn.
+class TwoCameras : public ::testing::Test {
+ protected:
+  static constexpr int kLength = 20;  // keyframes of each
+
+  TwoCameras() {
+    for (int i = 0; i < 2 * kLength; ++i) {
+      const bool begins = i < 2;
+      graph.add(X_UK(i), kStep_m * (i / 2), begins ? std::nullopt : std::optional(i - 2));
+      if (!begins) graph.add_tracked(i - 2, i, precise());
+    }
+  }
+  static Pose truth(int i) { return at(kStep_m * (i / 2)); }
+  static Pose X_UK(int i) { return at(i % 2 == 0 ? 0.0 : 1'000.0) * truth(i); }
+  /// Where both cameras have their i-th keyframe, or `shift` from there.
+  static Loop loop(int i, const Pose& shift = Pose::Identity()) {
+    return {2 * i + 1, 2 * i, shift, precise(), kSigma_m};
+  }
+
+  KeyframeGraph graph{{}};
+};
+
+TEST_F(TwoCameras, AreInOneMapWhereverTheSecondOneBegan) {
+  const Pose far = at(500.0);
+  for (const int i : {3, 4, 5}) graph.offer(loop(i, far));
+  const std::vector<Loop> loops = graph.agreeing_to_join(loop(5, far));
+  ASSERT_EQ(loops.size(), 3U) << "no camera went from the one to the other";
+  graph.join(loops);
+  graph.optimize();
+  for (int i = 0; i < 2 * kLength; ++i) {
+    EXPECT_EQ(graph.part_of(i), 0);
+    const Pose expected = i % 2 == 0 ? truth(i) : Pose(far * truth(i));
+    EXPECT_TRUE(graph.X_WK(i).isApprox(expected, 1e-6)) << i;
+  }
+}
+
+TEST_F(TwoCameras, HaveLoopsOfOneDirectionWhoeverCameLast) {
+  EXPECT_EQ(graph.later_and_earlier(30, 7), std::pair(7, 30)) << "7 is of the later part";
+  EXPECT_EQ(graph.later_and_earlier(7, 30), std::pair(7, 30));
+  EXPECT_EQ(graph.later_and_earlier(2, 30), std::pair(30, 2)) << "of one part";
+}
+
+TEST_F(TwoCameras, MayDriftOnBothWaysOnceTheyAreJoined) {
+  for (const int i : {3, 4, 5}) graph.offer(loop(i));
+  graph.join(graph.agreeing_to_join(loop(5)));
+  EXPECT_GT(graph.offer(loop(6, at(0.0, 0.005))), 0) << "agrees with those of before";
+  // 2 % of both ways, of 9.5 m each, are 38 cm.
+  EXPECT_EQ(graph.offer(loop(19, at(0.0, 0.3))), 0) << "nothing agrees with it";
+  EXPECT_EQ(graph.offer(loop(18, at(0.0, 0.3))), 2) << "they agree with each other";
+  EXPECT_EQ(graph.offer(loop(17, at(0.0, 0.5))), 0);
+  EXPECT_EQ(graph.offer(loop(16, at(0.0, 0.5))), 0) << "too far, though they agree";
 }
 
 TEST_F(TwoParts, KeepTheirPlacesWhenOnlyOneIsCorrected) {

@@ -227,6 +227,55 @@ TEST_F(Patches, AreCorrectedWithTheLoopsOfTheirPart) {
   EXPECT_EQ(slices[0].loops, (std::vector{here}));
 }
 
+/// A patch of a guest, whose map is 1,000 m away from this one in U, with a point for each weight.
+GuestPatch guest_patch(std::int32_t id, const SeenAt& at, const std::vector<float>& weights) {
+  GuestPatch patch{.name = {.session = 8, .id = id}, .at = at, .in_volume = true};
+  patch.X_UP = Eigen::Translation3d(1'000.0, 0.0, 0.0);
+  for (const float weight : weights) patch.points_P.emplace_back().weight = weight;
+  return patch;
+}
+
+TEST_F(Patches, OfGuestsAreNumberedWithTheOthers) {
+  maker.make({{{kHere}}}, surface({{0, {1}}}), header());
+  const SeenAt at{.keyframe = 1, .place = correction(1, 0.0, 0.0, 0, 3).place(1)};
+  const auto taken =
+      maker.take_in({guest_patch(70, at, {5, 6}), guest_patch(40, at, {7})}, header());
+  ASSERT_EQ(taken.size(), 2U);
+  EXPECT_EQ(taken[0].kind, SliceKind::kPatch);
+  EXPECT_EQ(taken[0].id, 1);
+  EXPECT_EQ(taken[1].id, 2);
+  EXPECT_EQ(taken[0].keyframe, -1) << "not of this mapper's camera";
+  EXPECT_EQ(taken[0].part, 3);
+  EXPECT_FLOAT_EQ(taken[0].X_WP.t_WP[0], 1'000.0F);
+  EXPECT_THAT(weights(taken[0]), ElementsAre(5, 6));
+  EXPECT_TRUE(taken[0].in_volume);
+  EXPECT_FALSE(taken[0].ends_batch);
+  EXPECT_TRUE(taken[1].ends_batch);
+
+  const auto revised = maker.take_in({guest_patch(70, at, {8})}, header());
+  ASSERT_EQ(revised.size(), 1U);
+  EXPECT_EQ(revised[0].id, 1);
+  EXPECT_EQ(revised[0].revision, 1);
+  const auto ended = maker.finish(header());
+  EXPECT_EQ(ended.back().id, 3);
+  EXPECT_EQ(ended.back().revision_sum, 2) << "the last one of this map, and that of the guest";
+}
+
+TEST_F(Patches, OfGuestsMoveWithTheirKeyframes) {
+  const SeenAt at{.keyframe = 1, .place = correction(1, 0.0, 0.0, 0, 1).place(1)};
+  maker.take_in({guest_patch(70, at, {5})}, header());
+  MapDeformation::Place joined;  // a quarter turn, and beside part 0
+  joined.X_WU = Eigen::AngleAxisd(0.5 * M_PI, Eigen::Vector3d::UnitZ()) *
+                Eigen::Translation3d(-1'000.0, 0.0, 0.0);
+  const auto slices = maker.correct({1, {{}, joined}}, header());
+  ASSERT_EQ(slices.size(), 1U);
+  EXPECT_EQ(slices[0].part, 0);
+  ASSERT_EQ(slices[0].motions.size(), 1U);
+  const Pose X_WP = slices[0].motions[0].X_WP.pose();
+  EXPECT_LT(X_WP.translation().norm(), 1e-6) << "the guest's map begins where this one does";
+  EXPECT_NEAR((X_WP * Eigen::Vector3d::UnitX()).y(), 1.0, 1e-6);
+}
+
 TEST_F(Patches, OfATenthOfAVoxelStayUntilItIsMore) {
   maker.make({{{kHere, true, 0}}}, surface({{0, {1}}}), header());
   EXPECT_THAT(maker.correct(correction(1, 0.0009, 0.0), header()), IsEmpty());
