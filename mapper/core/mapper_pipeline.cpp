@@ -409,11 +409,23 @@ void MapperPipeline::bring_back_visible(const TrackingInput& input) {
                                       loops_->keyframe(), volume_));
 }
 
-void MapperPipeline::restore(Reactivation::Returned returned) {
+void MapperPipeline::restore(const Reactivation::Returned& returned) {
   if (returned.visits.empty()) return;
-  volume_.restore(returned.blocks, returned.around);
+  const auto& [visits_back, blocks, around] = returned;
+  const auto coords_of = [](const std::vector<KeptBlock>& kept) {
+    std::vector<BlockCoord> coords;
+    coords.reserve(kept.size());
+    for (const KeptBlock& block : kept) coords.push_back(block.coord());
+    return coords;
+  };
+  volume_.restore(coords_of(blocks), coords_of(around),
+                  [&](std::size_t i, VoxelBlock& voxels, ColorBlock& colors) {
+                    const KeptBlock& block =
+                        i < blocks.size() ? blocks[i] : around[i - blocks.size()];
+                    block.copy_to(voxels, colors);
+                  });
   std::vector<TileVisit> visits;
-  for (const auto& [visit, keyframe] : returned.visits) {
+  for (const auto& [visit, keyframe] : visits_back) {
     patch_schedule_->note_returned(visit.tile, keyframe, volume_);
     visits.push_back(visit);
   }

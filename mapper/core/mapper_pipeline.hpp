@@ -187,7 +187,7 @@ class MapperPipeline {
   void bring_back_visible(const TrackingInput& input);
   bool go_over_to_known_surface(const TrackingInput& input);
   void go_over_to(int keyframe, const Pose& X_NC, const TrackingInput& input);
-  void restore(Reactivation::Returned returned);
+  void restore(const Reactivation::Returned& returned);
   /// After a lost frame: the model for the next one is the map as seen from where the camera should
   /// be.
   void look_where_expected(const TrackingInput& input);

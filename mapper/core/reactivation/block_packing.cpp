@@ -47,14 +47,12 @@ PackedBlock pack(const BlockCoord& coord, const VoxelBlock& voxels, const ColorB
   return {coord, std::vector<char>(packed.begin(), packed.begin() + size)};
 }
 
-StoredBlock unpack(const PackedBlock& packed) {
+void unpack(const PackedBlock& packed, VoxelBlock& voxels, ColorBlock& colors) {
   Planes planes;
   const int size = LZ4_decompress_safe(packed.bytes.data(), planes.data(),
                                        static_cast<int>(packed.bytes.size()), kNumBytes);
   if (size != kNumBytes) throw std::logic_error("unpack: these bytes are not of a block");
-  StoredBlock block{packed.coord, {}, {}};
-  join(join(planes.data(), block.voxels.voxels), block.colors.colors);
-  return block;
+  join(join(planes.data(), voxels.voxels), colors.colors);
 }
 
 }  // namespace kintsugi::mapper

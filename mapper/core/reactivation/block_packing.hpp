@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "mapper/core/volume/stored_block.hpp"
+#include "mapper/core/volume/tsdf_block.hpp"
 
 namespace kintsugi::mapper {
 
@@ -16,6 +16,6 @@ struct PackedBlock {
 PackedBlock pack(const BlockCoord& coord, const VoxelBlock& voxels, const ColorBlock& colors);
 
 /// @throws std::logic_error when `packed` is not what pack() made
-StoredBlock unpack(const PackedBlock& packed);
+void unpack(const PackedBlock& packed, VoxelBlock& voxels, ColorBlock& colors);
 
 }  // namespace kintsugi::mapper

@@ -36,8 +36,8 @@ void Reactivation::clear_known(TsdfVolume& volume, const std::vector<BlockSlot>&
     const Eigen::Vector3d corner_U = block_m * Eigen::Vector3d(coord.x, coord.y, coord.z);
     box_U.extend(corner_U).extend(corner_U + Eigen::Vector3d::Constant(block_m));
   }
-  std::vector<TileVisit> visits;
   std::vector<Cover> covers;
+  std::vector<std::vector<KeptBlock>> kept;
   const double radius = radius_m(resolution_m);
   store_.for_each([&](const TileVisit& visit, int keyframe) {
     if (visit.number == TileVisit::kOpen) return;
@@ -46,11 +46,12 @@ void Reactivation::clear_known(TsdfVolume& volume, const std::vector<BlockSlot>&
     const Eigen::Vector3d center_U =
         X_OU->inverse(Eigen::Isometry) * center_of(visit.tile, resolution_m);
     if (box_U.exteriorDistance(center_U) > radius) return;
-    visits.push_back(visit);
     covers.push_back({*X_OU, center_U, radius, {}});
+    kept.push_back(store_.blocks_of(visit));
   });
-  tbb::parallel_for(std::size_t{0}, visits.size(),
-                    [&](std::size_t i) { covers[i].blocks = store_.copy_of(visits[i]); });
+  tbb::parallel_for(std::size_t{0}, covers.size(), [&](std::size_t i) {
+    for (const KeptBlock& block : kept[i]) covers[i].blocks.push_back(block.copy());
+  });
   clear_covered(volume, leaving, covers, same);
 }
 
@@ -105,14 +106,11 @@ Reactivation::Returned Reactivation::take(const std::vector<Returned::Visit>& vi
     if (is_taken) continue;
     returned.visits.push_back(visits[i]);
   }
-  std::vector<std::vector<StoredBlock>> blocks(returned.visits.size());
-  tbb::parallel_for(std::size_t{0}, blocks.size(),
-                    [&](std::size_t i) { blocks[i] = store_.copy_of(returned.visits[i].visit); });
-  for (std::size_t i = 0; i < blocks.size(); ++i) {
-    store_.forget(returned.visits[i].visit);
-    std::ranges::move(blocks[i], std::back_inserter(returned.blocks));
+  for (const Returned::Visit& visit : returned.visits) {
+    std::ranges::move(store_.blocks_of(visit.visit), std::back_inserter(returned.blocks));
+    store_.forget(visit.visit);
   }
-  std::ranges::sort(returned.blocks, {}, &StoredBlock::coord);
+  std::ranges::sort(returned.blocks, {}, &KeptBlock::coord);
   add_around(is_near, volume, returned);
   return returned;
 }
@@ -125,11 +123,13 @@ void Reactivation::add_around(const std::vector<bool>& is_near, const TsdfVolume
     return is_here(visit, keyframe, is_near);
   };
   std::set<BlockCoord> seen;
-  for (const StoredBlock& block : returned.blocks) {
-    for_each_around(block.coord, [&](const BlockCoord& near) {
+  for (const KeptBlock& block : returned.blocks) {
+    for_each_around(block.coord(), [&](const BlockCoord& near) {
       if (tiles.contains(tiles_.tile_of(near)) || volume.find(near) != kNoBlock) return;
       if (!seen.insert(near).second) return;
-      if (auto found = store_.find(near, is_allowed)) returned.around.push_back(*found);
+      if (const KeptBlock* const found = store_.find(near, is_allowed)) {
+        returned.around.push_back(*found);
+      }
     });
   }
 }
@@ -138,9 +138,10 @@ bool Reactivation::has_most_of(const std::vector<BlockCoord>& places,
                                const std::vector<bool>& is_near) const {
   std::size_t num_there = 0;
   for (const BlockCoord& place : places) {
-    num_there += store_.has(place, [&](const TileVisit& visit, int keyframe) {
+    const auto is_there = [&](const TileVisit& visit, int keyframe) {
       return visit.number != TileVisit::kOpen && is_near[keyframe];
-    });
+    };
+    if (store_.find(place, is_there) != nullptr) ++num_there;
   }
   return 2 * num_there > places.size();
 }

@@ -9,6 +9,7 @@
 #include "lcmtypes/geometry.hpp"
 #include "mapper/core/frame/surface_map.hpp"
 #include "mapper/core/reactivation/covered_surface.hpp"
+#include "mapper/core/reactivation/kept_block.hpp"
 #include "mapper/core/reactivation/tile_store.hpp"
 #include "mapper/core/slices/patch_batch.hpp"
 #include "mapper/core/slices/tile.hpp"
@@ -32,8 +33,8 @@ class Reactivation {
       int keyframe = 0;  ///< at which it was seen last
     };
     std::vector<Visit> visits;
-    std::vector<StoredBlock> blocks;  ///< of the visits, ascending
-    std::vector<StoredBlock> around;  ///< that stay away, but touch these
+    std::vector<KeptBlock> blocks;  ///< of the visits, ascending
+    std::vector<KeptBlock> around;  ///< that stay away, but touch these
   };
 
   Reactivation(const TileGrid& tiles, double max_kept_mb)

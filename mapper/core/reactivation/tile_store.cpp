@@ -15,12 +15,11 @@ constexpr double kPackedShare = 0.1;
 void TileStore::keep(const DetachedBlocks& left) {
   for (std::size_t i = 0; i < left.coords.size(); ++i) {
     const BlockCoord& coord = left.coords[i];
-    auto block =
-        std::make_shared<Block>(Block{{left.voxels[i], left.colors[i], left.storage}, {coord, {}}});
+    auto block = std::make_shared<KeptBlock>(coord, *left.voxels[i], *left.colors[i], left.storage);
     to_pack_.push_back(block);
-    std::shared_ptr<Block>& place = entries_[{grid_.tile_of(coord)}].blocks[coord];
-    if (place) num_bytes_ -= bytes_of(*place);
-    num_bytes_ += bytes_of(*block);
+    std::shared_ptr<KeptBlock>& place = entries_[{grid_.tile_of(coord)}].blocks[coord];
+    if (place) num_bytes_ -= place->bytes();
+    num_bytes_ += block->bytes();
     place = std::move(block);
   }
 }
@@ -35,26 +34,18 @@ void TileStore::close(const TileCoord& tile, int keyframe) {
   entries_.insert(std::move(open));
 }
 
-std::vector<StoredBlock> TileStore::copy_of(const TileVisit& visit) const {
-  std::vector<StoredBlock> blocks;
+std::vector<KeptBlock> TileStore::blocks_of(const TileVisit& visit) const {
+  std::vector<KeptBlock> blocks;
   const auto entry = entries_.find(visit);
   if (entry == entries_.end()) return blocks;
   blocks.reserve(entry->second.blocks.size());
-  for (const auto& [coord, block] : entry->second.blocks) blocks.push_back(copy_of(*block));
+  for (const auto& [coord, block] : entry->second.blocks) blocks.push_back(*block);
   return blocks;
 }
 
-std::optional<StoredBlock> TileStore::find(const BlockCoord& coord,
-                                           const VisitFilter& is_allowed) const {
-  const Block* const block = find_block(coord, is_allowed);
-  if (block == nullptr) return std::nullopt;
-  return copy_of(*block);
-}
-
-const TileStore::Block* TileStore::find_block(const BlockCoord& coord,
-                                              const VisitFilter& is_allowed) const {
+const KeptBlock* TileStore::find(const BlockCoord& coord, const VisitFilter& is_allowed) const {
   const TileCoord tile = grid_.tile_of(coord);
-  const Block* newest = nullptr;
+  const KeptBlock* newest = nullptr;
   for (auto entry = entries_.lower_bound({tile});
        entry != entries_.end() && entry->first.tile == tile; ++entry) {
     const auto& [visit, kept] = *entry;
@@ -83,10 +74,9 @@ void TileStore::pack_some() {
   const auto count = static_cast<std::size_t>(std::ceil(kPackedShare * to_pack_.size()));
   for (std::size_t i = 0; i < count; ++i) {
     if (const auto block = to_pack_.front().lock()) {
-      num_bytes_ -= bytes_of(*block);
-      block->packed = pack(block->packed.coord, *block->unpacked.voxels, *block->unpacked.colors);
-      block->unpacked = {};
-      num_bytes_ += bytes_of(*block);
+      num_bytes_ -= block->bytes();
+      *block = block->packed();
+      num_bytes_ += block->bytes();
     }
     to_pack_.pop_front();
   }
@@ -99,20 +89,10 @@ void TileStore::forget(const TileVisit& visit) {
   entries_.erase(entry);
 }
 
-std::size_t TileStore::bytes_of(const Block& block) {
-  return block.unpacked.voxels == nullptr ? block.packed.bytes.size()
-                                          : sizeof(VoxelBlock) + sizeof(ColorBlock);
-}
-
 std::size_t TileStore::bytes_of(const Entry& entry) {
   std::size_t sum = 0;
-  for (const auto& [coord, block] : entry.blocks) sum += bytes_of(*block);
+  for (const auto& [coord, block] : entry.blocks) sum += block->bytes();
   return sum;
-}
-
-StoredBlock TileStore::copy_of(const Block& block) {
-  if (block.unpacked.voxels == nullptr) return unpack(block.packed);
-  return {block.packed.coord, *block.unpacked.voxels, *block.unpacked.colors};
 }
 
 }  // namespace kintsugi::mapper

@@ -6,14 +6,12 @@
 #include <functional>
 #include <map>
 #include <memory>
-#include <optional>
 #include <vector>
 
-#include "mapper/core/reactivation/block_packing.hpp"
+#include "mapper/core/reactivation/kept_block.hpp"
 #include "mapper/core/slices/tile.hpp"
 #include "mapper/core/slices/tile_visit.hpp"
 #include "mapper/core/volume/detached_blocks.hpp"
-#include "mapper/core/volume/stored_block.hpp"
 
 namespace kintsugi::mapper {
 
@@ -45,18 +43,15 @@ class TileStore {
     for (const auto& [key, entry] : entries_) visit(key, entry.keyframe);
   }
 
-  /// The blocks of a visit, ascending. May be called from several threads.
-  std::vector<StoredBlock> copy_of(const TileVisit& visit) const;
+  /// The blocks of a visit, ascending.
+  std::vector<KeptBlock> blocks_of(const TileVisit& visit) const;
 
   void forget(const TileVisit& visit);
 
   using VisitFilter = std::function<bool(const TileVisit&, int keyframe)>;
-  /// A copy of the block at a place, from a visit of which this is true; of several from the open
-  /// one, or else the last.
-  std::optional<StoredBlock> find(const BlockCoord& coord, const VisitFilter& is_allowed) const;
-  bool has(const BlockCoord& coord, const VisitFilter& is_allowed) const {
-    return find_block(coord, is_allowed) != nullptr;
-  }
+  /// The block at a place, from a visit of which this is true; of several from the open one, or
+  /// else the last. Null: there is none.
+  const KeptBlock* find(const BlockCoord& coord, const VisitFilter& is_allowed) const;
 
   /// The places of a visit's blocks, ascending.
   std::vector<BlockCoord> coords_of(const TileVisit& visit) const;
@@ -67,24 +62,11 @@ class TileStore {
   std::size_t bytes() const { return num_bytes_; }  ///< of the blocks
 
  private:
-  /// As it left; `storage` keeps it alive.
-  struct UnpackedBlock {
-    const VoxelBlock* voxels = nullptr;
-    const ColorBlock* colors = nullptr;
-    std::shared_ptr<const void> storage;
-  };
-  struct Block {
-    UnpackedBlock unpacked;  ///< null once it is packed
-    PackedBlock packed;      ///< its coordinate is always there
-  };
   struct Entry {
     int keyframe = -1;
-    std::map<BlockCoord, std::shared_ptr<Block>> blocks;
+    std::map<BlockCoord, std::shared_ptr<KeptBlock>> blocks;
   };
 
-  const Block* find_block(const BlockCoord& coord, const VisitFilter& is_allowed) const;
-  static StoredBlock copy_of(const Block& block);
-  static std::size_t bytes_of(const Block& block);
   static std::size_t bytes_of(const Entry& entry);
   void pack_some();
 
@@ -94,7 +76,7 @@ class TileStore {
   std::deque<TileVisit> closed_;  ///< in this order; some have come back
   std::size_t num_bytes_ = 0;
   std::map<TileCoord, int> num_closed_;
-  std::deque<std::weak_ptr<Block>> to_pack_;  ///< expired: it has come back
+  std::deque<std::weak_ptr<KeptBlock>> to_pack_;  ///< expired: it has come back
 };
 
 }  // namespace kintsugi::mapper

@@ -29,6 +29,9 @@ class TsdfBlockPool {
   /// A slot with reference count 1 whose voxels and colours are all zero. Invalidates no reference.
   /// @throws std::bad_alloc if there is no more memory or kMaxBlocks slots are in use
   BlockSlot take(const BlockCoord& coord);
+  /// The same, but what is in the voxels and colours is left to the caller.
+  /// @throws std::bad_alloc as take()
+  BlockSlot take_unset(BlockCoord coord);
   /// A slot with reference count 1 and the coordinate and voxels of another; its colours are not
   /// initialised.
   /// @throws std::bad_alloc as take()
@@ -55,7 +58,6 @@ class TsdfBlockPool {
   struct Returns;
   struct Loan;
 
-  BlockSlot take_unset(BlockCoord coord);
   void grow();
   void collect_returns();
 

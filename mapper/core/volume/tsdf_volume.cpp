@@ -91,13 +91,18 @@ BlockSlot TsdfVolume::allocate(const BlockCoord& coord) {
   const BlockSlot known = table_.find(coord);
   if (known != kNoBlock) return known;
   const BlockSlot slot = pool_.take(coord);
-  table_.set(coord, slot);
+  add(slot);
+  return slot;
+}
+
+/// A new block of the pool becomes one of the volume, in view.
+void TsdfVolume::add(BlockSlot slot) {
+  table_.set(coord(slot), slot);
   in_use_.resize(pool_.end(), 0);
   in_use_[slot] = 1;
   last_seen_.resize(pool_.end(), 0);
   last_seen_[slot] = num_moves_;
   ++num_blocks_;
-  return slot;
 }
 
 VolumeAccess TsdfVolume::kernel_access() const {

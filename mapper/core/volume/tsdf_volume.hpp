@@ -11,7 +11,6 @@
 #include "mapper/core/volume/block_region.hpp"
 #include "mapper/core/volume/block_table.hpp"
 #include "mapper/core/volume/detached_blocks.hpp"
-#include "mapper/core/volume/stored_block.hpp"
 #include "mapper/core/volume/tsdf_block.hpp"
 #include "mapper/core/volume/tsdf_block_pool.hpp"
 
@@ -148,10 +147,13 @@ class TsdfVolume {
   /// All blocks; the volume is empty afterwards.
   DetachedBlocks detach_all(SliceKind kind = SliceKind::kFinal);
 
+  /// Writes block i of those that come back, and then of those around them, as it was when it left.
+  using WriteBlock = std::function<void(std::size_t i, VoxelBlock&, ColorBlock&)>;
   /// Puts blocks of a ball back as they were when they left; in view. They are in the region, and
   /// the volume has none at these places. `around`: blocks that left, too, and share a face, an
-  /// edge or a corner with those.
-  void restore(std::span<const StoredBlock> blocks, std::span<const StoredBlock> around);
+  /// edge or a corner with those. `write` is called from several threads.
+  void restore(std::span<const BlockCoord> blocks, std::span<const BlockCoord> around,
+               const WriteBlock& write);
 
   std::size_t num_blocks() const { return num_blocks_; }  ///< in the region
   std::size_t memory_bytes() const;                       ///< including blocks that are handed out
@@ -176,6 +178,7 @@ class TsdfVolume {
   DetachedBlocks describe(const std::vector<BlockSlot>& leaving, SliceKind kind, Keep keep) const;
   DetachedBlocks detach(const std::vector<BlockSlot>& leaving, SliceKind kind,
                         const BlockRegion& region_after);
+  void add(BlockSlot slot);
   void remove(const std::vector<BlockSlot>& slots);
   template <typename Predicate>
   void forget_departed_if(Predicate predicate);

@@ -156,10 +156,6 @@ TEST(BallRegion, SaysHowFarItCanReach) {
               ThrowsMessage<std::invalid_argument>(HasSubstr("max_range_m is 9.")));
 }
 
-StoredBlock stored(const DetachedBlocks& left, std::size_t i) {
-  return {left.coords[i], *left.voxels[i], *left.colors[i]};
-}
-
 TEST(BallRegion, TakesBlocksBackAsTheyWere) {
   TsdfVolume volume(small_ball());
   volume.shift_to(Eigen::Vector3d::Zero());
@@ -175,7 +171,11 @@ TEST(BallRegion, TakesBlocksBackAsTheyWere) {
   EXPECT_EQ(left.kind, SliceKind::kPatch);
   volume.shift_to(Eigen::Vector3d(1e-3, 0, 0));
 
-  volume.restore(std::vector{stored(left, 0)}, std::vector{stored(left, 1)});
+  volume.restore(std::vector{here}, std::vector{beside},
+                 [&](std::size_t i, VoxelBlock& voxels, ColorBlock& colors) {
+                   voxels = *left.voxels[i];
+                   colors = *left.colors[i];
+                 });
   EXPECT_EQ(volume.num_blocks(), 1U);
   const BlockSlot slot = volume.find(here);
   ASSERT_NE(slot, kNoBlock);
