@@ -136,7 +136,7 @@ FrameResult MapperPipeline::process(const RgbdFrame& measured) {
     X_WC_ = result.tracking.X_WC;
     result.slices_left = shift(X_WC_.translation());
     if (reactivation_) {
-      reactivation_->tidy();
+      reactivation_->tidy(frame.utime);
       bring_back_visible(input);
     }
     clock.end_of(&StageTimes::shift_ms);
@@ -334,25 +334,28 @@ std::vector<BlockSlot> MapperPipeline::slots_of(
 /// Of surface that is seen again after a long way one stays: the first one, to which the camera
 /// goes over.
 void MapperPipeline::clear_known(const std::vector<BlockSlot>& leaving) {
-  const std::vector<bool> is_near = loops_->near_keyframes();
-  const Pose X_WU = loops_->deformation().at(loops_->keyframe());
-  const auto place_of = [&](int keyframe) -> std::optional<Pose> {
-    if (is_near[keyframe]) return std::nullopt;
-    return loops_->deformation().at(keyframe).inverse(Eigen::Isometry) * X_WU;
-  };
   std::vector<BlockCoord> coords;
   coords.reserve(leaving.size());
   for (const BlockSlot slot : leaving) coords.push_back(volume_.coord(slot));
-  reactivation_->clear_known(volume_, leaving, place_of, same_surface(config_));
+  reactivation_->clear_known(volume_, leaving, places_of_far_keyframes(), same_surface(config_));
   std::erase_if(coords,
                 [this](const BlockCoord& coord) { return volume_.find(coord) != kNoBlock; });
   patch_schedule_->note_left(coords, volume_);
 }
 
-void MapperPipeline::take_left(DetachedBlocks left, bool waits) {
+Reactivation::PlaceOfKeyframe MapperPipeline::places_of_far_keyframes() const {
+  return
+      [this, is_near = loops_->near_keyframes(),
+       X_WU = loops_->deformation().at(loops_->keyframe())](int keyframe) -> std::optional<Pose> {
+        if (is_near[keyframe]) return std::nullopt;
+        return loops_->deformation().at(keyframe).inverse(Eigen::Isometry) * X_WU;
+      };
+}
+
+void MapperPipeline::take_left(DetachedBlocks left) {
   if (patch_schedule_) patch_schedule_->note_left(left.coords, volume_);
   if (reactivation_) reactivation_->keep(left);
-  slice_worker_.submit(std::move(left), camera_now(), waits);
+  slice_worker_.submit(std::move(left), camera_now());
 }
 
 void MapperPipeline::submit_patches(const RgbdFrame& frame) {
@@ -467,8 +470,11 @@ bool MapperPipeline::go_over_to_known_surface(const TrackingInput& input) {
 /// Empties the volume and fills it with what is kept around a keyframe, in whose frame N the camera
 /// is from now on.
 void MapperPipeline::go_over_to(int keyframe, const Pose& X_NC, const TrackingInput& input) {
-  clear_known(slots_of([](BlockSlot) { return true; }));
-  take_left(volume_.detach_all(SliceKind::kPatch), false);
+  DetachedBlocks left = volume_.detach_all(SliceKind::kPatch);
+  slice_worker_.submit(
+      reactivation_->keep_unknown(std::move(left), config_.volume, places_of_far_keyframes(),
+                                  same_surface(config_), utime_),
+      camera_now());
   depart_all_patches();
   X_WC_ = X_NC;
   loops_->go_to(keyframe);

@@ -169,8 +169,10 @@ class MapperPipeline {
   int part() const { return place_of(seen_at()).part; }
   int shift(const Eigen::Vector3d& camera_W);
   int let_go_of_far_surface();
-  void take_left(DetachedBlocks left, bool waits = true);
+  void take_left(DetachedBlocks left);
   void clear_known(const std::vector<BlockSlot>& leaving);
+  /// By keyframe: where what it saw is compared with what leaves.
+  Reactivation::PlaceOfKeyframe places_of_far_keyframes() const;
   std::vector<BlockSlot> slots_of(const std::function<bool(BlockSlot)>& is_chosen) const;
   void submit_patches(const RgbdFrame& frame);
   void submit_patches(PatchBatch batch);

@@ -4,8 +4,13 @@
 #include <algorithm>
 #include <bitset>
 #include <cmath>
+#include <cstddef>
+#include <deque>
+#include <functional>
+#include <memory>
 #include <numbers>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include <tbb/parallel_for.h>
@@ -85,35 +90,40 @@ class DistanceField {
   bool has_last_ = false;
 };
 
+/// About the voxels of a block.
+struct Decision {
+  std::bitset<kBlockVoxels> covered;
+  bool has_rest = false;  ///< other surface
+};
+
+void clear(VoxelBlock& block, const std::bitset<kBlockVoxels>& covered) {
+  for (int index = 0; index < kBlockVoxels; ++index) {
+    if (covered[index]) block.voxels[index] = 0;
+  }
+}
+
+/// The voxels of a block; null where there is none.
+using FindBlock = std::function<const VoxelBlock*(const BlockCoord&)>;
+
 /// Decides about the voxels of a volume.
 class Comparison {
  public:
-  Comparison(const TsdfVolume& volume, const std::vector<Cover>& covers, const SameSurface& same)
-      : volume_(volume),
+  Comparison(FindBlock find, const TsdfVolume::Config& volume, const std::vector<Cover>& covers,
+             const SameSurface& same)
+      : find_(std::move(find)),
         covers_(covers),
         same_(same),
-        voxel_m_(volume.config().resolution_m),
-        truncation_vox_(volume.config().largest_truncation_vox()),
-        reach_vox_(volume.config().truncation_vox),
+        voxel_m_(volume.resolution_m),
+        truncation_vox_(volume.largest_truncation_vox()),
+        reach_vox_(volume.truncation_vox),
         min_cosine_(std::cos(same.max_angle_deg * std::numbers::pi / 180.0)) {}
 
-  struct Decision {
-    std::bitset<kBlockVoxels> covered;
-    bool has_rest = false;  ///< other surface
-  };
-
   /// About the voxels between which and the next one there is surface.
-  Decision decide(BlockSlot slot) const {
+  Decision decide(const BlockCoord& coord) const {
     Decision decision;
-    const BlockCoord& coord = volume_.coord(slot);
     std::vector<Placed> near = covers_near(coord);
     if (near.empty()) return decision;
-    DistanceField own(
-        [this](const BlockCoord& at) -> const VoxelBlock* {
-          const BlockSlot found = volume_.find(at);
-          return found == kNoBlock ? nullptr : &volume_.voxels(found);
-        },
-        truncation_vox_, 0);
+    DistanceField own(find_, truncation_vox_, 0);
     for (int index = 0; index < kBlockVoxels; ++index) {
       const Eigen::Vector3i voxel(coord.x * kBlockSide + index % kBlockSide,
                                   coord.y * kBlockSide + index / kBlockSide % kBlockSide,
@@ -171,7 +181,7 @@ class Comparison {
            found->normal.dot(cover.X_OU.linear() * surface.normal) >= min_cosine_;
   }
 
-  const TsdfVolume& volume_;
+  const FindBlock find_;
   const std::vector<Cover>& covers_;
   const SameSurface& same_;
   const double voxel_m_;
@@ -192,10 +202,16 @@ void clear_covered(TsdfVolume& volume, const std::vector<BlockSlot>& slots,
                    const std::vector<Cover>& covers, const SameSurface& same) {
   if (covers.empty()) return;
   // All are looked at before any is changed: the gradients need the blocks around as they are.
-  const Comparison comparison(volume, covers, same);
-  std::vector<Comparison::Decision> decisions(slots.size());
-  tbb::parallel_for(std::size_t{0}, slots.size(),
-                    [&](std::size_t i) { decisions[i] = comparison.decide(slots[i]); });
+  const Comparison comparison(
+      [&](const BlockCoord& coord) {
+        const BlockSlot slot = volume.find(coord);
+        return slot == kNoBlock ? nullptr : &std::as_const(volume).voxels(slot);
+      },
+      volume.config(), covers, same);
+  std::vector<Decision> decisions(slots.size());
+  tbb::parallel_for(std::size_t{0}, slots.size(), [&](std::size_t i) {
+    decisions[i] = comparison.decide(volume.coord(slots[i]));
+  });
   for (std::size_t i = 0; i < slots.size(); ++i) {
     const auto& [covered, has_rest] = decisions[i];
     if (covered.none()) continue;
@@ -203,11 +219,47 @@ void clear_covered(TsdfVolume& volume, const std::vector<BlockSlot>& slots,
       volume.discard(slots[i]);
       continue;
     }
-    VoxelBlock& block = volume.voxels(slots[i]);
-    for (int index = 0; index < kBlockVoxels; ++index) {
-      if (covered[index]) block.voxels[index] = 0;
-    }
+    clear(volume.voxels(slots[i]), covered);
   }
+}
+
+DetachedBlocks without_covered(DetachedBlocks blocks, const TsdfVolume::Config& volume,
+                               const std::vector<Cover>& covers, const SameSurface& same) {
+  if (covers.empty()) return blocks;
+  const Comparison comparison(
+      [&](const BlockCoord& coord) -> const VoxelBlock* {
+        const auto found = std::ranges::lower_bound(blocks.coords, coord);
+        if (found == blocks.coords.end() || *found != coord) return nullptr;
+        return blocks.voxels[found - blocks.coords.begin()];
+      },
+      volume, covers, same);
+  std::vector<Decision> decisions(blocks.coords.size());
+  tbb::parallel_for(std::size_t{0}, decisions.size(),
+                    [&](std::size_t i) { decisions[i] = comparison.decide(blocks.coords[i]); });
+  struct Storage {
+    std::shared_ptr<const void> before;
+    std::deque<VoxelBlock> cleared;
+  };
+  const auto storage = std::make_shared<Storage>(Storage{std::move(blocks.storage), {}});
+  std::size_t num_left = 0;
+  for (std::size_t i = 0; i < decisions.size(); ++i) {
+    const auto& [covered, has_rest] = decisions[i];
+    if (covered.any() && !has_rest) continue;
+    const VoxelBlock* voxels = blocks.voxels[i];
+    if (covered.any()) {
+      clear(storage->cleared.emplace_back(*voxels), covered);
+      voxels = &storage->cleared.back();
+    }
+    blocks.coords[num_left] = blocks.coords[i];
+    blocks.voxels[num_left] = voxels;
+    blocks.colors[num_left] = blocks.colors[i];
+    ++num_left;
+  }
+  blocks.coords.resize(num_left);
+  blocks.voxels.resize(num_left);
+  blocks.colors.resize(num_left);
+  blocks.storage = storage;
+  return blocks;
 }
 
 }  // namespace kintsugi::mapper

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "lcmtypes/geometry.hpp"
+#include "mapper/core/volume/detached_blocks.hpp"
 #include "mapper/core/volume/stored_block.hpp"
 #include "mapper/core/volume/tsdf_volume.hpp"
 
@@ -31,5 +32,9 @@ struct Cover {
 /// blocks that have none left.
 void clear_covered(TsdfVolume& volume, const std::vector<BlockSlot>& slots,
                    const std::vector<Cover>& covers, const SameSurface& same);
+
+/// The same of all blocks of a volume, which have left it: what is left of them.
+DetachedBlocks without_covered(DetachedBlocks blocks, const TsdfVolume::Config& volume,
+                               const std::vector<Cover>& covers, const SameSurface& same);
 
 }  // namespace kintsugi::mapper

@@ -4,14 +4,32 @@
 #include <cmath>
 #include <iterator>
 #include <set>
+#include <utility>
 
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
+#include "lcmtypes/base/thread_priority.hpp"
 #include "mapper/core/reactivation/visible_space.hpp"
 #include "mapper/core/volume/blocks_around.hpp"
 
 namespace kintsugi::mapper {
 namespace {
+
+/// Of device time, so that it does not depend on how fast the thread is. The thread computes for
+/// less than half a second, but on a busy machine the others go first.
+constexpr std::int64_t kWaits_us = 10'000'000;
+
+/// On a thread of low priority, and on no other: those of the thread pool are for tracking.
+template <typename Function>
+auto in_background(Function function) {
+  return std::async(std::launch::async, [function = std::move(function)]() mutable {
+    lower_priority_of_thread();
+    Function captured = std::move(function);  // is destroyed on this thread, too
+    tbb::task_arena alone(1);
+    return alone.execute(captured);
+  });
+}
 
 /// An open visit belongs to what the volume holds.
 bool is_here(const TileVisit& visit, int keyframe, const std::vector<bool>& is_near) {
@@ -27,17 +45,53 @@ void Reactivation::close_departed(const PatchBatch& batch) {
 }
 
 void Reactivation::clear_known(TsdfVolume& volume, const std::vector<BlockSlot>& leaving,
-                               const PlaceOfKeyframe& place_of, const SameSurface& same) const {
-  const double resolution_m = volume.config().resolution_m;
+                               const PlaceOfKeyframe& place_of, const SameSurface& same) {
+  std::vector<BlockCoord> places;
+  places.reserve(leaving.size());
+  for (const BlockSlot slot : leaving) places.push_back(volume.coord(slot));
+  Known known = known_in(places, volume.config().resolution_m, place_of);
+  clear_covered(volume, leaving, std::move(known).unpacked(), same);
+}
+
+std::shared_future<DetachedBlocks> Reactivation::keep_unknown(DetachedBlocks left,
+                                                              const TsdfVolume::Config& volume,
+                                                              const PlaceOfKeyframe& place_of,
+                                                              const SameSurface& same,
+                                                              std::int64_t utime) {
+  settle();
+  Known known = known_in(left.coords, volume.resolution_m, place_of);
+  std::vector<TileVisit> visits = store_.expect(left.coords);
+  auto rest =
+      in_background([left = std::move(left), volume, known = std::move(known), same]() mutable {
+        return without_covered(std::move(left), volume, std::move(known).unpacked(), same);
+      }).share();
+  auto packed =
+      in_background([rest, grid = tiles_] { return TileStore::packed(rest.get(), grid); });
+  waiting_ = {std::move(visits), std::move(packed), utime + kWaits_us};
+  return rest;
+}
+
+/// What is kept, as far as it may cover these blocks.
+Reactivation::Known Reactivation::known_in(const std::vector<BlockCoord>& places_U,
+                                           double resolution_m, const PlaceOfKeyframe& place_of) {
   const double block_m = kBlockSide * resolution_m;
   Eigen::AlignedBox3d box_U;
-  for (const BlockSlot slot : leaving) {
-    const BlockCoord& coord = volume.coord(slot);
+  for (const BlockCoord& coord : places_U) {
     const Eigen::Vector3d corner_U = block_m * Eigen::Vector3d(coord.x, coord.y, coord.z);
     box_U.extend(corner_U).extend(corner_U + Eigen::Vector3d::Constant(block_m));
   }
-  std::vector<Cover> covers;
-  std::vector<std::vector<KeptBlock>> kept;
+  Known known = find_known(box_U, resolution_m, place_of);
+  const auto waits = [this](const TileVisit& visit) {
+    return std::ranges::binary_search(waiting_->visits, visit);
+  };
+  if (!waiting_ || std::ranges::none_of(known.visits, waits)) return known;
+  settle();
+  return find_known(box_U, resolution_m, place_of);
+}
+
+Reactivation::Known Reactivation::find_known(const Eigen::AlignedBox3d& box_U, double resolution_m,
+                                             const PlaceOfKeyframe& place_of) const {
+  Known known;
   const double radius = radius_m(resolution_m);
   store_.for_each([&](const TileVisit& visit, int keyframe) {
     if (visit.number == TileVisit::kOpen) return;
@@ -46,18 +100,44 @@ void Reactivation::clear_known(TsdfVolume& volume, const std::vector<BlockSlot>&
     const Eigen::Vector3d center_U =
         X_OU->inverse(Eigen::Isometry) * center_of(visit.tile, resolution_m);
     if (box_U.exteriorDistance(center_U) > radius) return;
-    covers.push_back({*X_OU, center_U, radius, {}});
-    kept.push_back(store_.blocks_of(visit));
+    known.visits.push_back(visit);
+    known.covers.push_back({*X_OU, center_U, radius, {}});
+    known.blocks.push_back(store_.blocks_of(visit));
   });
+  return known;
+}
+
+std::vector<Cover> Reactivation::Known::unpacked() && {
   tbb::parallel_for(std::size_t{0}, covers.size(), [&](std::size_t i) {
-    for (const KeptBlock& block : kept[i]) covers[i].blocks.push_back(block.copy());
+    for (const KeptBlock& block : blocks[i]) covers[i].blocks.push_back(block.copy());
   });
-  clear_covered(volume, leaving, covers, same);
+  return std::move(covers);
+}
+
+void Reactivation::tidy(std::int64_t utime) {
+  if (waiting_ && utime >= waiting_->due_utime) settle();
+  store_.tidy();
+}
+
+/// Where surface that waits could be seen now.
+void Reactivation::settle_near(const std::vector<bool>& is_near) {
+  const auto is_seen = [&](const TileVisit& visit) {
+    const auto keyframe = store_.keyframe_of(visit);
+    return keyframe && is_near[*keyframe];
+  };
+  if (waiting_ && std::ranges::any_of(waiting_->visits, is_seen)) settle();
+}
+
+void Reactivation::settle() {
+  if (!waiting_) return;
+  Waiting waiting = *std::exchange(waiting_, std::nullopt);
+  store_.keep(waiting.blocks.get(), waiting.visits);
 }
 
 Reactivation::Returned Reactivation::take_visible(const SurfaceMap& seen_C, const Pose& X_UC,
                                                   const std::vector<bool>& is_near, int keyframe,
                                                   const TsdfVolume& volume) {
+  settle_near(is_near);
   const double resolution_m = volume.config().resolution_m;
   const double radius = radius_m(resolution_m);
   const double reach_m = volume.config().max_range_m - radius;
@@ -124,8 +204,10 @@ void Reactivation::add_around(const std::vector<bool>& is_near, const TsdfVolume
   };
   std::set<BlockCoord> seen;
   for (const KeptBlock& block : returned.blocks) {
+    const TileCoord own_tile = tiles_.tile_of(block.coord());
     for_each_around(block.coord(), [&](const BlockCoord& near) {
-      if (tiles.contains(tiles_.tile_of(near)) || volume.find(near) != kNoBlock) return;
+      const TileCoord tile = tiles_.tile_of(near);
+      if (tile == own_tile || tiles.contains(tile) || volume.find(near) != kNoBlock) return;
       if (!seen.insert(near).second) return;
       if (const KeptBlock* const found = store_.find(near, is_allowed)) {
         returned.around.push_back(*found);
@@ -135,7 +217,8 @@ void Reactivation::add_around(const std::vector<bool>& is_near, const TsdfVolume
 }
 
 bool Reactivation::has_most_of(const std::vector<BlockCoord>& places,
-                               const std::vector<bool>& is_near) const {
+                               const std::vector<bool>& is_near) {
+  settle_near(is_near);
   std::size_t num_there = 0;
   for (const BlockCoord& place : places) {
     const auto is_there = [&](const TileVisit& visit, int keyframe) {

@@ -1,8 +1,11 @@
 #pragma once
 // Surface that has left the volume comes back into it when the camera comes back.
 
+#include <Eigen/Geometry>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
+#include <future>
 #include <optional>
 #include <vector>
 
@@ -52,7 +55,15 @@ class Reactivation {
 
   /// Clears surface of these blocks, which are about to leave, where the same is kept.
   void clear_known(TsdfVolume& volume, const std::vector<BlockSlot>& leaving,
-                   const PlaceOfKeyframe& place_of, const SameSurface& same) const;
+                   const PlaceOfKeyframe& place_of, const SameSurface& same);
+
+  /// The same of all that was in the volume, and keeps the rest. There is much of it, so this is
+  /// done on a thread of its own, which also packs the blocks: they are kept from some time after
+  /// `utime` on, or from when they are asked for. Returns the rest.
+  std::shared_future<DetachedBlocks> keep_unknown(DetachedBlocks left,
+                                                  const TsdfVolume::Config& volume,
+                                                  const PlaceOfKeyframe& place_of,
+                                                  const SameSurface& same, std::int64_t utime);
 
   /// Takes out what a frame is about to change. `is_near`: by keyframe, whether its surface is
   /// where this camera sees it; `keyframe`: at which the camera is.
@@ -60,17 +71,39 @@ class Reactivation {
                         const std::vector<bool>& is_near, int keyframe, const TsdfVolume& volume);
 
   /// Whether blocks are kept at most of these places, which near keyframes saw.
-  bool has_most_of(const std::vector<BlockCoord>& places, const std::vector<bool>& is_near) const;
+  bool has_most_of(const std::vector<BlockCoord>& places, const std::vector<bool>& is_near);
 
   /// Tiles with an open visit.
   std::vector<TileCoord> open_tiles() const;
 
-  /// To be called once a frame.
-  void tidy() { store_.tidy(); }
+  /// To be called once a frame, with its time.
+  /// @throws what keep_unknown() threw on its thread
+  void tidy(std::int64_t utime);
 
   std::size_t bytes() const { return store_.bytes(); }  ///< of what is kept
 
  private:
+  /// Visits whose blocks are being packed.
+  struct Waiting {
+    std::vector<TileVisit> visits;  ///< ascending
+    std::future<TileStore::BlocksByTile> blocks;
+    std::int64_t due_utime = 0;
+  };
+  /// Visits of the store as covers, which have no blocks yet, and their blocks.
+  struct Known {
+    std::vector<TileVisit> visits;
+    std::vector<Cover> covers;
+    std::vector<std::vector<KeptBlock>> blocks;
+
+    std::vector<Cover> unpacked() &&;
+  };
+
+  Known known_in(const std::vector<BlockCoord>& places_U, double resolution_m,
+                 const PlaceOfKeyframe& place_of);
+  Known find_known(const Eigen::AlignedBox3d& box_U, double resolution_m,
+                   const PlaceOfKeyframe& place_of) const;
+  void settle_near(const std::vector<bool>& is_near);
+  void settle();
   Returned take(const std::vector<Returned::Visit>& visits, const std::vector<bool>& is_near,
                 const TsdfVolume& volume);
   void add_around(const std::vector<bool>& is_near, const TsdfVolume& volume, Returned& returned);
@@ -79,6 +112,7 @@ class Reactivation {
 
   const TileGrid tiles_;
   TileStore store_;
+  std::optional<Waiting> waiting_;
 };
 
 }  // namespace kintsugi::mapper

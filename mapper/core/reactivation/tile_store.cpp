@@ -1,6 +1,7 @@
 #include "mapper/core/reactivation/tile_store.hpp"
 
 #include <cmath>
+#include <set>
 #include <utility>
 
 namespace kintsugi::mapper {
@@ -21,6 +22,45 @@ void TileStore::keep(const DetachedBlocks& left) {
     if (place) num_bytes_ -= place->bytes();
     num_bytes_ += block->bytes();
     place = std::move(block);
+  }
+}
+
+std::vector<TileVisit> TileStore::expect(const std::vector<BlockCoord>& coords) {
+  std::set<TileCoord> tiles;
+  auto last = tiles.end();
+  for (const BlockCoord& coord : coords) {
+    const TileCoord tile = grid_.tile_of(coord);
+    if (tiles.empty() || *last != tile) last = tiles.insert(tile).first;
+  }
+  std::vector<TileVisit> visits;
+  for (const TileCoord& tile : tiles) {
+    entries_[{tile}];
+    visits.push_back({tile, num_closed_[tile]});
+  }
+  return visits;
+}
+
+TileStore::BlocksByTile TileStore::packed(const DetachedBlocks& left, const TileGrid& grid) {
+  BlocksByTile blocks;
+  for (std::size_t i = 0; i < left.coords.size(); ++i) {
+    const BlockCoord& coord = left.coords[i];
+    const KeptBlock block(coord, *left.voxels[i], *left.colors[i], nullptr);
+    blocks[grid.tile_of(coord)][coord] = std::make_shared<KeptBlock>(block.packed());
+  }
+  return blocks;
+}
+
+void TileStore::keep(BlocksByTile blocks, const std::vector<TileVisit>& visits) {
+  for (const TileVisit& visit : visits) {
+    const auto entry = entries_.find(visit);
+    if (entry == entries_.end()) continue;
+    Blocks& kept = entry->second.blocks;
+    num_bytes_ -= bytes_of(kept);
+    Blocks& newer = blocks[visit.tile];
+    newer.merge(kept);  // but for those that are there already
+    kept = std::move(newer);
+    num_bytes_ += bytes_of(kept);
+    if (kept.empty()) entries_.erase(entry);
   }
 }
 
@@ -82,16 +122,22 @@ void TileStore::pack_some() {
   }
 }
 
+std::optional<int> TileStore::keyframe_of(const TileVisit& visit) const {
+  const auto entry = entries_.find(visit);
+  if (entry == entries_.end()) return std::nullopt;
+  return entry->second.keyframe;
+}
+
 void TileStore::forget(const TileVisit& visit) {
   const auto entry = entries_.find(visit);
   if (entry == entries_.end()) return;
-  num_bytes_ -= bytes_of(entry->second);
+  num_bytes_ -= bytes_of(entry->second.blocks);
   entries_.erase(entry);
 }
 
-std::size_t TileStore::bytes_of(const Entry& entry) {
+std::size_t TileStore::bytes_of(const Blocks& blocks) {
   std::size_t sum = 0;
-  for (const auto& [coord, block] : entry.blocks) sum += block->bytes();
+  for (const auto& [coord, block] : blocks) sum += block->bytes();
   return sum;
 }
 

@@ -6,6 +6,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "mapper/core/reactivation/kept_block.hpp"
@@ -32,6 +33,17 @@ class TileStore {
   /// is replaced.
   void keep(const DetachedBlocks& left);
 
+  using Blocks = std::map<BlockCoord, std::shared_ptr<KeptBlock>>;
+  using BlocksByTile = std::map<TileCoord, Blocks>;
+
+  /// Makes open visits for blocks that will be kept when they are packed. Returns, ascending, the
+  /// visits as they are when close() is called next.
+  std::vector<TileVisit> expect(const std::vector<BlockCoord>& coords);
+  /// May be called on any thread.
+  static BlocksByTile packed(const DetachedBlocks& left, const TileGrid& grid);
+  /// Keeps blocks in these visits, but not in those that were forgotten.
+  void keep(BlocksByTile blocks, const std::vector<TileVisit>& visits);
+
   /// Closes the open visit of a tile, which was seen last at this keyframe. Also counts the visit
   /// where it has no blocks.
   void close(const TileCoord& tile, int keyframe);
@@ -45,6 +57,9 @@ class TileStore {
 
   /// The blocks of a visit, ascending.
   std::vector<KeptBlock> blocks_of(const TileVisit& visit) const;
+
+  /// The keyframe of a closed visit; nothing: it is not kept.
+  std::optional<int> keyframe_of(const TileVisit& visit) const;
 
   void forget(const TileVisit& visit);
 
@@ -64,10 +79,10 @@ class TileStore {
  private:
   struct Entry {
     int keyframe = -1;
-    std::map<BlockCoord, std::shared_ptr<KeptBlock>> blocks;
+    Blocks blocks;
   };
 
-  static std::size_t bytes_of(const Entry& entry);
+  static std::size_t bytes_of(const Blocks& blocks);
   void pack_some();
 
   const TileGrid grid_;

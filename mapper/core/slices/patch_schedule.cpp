@@ -62,7 +62,7 @@ void PatchSchedule::note_returned(const TileCoord& coord, int keyframe, const Ts
 }
 
 PatchBatch PatchSchedule::depart_all(const std::vector<TileCoord>& others) {
-  for (const auto& [coord, tile] : tiles_) departed_.emplace(coord, tile.keyframe);
+  for (const auto& [coord, tile] : tiles_) departed_.insert_or_assign(coord, tile.keyframe);
   for (const TileCoord& coord : others) departed_.emplace(coord, keyframe_);
   tiles_.clear();
   PatchBatch batch;

@@ -55,12 +55,18 @@ SliceWorker::~SliceWorker() {
   thread_.join();
 }
 
-void SliceWorker::submit(DetachedBlocks blocks, const SliceCamera& camera, bool waits) {
+void SliceWorker::submit(DetachedBlocks blocks, const SliceCamera& camera) {
   Job job;
   job.header = header_of(blocks.kind, blocks.resolution_m, camera);
   job.camera = camera;
   job.blocks = std::move(blocks);
-  job.waits = waits;
+  enqueue(std::move(job));
+}
+
+void SliceWorker::submit(std::shared_future<DetachedBlocks> blocks, const SliceCamera& camera) {
+  Job job;
+  job.camera = camera;
+  job.coming = std::move(blocks);
   enqueue(std::move(job));
 }
 
@@ -102,7 +108,7 @@ void SliceWorker::submit(std::vector<GuestPatch> patches, const SliceCamera& cam
 
 void SliceWorker::enqueue(Job job) {
   std::unique_lock lock(mutex_);
-  const std::size_t num_blocks = num_blocks_counted(job);
+  const std::size_t num_blocks = num_blocks_held(job.blocks);
   done_.wait(lock, [&] {
     return failure_ || num_blocks == 0 || queue_.empty() ||
            queued_blocks_ + num_blocks <= config_.max_queued_blocks;
@@ -111,10 +117,6 @@ void SliceWorker::enqueue(Job job) {
   queued_blocks_ += num_blocks;
   queue_.push_back(std::move(job));
   work_.notify_one();
-}
-
-std::size_t SliceWorker::num_blocks_counted(const Job& job) {
-  return job.waits ? num_blocks_held(job.blocks) : 0;
 }
 
 std::vector<CloudSlice> SliceWorker::take_finished() {
@@ -146,6 +148,7 @@ void SliceWorker::run() {
     if (stop_) return;
     Job& job = queue_.front();  // stays valid: other threads only append
     lock.unlock();
+    if (job.coming.valid()) job.coming.wait();
     const Stopwatch stopwatch;
     std::exception_ptr failure;
     std::vector<CloudSlice> slices;
@@ -159,7 +162,7 @@ void SliceWorker::run() {
     busy_ms_ += elapsed_ms;
     failure_ = failure;
     std::ranges::move(slices, std::back_inserter(finished_));
-    queued_blocks_ -= num_blocks_counted(job);
+    queued_blocks_ -= num_blocks_held(job.blocks);
     queue_.pop_front();
     done_.notify_all();
     if (failure_) return;
@@ -175,13 +178,15 @@ std::vector<CloudSlice> SliceWorker::work_on(Job& job) {
   }
   if (!job.returned.empty())
     return patches_.value().reopen(job.returned, job.header, job.camera.at);
-  ExtractedSurface surface = extractor_.extract_blocks(job.blocks);
+  const DetachedBlocks& blocks = job.coming.valid() ? job.coming.get() : job.blocks;
+  if (job.coming.valid()) job.header = header_of(blocks.kind, blocks.resolution_m, job.camera);
+  ExtractedSurface surface = extractor_.extract_blocks(blocks);
   if (job.batch) return patches_.value().make(*job.batch, surface, job.header);
   const std::vector<PatchRun> runs = patches_ ? patches_->keep(surface, job.camera.at)
                                               : no_patch(surface.points_W.size(), job.header);
   if (config_.on_points) config_.on_points(surface.points_W, runs);
   if (config_.on_mesh) {
-    const MeshPiece piece = mesh_extractor_.extract(job.blocks);
+    const MeshPiece piece = mesh_extractor_.extract(blocks);
     config_.on_mesh(piece, patches_ ? patches_->patches_of(piece, job.header.resolution_m)
                                     : no_patch(piece.vertices.size(), job.header));
   }

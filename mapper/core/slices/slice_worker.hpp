@@ -6,6 +6,7 @@
 #include <deque>
 #include <exception>
 #include <functional>
+#include <future>
 #include <mutex>
 #include <optional>
 #include <thread>
@@ -64,9 +65,13 @@ class SliceWorker {
 
   /// Queues blocks that left when the camera was there. Final blocks end the run.
   /// @throws what extraction of an earlier slice threw
-  /// `waits`: for room in the queue. Blocks of a volume that is emptied need not: they take no more
-  /// memory than they did, and the next one of this size comes much later.
-  void submit(DetachedBlocks blocks, const SliceCamera& camera, bool waits = true);
+  void submit(DetachedBlocks blocks, const SliceCamera& camera);
+
+  /// The same of blocks that another thread is working on, of a volume that was emptied. This does
+  /// not wait for room in the queue: they take no more memory than they did in the volume, and the
+  /// next one of this size comes much later.
+  /// @throws as above
+  void submit(std::shared_future<DetachedBlocks> blocks, const SliceCamera& camera);
 
   /// Queues patches; `in_volume` are copies of those blocks of their tiles that are in the volume.
   /// @throws as above
@@ -102,17 +107,16 @@ class SliceWorker {
  private:
   struct Job {
     DetachedBlocks blocks;
+    std::shared_future<DetachedBlocks> coming;  ///< if valid, instead of `blocks`
     std::optional<PatchBatch> batch;            ///< none: the blocks have left
     std::optional<MapDeformation> deformation;  ///< there are no blocks
     std::vector<TileVisit> returned;            ///< if there are any, there are no blocks
     std::vector<GuestPatch> of_guests;          ///< the same
     SliceCamera camera;
     CloudSlice header;  ///< of its slices
-    bool waits = true;  ///< its blocks count in the queue
   };
 
   void enqueue(Job job);
-  static std::size_t num_blocks_counted(const Job& job);
   void run();
   std::vector<CloudSlice> work_on(Job& job);
   std::vector<CloudSlice> slices_of_left(const Job& job, ExtractedSurface surface);

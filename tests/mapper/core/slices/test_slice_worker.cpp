@@ -1,3 +1,6 @@
+#include <future>
+#include <stdexcept>
+
 #include <gtest/gtest.h>
 
 #include "mapper/core/slices/slice_worker.hpp"
@@ -68,6 +71,30 @@ TEST(SliceWorker, KeepsTheOrderWhenItIsOutrun) {
     EXPECT_EQ(slices[i].utime, i);
   }
   EXPECT_TRUE(worker.drain().empty());
+}
+
+TEST(SliceWorker, KeepsTheOrderWhenBlocksAreStillWorkedOn) {
+  SliceWorker worker({});
+  std::promise<DetachedBlocks> blocks;
+  worker.submit(blocks.get_future().share(), {.utime = 1, .X_WC = Pose::Identity()});
+  worker.submit(plane_blocks(SliceKind::kFinal), {.utime = 2, .X_WC = Pose::Identity()});
+  EXPECT_TRUE(worker.take_finished().empty());
+  blocks.set_value(plane_blocks(SliceKind::kShiftPlusX));
+  const std::vector<CloudSlice> slices = worker.drain();
+  ASSERT_EQ(slices.size(), 2U);
+  EXPECT_EQ(slices[0].utime, 1);
+  EXPECT_EQ(slices[0].kind, SliceKind::kShiftPlusX);
+  EXPECT_FLOAT_EQ(slices[0].resolution_m, 0.01F);
+  EXPECT_EQ(slices[0].points_W.size(), 64U);
+  EXPECT_EQ(slices[1].utime, 2);
+}
+
+TEST(SliceWorker, PassesOnWhyBlocksDoNotCome) {
+  SliceWorker worker({});
+  std::promise<DetachedBlocks> blocks;
+  worker.submit(blocks.get_future().share(), {});
+  blocks.set_exception(std::make_exception_ptr(std::runtime_error("no memory")));
+  EXPECT_THROW(worker.drain(), std::runtime_error);
 }
 
 TEST(SliceWorker, CanBeLeftWithWorkQueued) {

@@ -1,0 +1,124 @@
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "mapper/core/extraction/surface_extractor.hpp"
+#include "mapper/core/reactivation/reactivation.hpp"
+#include "tests/mapper/core/exact_volume.hpp"
+
+namespace kintsugi::mapper {
+namespace {
+
+constexpr double kVoxel_m = 0.01;
+constexpr double kFloor_m = 0.103;
+constexpr std::int64_t kLong_us = 60'000'000;
+
+TsdfVolume floor_of(double size_m) {
+  return testing::exact_volume(size_m, kVoxel_m, 20,
+                               [](const Eigen::Vector3d& p_U) { return p_U.z() - kFloor_m; });
+}
+
+/// A small floor that was seen at keyframe 0, and a larger one at keyframe 1, which sees the
+/// small one where it is.
+class TwoFloors : public ::testing::Test {
+ protected:
+  TwoFloors() {
+    TsdfVolume small = floor_of(0.5);
+    places_ = coords_of(small);
+    num_small_ = num_points(small.snapshot());
+    leave(small.detach_all(SliceKind::kPatch), 0);
+    close_all(0);
+  }
+
+  std::vector<BlockCoord> coords_of(const TsdfVolume& volume) const {
+    return volume.snapshot().coords;
+  }
+  std::size_t num_points(const DetachedBlocks& blocks) const {
+    return SurfaceExtractor({}).extract_blocks(blocks).points_W.size();
+  }
+  DetachedBlocks leave(DetachedBlocks left, std::int64_t utime) {
+    return reactivation_
+        .keep_unknown(
+            std::move(left), large_.config(),
+            [](int keyframe) {
+              return keyframe == 0 ? std::optional<Pose>(Pose::Identity()) : std::nullopt;
+            },
+            {}, utime)
+        .get();
+  }
+  void close_all(int keyframe) {
+    PatchBatch batch;
+    for (const TileCoord& tile : reactivation_.open_tiles()) {
+      batch.patches.push_back({tile, false, keyframe});
+    }
+    reactivation_.close_departed(batch);
+  }
+  bool has_most_of(const std::vector<BlockCoord>& places, int near) {
+    return reactivation_.has_most_of(places, {near == 0, near == 1});
+  }
+
+  TsdfVolume large_ = floor_of(1.0);
+  std::vector<BlockCoord> places_;  ///< of the small floor
+  std::size_t num_small_ = 0;       ///< points
+  Reactivation reactivation_{TileGrid(0.16, kVoxel_m), 100.0};
+};
+
+TEST_F(TwoFloors, KeepTheFirstAndWhatOnlyTheSecondHas) {
+  const std::size_t num_all = num_points(large_.snapshot());
+  const DetachedBlocks rest = leave(large_.detach_all(SliceKind::kPatch), 0);
+  close_all(1);
+  EXPECT_LT(num_points(rest), num_all - num_small_ / 2);
+  EXPECT_GT(num_points(rest), num_all - num_small_ - 1) << "more at the edge of the small one";
+  EXPECT_TRUE(has_most_of(rest.coords, 1));
+  EXPECT_TRUE(has_most_of(places_, 0));
+}
+
+/// As clear_known() does it in the volume.
+TEST_F(TwoFloors, LoseTheSameInTheVolumeAndOnTheWayOut) {
+  TsdfVolume volume = floor_of(1.0);
+  const auto place_of = [](int keyframe) -> std::optional<Pose> {
+    return keyframe == 0 ? std::optional<Pose>(Pose::Identity()) : std::nullopt;
+  };
+  std::vector<BlockSlot> slots;
+  for (const BlockCoord& coord : coords_of(volume)) slots.push_back(volume.find(coord));
+  reactivation_.clear_known(volume, slots, place_of, {});
+  const DetachedBlocks expected = volume.detach_all(SliceKind::kPatch);
+
+  const DetachedBlocks rest = leave(large_.detach_all(SliceKind::kPatch), 0);
+  ASSERT_EQ(rest.coords, expected.coords);
+  for (std::size_t i = 0; i < rest.coords.size(); ++i) {
+    ASSERT_EQ(rest.voxels[i]->voxels, expected.voxels[i]->voxels);
+    ASSERT_EQ(rest.colors[i]->colors, expected.colors[i]->colors);
+  }
+}
+
+TEST_F(TwoFloors, CountWhatIsKeptAtATimeThatNoThreadDecides) {
+  reactivation_.tidy(kLong_us);
+  const std::size_t before = reactivation_.bytes();
+  EXPECT_GT(before, 0U);
+  leave(large_.detach_all(SliceKind::kPatch), kLong_us);
+  close_all(1);
+  reactivation_.tidy(kLong_us + 1'000'000);
+  EXPECT_EQ(reactivation_.bytes(), before) << "although it is there already";
+  reactivation_.tidy(2 * kLong_us);
+  EXPECT_GT(reactivation_.bytes(), before);
+}
+
+/// A third floor leaves before the second one is kept.
+TEST_F(TwoFloors, AreComparedWithWhatWaits) {
+  const std::vector<BlockCoord> all = coords_of(large_);
+  TsdfVolume third = floor_of(1.0);
+  const std::size_t num_all = num_points(third.snapshot());
+  leave(large_.detach_all(SliceKind::kPatch), 0);
+  close_all(1);
+  std::vector<BlockSlot> slots;
+  for (const BlockCoord& coord : all) slots.push_back(third.find(coord));
+  reactivation_.clear_known(third, slots, [](int /*keyframe*/) { return Pose::Identity(); }, {});
+  EXPECT_LT(num_points(third.snapshot()), num_all / 20) << "where two of the others meet";
+}
+
+}  // namespace
+}  // namespace kintsugi::mapper
