@@ -2,9 +2,12 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <bitset>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <cstdlib>
 #include <deque>
 #include <functional>
 #include <memory>
@@ -20,6 +23,9 @@
 namespace kintsugi::mapper {
 namespace {
 
+/// The voxels of a block; null where there is none.
+using FindBlock = std::function<const VoxelBlock*(const BlockCoord&)>;
+
 /// Where the voxel's surface is, by its distance and the gradient of the distance.
 struct NearSurface {
   Eigen::Vector3d offset_vox;  ///< from the voxel's centre
@@ -27,11 +33,13 @@ struct NearSurface {
 };
 
 /// Distances in voxels, of blocks that are found by their coordinates.
-template <typename FindBlock>
+template <typename Find>
 class DistanceField {
  public:
-  DistanceField(FindBlock find_block, double truncation_vox, int weight_threshold)
-      : find_block_(find_block), scale_(truncation_vox), weight_threshold_(weight_threshold) {}
+  DistanceField(Find find_block, double truncation_vox, int weight_threshold)
+      : find_block_(std::move(find_block)),
+        scale_(truncation_vox),
+        weight_threshold_(weight_threshold) {}
 
   /// Of voxel (x, y, z), counted from the origin; nothing where it was not observed.
   std::optional<double> distance_vox(const Eigen::Vector3i& voxel) {
@@ -46,18 +54,6 @@ class DistanceField {
     const Voxel value = last_->voxels[voxel_index(voxel.x() & 7, voxel.y() & 7, voxel.z() & 7)];
     if (voxel_weight(value) <= weight_threshold_) return std::nullopt;
     return scale_ * static_cast<double>(voxel_distance(value));
-  }
-
-  /// Whether the distance changes its sign from this voxel to one that shares a face with it.
-  bool is_at_crossing(const Eigen::Vector3i& voxel) {
-    const auto here = distance_vox(voxel);
-    if (!here) return false;
-    for (int side = 0; side < 6; ++side) {
-      const int step = side % 2 == 0 ? 1 : -1;
-      const auto there = distance_vox(voxel + step * Eigen::Vector3i::Unit(side / 2));
-      if (there && (*there < 0.0) != (*here < 0.0)) return true;
-    }
-    return false;
   }
 
   /// The surface near a voxel; nothing where none is within `max_distance_vox`.
@@ -82,7 +78,7 @@ class DistanceField {
  private:
   static constexpr double kLeastSlope = 0.1;  // below it distances are truncated, or noise
 
-  FindBlock find_block_;
+  Find find_block_;
   double scale_;
   int weight_threshold_;
   BlockCoord last_coord_;
@@ -96,14 +92,65 @@ struct Decision {
   bool has_rest = false;  ///< other surface
 };
 
+/// Where the distances of a block change their sign. Most blocks have few such places, or none, and
+/// are done with then.
+class Signs {
+ public:
+  Signs(const FindBlock& find, const BlockCoord& coord) {
+    for (int dz = -1; dz <= 1; ++dz) {
+      for (int dy = -1; dy <= 1; ++dy) {
+        for (int dx = -1; dx <= 1; ++dx) {
+          if (std::abs(dx) + std::abs(dy) + std::abs(dz) > 1) continue;  // shares no face
+          const VoxelBlock* const block =
+              find(make_block_coord(coord.x + dx, coord.y + dy, coord.z + dz));
+          if (block != nullptr) copy(*block, {dx, dy, dz});
+        }
+      }
+    }
+  }
+
+  /// From this voxel of the block to one that shares a face with it.
+  bool change_at(int x, int y, int z) const {
+    const auto* const here = &signs_[place(x, y, z)];
+    if (*here == 0) return false;
+    for (const int step : {1, kSide, kSide * kSide}) {
+      if (here[step] == -*here || here[-step] == -*here) return true;
+    }
+    return false;
+  }
+
+ private:
+  static constexpr int kSide = kBlockSide + 2;
+  static int place(int x, int y, int z) { return ((z + 1) * kSide + y + 1) * kSide + x + 1; }
+
+  /// Of a block beside this one, the voxels that share a face with it.
+  void copy(const VoxelBlock& block, const std::array<int, 3>& beside) {
+    std::array<int, 3> first{};
+    std::array<int, 3> end{};
+    for (int axis = 0; axis < 3; ++axis) {
+      first[axis] = beside[axis] < 0 ? kBlockSide - 1 : 0;
+      end[axis] = beside[axis] > 0 ? 1 : kBlockSide;
+    }
+    for (int z = first[2]; z < end[2]; ++z) {
+      for (int y = first[1]; y < end[1]; ++y) {
+        for (int x = first[0]; x < end[0]; ++x) {
+          const Voxel voxel = block.voxels[voxel_index(x, y, z)];
+          if (voxel_weight(voxel) == 0) continue;
+          signs_[place(x + kBlockSide * beside[0], y + kBlockSide * beside[1],
+                       z + kBlockSide * beside[2])] = voxel_distance_raw(voxel) < 0 ? -1 : 1;
+        }
+      }
+    }
+  }
+
+  std::array<std::int8_t, std::size_t{kSide} * kSide * kSide> signs_{};  ///< 0: not observed
+};
+
 void clear(VoxelBlock& block, const std::bitset<kBlockVoxels>& covered) {
   for (int index = 0; index < kBlockVoxels; ++index) {
     if (covered[index]) block.voxels[index] = 0;
   }
 }
-
-/// The voxels of a block; null where there is none.
-using FindBlock = std::function<const VoxelBlock*(const BlockCoord&)>;
 
 /// Decides about the voxels of a volume.
 class Comparison {
@@ -123,12 +170,14 @@ class Comparison {
     Decision decision;
     std::vector<Placed> near = covers_near(coord);
     if (near.empty()) return decision;
+    const Signs signs(find_, coord);
     DistanceField own(find_, truncation_vox_, 0);
     for (int index = 0; index < kBlockVoxels; ++index) {
-      const Eigen::Vector3i voxel(coord.x * kBlockSide + index % kBlockSide,
-                                  coord.y * kBlockSide + index / kBlockSide % kBlockSide,
-                                  coord.z * kBlockSide + index / (kBlockSide * kBlockSide));
-      if (!own.is_at_crossing(voxel)) continue;
+      const Eigen::Vector3i in_block(index % kBlockSide, index / kBlockSide % kBlockSide,
+                                     index / (kBlockSide * kBlockSide));
+      if (!signs.change_at(in_block.x(), in_block.y(), in_block.z())) continue;
+      const Eigen::Vector3i voxel =
+          kBlockSide * Eigen::Vector3i(coord.x, coord.y, coord.z) + in_block;
       const auto surface = own.surface_near(voxel, reach_vox_);
       const bool is_covered = surface && std::ranges::any_of(near, [&](Placed& cover) {
                                 return covers(cover, voxel, *surface);

@@ -59,7 +59,9 @@ std::vector<BlockSlot> TsdfVolume::slots_around(const std::vector<BlockSlot>& le
   std::vector<Part> parts(in_use_.size(), Part::kOther);
   for (const BlockSlot slot : leaving) parts[slot] = Part::kLeaving;
   std::vector<BlockSlot> slots;
+  const bool none_stays = leaving.size() == num_blocks_;
   for (const BlockSlot slot : leaving) {
+    if (none_stays) break;
     for_each_around(coord(slot), [&](const BlockCoord& near) {
       const BlockSlot neighbor = find(near);
       if (neighbor == kNoBlock || parts[neighbor] != Part::kOther) return;
