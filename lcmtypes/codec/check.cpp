@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lcmtypes/codec/intrinsics.hpp"
-
 namespace kintsugi {
 namespace codec {
 namespace {
@@ -53,20 +51,6 @@ void Check::pose(const char* field, const Pose& value) const {
   // Written so that NaN fails.
   if (!(error <= kRotationTolerance)) fail(field, error, "a rotation with R^T R = I within 1e-6");
   if (!(R.determinant() > 0.0)) fail(field, R.determinant(), "a rotation, determinant 1");
-}
-
-void check_intrinsics(const Check& check, const Intrinsics& intrinsics) {
-  constexpr double kMax_px = kMaxImageSide_px;
-  check.range("width", intrinsics.width, 1, kMaxImageSide_px);
-  check.range("height", intrinsics.height, 1, kMaxImageSide_px);
-  // No camera has a focal length below a pixel, or a principal point far outside the image.
-  check.range("fx", intrinsics.fx, 1.0, 10.0 * kMax_px);
-  check.range("fy", intrinsics.fy, 1.0, 10.0 * kMax_px);
-  check.range("cx", intrinsics.cx, -kMax_px, 2.0 * kMax_px);
-  check.range("cy", intrinsics.cy, -kMax_px, 2.0 * kMax_px);
-  for (const double coefficient : intrinsics.distortion) {
-    check.range("distortion", coefficient, -1e3, 1e3);
-  }
 }
 
 void pose_to_wire(const Pose& X, double (&rows)[12]) {

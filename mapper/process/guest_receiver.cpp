@@ -19,16 +19,18 @@ GuestReceiver::GuestReceiver(const std::string& lcm_url, std::string map_name, s
     : map_name_(std::move(map_name)),
       session_(session),
       bus_(lcm_url),
-      keyframes_(channels::kKeyframe,
-                 [this](KeyframeMessage keyframe) { receive(std::move(keyframe)); }, log_bad, [&] {
-                   StreamSubscriberConfig<KeyframeMessage> config;
-                   config.receiver = session;
-                   config.wanted_map_name = map_name_;  // its heartbeats name the map that is joined
-                   config.wanted = [this](const KeyframeMessage& header) {
-                     return header.join == map_name_ && header.session != session_;
-                   };
-                   return config;
-                 }()) {
+      keyframes_(
+          channels::kKeyframe, [this](KeyframeMessage keyframe) { receive(std::move(keyframe)); },
+          log_bad,
+          [&] {
+            StreamSubscriberConfig<KeyframeMessage> config;
+            config.receiver = session;
+            config.wanted_map_name = map_name_;  // its heartbeats name the map that is joined
+            config.wanted = [this](const KeyframeMessage& header) {
+              return header.join == map_name_ && header.session != session_;
+            };
+            return config;
+          }()) {
   keyframes_.subscribe(bus_);
   thread_ = std::make_unique<BusThread>(bus_, [this] { ask(); });
 }

@@ -53,7 +53,7 @@ class GuestReceiver {
   std::map<std::int64_t, std::unique_ptr<StreamSubscriber<CloudSlice>>> slices_;
 
   std::mutex mutex_;
-  News news_;  ///< guarded by mutex_
+  News news_;                          ///< guarded by mutex_
   std::unique_ptr<BusThread> thread_;  ///< last: it uses the rest
 };
 

@@ -31,8 +31,7 @@ class GuestMap {
 
   /// Adds keyframes to `loops` in the guest's order, while less than `max_waiting` wait there to be
   /// compared. Returns the patches whose keyframe is there, each in its newest revision.
-  std::vector<GuestPatch> take_in(LoopClosure& loops, std::int64_t utime,
-                                  std::size_t max_waiting);
+  std::vector<GuestPatch> take_in(LoopClosure& loops, std::int64_t utime, std::size_t max_waiting);
 
   int num_keyframes() const { return static_cast<int>(number_here_.size()); }
   /// Why nothing of the guest is taken; empty: it is.
@@ -49,8 +48,8 @@ class GuestMap {
   int last_ = -1;                                     ///< number of the last one that was added
   std::map<int, int> number_here_;                    ///< of keyframes, by the guest's number
   std::map<int, int> part_here_;                      ///< in which they begin, by the guest's part
-  std::map<int, int> part_of_;                        ///< the guest's part, by its keyframe's number
-  std::map<std::int32_t, CloudSlice> waiting_patches_;     ///< by id, the newest revision
+  std::map<int, int> part_of_;  ///< the guest's part, by its keyframe's number
+  std::map<std::int32_t, CloudSlice> waiting_patches_;    ///< by id, the newest revision
   std::map<std::int32_t, std::int32_t> newest_revision_;  ///< by id
 };
 

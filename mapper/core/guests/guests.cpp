@@ -16,7 +16,7 @@ void Guests::add(CloudSlice slice) {
 }
 
 std::vector<GuestPatch> Guests::take_in(LoopClosure& loops, std::int64_t utime,
-                                          std::size_t max_waiting) {
+                                        std::size_t max_waiting) {
   std::vector<GuestPatch> patches;
   for (auto& [session, guest] : guests_) {
     std::vector<GuestPatch> of_guest = guest.map.take_in(loops, utime, max_waiting);

@@ -30,8 +30,7 @@ class Guests {
   void add(CloudSlice slice);
 
   /// GuestMap::take_in() of all guests, in the order of their sessions.
-  std::vector<GuestPatch> take_in(LoopClosure& loops, std::int64_t utime,
-                                  std::size_t max_waiting);
+  std::vector<GuestPatch> take_in(LoopClosure& loops, std::int64_t utime, std::size_t max_waiting);
 
   /// By session.
   std::vector<GuestReport> reports() const;

@@ -19,9 +19,9 @@ struct GuestPatch {
   };
 
   Name name;
-  SeenAt at;                          ///< the guest's keyframe with which it moves, here
-  Pose X_UP = Pose::Identity();       ///< of the guest's uncorrected map, in which the points are
-  bool in_volume = false;             ///< of the guest
+  SeenAt at;                     ///< the guest's keyframe with which it moves, here
+  Pose X_UP = Pose::Identity();  ///< of the guest's uncorrected map, in which the points are
+  bool in_volume = false;        ///< of the guest
   std::vector<CloudPoint> points_P = {};
 };
 

@@ -28,7 +28,7 @@ using testing::SyntheticRun;
 constexpr std::int64_t kGuest = 8;  // its session
 constexpr int kFrames = 130;        // of each mapper
 constexpr int kStep = 4;
-constexpr int kLater = 40;   // frames that the guest begins later on the same way
+constexpr int kLater = 40;  // frames that the guest begins later on the same way
 
 MapperPipeline::Config config(double resolution_m = 0.015) {
   MapperPipeline::Config config;
@@ -195,8 +195,7 @@ TEST_F(GuestsTest, WithOtherVoxelsAreRefused) {
   host.map(first, guest_in(synthetic_run("loop", 20, true, kStep)));
   const std::vector<GuestReport> reports = host.pipeline.guests().reports();
   ASSERT_EQ(reports.size(), 1U);
-  EXPECT_THAT(reports[0].problem,
-              HasSubstr("its voxels are 15.00 mm, those of this map 20.00 mm"));
+  EXPECT_THAT(reports[0].problem, HasSubstr("its voxels are 15.00 mm, those of this map 20.00 mm"));
   EXPECT_EQ(host.most_parts, 1);
   EXPECT_TRUE(points_of(host.slices, is_of_guest).empty());
 }
