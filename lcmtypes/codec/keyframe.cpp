@@ -24,7 +24,7 @@ struct Bulk<KeyframeMessage> : PlacedByByte<keyframe_t> {
     to.join = from.join;
     to.number = from.number;
     to.previous = from.previous;
-    to.from = from.from;
+    to.tracked_from = from.tracked_from;
     to.part = from.part;
     to.path_m = from.path_m;
     to.unseen_m = from.unseen_m;
@@ -64,7 +64,7 @@ struct Bulk<KeyframeMessage> : PlacedByByte<keyframe_t> {
     check_name(check, "join", keyframe.join);
     check.not_negative("number", keyframe.number);
     check.range("previous", keyframe.previous, -1, keyframe.number - 1);
-    check.range("from", keyframe.from, -1, keyframe.previous);
+    check.range("tracked_from", keyframe.tracked_from, -1, keyframe.previous);
     check.not_negative("part", keyframe.part);
     check.range("path_m", keyframe.path_m, 0.0, kMaxPath_m);
     check.range("unseen_m", keyframe.unseen_m, 0.0, kMaxPath_m);

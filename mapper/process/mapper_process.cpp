@@ -190,12 +190,14 @@ void MapperProcess::publish_rest() {
   finished_ = resumption_.has_caught_up(last_utime_);
   if (finished_) {
     publish_new_keyframe();
+    take_guests();
     publisher_.publish_slices(pipeline_.finish());
     num_parts_ = pipeline_.num_parts();
   } else {
     spdlog::warn(
         "stopped before all frames that were mapped before are mapped again: resume once more");
   }
+  guest_receiver_.reset();  // nothing is added to the map any more
   publisher_.flush();
   publish_status();
 }

@@ -171,7 +171,7 @@ inline KeyframeMessage example_keyframe(int num_features) {
   keyframe.join = "office";
   keyframe.number = 7;
   keyframe.previous = 5;
-  keyframe.from = 4;
+  keyframe.tracked_from = 4;
   keyframe.part = 1;
   keyframe.path_m = 12.5;
   keyframe.unseen_m = 3.0;

@@ -42,17 +42,17 @@ inline bool operator==(const CameraView& a, const CameraView& b) {
 }
 
 inline bool operator==(const KeyframeMessage& a, const KeyframeMessage& b) {
-  const auto& [utime, session, map_name, join, number, previous, from, part, path_m, unseen_m,
-               resolution_m, X_UK, information_K, noise_base_m, noise_share, noise_growth_per_m,
-               intrinsics, in_volume, features, depth, intensity] = a;
+  const auto& [utime, session, map_name, join, number, previous, tracked_from, part, path_m,
+               unseen_m, resolution_m, X_UK, information_K, noise_base_m, noise_share,
+               noise_growth_per_m, intrinsics, in_volume, features, depth, intensity] = a;
   return utime == b.utime && session == b.session && map_name == b.map_name && join == b.join &&
-         number == b.number && previous == b.previous && from == b.from && part == b.part &&
-         path_m == b.path_m && unseen_m == b.unseen_m && resolution_m == b.resolution_m &&
-         equal(X_UK, b.X_UK) && information_K == b.information_K &&
-         noise_base_m == b.noise_base_m && noise_share == b.noise_share &&
-         noise_growth_per_m == b.noise_growth_per_m && intrinsics == b.intrinsics &&
-         in_volume == b.in_volume && features == b.features && depth == b.depth &&
-         intensity == b.intensity;
+         number == b.number && previous == b.previous && tracked_from == b.tracked_from &&
+         part == b.part && path_m == b.path_m && unseen_m == b.unseen_m &&
+         resolution_m == b.resolution_m && equal(X_UK, b.X_UK) &&
+         information_K == b.information_K && noise_base_m == b.noise_base_m &&
+         noise_share == b.noise_share && noise_growth_per_m == b.noise_growth_per_m &&
+         intrinsics == b.intrinsics && in_volume == b.in_volume && features == b.features &&
+         depth == b.depth && intensity == b.intensity;
 }
 
 inline bool operator==(const CameraPose& a, const CameraPose& b) {

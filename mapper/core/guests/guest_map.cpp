@@ -59,15 +59,16 @@ std::vector<GuestPatch> GuestMap::take_in(LoopClosure& loops, std::int64_t utime
 
 void GuestMap::add_next(LoopClosure& loops, std::int64_t utime) {
   const KeyframeMessage message = std::move(waiting_keyframes_.extract(last_).mapped());
-  const auto from = here(message.from);
+  const auto from = here(message.tracked_from);
   auto keyframe = keyframe_of(message);
-  if (!keyframe || (message.from >= 0 && !from)) {
-    problem_ = format("its keyframe %d %s", message.number,
-                      keyframe ? "follows one that was not sent" : "is too small");
+  if (!keyframe || (message.tracked_from >= 0 && !from)) {
+    problem_ = keyframe ? format("its keyframe %d follows one that was not sent", message.number)
+                        : format("its keyframe %d has %d x %d pixels", message.number,
+                                 message.intrinsics.width, message.intrinsics.height);
     return;
   }
   if (!from) part_here_[message.part] = loops.next_part();
-  part_of_[message.number] = from ? part_of_.at(message.from) : message.part;
+  part_of_[message.number] = from ? part_of_.at(message.tracked_from) : message.part;
   keyframe->X_WC = X_UG(part_of_.at(message.number)) * message.X_UK;
 
   NewKeyframe added;

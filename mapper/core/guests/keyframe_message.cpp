@@ -10,9 +10,12 @@
 namespace kintsugi::mapper {
 namespace {
 
-/// A quarter of the smallest images of depth cameras: the coarsest of three levels has 20 columns.
+/// The coarsest of three levels has 20 columns.
 constexpr int kLeastWidth_px = 80;
 constexpr int kLeastHeight_px = 60;
+/// Keyframes have half of the size at which frames are tracked, which is below 640 columns.
+constexpr int kMostWidth_px = 640;
+constexpr int kMostHeight_px = 640;
 
 void put_features(const ImageFeatures& features, KeyframeMessage& message) {
   message.features.resize(features.size());
@@ -50,7 +53,7 @@ KeyframeMessage keyframe_message(const NewKeyframe& added, std::optional<int> pr
   message.utime = utime;
   message.number = added.number;
   message.previous = previous.value_or(-1);
-  message.from = added.from.value_or(-1);
+  message.tracked_from = added.from.value_or(-1);
   message.part = part;
   message.path_m = added.path_m;
   message.unseen_m = added.unseen ? added.unseen->distance_m : 0.0;
@@ -76,7 +79,10 @@ KeyframeMessage keyframe_message(const NewKeyframe& added, std::optional<int> pr
 
 std::shared_ptr<Keyframe> keyframe_of(const KeyframeMessage& message) {
   const Intrinsics& camera = message.intrinsics;
-  if (camera.width < kLeastWidth_px || camera.height < kLeastHeight_px) return nullptr;
+  if (camera.width < kLeastWidth_px || camera.height < kLeastHeight_px ||
+      camera.width > kMostWidth_px || camera.height > kMostHeight_px) {
+    return nullptr;
+  }
   auto keyframe = std::make_shared<Keyframe>();
   keyframe->X_WC = message.X_UK;
   keyframe->camera = camera;

@@ -15,7 +15,7 @@ KeyframeMessage keyframe_message(const NewKeyframe& added, std::optional<int> pr
                                  std::int64_t utime, double resolution_m);
 
 /// The keyframe that a message describes, where the guest has it: X_WC is its X_UK. Nothing if its
-/// images are too small to be compared with others.
+/// images are too small to be compared with others, or larger than those of any mapper.
 std::shared_ptr<Keyframe> keyframe_of(const KeyframeMessage& message);
 
 }  // namespace kintsugi::mapper

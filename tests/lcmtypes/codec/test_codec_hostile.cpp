@@ -199,7 +199,8 @@ TEST(CodecBounds, AKeyframeIsOneOfAChain) {
   };
   EXPECT_THAT(why([](KeyframeMessage& k) { k.previous = k.number; }),
               HasSubstr("keyframe_t.previous is 7, expected -1 .. 6"));
-  EXPECT_THAT(why([](KeyframeMessage& k) { k.from = k.previous + 1; }), HasSubstr("from is 6"));
+  EXPECT_THAT(why([](KeyframeMessage& k) { k.tracked_from = k.previous + 1; }),
+              HasSubstr("tracked_from is 6"));
   EXPECT_THAT(why([](KeyframeMessage& k) { k.in_volume.push_back(k.number); }),
               HasSubstr("in_volume is 7"));
   EXPECT_THAT(why([](KeyframeMessage& k) { k.depth.pop_back(); }), HasSubstr("num_depths is 47"));

@@ -197,7 +197,7 @@ TEST_F(Parts, ACameraWithStoredFramesIsResumedInItsPart) {
     MapperProgram mapper(camera("--store"), folder_ / "said.txt");
     ASSERT_TRUE(Listener::wait_until([&] {
       const auto statuses = listener.statuses();
-      return !statuses.empty() && statuses.back().part == 1;
+      return !statuses.empty() && statuses.back().part >= 1;
     })) << said();
     EXPECT_TRUE(mapper.crash());
   }
@@ -206,7 +206,7 @@ TEST_F(Parts, ACameraWithStoredFramesIsResumedInItsPart) {
   MapperProgram mapper(camera("--resume"), folder_ / "said.txt");
   ASSERT_TRUE(Listener::wait_until([&] {
     const auto statuses = listener.statuses();
-    return !statuses.empty() && statuses.back().part == 1;
+    return !statuses.empty() && statuses.back().part >= 1;
   })) << said();
   mapper.interrupt();
   EXPECT_EQ(mapper.wait(), 0) << said();
