@@ -6,6 +6,7 @@
 #include <set>
 #include <utility>
 
+#include <malloc.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
@@ -25,9 +26,13 @@ template <typename Function>
 auto in_background(Function function) {
   return std::async(std::launch::async, [function = std::move(function)]() mutable {
     lower_priority_of_thread();
-    Function captured = std::move(function);  // is destroyed on this thread, too
     tbb::task_arena alone(1);
-    return alone.execute(captured);
+    auto result = [&] {
+      Function captured = std::move(function);  // is destroyed on this thread, too
+      return alone.execute(captured);
+    }();
+    malloc_trim(0);  // what a thread has freed stays with it, and the next one takes more
+    return result;
   });
 }
 
