@@ -177,11 +177,15 @@ class TwoCameras : public ::testing::Test {
   TwoCameras() {
     for (int i = 0; i < 2 * kLength; ++i) {
       const bool begins = i < 2;
-      graph.add(X_UK(i), kStep_m * (i / 2), begins ? std::nullopt : std::optional(i - 2));
+      graph.add(X_UK(i), path_m(i), begins ? std::nullopt : std::optional(i - 2));
       if (!begins) graph.add_tracked(i - 2, i, precise());
     }
   }
-  static Pose truth(int i) { return at(kStep_m * (i / 2)); }
+  static double path_m(int i) {
+    const int number = i / 2;  // among those of its camera
+    return kStep_m * number;
+  }
+  static Pose truth(int i) { return at(path_m(i)); }
   static Pose X_UK(int i) { return at(i % 2 == 0 ? 0.0 : 1'000.0) * truth(i); }
   /// Where both cameras have their i-th keyframe, or `shift` from there.
   static Loop loop(int i, const Pose& shift = Pose::Identity()) {
