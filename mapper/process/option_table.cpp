@@ -17,8 +17,8 @@ using enum OnResume;
 OptionGroup source_options(Options& o) {
   return {"Where frames come from",
           {{"--device", &o.source.device, kMustMatch,
-            "a .oni file, folder://PATH, synthetic://NAME, lcm://CHANNEL or the URI of a camera; "
-            "empty: the first camera"},
+            "the path of a recording (mapper/README.md lists the formats), synthetic://NAME, "
+            "lcm://CHANNEL or the URI of a camera; empty: the first camera"},
            {"--calibration", &o.source.calibration_file, kMustMatch,
             "camera.txt: fx fy cx cy width height depth_scale [k1 k2 p1 p2 k3]"},
            {"--replay", &o.source.replay, kMayDiffer,

@@ -4,6 +4,7 @@ find_package(PkgConfig REQUIRED)
 find_package(Threads REQUIRED)
 pkg_check_modules(LCM REQUIRED IMPORTED_TARGET lcm)
 pkg_check_modules(OPENNI2 REQUIRED IMPORTED_TARGET libopenni2)
+pkg_check_modules(OPENEXR REQUIRED IMPORTED_TARGET OpenEXR)
 pkg_check_modules(LIBAV REQUIRED IMPORTED_TARGET libavformat libavcodec libavutil libswscale)
 find_program(LCM_GEN lcm-gen REQUIRED)
 find_package(Eigen3 REQUIRED NO_MODULE)
@@ -24,3 +25,20 @@ target_link_libraries(kintsugi_opencv INTERFACE ${OpenCV_LIBS})
 
 add_library(kintsugi_flann INTERFACE)
 target_link_libraries(kintsugi_flann INTERFACE flann::flann_cpp ${LZ4_LIBRARY})
+
+# Debian's pkg-config file of librosbag-storage names packages that have none, and its headers look
+# for those of others without their folder.
+add_library(kintsugi_rosbag INTERFACE)
+foreach(header pluginlib/class_loader.hpp class_loader/class_loader.hpp rcpputils/shared_library.hpp
+        rcutils/allocator.h ament_index_cpp/get_package_prefix.hpp rosbag/bag.h sensor_msgs/Image.h
+        geometry_msgs/Pose.h tf2_msgs/TFMessage.h)
+  get_filename_component(package ${header} DIRECTORY)
+  find_path(ROSBAG_INCLUDE_${package} ${header} PATH_SUFFIXES ${package} REQUIRED)
+  mark_as_advanced(ROSBAG_INCLUDE_${package})
+  target_include_directories(kintsugi_rosbag SYSTEM INTERFACE ${ROSBAG_INCLUDE_${package}})
+endforeach()
+foreach(library rosbag_storage roscpp_serialization rostime cpp_common console_bridge roslz4)
+  find_library(ROSBAG_LIBRARY_${library} ${library} REQUIRED)
+  mark_as_advanced(ROSBAG_LIBRARY_${library})
+  target_link_libraries(kintsugi_rosbag INTERFACE ${ROSBAG_LIBRARY_${library}})
+endforeach()

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "mapper/openni2_driver/recording/calibration.hpp"
+#include "mapper/openni2_driver/formats/calibration.hpp"
 #include "tests/decoder_fuzz/input_file.hpp"
 #include "tests/decoder_fuzz/require.hpp"
 

@@ -8,7 +8,8 @@
 
 #include <opencv2/imgcodecs.hpp>
 
-#include "mapper/openni2_driver/recording/folder_recording.hpp"
+#include "mapper/openni2_driver/formats/folder_formats.hpp"
+#include "mapper/openni2_driver/recording/file_recording.hpp"
 #include "tests/decoder_fuzz/input_file.hpp"
 #include "tests/decoder_fuzz/require.hpp"
 
@@ -49,7 +50,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   [[maybe_unused]] static const bool made = make_folder();
   write_lists({data, size});
   try {
-    FolderRecording recording(input_folder().path());
+    FileRecording recording(read_tum_folder(input_folder().path()));
     kintsugi::fuzzing::require(recording.num_depth_frames() > 0, "a recording has depth");
     kintsugi::fuzzing::require(recording.frame_rate_hz() > 0, "a recording has a rate");
     (void)recording.depth(0, recording.finest_depth_unit());

@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "mapper/openni2_driver/recording/image_decoder.hpp"
+#include "mapper/openni2_driver/formats/image_decoder.hpp"
 #include "tests/decoder_fuzz/require.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

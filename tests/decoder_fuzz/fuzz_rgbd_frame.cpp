@@ -4,7 +4,7 @@
 
 #include "lcmtypes/channels.hpp"
 #include "lcmtypes/stream/stream_subscriber.hpp"
-#include "mapper/openni2_driver/recording/image_decoder.hpp"
+#include "mapper/openni2_driver/formats/image_decoder.hpp"
 #include "mapper/source/frames/frame_converter.hpp"
 #include "tests/decoder_fuzz/log_events.hpp"
 #include "tests/decoder_fuzz/require.hpp"

@@ -131,6 +131,39 @@ Seeds saved_map_seeds() {
 
 Seeds oni_seeds() { return {{"whole", oni_recording(true)}, {"cut_off", oni_recording(false)}}; }
 
+/// Two frames of 4x3 pixels, raw, in a .klg and in a .sens file.
+Seeds recording_file_seeds() {
+  const auto put = [](std::string& bytes, auto value) {
+    bytes.append(reinterpret_cast<const char*>(&value), sizeof(value));
+  };
+  const std::string depth(24, '\x05');
+  const std::string color(36, '\x40');
+  std::string klg;
+  put(klg, std::int32_t{2});
+  std::string sens;
+  put(sens, std::uint32_t{4});
+  put(sens, std::uint64_t{1});
+  sens += 'S';
+  for (int matrix = 0; matrix < 4; ++matrix) {
+    for (int i = 0; i < 16; ++i) put(sens, i % 5 == 0 ? 1.0F : 0.0F);
+  }
+  for (const std::int32_t value : {0, 0, 4, 3, 4, 3}) put(sens, value);
+  put(sens, 1000.0F);
+  put(sens, std::uint64_t{2});
+  for (std::int64_t frame = 1; frame <= 2; ++frame) {
+    put(klg, frame * 33'333);
+    put(klg, static_cast<std::int32_t>(depth.size()));
+    put(klg, static_cast<std::int32_t>(color.size()));
+    klg += depth + color;
+    for (int i = 0; i < 16; ++i) put(sens, i % 5 == 0 ? 1.0F : 0.0F);
+    for (int camera = 0; camera < 2; ++camera) put(sens, frame * 33'333);
+    put(sens, static_cast<std::uint64_t>(color.size()));
+    put(sens, static_cast<std::uint64_t>(depth.size()));
+    sens += color + depth;
+  }
+  return {{"klg", bytes_of(klg)}, {"sens", bytes_of(sens)}};
+}
+
 Seeds text_seeds(const std::string& target) {
   static const std::map<std::string, Seeds> seeds = {
       {"calibration",

@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "mapper/openni2_driver/recording/text_file.hpp"
+#include "mapper/openni2_driver/formats/text_file.hpp"
 
 namespace kintsugi::mapper {
 namespace {

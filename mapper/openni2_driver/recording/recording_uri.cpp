@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "mapper/openni2_driver/recording/folder_recording.hpp"
+#include "mapper/openni2_driver/recording/file_recording.hpp"
 #include "mapper/openni2_driver/recording/synthetic_recording.hpp"
 
 namespace kintsugi::mapper {
 namespace {
 
+constexpr std::string_view kRecordingScheme = "recording://";
 constexpr std::string_view kFolderScheme = "folder://";
 constexpr std::string_view kSyntheticScheme = "synthetic://";
 
@@ -33,34 +34,44 @@ std::map<std::string, std::string> parse_options(std::string_view uri, std::stri
 
 }  // namespace
 
+std::string recording_address(const std::filesystem::path& path) {
+  return std::string(kRecordingScheme) + path.string();
+}
+
 std::optional<RecordingUri> parse_recording_uri(std::string_view uri) {
   RecordingUri result;
-  const bool is_folder = uri.starts_with(kFolderScheme);
-  if (!is_folder && !uri.starts_with(kSyntheticScheme)) return std::nullopt;
-  const std::string_view rest =
-      uri.substr(is_folder ? kFolderScheme.size() : kSyntheticScheme.size());
+  std::string_view rest;
+  for (const std::string_view scheme : {kRecordingScheme, kFolderScheme, kSyntheticScheme}) {
+    if (!uri.starts_with(scheme)) continue;
+    rest = uri.substr(scheme.size());
+    result.scheme = scheme == kSyntheticScheme ? RecordingUri::Scheme::kSynthetic
+                                               : RecordingUri::Scheme::kRecording;
+  }
+  if (rest.data() == nullptr) return std::nullopt;
   const std::size_t question = rest.find('?');
-  result.scheme = is_folder ? RecordingUri::Scheme::kFolder : RecordingUri::Scheme::kSynthetic;
   result.path = rest.substr(0, question);
   if (question != std::string_view::npos) {
     result.options = parse_options(uri, rest.substr(question + 1));
   }
   if (result.path.empty()) {
     throw std::invalid_argument(std::string(uri) +
-                                ": nothing after the scheme, expected folder://PATH or "
-                                "synthetic://NAME");
+                                ": nothing after the scheme, expected recording://PATH, "
+                                "folder://PATH or synthetic://NAME");
   }
   result.imitation = CameraImitation::take_from(result.options);
-  if (is_folder && !result.options.empty()) {
+  if (result.scheme == RecordingUri::Scheme::kSynthetic) return result;
+  result.reading = ReadingOptions::take_from(result.options);
+  if (!result.options.empty()) {
     throw std::invalid_argument(std::string(uri) + ": no option '" + result.options.begin()->first +
-                                "'; there are: " + CameraImitation::known_options());
+                                "'; there are: " + ReadingOptions::known_options() + " " +
+                                CameraImitation::known_options());
   }
   return result;
 }
 
 std::unique_ptr<Recording> open_recording(const RecordingUri& uri) {
-  if (uri.scheme == RecordingUri::Scheme::kFolder) {
-    return std::make_unique<FolderRecording>(uri.path);
+  if (uri.scheme == RecordingUri::Scheme::kRecording) {
+    return std::make_unique<FileRecording>(read_recording(uri.path, uri.reading));
   }
   try {
     return std::make_unique<SyntheticRecording>(

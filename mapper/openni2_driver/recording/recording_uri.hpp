@@ -1,28 +1,35 @@
 #pragma once
 
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 
+#include "mapper/openni2_driver/formats/read_recording.hpp"
 #include "mapper/openni2_driver/recording/camera_imitation.hpp"
 #include "mapper/openni2_driver/recording/recording.hpp"
 
 namespace kintsugi::mapper {
 
-/// The address of a device of our driver: `folder://PATH` or `synthetic://NAME`, either with
-/// `?key=value&key=value`. The path of a folder therefore cannot contain a question mark.
+/// The address of a device of our driver: `recording://PATH`, of a file or a folder
+/// (`folder://PATH` is the same), or `synthetic://NAME`; with `?key=value&key=value`. The path
+/// therefore cannot contain a question mark.
 struct RecordingUri {
-  enum class Scheme { kFolder, kSynthetic };
+  enum class Scheme { kRecording, kSynthetic };
 
-  Scheme scheme = Scheme::kFolder;
+  Scheme scheme = Scheme::kRecording;
   std::string path;                            ///< PATH or NAME
+  ReadingOptions reading;                      ///< only of recording://
   CameraImitation imitation;                   ///< from the options that every device has
   std::map<std::string, std::string> options;  ///< the other options, only of synthetic://
 };
 
-/// nullopt when the scheme is neither folder nor synthetic: the device of another driver.
+/// What `recording://PATH` is for a path.
+std::string recording_address(const std::filesystem::path& path);
+
+/// nullopt when the scheme is none of these: the device of another driver.
 /// @throws std::invalid_argument when the rest of the address is malformed
 std::optional<RecordingUri> parse_recording_uri(std::string_view uri);
 

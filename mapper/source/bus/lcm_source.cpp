@@ -12,7 +12,7 @@
 #include "lcmtypes/bus/bus.hpp"
 #include "lcmtypes/bus/bus_thread.hpp"
 #include "lcmtypes/stream/stream_subscriber.hpp"
-#include "mapper/openni2_driver/recording/calibration.hpp"
+#include "mapper/openni2_driver/formats/calibration.hpp"
 #include "mapper/source/bus/rgbd_frame_decoder.hpp"
 
 namespace kintsugi::mapper {

@@ -2,7 +2,7 @@
 
 #include <opencv2/core.hpp>
 
-#include "mapper/openni2_driver/recording/image_decoder.hpp"
+#include "mapper/openni2_driver/formats/image_decoder.hpp"
 #include "mapper/source/frames/frame_converter.hpp"
 
 namespace kintsugi::mapper {

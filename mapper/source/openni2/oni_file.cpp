@@ -197,6 +197,14 @@ std::uint32_t OniFile::frames_announced(Node::Kind kind) const {
   return sum;
 }
 
+bool is_oni_file(const std::filesystem::path& file) {
+  if (std::filesystem::is_directory(file)) return false;
+  std::ifstream stream(file, std::ios::binary);
+  std::uint32_t magic = 0;
+  stream.read(reinterpret_cast<char*>(&magic), sizeof(magic));
+  return stream ? magic == kFileMagic : file.extension() == ".oni";
+}
+
 OniFile scan_oni_file(const fs::path& file) { return Scanner(file).scan(); }
 
 void write_mended_copy(const fs::path& file, const OniFile& contents, const fs::path& copy) {

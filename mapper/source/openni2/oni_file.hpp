@@ -30,6 +30,10 @@ struct OniFile {
   [[nodiscard]] std::uint32_t frames_announced(Node::Kind kind) const;
 };
 
+/// Whether the file begins like one. One that is too short to tell, or is not there, is by its
+/// name.
+bool is_oni_file(const std::filesystem::path& file);
+
 /// Walks through the records of a .oni file (NI10, versions 1.0.0.4 to 1.0.1.0).
 /// @throws std::runtime_error naming the file and what was expected, when it is missing, empty, not
 ///   a .oni file, of an unknown version, or without a depth image

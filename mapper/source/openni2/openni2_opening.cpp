@@ -5,7 +5,8 @@
 
 #include <unistd.h>
 
-#include "mapper/openni2_driver/recording/calibration.hpp"
+#include "mapper/openni2_driver/formats/calibration.hpp"
+#include "mapper/openni2_driver/recording/recording_uri.hpp"
 #include "mapper/source/openni2/oni_file.hpp"
 
 namespace kintsugi::mapper {
@@ -53,14 +54,15 @@ bool names_a_file(const std::string& device) {
          device.starts_with('.');
 }
 
+std::string driver_address(const std::string& device) {
+  if (!names_a_file(device) || is_oni_file(device)) return device;
+  return recording_address(fs::absolute(device));
+}
+
 std::unique_ptr<OpenNi2Device> open_device(const SourceConfig& config, std::string& damage) {
   if (!names_a_file(config.device)) return open_uri(config.device, config);
   const fs::path file = fs::absolute(config.device);
-  if (fs::is_directory(file)) {
-    throw std::runtime_error(file.string() +
-                             ": is a folder; a recording in TUM layout is opened as folder://" +
-                             file.string());
-  }
+  if (!is_oni_file(file)) return open_uri(driver_address(config.device), config);
   const OniFile contents = scan_oni_file(file);
   if (contents.damage.empty()) return open_uri(file.string(), config);
 
@@ -75,7 +77,7 @@ std::unique_ptr<OpenNi2Device> open_device(const SourceConfig& config, std::stri
 
 Intrinsics find_intrinsics(const SourceConfig& config, const OpenNi2Device& device) {
   fs::path file = config.calibration_file;
-  if (file.empty() && names_a_file(config.device)) {
+  if (file.empty() && names_a_file(config.device) && !fs::is_directory(config.device)) {
     file = fs::absolute(config.device).parent_path() / "camera.txt";
     if (!fs::exists(file)) file.clear();
   }

@@ -1,7 +1,7 @@
 #include "mapper/source/openni2/openni2_runtime.hpp"
 
-#include <algorithm>
 #include <mutex>
+#include <sstream>
 #include <stdexcept>
 #include <utility>
 
@@ -25,9 +25,12 @@ std::shared_ptr<OpenNi2Runtime> OpenNi2Runtime::shared() {
 }
 
 std::string openni2_error() {
-  std::string text = openni::OpenNI::getExtendedError();
-  std::ranges::replace(text, '\n', ' ');
-  text.erase(text.find_last_not_of(" \t\r") + 1);
+  std::istringstream words(openni::OpenNI::getExtendedError());
+  std::string text;
+  for (std::string word; words >> word;) text += (text.empty() ? "" : " ") + word;
+  // What a driver says comes first, and OpenNI2 adds that the device could not be opened.
+  const std::size_t added = text.find(" DeviceOpen: ");
+  if (added != std::string::npos) text.erase(added);
   return text.empty() ? "OpenNI2 gives no reason" : text;
 }
 

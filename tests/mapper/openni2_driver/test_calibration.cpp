@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "mapper/openni2_driver/recording/calibration.hpp"
+#include "mapper/openni2_driver/formats/calibration.hpp"
 #include "tests/mapper/openni2_driver/recording_folder.hpp"
 
 namespace kintsugi::mapper {

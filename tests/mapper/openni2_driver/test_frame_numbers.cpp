@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "mapper/openni2_driver/recording/frame_numbers.hpp"
+#include "mapper/openni2_driver/formats/frame_numbers.hpp"
 
 namespace kintsugi::mapper {
 namespace {

@@ -9,8 +9,8 @@
 #include <gmock/gmock.h>
 #include <opencv2/imgcodecs.hpp>
 
-#include "mapper/openni2_driver/recording/image_decoder.hpp"
-#include "mapper/openni2_driver/recording/image_header.hpp"
+#include "mapper/openni2_driver/formats/image_decoder.hpp"
+#include "mapper/openni2_driver/formats/image_header.hpp"
 
 namespace kintsugi::mapper {
 namespace {

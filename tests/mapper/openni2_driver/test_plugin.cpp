@@ -179,7 +179,7 @@ TEST(Plugin, SaysWhyADeviceCannotBeOpened) {
   const RecordingFolder folder;
   test::write_text(folder.path() / "camera.txt", "50 51 31.5 23.5 64 48\n");
   EXPECT_THAT(Client(folder.uri()).error(), HasSubstr("camera.txt:1: 6 fields"));
-  EXPECT_THAT(Client("folder:///no/such/folder").error(), HasSubstr("no such folder"));
+  EXPECT_THAT(Client("folder:///no/such/folder").error(), HasSubstr("no such file or folder"));
   EXPECT_THAT(Client("synthetic://no-such-room").error(), HasSubstr("no-such-room"));
   EXPECT_THAT(Client("folder://" + std::string(300, 'x')).error(), HasSubstr("longer than"));
   test::write_text(folder.path() / "camera.txt", "50 51 31.5 23.5 64 48 1000\n");

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "mapper/openni2_driver/recording/text_file.hpp"
+#include "mapper/openni2_driver/formats/text_file.hpp"
 
 namespace kintsugi::mapper {
 namespace {

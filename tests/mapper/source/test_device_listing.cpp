@@ -41,7 +41,7 @@ TEST(DeviceListing, SaysThatThereIsNone) {
 
 TEST(DeviceListing, SaysWhyADeviceCannotBeOpened) {
   EXPECT_THAT(test::error_of<std::runtime_error>([] { list_devices("folder:///no/such/folder"); }),
-              HasSubstr("no such folder"));
+              HasSubstr("no such file or folder"));
   EXPECT_THAT(test::error_of<std::runtime_error>([] { list_devices("./some.oni"); }),
               HasSubstr("./some.oni: is a recording"));
 }

@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "mapper/openni2_driver/recording/image_decoder.hpp"
+#include "mapper/openni2_driver/formats/image_decoder.hpp"
 #include "mapper/source/open_source.hpp"
 #include "mapper/source/openni2/oni_file.hpp"
 #include "tests/mapper/source/oni_recording.hpp"

@@ -1,4 +1,4 @@
-#include "mapper/openni2_driver/recording/text_file.hpp"
+#include "mapper/openni2_driver/formats/text_file.hpp"
 
 #include <algorithm>
 #include <charconv>

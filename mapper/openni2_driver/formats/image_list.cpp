@@ -1,9 +1,9 @@
-#include "mapper/openni2_driver/recording/image_list.hpp"
+#include "mapper/openni2_driver/formats/image_list.hpp"
 
 #include <stdexcept>
 #include <string>
 
-#include "mapper/openni2_driver/recording/text_file.hpp"
+#include "mapper/openni2_driver/formats/text_file.hpp"
 
 namespace kintsugi::mapper {
 namespace {

@@ -1,4 +1,4 @@
-#include "mapper/openni2_driver/recording/calibration.hpp"
+#include "mapper/openni2_driver/formats/calibration.hpp"
 
 #include <array>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "mapper/openni2_driver/recording/text_file.hpp"
+#include "mapper/openni2_driver/formats/text_file.hpp"
 
 namespace kintsugi::mapper {
 namespace {

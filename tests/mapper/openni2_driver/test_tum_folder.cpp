@@ -3,7 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "mapper/openni2_driver/recording/folder_recording.hpp"
+#include "mapper/openni2_driver/formats/read_recording.hpp"
+#include "mapper/openni2_driver/recording/file_recording.hpp"
 #include "mapper/openni2_driver/recording/recording_uri.hpp"
 #include "tests/mapper/openni2_driver/recording_folder.hpp"
 
@@ -19,17 +20,21 @@ bool same(const cv::Mat& a, const cv::Mat& b) {
   return a.size() == b.size() && a.type() == b.type() && cv::norm(a, b, cv::NORM_INF) == 0.0;
 }
 
+FileRecording open(const std::filesystem::path& path) {
+  return FileRecording(read_recording(path, {}));
+}
+
 std::string open_error(const RecordingFolder& folder) {
-  return error_of<std::runtime_error>([&] { FolderRecording recording(folder.path()); });
+  return error_of<std::runtime_error>([&] { (void)open(folder.path()); });
 }
 
 void cut_in_half(const std::filesystem::path& file) {
   std::filesystem::resize_file(file, std::filesystem::file_size(file) / 2);
 }
 
-TEST(FolderRecording, KeepsTimesAndPixels) {
+TEST(TumFolder, KeepsTimesAndPixels) {
   const RecordingFolder folder;
-  FolderRecording recording(folder.path());
+  FileRecording recording = open(folder.path());
   ASSERT_EQ(recording.num_depth_frames(), test::kNumFrames);
   ASSERT_EQ(recording.num_color_frames(), test::kNumFrames);
   EXPECT_EQ(recording.frame_rate_hz(), 30);
@@ -43,7 +48,7 @@ TEST(FolderRecording, KeepsTimesAndPixels) {
   }
 }
 
-TEST(FolderRecording, ConvertsFinerDepthToBothUnits) {
+TEST(TumFolder, ConvertsFinerDepthToBothUnits) {
   const RecordingFolder folder("50 51 31.5 23.5 64 48 5000\n");
   cv::Mat_<std::uint16_t> raw = test::raw_depth_image(0);
   raw(0, 0) = 65535;  // invalid
@@ -53,7 +58,7 @@ TEST(FolderRecording, ConvertsFinerDepthToBothUnits) {
   raw(0, 4) = 5003;  // 1.0006 m
   cv::imwrite((folder.path() / "depth/0.png").string(), raw);
 
-  FolderRecording recording(folder.path());
+  FileRecording recording = open(folder.path());
   EXPECT_EQ(recording.finest_depth_unit(), DepthUnit::k100um);
   const auto fine = recording.depth(0, DepthUnit::k100um);
   const auto coarse = recording.depth(0, DepthUnit::k1mm);
@@ -63,7 +68,7 @@ TEST(FolderRecording, ConvertsFinerDepthToBothUnits) {
   EXPECT_THAT(coarse_row, testing::ElementsAre(0, 13107, 0, 1000, 1001));
 }
 
-TEST(FolderRecording, ReadsAssociationsInEitherOrderAndDropsRepeats) {
+TEST(TumFolder, ReadsAssociationsInEitherOrderAndDropsRepeats) {
   const RecordingFolder folder;
   std::filesystem::remove(folder.path() / "depth.txt");
   std::filesystem::remove(folder.path() / "rgb.txt");
@@ -71,32 +76,34 @@ TEST(FolderRecording, ReadsAssociationsInEitherOrderAndDropsRepeats) {
                    "0.1 rgb/0.png 0.10 depth/0.png\n"
                    "0.1 rgb/0.png 0.13 depth/1.png\n"
                    "0.2 rgb/2.png 0.20 depth/2.png\n");
-  const FolderRecording recording(folder.path());
+  const FileRecording recording = open(folder.path());
   EXPECT_EQ(recording.num_depth_frames(), 3);
   ASSERT_EQ(recording.num_color_frames(), 2);
   EXPECT_EQ(recording.color_utime(1), 200'000);
 }
 
-TEST(FolderRecording, ToleratesMissingPartners) {
+TEST(TumFolder, ToleratesMissingPartners) {
   const RecordingFolder folder;
   test::write_text(folder.path() / "rgb.txt", "5.0 rgb/1.png\n");
-  EXPECT_EQ(FolderRecording(folder.path()).num_color_frames(), 1);
+  EXPECT_EQ(open(folder.path()).num_color_frames(), 1);
   std::filesystem::remove(folder.path() / "rgb.txt");
-  EXPECT_EQ(FolderRecording(folder.path()).num_color_frames(), 0);
+  EXPECT_EQ(open(folder.path()).num_color_frames(), 0);
 }
 
-TEST(FolderRecording, SaysWhatIsMissing) {
-  EXPECT_THAT(error_of<std::runtime_error>([] { FolderRecording recording("/no/such/folder"); }),
-              HasSubstr("/no/such/folder: no such folder"));
+TEST(TumFolder, SaysWhatIsMissing) {
+  EXPECT_THAT(error_of<std::runtime_error>([] { (void)open("/no/such/folder"); }),
+              HasSubstr("/no/such/folder: no such file or folder"));
   {
     const RecordingFolder folder;
     std::filesystem::remove(folder.path() / "depth.txt");
+    std::filesystem::remove_all(folder.path() / "depth");
     EXPECT_THAT(open_error(folder), AllOf(HasSubstr("depth.txt"), HasSubstr("associations.txt")));
   }
   {
     const RecordingFolder folder;
     std::filesystem::remove(folder.path() / "camera.txt");
-    EXPECT_THAT(open_error(folder), HasSubstr("camera.txt: cannot be read"));
+    EXPECT_THAT(open_error(folder),
+                AllOf(HasSubstr("has no camera.txt"), HasSubstr("fx fy cx cy")));
   }
   {
     const RecordingFolder folder;
@@ -105,22 +112,22 @@ TEST(FolderRecording, SaysWhatIsMissing) {
   }
 }
 
-TEST(FolderRecording, FindsAMissingImageWhenItIsRead) {
+TEST(TumFolder, FindsAMissingImageWhenItIsRead) {
   const RecordingFolder folder;
   std::filesystem::remove(folder.path() / "depth/2.png");
-  FolderRecording recording(folder.path());
+  FileRecording recording = open(folder.path());
   EXPECT_THAT(error_of<std::runtime_error>([&] { (void)recording.depth(2, DepthUnit::k1mm); }),
               HasSubstr("depth/2.png: cannot be read"));
   EXPECT_TRUE(same(recording.depth(3, DepthUnit::k1mm), test::raw_depth_image(3)));
 }
 
-TEST(FolderRecording, TakesFrameNumbersAt30Hz) {
+TEST(TumFolder, TakesFrameNumbersAt30Hz) {
   const RecordingFolder folder;
   std::filesystem::remove(folder.path() / "depth.txt");
   test::write_text(folder.path() / "associations.txt",
                    "1 depth/0.png 1 rgb/0.png\n2 depth/1.png 2 rgb/1.png\n"
                    "4 depth/3.png 4 rgb/3.png\n");
-  const FolderRecording recording(folder.path());
+  const FileRecording recording = open(folder.path());
   EXPECT_EQ(recording.depth_utime(0), 33'333);
   EXPECT_EQ(recording.depth_utime(1), 66'667);
   EXPECT_EQ(recording.depth_utime(2), 133'333);
@@ -129,12 +136,12 @@ TEST(FolderRecording, TakesFrameNumbersAt30Hz) {
   EXPECT_THAT(recording.remark(), AllOf(HasSubstr("frame numbers"), HasSubstr("30 frames")));
 }
 
-TEST(FolderRecording, HasNoRemarkAboutSeconds) {
+TEST(TumFolder, HasNoRemarkAboutSeconds) {
   const RecordingFolder folder;
-  EXPECT_EQ(FolderRecording(folder.path()).remark(), "");
+  EXPECT_EQ(open(folder.path()).remark(), "");
 }
 
-TEST(FolderRecording, RefusesLinesThatDoNotParse) {
+TEST(TumFolder, RefusesLinesThatDoNotParse) {
   const RecordingFolder folder;
   const auto error = [&](const std::string& list) {
     test::write_text(folder.path() / "depth.txt", list);
@@ -146,14 +153,14 @@ TEST(FolderRecording, RefusesLinesThatDoNotParse) {
   EXPECT_THAT(error("0.2 depth/0.png\n0.1 depth/1.png\n"), HasSubstr("must ascend"));
 }
 
-TEST(FolderRecording, RefusesImagesOfAnotherSizeOrType) {
+TEST(TumFolder, RefusesImagesOfAnotherSizeOrType) {
   const RecordingFolder folder;
   const cv::Mat_<std::uint16_t> small(10, 20, std::uint16_t{1});
   cv::imwrite((folder.path() / "depth/0.png").string(), small);
   cv::imwrite((folder.path() / "depth/1.png").string(), test::color_image(0));
   test::write_color(folder.path() / "rgb/0.png", cv::Mat_<cv::Vec3b>(10, 20));
   cv::imwrite((folder.path() / "rgb/1.png").string(), test::raw_depth_image(0));
-  FolderRecording recording(folder.path());
+  FileRecording recording = open(folder.path());
   const auto depth_error = [&](int i) {
     return error_of<std::runtime_error>([&] { (void)recording.depth(i, DepthUnit::k1mm); });
   };
@@ -168,7 +175,7 @@ TEST(FolderRecording, RefusesImagesOfAnotherSizeOrType) {
   EXPECT_TRUE(same(recording.color(2), test::color_image(2))) << "an error must not spoil the rest";
 }
 
-TEST(FolderRecording, RefusesTruncatedImages) {
+TEST(TumFolder, RefusesTruncatedImages) {
   const RecordingFolder folder;
   cut_in_half(folder.path() / "depth/0.png");
   test::write_text(folder.path() / "depth/1.png", "");
@@ -176,7 +183,7 @@ TEST(FolderRecording, RefusesTruncatedImages) {
   test::write_color(folder.path() / "rgb/0.jpg", test::color_image(0));
   cut_in_half(folder.path() / "rgb/0.jpg");
   test::write_text(folder.path() / "rgb.txt", "0.1 rgb/0.jpg\n");
-  FolderRecording recording(folder.path());
+  FileRecording recording = open(folder.path());
   const auto depth_error = [&](int i) {
     return error_of<std::runtime_error>([&] { (void)recording.depth(i, DepthUnit::k1mm); });
   };

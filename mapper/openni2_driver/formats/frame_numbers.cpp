@@ -1,4 +1,4 @@
-#include "mapper/openni2_driver/recording/frame_numbers.hpp"
+#include "mapper/openni2_driver/formats/frame_numbers.hpp"
 
 #include <algorithm>
 #include <vector>
@@ -27,8 +27,7 @@ std::int64_t median_step(const std::vector<TimedImage>& images) {
 
 void number_to_time(std::vector<TimedImage>& images) {
   for (TimedImage& image : images) {
-    const std::int64_t number = image.utime / kSecond_us;
-    image.utime = (number * kSecond_us + kNumberedFrames_Hz / 2) / kNumberedFrames_Hz;
+    image.utime = time_of_frame(image.utime / kSecond_us);
   }
 }
 
@@ -37,6 +36,10 @@ void number_to_time(std::vector<TimedImage>& images) {
 bool has_frame_numbers(const ImageLists& lists) {
   return lists.depth.size() > 1 && all_whole(lists.depth) && all_whole(lists.color) &&
          median_step(lists.depth) <= kMaxMedianStep;
+}
+
+std::int64_t time_of_frame(std::int64_t number) {
+  return (number * kSecond_us + kNumberedFrames_Hz / 2) / kNumberedFrames_Hz;
 }
 
 void replace_frame_numbers(ImageLists& lists) {

@@ -1,4 +1,4 @@
-#include "mapper/openni2_driver/recording/image_header.hpp"
+#include "mapper/openni2_driver/formats/image_header.hpp"
 
 #include <algorithm>
 #include <array>

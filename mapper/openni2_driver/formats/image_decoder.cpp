@@ -1,4 +1,4 @@
-#include "mapper/openni2_driver/recording/image_decoder.hpp"
+#include "mapper/openni2_driver/formats/image_decoder.hpp"
 
 #include <algorithm>
 #include <array>
@@ -10,7 +10,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "mapper/openni2_driver/recording/image_header.hpp"
+#include "mapper/openni2_driver/formats/image_header.hpp"
 
 namespace kintsugi::mapper {
 namespace {

@@ -2,7 +2,9 @@
 // Recordings whose lists have the numbers of the frames where other recordings have times, as the
 // TUM-compatible files of ICL-NUIM do: 1, 2, 3, ...
 
-#include "mapper/openni2_driver/recording/image_list.hpp"
+#include <cstdint>
+
+#include "mapper/openni2_driver/formats/image_list.hpp"
 
 namespace kintsugi::mapper {
 
@@ -19,6 +21,9 @@ inline constexpr int kNumberedFrames_Hz = 30;
 /// was kept; beyond 10 that is fewer than 3 frames a second. Larger steps are other units
 /// (milliseconds between the frames of a camera of up to 90 Hz are 11 and more).
 bool has_frame_numbers(const ImageLists& lists);
+
+/// Microseconds at which a frame was taken.
+std::int64_t time_of_frame(std::int64_t number);
 
 /// Turns frame numbers into times at kNumberedFrames_Hz.
 void replace_frame_numbers(ImageLists& lists);
