@@ -13,6 +13,7 @@
 #include "lcmtypes/codec/codec.hpp"
 #include "mapper/core/frame/sensors.hpp"
 #include "mapper/source/openni2/device_listing.hpp"
+#include "mapper/source/probe.hpp"
 
 namespace kintsugi::mapper {
 namespace {
@@ -207,6 +208,11 @@ std::variant<Options, int> parse_options(int argc, const char* const* argv) {
   app.add_flag("--list-devices", print_devices,
                "print the modes of the device, or of every camera, and exit")
       ->configurable(false);
+  std::string probed;
+  app.add_option("--probe", probed,
+                 "print what this recording is, its cameras, its length and what is missing, and "
+                 "exit")
+      ->configurable(false);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -219,6 +225,10 @@ std::variant<Options, int> parse_options(int argc, const char* const* argv) {
   }
   if (print_devices) {
     std::cout << list_devices(options.source.device);
+    return 0;
+  }
+  if (!probed.empty()) {
+    std::cout << probe_recording(probed);
     return 0;
   }
   complete(options);
