@@ -75,7 +75,7 @@ cv::Mat depth_of(const CompressedImage& message, cv::Size expected, const std::s
   }
   std::memcpy(&header, message.data.data(), sizeof(header));
   const std::span<const std::uint8_t> png = std::span(message.data).subspan(sizeof(header));
-  const cv::Mat_<std::uint16_t> values = decode_depth(png, expected, what);
+  cv::Mat_<std::uint16_t> values = decode_depth(png, expected, what);
   if (!message.format.starts_with("32FC1")) return values;
   cv::Mat_<float> depth_m(values.size());
   std::transform(values.begin(), values.end(), depth_m.begin(), [&](std::uint16_t value) {
