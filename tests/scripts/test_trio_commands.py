@@ -93,6 +93,17 @@ class Trio(CommandTest):
         self.assertEqual(self.call("kintsugi-viewer"),
                          ["--out=run", "--exit-on-final", "--map-name=map", "--video=run/run.mp4"])
 
+    def test_an_option_of_the_user_replaces_that_of_the_run(self):
+        self.expect(0, "trio", "--out", "run", "--no-log", "--video",
+                    "--mapper", "--output-trajectory 'my path.txt' --linger=3",
+                    "--segmenter", "--save-every 2 --exit-on-final", "--viewer", "--video=my.mp4")
+        self.assertEqual(self.call("kintsugi-mapper"), ["--store=run/mapper.lcm", "--output-trajectory", "my", "path.txt",
+                                                        "--linger=3"])  # echo loses the quotes
+        segmenter = " ".join(self.call("kintsugi-segmenter"))
+        for flag in ("--save-every", "--exit-on-final"):
+            self.assertEqual(segmenter.count(flag), 1, segmenter)
+        self.assertEqual(" ".join(self.call("kintsugi-viewer")).count("--video"), 1)
+
     def test_a_name_of_the_map_is_that_of_all_processes(self):
         for number, options in enumerate((["--map-name", "attic"], ["--mapper", "--map-name attic"],
                                           ["--mapper=--map-name=attic", "--segmenter", "--map-name attic"])):

@@ -9,6 +9,7 @@ from . import network, options
 from .map_name import map_name, map_option, refuse_second_mapper
 from .messages import Problem, os_error_text, say
 from .process import Process, stop
+from .process_options import with_given
 from .programs import check_programs, program
 from .run_folder import RunFolder
 from .status import Status
@@ -104,9 +105,9 @@ def linger_s(choice):
 def mapper_process(choice, folder):
     def command(resume):
         log_option = "--resume" if resume and folder.has("mapper.lcm") else "--store"
-        return [program("mapper"), "--output-trajectory=" + folder.file("trajectory.txt"),
-                f"--linger={linger_s(choice)}", f"{log_option}={folder.file('mapper.lcm')}",
-                *map_option(choice.map_name, choice.mapper), *choice.mapper]
+        own = ["--output-trajectory=" + folder.file("trajectory.txt"), f"--linger={linger_s(choice)}",
+               f"{log_option}={folder.file('mapper.lcm')}", *map_option(choice.map_name, choice.mapper)]
+        return [program("mapper"), *with_given(own, choice.mapper)]
 
     # A mapper that gets SIGTERM finishes its session, and answers requests until it gets another one. When this
     # supervisor is killed the session must remain unfinished, so that --resume can continue it.
@@ -114,16 +115,16 @@ def mapper_process(choice, folder):
 
 
 def segmenter_process(choice, folder):
-    return Process("segmenter", [program("segmenter"), f"--out={choice.out}", "--exit-on-final",
-                                 f"--linger={linger_s(choice)}", "--save=" + folder.file("segmenter.map"),
-                                 "--save-every=5", "--resume-if-saved", *map_option(map_name(choice), choice.segmenter),
-                                 *choice.segmenter], folder)
+    own = [f"--out={choice.out}", "--exit-on-final", f"--linger={linger_s(choice)}",
+           "--save=" + folder.file("segmenter.map"), "--save-every=5", "--resume-if-saved",
+           *map_option(map_name(choice), choice.segmenter)]
+    return Process("segmenter", [program("segmenter"), *with_given(own, choice.segmenter)], folder)
 
 
 def viewer_process(choice, folder):
-    video = ["--video=" + folder.file("run.mp4")] if choice.video else []
-    return Process("viewer", [program("viewer"), f"--out={choice.out}", "--exit-on-final",
-                              *map_option(map_name(choice), choice.viewer), *choice.viewer, *video], folder)
+    own = [f"--out={choice.out}", "--exit-on-final", *map_option(map_name(choice), choice.viewer),
+           *(["--video=" + folder.file("run.mp4")] if choice.video else [])]
+    return Process("viewer", [program("viewer"), *with_given(own, choice.viewer)], folder)
 
 
 def logger_process(folder):
@@ -163,9 +164,10 @@ def run_replay(choice, folder):
     player = Process("player", ["lcm-logplayer", *(["-l", url] if url else []), "-s", choice.speed,
                                 "-e", REPLAYED_CHANNELS, choice.log], folder)
     listeners = [
-        Process("segmenter", [program("segmenter"), f"--out={choice.out}", "--exit-on-final", f"--linger={UNTIL_TOLD}",
-                              *choice.segmenter], folder),
-        Process("viewer", [program("viewer"), f"--out={choice.out}", "--exit-on-final", *choice.viewer], folder)]
+        Process("segmenter", [program("segmenter"), *with_given(
+            [f"--out={choice.out}", "--exit-on-final", f"--linger={UNTIL_TOLD}"], choice.segmenter)], folder),
+        Process("viewer", [program("viewer"), *with_given([f"--out={choice.out}", "--exit-on-final"], choice.viewer)],
+                folder)]
     with supervised(folder, [player, *listeners]) as supervisor:
         for process in listeners:
             process.start()
