@@ -57,6 +57,7 @@ def trio(arguments):
     else:
         folder.keep_earlier_run()
         folder.remember_options(arguments)
+    network.tell_how_to_ask()
     return run_trio(choice, folder)
 
 
@@ -156,6 +157,7 @@ def replay(arguments):
     for name in ("segmenter.log", "viewer.log", "player.log", "status.csv"):
         with contextlib.suppress(FileNotFoundError):
             os.remove(folder.file(name))
+    network.tell_how_to_ask()
     return run_replay(choice, folder)
 
 
