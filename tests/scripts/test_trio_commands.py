@@ -142,6 +142,14 @@ class Trio(CommandTest):
         self.assertNotIn("--max-frames=5", call)
         self.assertIn(f"--resume={self.work.resolve()}/run/mapper.lcm", call)
 
+    def test_a_run_that_was_finished_is_not_resumed_and_that_is_told(self):
+        self.expect(0, "trio", "--out", "run", "--no-log")
+        (self.work / "run/mapper.lcm").write_text("slices")
+        for says, is_told in (("session 7 is complete: its slices are only sent again", True), ("resumed", False)):
+            self.program("mapper", f'echo "{says}"; ' + UNTIL_TERM)
+            said = self.expect(0, "trio", "--resume", "--out", "run")
+            self.assertEqual("nothing was resumed" in said.splitlines()[-1], is_told, said)
+
     def test_resume_without_slices_starts_from_the_beginning(self):
         self.expect(0, "trio", "--out", "run", "--no-log")
         self.expect(0, "trio", "--resume", "--out", "run")
@@ -159,6 +167,7 @@ class Trio(CommandTest):
         self.program("viewer", "echo no folder; exit 3")
         said = self.expect(1, "trio", "--out", "run", "--no-log")
         self.assertIn("viewer ended with an error (exit code 3):\n  viewer: no folder\n", said)
+        self.assertEqual(said.splitlines()[-1], "trio: viewer ended with an error (exit code 3): no folder")
 
     def test_wrong_options_end_with_2(self):
         self.assertIn("trio: unknown option --nonsense", self.expect(2, "trio", "--nonsense"))

@@ -20,6 +20,7 @@ LINGER_S = 60  # without a viewer, which knows when all is drawn: until there ha
 UNTIL_TOLD = -1
 READY_TIMEOUT_S = 20
 INTERRUPTED = 130  # exit code, as shells have it
+NOTHING_TO_MAP = "is complete: its slices are only sent again"  # says a mapper
 # What the mapper published. Messages of the recorded segmenter would contradict those of the one that listens now.
 REPLAYED_CHANNELS = "^(CLOUD_SLICE|CAMERA_POSE|MAPPER_STATUS)$"
 
@@ -85,7 +86,16 @@ def run_trio(choice, folder):
         if logger:
             good = end_recording(logger, folder) and good
         show_summary(folder, watched)
+        tell_what_matters(supervisor, choice, watched[0])
     return 0 if good else 1
+
+
+def tell_what_matters(supervisor, choice, leader):
+    """At the end, where it is seen."""
+    if choice.resume and leader.name == "mapper" and leader.has_said(NOTHING_TO_MAP):
+        say("nothing was resumed: the run was finished before (Ctrl-C, too, finishes a run), so its map was only "
+            "segmented and drawn again. A run without --resume maps anew")
+    supervisor.tell_failures()
 
 
 @contextlib.contextmanager
@@ -177,6 +187,7 @@ def run_replay(choice, folder):
         player.start()
         good = supervisor.watch()
         show_summary(folder, listeners)
+        supervisor.tell_failures()
     return 0 if good else 1
 
 
