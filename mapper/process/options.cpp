@@ -10,6 +10,7 @@
 #include <CLI/CLI.hpp>
 
 #include "lcmtypes/base/argument_check.hpp"
+#include "lcmtypes/base/command_line.hpp"
 #include "lcmtypes/codec/codec.hpp"
 #include "mapper/core/frame/sensors.hpp"
 #include "mapper/source/openni2/device_listing.hpp"
@@ -199,7 +200,8 @@ std::variant<Options, int> parse_options(int argc, const char* const* argv) {
   CLI::App app{"Maps the RGB-D frames of an OpenNI2 device and publishes the map in slices."};
   add_flags(app, options);
   app.option_defaults()->group("Help and configuration");
-  app.set_config("--config", "", "read flags from this file (TOML)");
+  add_version_flag(app);
+  add_config_flag(app, "read flags from this file (TOML)");
   bool print_config = false;
   app.add_flag("--print-config", print_config, "print every flag with its value, and exit")
       ->configurable(false);

@@ -13,6 +13,7 @@
 #include <CLI/CLI.hpp>
 #include <spdlog/fmt/fmt.h>
 
+#include "lcmtypes/base/command_line.hpp"
 #include "segmenter/core/parameters/presets.hpp"
 
 namespace kintsugi::segmenter {
@@ -172,7 +173,8 @@ std::variant<Options, int> parse_options(int argc, const char* const* argv) {
   add_file_flags(app, options);
   add_slice_flags(app, options);
   add_bus_flags(app, options);
-  app.set_config("--config", "", "read options from this file, in the format of --print-config");
+  add_version_flag(app);
+  add_config_flag(app, "read options from this file, in the format of --print-config");
   bool print_config = false;
   app.add_flag("--print-config", print_config, "print all options with their values, and exit")
       ->configurable(false);

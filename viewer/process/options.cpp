@@ -10,6 +10,7 @@
 #include <CLI/CLI.hpp>
 
 #include "lcmtypes/base/argument_check.hpp"
+#include "lcmtypes/base/command_line.hpp"
 
 namespace kintsugi::viewer {
 namespace {
@@ -114,7 +115,8 @@ void add_drawing_flags(CLI::App& app, Flags& flags) {
 }
 
 void add_config_flags(CLI::App& app, Flags& flags) {
-  app.set_config("--config", "", "Read options from this file; flags override it");
+  add_version_flag(app);
+  add_config_flag(app, "Read options from this file; flags override it");
   app.add_flag("--print-config", flags.print_config,
                "Print all options as a file for --config and exit")
       ->configurable(false);

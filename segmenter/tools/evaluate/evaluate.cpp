@@ -12,7 +12,9 @@
 #include <spdlog/spdlog.h>
 
 #include "lcmtypes/base/atomic_file.hpp"
+#include "lcmtypes/base/command_line.hpp"
 #include "lcmtypes/base/run_main.hpp"
+#include "lcmtypes/base/version.hpp"
 #include "segmenter/evaluation/report/plot.hpp"
 #include "segmenter/evaluation/session/session_cloud.hpp"
 #include "segmenter/evaluation/session/session_log.hpp"
@@ -113,7 +115,7 @@ int evaluate_map(EvaluateOptions options, const std::string& command_line) {
   options.quality.comparison.validate();
   options.cloud.validate();
   make_folder(options.folder);
-  const ReportContext context{command_line, KINTSUGI_VERSION, gnuplot_version()};
+  const ReportContext context{command_line, kintsugi::version(), gnuplot_version()};
   if (!context.gnuplot_version) {
     spdlog::warn("no gnuplot: figures are left out; it is in the Debian package gnuplot-nox");
   }
@@ -141,6 +143,7 @@ int main(int argc, char** argv) {
         "camera path; or, with --live, measures a live run."};
     EvaluateOptions options;
     add_options(app, options);
+    kintsugi::add_version_flag(app);
     CLI11_PARSE(app, argc, argv);
     if (!options.trajectory.estimate_file.empty()) {
       evaluate_trajectory(options.trajectory);

@@ -10,6 +10,7 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include "lcmtypes/base/command_line.hpp"
 #include "lcmtypes/base/run_main.hpp"
 #include "segmenter/io/graph_file.hpp"
 #include "segmenter/io/map_files.hpp"
@@ -115,6 +116,7 @@ int main(int argc, char** argv) {
     CLI::App app{"Writes the segments of a map in the formats of other programs."};
     ExportOptions options;
     add_options(app, options);
+    kintsugi::add_version_flag(app);
     CLI11_PARSE(app, argc, argv);
     run(options);
     return 0;
