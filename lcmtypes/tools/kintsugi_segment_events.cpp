@@ -10,6 +10,7 @@
 #include <CLI/CLI.hpp>
 
 #include "lcmtypes/base/atomic_file.hpp"
+#include "lcmtypes/base/command_line.hpp"
 #include "lcmtypes/base/patient_clock.hpp"
 #include "lcmtypes/base/stop_signal.hpp"
 #include "lcmtypes/bus/bus.hpp"
@@ -106,6 +107,7 @@ int main(int argc, char** argv) {
   app.add_option("--top", options.num_listed, "Number of segments in the printed table")
       ->capture_default_str();
   app.add_option("--json", options.json_file, "Write the whole table to this file, as JSON");
+  kintsugi::add_version_flag(app);
   CLI11_PARSE(app, argc, argv);
   try {
     kintsugi::install_stop_signals();

@@ -11,6 +11,7 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include "lcmtypes/base/command_line.hpp"
 #include "lcmtypes/base/stop_signal.hpp"
 #include "lcmtypes/bus/bus.hpp"
 #include "lcmtypes/bus/message_subscriber.hpp"
@@ -180,6 +181,7 @@ int main(int argc, char** argv) {
                  "Seconds without progress until giving up; 0: never")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
+  kintsugi::add_version_flag(app);
   CLI11_PARSE(app, argc, argv);
   try {
     kintsugi::install_stop_signals();

@@ -10,8 +10,10 @@
 #include <CLI/CLI.hpp>
 
 #include "lcmtypes/base/argument_check.hpp"
+#include "lcmtypes/base/command_line.hpp"
 #include "lcmtypes/codec/codec.hpp"
 #include "mapper/core/frame/sensors.hpp"
+#include "mapper/source/open_source.hpp"
 #include "mapper/source/openni2/device_listing.hpp"
 #include "mapper/source/probe.hpp"
 
@@ -200,7 +202,8 @@ std::variant<Options, int> parse_options(int argc, const char* const* argv) {
   CLI::App app{"Maps the RGB-D frames of an OpenNI2 device and publishes the map in slices."};
   add_flags(app, options);
   app.option_defaults()->group("Help and configuration");
-  app.set_config("--config", "", "read flags from this file (TOML)");
+  add_version_flag(app);
+  add_config_flag(app, "read flags from this file (TOML)");
   bool print_config = false;
   app.add_flag("--print-config", print_config, "print every flag with its value, and exit")
       ->configurable(false);
@@ -212,6 +215,11 @@ std::variant<Options, int> parse_options(int argc, const char* const* argv) {
   app.add_option("--probe", probed,
                  "print what this recording is, its cameras, its length and what is missing, and "
                  "exit")
+      ->configurable(false);
+  bool check_only = false;
+  app.add_flag("--check", check_only,
+               "check the flags, open the device (not with --resume, which may need none), and "
+               "exit: 0 if all is well, or with the reason")
       ->configurable(false);
   try {
     app.parse(argc, argv);
@@ -231,7 +239,13 @@ std::variant<Options, int> parse_options(int argc, const char* const* argv) {
     std::cout << probe_recording(probed);
     return 0;
   }
+  const std::string device = options.source.device;
   complete(options);
+  if (check_only) {
+    options.source.device = device;  // without --ground-truth, which would be written
+    if (options.resume_file.empty()) open_frame_source(options.source);
+    return 0;
+  }
   return options;
 }
 

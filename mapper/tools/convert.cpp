@@ -7,6 +7,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "lcmtypes/base/command_line.hpp"
 #include "lcmtypes/base/run_main.hpp"
 #include "lcmtypes/base/stop_signal.hpp"
 #include "mapper/conversion/recording_writer.hpp"
@@ -77,6 +78,7 @@ int main(int argc, char** argv) {
                    "of colour in .klg and .lcm files, 1 to 100; 0: without loss");
     app.add_option("--max-frames", options.max_frames, "stop after N frames; 0: all")
         ->check(CLI::NonNegativeNumber);
+    kintsugi::add_version_flag(app);
     CLI11_PARSE(app, argc, argv);
     return convert(options);
   });

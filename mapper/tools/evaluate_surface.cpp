@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "lcmtypes/base/command_line.hpp"
 #include "lcmtypes/base/run_main.hpp"
 #include "mapper/evaluation/surface_error.hpp"
 #include "mapper/tools/map_of_scene.hpp"
@@ -31,6 +32,7 @@ int main(int argc, char** argv) {
     add_cloud(app, options);
     add_scene(app, options);
     add_scene_frame(app, options);
+    kintsugi::add_version_flag(app);
     CLI11_PARSE(app, argc, argv);
     evaluate(options);
     return 0;

@@ -7,6 +7,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "lcmtypes/base/command_line.hpp"
 #include "lcmtypes/base/run_main.hpp"
 #include "mapper/evaluation/instance_labels.hpp"
 #include "mapper/tools/map_of_scene.hpp"
@@ -74,6 +75,7 @@ int main(int argc, char** argv) {
         "Labels every point of a map with the instance of the nearest surface of the synthetic "
         "scene that was mapped."};
     add_options(app, options);
+    kintsugi::add_version_flag(app);
     CLI11_PARSE(app, argc, argv);
     label(options);
     return 0;

@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "lcmtypes/base/command_line.hpp"
 #include "lcmtypes/base/run_main.hpp"
 #include "mapper/openni2_driver/recording/recording_uri.hpp"
 #include "mapper/synthetic/render/folder_writer.hpp"
@@ -57,6 +58,7 @@ int main(int argc, char** argv) {
     app.add_option("--out", folder, "folder to write to")->required();
     app.add_option("--frames", frames, "first:end:step, all by default");
     app.footer(scenes_and_options());
+    kintsugi::add_version_flag(app);
     CLI11_PARSE(app, argc, argv);
     render(address, folder, frames);
     return 0;

@@ -13,6 +13,7 @@
 #include <CLI/CLI.hpp>
 #include <spdlog/fmt/fmt.h>
 
+#include "lcmtypes/base/command_line.hpp"
 #include "segmenter/core/parameters/presets.hpp"
 
 namespace kintsugi::segmenter {
@@ -172,9 +173,14 @@ std::variant<Options, int> parse_options(int argc, const char* const* argv) {
   add_file_flags(app, options);
   add_slice_flags(app, options);
   add_bus_flags(app, options);
-  app.set_config("--config", "", "read options from this file, in the format of --print-config");
+  add_version_flag(app);
+  add_config_flag(app, "read options from this file, in the format of --print-config");
   bool print_config = false;
   app.add_flag("--print-config", print_config, "print all options with their values, and exit")
+      ->configurable(false);
+  bool check_only = false;
+  app.add_flag("--check", check_only,
+               "check the options and exit: 0 if all is well, or with the reason")
       ->configurable(false);
   try {
     app.parse(argc, argv);
@@ -183,6 +189,10 @@ std::variant<Options, int> parse_options(int argc, const char* const* argv) {
   }
   if (print_config) {
     std::cout << app.config_to_str(true, true);
+    return 0;
+  }
+  if (check_only) {
+    options.config().validate();
     return 0;
   }
   return options;

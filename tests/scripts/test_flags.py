@@ -17,6 +17,7 @@ Positionals:
 
 Options:
   -h,--help                   Print this help message and exit
+  --version                   Print the version and exit
   -n,--steps INT:NONNEGATIVE=10
                               how many steps | 0: all
   --voxel FLOAT:FLOAT in [0.1 - 1e+06]=0.5

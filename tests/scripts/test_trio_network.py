@@ -26,6 +26,7 @@ class Network(FolderTest):
     def test_with_a_route_nothing_is_said(self):
         network.choose_network(False, ["trio"])
         self.execv.assert_not_called()
+        network.tell_how_to_ask()
         self.assertEqual(self.said, "")
 
     def test_a_private_network_is_entered_when_asked_for(self):
@@ -36,6 +37,15 @@ class Network(FolderTest):
         os.environ["KINTSUGI_PRIVATE_BUS"] = "1"
         network.choose_network(True, ["trio"])
         self.execv.assert_not_called()
+
+    def test_how_to_ask_a_private_run_is_told(self):
+        enter = f"nsenter --target {os.getpid()}"
+        for value, options in (("1", " --net "), ("user", " --user --preserve-credentials --net ")):
+            self.said = ""
+            os.environ["KINTSUGI_PRIVATE_BUS"] = value
+            network.tell_how_to_ask()
+            self.assertIn(enter + options, self.said)
+            self.assertIn("kintsugi-status --once", self.said)
 
     def test_without_a_route_the_cure_is_named_and_the_run_is_private(self):
         self.has_route.return_value = False

@@ -49,9 +49,26 @@ class TrioOptions(unittest.TestCase):
     def test_a_value_may_begin_with_a_dash(self):
         self.assertEqual(parse_trio(["--mapper", "--session=7", "--no-log"]).mapper, ["--session=7"])
 
-    def test_further_options_are_never_replaced(self):
-        options = parse_trio(["--mapper", "--device x", "--device", "y"])
-        self.assertEqual(options.mapper, ["--device=y", "--device", "x"])
+    def test_the_last_of_two_equal_options_counts_for_further_options_too(self):
+        self.assertEqual(parse_trio(["--mapper", "--device x", "--device", "y"]).mapper, ["--device=y"])
+        self.assertEqual(parse_trio(["--device", "y", "--mapper", "--device x"]).mapper, ["--device", "x"])
+        options = parse_trio(["--mapper", "--rate 3 --session=7", "--mapper", "--rate=5"])
+        self.assertEqual(options.mapper, ["--session=7", "--rate=5"])
+        self.assertEqual(parse_trio(["--viewer", "--highlight 1 --highlight 2"]).viewer,
+                         ["--highlight", "1", "--highlight", "2"])
+
+    def test_options_that_belong_to_the_run_are_refused_with_the_reason(self):
+        self.expect_problem(["--mapper", "--store my.lcm"], "--mapper '--store my.lcm': scripts/trio sets --store itself: "
+                            "the log is mapper.lcm in the folder of the run; --out chooses the folder")
+        self.expect_problem(["--mapper", "--resume=my.lcm"], "scripts/trio --resume continues the run")
+        self.expect_problem(["--segmenter", "--out x"], "--out of scripts/trio chooses the folder")
+        self.expect_problem(["--segmenter", "--save x"], "--save itself")
+        self.expect_problem(["--viewer", "--out=x"], "--viewer '--out=x': scripts/trio sets --out itself")
+        self.expect_problem(["run.lcm", "--viewer", "--out=x"], "--out of scripts/replay chooses", parse_replay)
+
+    def test_options_with_which_a_process_only_prints_are_refused(self):
+        self.expect_problem(["--mapper", "--rate 3 --help"], "--mapper '--help': kintsugi-mapper only prints and ends")
+        self.expect_problem(["--viewer", "--print-config"], "run it by itself")
 
     def test_a_quote_that_is_not_closed_is_an_error(self):
         self.expect_problem(["--mapper", "--cloud 'a b"], "--mapper --cloud 'a b: No closing quotation")

@@ -72,6 +72,18 @@ class ProcessTest(FolderTest):
         process.show_last_words()
         self.assertEqual(self.said, "".join(f"  one: line {i}\n" for i in range(3, 8)))
 
+    def test_the_reason_is_the_last_error_of_this_run(self):
+        for words, reason in (("[12:00] [error] disk; [12:01] [info] done", ["[12:00] [error] disk"]),
+                              ("12:02 segmenter error: disk; 12:03 segmenter info: bye", ["12:02 segmenter error: disk"]),
+                              ("kintsugi-mapper: no file; bye", ["kintsugi-mapper: no file"]),
+                              ("one; two", ["two"])):
+            process = self.shell("one", f"echo '{words}' | tr ';' '\n' | sed 's/^ *//'")
+            self.run_to_end(process)
+            self.assertEqual(process.reason(), reason)
+        process = self.shell("one", "exit 1")
+        self.run_to_end(process)
+        self.assertEqual(process.reason(), [])
+
     def test_an_empty_log_is_told(self):
         process = self.shell("one", "exit 1")
         self.run_to_end(process)

@@ -200,6 +200,17 @@ class SupervisorTest(FolderTest):
         self.assertIn("lcm-logger ended early (exit code 1)", self.said)
         self.assertIn("  logger: no space", self.said)
 
+    def test_failures_and_what_to_do_are_told_again(self):
+        viewer = self.shell("viewer", "echo kintsugi-viewer: no space; echo bye; exit 1")
+        supervisor = self.supervisor(self.shell("mapper", UNTIL_TERM), viewer)
+        self.folder.is_disk_full = lambda: True
+        self.assertFalse(supervisor.watch())
+        self.said = ""
+        supervisor.tell_failures()
+        first, second = self.said.splitlines()
+        self.assertIn("viewer ended with an error (exit code 1): kintsugi-viewer: no space", first)
+        self.assertIn("scripts/trio --resume --out", second)
+
     def test_a_full_disk_is_told_once(self):
         viewer = self.shell("viewer", "sleep 0.3")
         supervisor = self.supervisor(self.shell("mapper", UNTIL_TERM), viewer)

@@ -10,6 +10,7 @@
 #include <CLI/CLI.hpp>
 
 #include "lcmtypes/base/argument_check.hpp"
+#include "lcmtypes/base/command_line.hpp"
 
 namespace kintsugi::viewer {
 namespace {
@@ -29,6 +30,7 @@ struct Flags {
   double overview_yaw_deg = rounded_deg(renderer().viewpoint.overview_yaw_rad);
   double overview_pitch_deg = rounded_deg(renderer().viewpoint.overview_pitch_rad);
   bool print_config = false;
+  bool check_only = false;
 
   Painter::Config& painter() { return options.process.painter; }
   MapRenderer::Config& renderer() { return painter().renderer; }
@@ -114,9 +116,13 @@ void add_drawing_flags(CLI::App& app, Flags& flags) {
 }
 
 void add_config_flags(CLI::App& app, Flags& flags) {
-  app.set_config("--config", "", "Read options from this file; flags override it");
+  add_version_flag(app);
+  add_config_flag(app, "Read options from this file; flags override it");
   app.add_flag("--print-config", flags.print_config,
                "Print all options as a file for --config and exit")
+      ->configurable(false);
+  app.add_flag("--check", flags.check_only,
+               "Check the options and exit: 0 if all is well, or with the reason")
       ->configurable(false);
 }
 
@@ -171,6 +177,7 @@ std::variant<Options, int> parse_options(int argc, const char* const* argv) {
     std::cout << app.config_to_str(true, true);
     return 0;
   }
+  if (flags.check_only) return 0;
   return options;
 }
 

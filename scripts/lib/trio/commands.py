@@ -6,9 +6,11 @@ import signal
 import sys
 
 from . import network, options
+from .check import check_options
 from .map_name import map_name, map_option, refuse_second_mapper
 from .messages import Problem, os_error_text, say
 from .process import Process, stop
+from .process_options import with_given
 from .programs import check_programs, program
 from .run_folder import RunFolder
 from .status import Status
@@ -19,6 +21,7 @@ LINGER_S = 60  # without a viewer, which knows when all is drawn: until there ha
 UNTIL_TOLD = -1
 READY_TIMEOUT_S = 20
 INTERRUPTED = 130  # exit code, as shells have it
+NOTHING_TO_MAP = "is complete: its slices are only sent again"  # says a mapper
 # What the mapper published. Messages of the recorded segmenter would contradict those of the one that listens now.
 REPLAYED_CHANNELS = "^(CLOUD_SLICE|CAMERA_POSE|MAPPER_STATUS)$"
 
@@ -42,6 +45,7 @@ def this_command():
 
 def trio(arguments):
     choice = options.parse_trio(arguments)
+    choice.started_in = None  # here
     if choice.resume:
         choice = recalled(choice.out, arguments)
     check_programs([*choice.only, "status"], ["setpriv"] if choice.no_log else ["setpriv", "lcm-logger"])
@@ -49,6 +53,8 @@ def trio(arguments):
     if "mapper" in choice.only and not choice.private:  # nobody else is in a private network
         refuse_second_mapper(choice)
     folder = RunFolder(choice.out)
+    folder.lock_if_used()  # first: what another run has opened cannot be opened to check it
+    check_options({name: words_to_check(name, choice, folder) for name in choice.only}, choice.started_in)
     folder.create()
     folder.lock()
     if choice.resume:
@@ -56,7 +62,14 @@ def trio(arguments):
     else:
         folder.keep_earlier_run()
         folder.remember_options(arguments)
+    network.tell_how_to_ask()
     return run_trio(choice, folder)
+
+
+def words_to_check(name, choice, folder):
+    """A mapper that resumes may find its session complete, and then needs no device."""
+    resumes = name == "mapper" and choice.resume and folder.has("mapper.lcm")
+    return [*([f"--resume={folder.file('mapper.lcm')}"] if resumes else []), *getattr(choice, name)]
 
 
 def recalled(out, arguments):
@@ -83,7 +96,16 @@ def run_trio(choice, folder):
         if logger:
             good = end_recording(logger, folder) and good
         show_summary(folder, watched)
+        tell_what_matters(supervisor, choice, watched[0])
     return 0 if good else 1
+
+
+def tell_what_matters(supervisor, choice, leader):
+    """At the end, where it is seen."""
+    if choice.resume and leader.name == "mapper" and leader.has_said(NOTHING_TO_MAP):
+        say("nothing was resumed: the run was finished before (Ctrl-C, too, finishes a run), so its map was only "
+            "segmented and drawn again. A run without --resume maps anew")
+    supervisor.tell_failures()
 
 
 @contextlib.contextmanager
@@ -104,9 +126,9 @@ def linger_s(choice):
 def mapper_process(choice, folder):
     def command(resume):
         log_option = "--resume" if resume and folder.has("mapper.lcm") else "--store"
-        return [program("mapper"), "--output-trajectory=" + folder.file("trajectory.txt"),
-                f"--linger={linger_s(choice)}", f"{log_option}={folder.file('mapper.lcm')}",
-                *map_option(choice.map_name, choice.mapper), *choice.mapper]
+        own = ["--output-trajectory=" + folder.file("trajectory.txt"), f"--linger={linger_s(choice)}",
+               f"{log_option}={folder.file('mapper.lcm')}", *map_option(choice.map_name, choice.mapper)]
+        return [program("mapper"), *with_given(own, choice.mapper)]
 
     # A mapper that gets SIGTERM finishes its session, and answers requests until it gets another one. When this
     # supervisor is killed the session must remain unfinished, so that --resume can continue it.
@@ -114,16 +136,16 @@ def mapper_process(choice, folder):
 
 
 def segmenter_process(choice, folder):
-    return Process("segmenter", [program("segmenter"), f"--out={choice.out}", "--exit-on-final",
-                                 f"--linger={linger_s(choice)}", "--save=" + folder.file("segmenter.map"),
-                                 "--save-every=5", "--resume-if-saved", *map_option(map_name(choice), choice.segmenter),
-                                 *choice.segmenter], folder)
+    own = [f"--out={choice.out}", "--exit-on-final", f"--linger={linger_s(choice)}",
+           "--save=" + folder.file("segmenter.map"), "--save-every=5", "--resume-if-saved",
+           *map_option(map_name(choice), choice.segmenter)]
+    return Process("segmenter", [program("segmenter"), *with_given(own, choice.segmenter)], folder)
 
 
 def viewer_process(choice, folder):
-    video = ["--video=" + folder.file("run.mp4")] if choice.video else []
-    return Process("viewer", [program("viewer"), f"--out={choice.out}", "--exit-on-final",
-                              *map_option(map_name(choice), choice.viewer), *choice.viewer, *video], folder)
+    own = [f"--out={choice.out}", "--exit-on-final", *map_option(map_name(choice), choice.viewer),
+           *(["--video=" + folder.file("run.mp4")] if choice.video else [])]
+    return Process("viewer", [program("viewer"), *with_given(own, choice.viewer)], folder)
 
 
 def logger_process(folder):
@@ -150,11 +172,14 @@ def replay(arguments):
     check_programs(["segmenter", "viewer", "status"], ["setpriv", "lcm-logplayer"])
     network.choose_network(choice.private, this_command())
     folder = RunFolder(choice.out)
+    folder.lock_if_used()
+    check_options({name: getattr(choice, name) for name in ("segmenter", "viewer")})
     folder.create()
     folder.lock()
     for name in ("segmenter.log", "viewer.log", "player.log", "status.csv"):
         with contextlib.suppress(FileNotFoundError):
             os.remove(folder.file(name))
+    network.tell_how_to_ask()
     return run_replay(choice, folder)
 
 
@@ -163,9 +188,10 @@ def run_replay(choice, folder):
     player = Process("player", ["lcm-logplayer", *(["-l", url] if url else []), "-s", choice.speed,
                                 "-e", REPLAYED_CHANNELS, choice.log], folder)
     listeners = [
-        Process("segmenter", [program("segmenter"), f"--out={choice.out}", "--exit-on-final", f"--linger={UNTIL_TOLD}",
-                              *choice.segmenter], folder),
-        Process("viewer", [program("viewer"), f"--out={choice.out}", "--exit-on-final", *choice.viewer], folder)]
+        Process("segmenter", [program("segmenter"), *with_given(
+            [f"--out={choice.out}", "--exit-on-final", f"--linger={UNTIL_TOLD}"], choice.segmenter)], folder),
+        Process("viewer", [program("viewer"), *with_given([f"--out={choice.out}", "--exit-on-final"], choice.viewer)],
+                folder)]
     with supervised(folder, [player, *listeners]) as supervisor:
         for process in listeners:
             process.start()
@@ -173,6 +199,7 @@ def run_replay(choice, folder):
         player.start()
         good = supervisor.watch()
         show_summary(folder, listeners)
+        supervisor.tell_failures()
     return 0 if good else 1
 
 

@@ -4,11 +4,13 @@ import os
 import socket
 
 from .messages import say
-from .programs import ROOT
+from .programs import ROOT, program
 
 LCM_GROUP = ("239.255.76.67", 7667)  # LCM's default
 RECEIVE_BUFFER = 4194304  # bytes
 SMALL_RECEIVE_BUFFER = 2097152
+PRIVATE = "KINTSUGI_PRIVATE_BUS"  # in the environment of what runs in a private network
+OWN_USERS = "user"  # its value where that is in a namespace of users, too: private_bus makes one unless root calls it
 RMEM_MAX = "/proc/sys/net/core/rmem_max"
 CURE_FOR_ROUTE = "sudo ip link set lo up && sudo ip route add 224.0.0.0/4 dev lo"
 
@@ -26,11 +28,20 @@ def choose_network(private, command):
     note_receive_buffer()
 
 
+def tell_how_to_ask():
+    """Where this is a private network, which is entered from outside through a process in it."""
+    if not os.environ.get(PRIVATE):
+        return
+    user = " --user --preserve-credentials" if os.environ[PRIVATE] == OWN_USERS else ""
+    say(f"in a private network. To ask the run from another terminal: nsenter --target {os.getpid()}{user} --net "
+        f"{program('status')} --once (kintsugi-query and others alike)")
+
+
 def enter_private_network(command):
     """Replaces this process by `command` there, unless the environment says that it is there already."""
-    if os.environ.get("KINTSUGI_PRIVATE_BUS"):
+    if os.environ.get(PRIVATE):
         return
-    os.environ["KINTSUGI_PRIVATE_BUS"] = "1"
+    os.environ[PRIVATE] = "1" if os.geteuid() == 0 else OWN_USERS
     private_bus = os.path.join(ROOT, "scripts", "private_bus")
     os.execv(private_bus, [private_bus, *command])
 

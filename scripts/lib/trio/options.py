@@ -5,6 +5,7 @@ import argparse
 import shlex
 
 from .messages import Problem
+from .process_options import ProcessOptions
 
 PROCESSES = ("mapper", "segmenter", "viewer")
 
@@ -109,8 +110,9 @@ class Parser(argparse.ArgumentParser):
         if rest:
             raise Problem(f"unknown option {rest[0]}; see {self.prog} --help", 2)
         for name in PROCESSES:
-            flags = getattr(options, flags_of(name), {})
-            setattr(options, name, [*flags.values(), *getattr(options, name, [])])
+            if of_process := getattr(options, name, None):
+                of_process.check(self.prog)
+            setattr(options, name, of_process.words() if of_process else [])
         return options
 
     def error(self, message):
@@ -122,10 +124,8 @@ class Parser(argparse.ArgumentParser):
             self.add_argument(flag, default=target, help=text, **action)
             return
         value = {"metavar": metavar} if metavar else {"nargs": 0}
-        if kind == PASS_ON:
-            self.add_argument(flag, action=PassOn, dest=flags_of(target), default={}, help=text, **value)
-        else:
-            self.add_argument(flag, action=Split, dest=target, default=[], help=text, **value)
+        self.add_argument(flag, action=PassOn if kind == PASS_ON else Split, dest=target, default=None, help=text,
+                          **value)
 
     def _join_values(self, arguments):
         """FLAG VALUE as FLAG=VALUE: argparse takes a separate value that begins with a dash, as in
@@ -145,22 +145,22 @@ class Parser(argparse.ArgumentParser):
         return joined
 
 
-def flags_of(name):
-    """The attribute in which PassOn collects what is passed to a process."""
-    return name + "_flags"
+def options_of(namespace, name):
+    """What the namespace has for a process; made with the first option."""
+    if getattr(namespace, name) is None:
+        setattr(namespace, name, ProcessOptions(name))
+    return getattr(namespace, name)
 
 
 class PassOn(argparse.Action):
-    """Collects FLAG=VALUE for a process. Given again, a flag replaces what it said before; an empty
-    value stands for the process's own default."""
+    """FLAG or FLAG=VALUE for a process; an empty value stands for the process's own default."""
 
     def __call__(self, parser, namespace, values, option_string=None):
-        flags = {flag: word for flag, word in getattr(namespace, self.dest).items() if flag != option_string}
         if self.nargs == 0:
-            flags[option_string] = option_string
-        elif values:
-            flags[option_string] = f"{option_string}={values}"
-        setattr(namespace, self.dest, flags)
+            words = [option_string]
+        else:
+            words = [f"{option_string}={values}"] if values else []
+        options_of(namespace, self.dest).replace(option_string, words)
 
 
 class Split(argparse.Action):
@@ -171,4 +171,4 @@ class Split(argparse.Action):
             words = shlex.split(values)
         except ValueError as error:
             raise Problem(f"{option_string} {values}: {error}", 2) from error
-        setattr(namespace, self.dest, getattr(namespace, self.dest) + words)
+        options_of(namespace, self.dest).add(words)

@@ -1,6 +1,7 @@
 """One process of a run."""
 
 import os
+import re
 import signal
 import subprocess
 import time
@@ -8,6 +9,7 @@ import time
 from .messages import STDERR, os_error_text, say, write
 
 LAST_LINES = 5
+ERROR_LEVEL = re.compile(r"\[(error|critical)\]|\b(error|critical): ")  # as in the logs of the processes
 QUICK_DEATH_S = 2.0  # a process that a signal killed within this time of its start ...
 MAX_QUICK_DEATHS = 5  # ... so many times running is not started again
 CLOCK_TICKS_PER_S = os.sysconf("SC_CLK_TCK")
@@ -38,6 +40,7 @@ class Process:
         self._death_signal = death_signal
         self._popen = None
         self._start_s = 0.0
+        self._log_start = None  # where in its log this run begins
         self._quick_deaths = 0
         self._earlier_cpu_s = 0.0  # of those that this one replaced
 
@@ -118,26 +121,45 @@ class Process:
 
     def show_last_words(self):
         """The end of its log, on standard error."""
-        lines = last_lines(self.log_file)
+        lines = last_lines(self.log_file)[-LAST_LINES:]
         for line in lines:
             write(STDERR, f"  {self.name}: {line}\n")
         if not lines:
             write(STDERR, f"  nothing is in its log, {self.log_file}\n")
 
+    def reason(self):
+        """[the last line of its log that tells an error], or [the last one]; [] if nothing is in it. Of this run only:
+        one that is resumed goes on in the same log."""
+        lines = last_lines(self.log_file, self._log_start or 0)
+        errors = [line for line in lines if line.startswith("kintsugi-") or ERROR_LEVEL.search(line)]
+        return (errors or lines)[-1:]
+
+    def has_said(self, text):
+        """Whether the text is in its log, since its first start here."""
+        try:
+            with open(self.log_file, "rb") as file:
+                file.seek(self._log_start or 0)
+                return text.encode() in file.read()
+        except OSError:
+            return False
+
     def _open_log(self):
         try:
-            return open(self.log_file, "ab")
+            log = open(self.log_file, "ab")
+            self._log_start = log.tell() if self._log_start is None else self._log_start
+            return log
         except OSError as error:
             say(f"{os_error_text(error)}; what the {self.name} says is lost")
             return subprocess.DEVNULL
 
 
-def last_lines(path):
+def last_lines(path, start=0):
+    """Of the last 10 kB of a file, after its first `start` bytes."""
     try:
         with open(path, "rb") as file:
             size = file.seek(0, os.SEEK_END)
-            file.seek(max(0, size - 10_000))
-            return file.read().decode(errors="replace").splitlines()[-LAST_LINES:]
+            file.seek(max(start, size - 10_000))
+            return file.read().decode(errors="replace").splitlines()
     except OSError:
         return []
 

@@ -24,6 +24,8 @@ class Supervisor:
         self.processes = processes
         self.logger = logger
         self.failed = False
+        self.failures = []  # what ended with an error, and its reason
+        self.advice = []  # what to do about them
         self.num_stop_requests = 0
         self._disk_was_full = False
 
@@ -77,6 +79,11 @@ class Supervisor:
         stop(processes, signal.SIGTERM, 10)
         self.folder.remove_pid_files()
 
+    def tell_failures(self):
+        """Again, and last, where it is seen."""
+        for text in self.failures + self.advice:
+            say(text)
+
     def _check(self, process):
         """If the process has ended: starts it again if it was killed by a signal, unless it dies soon after each
         start; ends the run if there was an error."""
@@ -93,9 +100,11 @@ class Supervisor:
         how = f"was ended by signal {-code}" if code < 0 else f"ended with an error (exit code {code})"
         say(f"{process.name} {how}:")
         process.show_last_words()
+        self.failures.append(": ".join([f"{process.name} {how}", *process.reason()]))
         if self.folder.is_disk_full():
-            say(f"{self.folder.path}: no space left on device; when there is space, "
-                f"scripts/trio --resume --out {self.folder.path} goes on with the run")
+            self.advice = [f"{self.folder.path}: no space left on device; when there is space, "
+                           f"scripts/trio --resume --out {self.folder.path} goes on with the run"]
+            say(*self.advice)
         self.status.show_progress(IDLE_AFTER_ERROR_S)
 
     def _check_logger(self):

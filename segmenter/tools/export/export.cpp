@@ -1,15 +1,18 @@
 // kintsugi-export: writes the segments of a map in the formats of other programs.
 
 #include <algorithm>
+#include <filesystem>
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include "lcmtypes/base/command_line.hpp"
 #include "lcmtypes/base/run_main.hpp"
 #include "segmenter/io/graph_file.hpp"
 #include "segmenter/io/map_files.hpp"
@@ -86,6 +89,12 @@ void write_descriptions(const LabelledMap& input, const ExportOptions& options) 
   }
 }
 
+void make_folder(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) throw std::runtime_error(folder.string() + ": cannot be made: " + error.message());
+}
+
 void run(const ExportOptions& options) {
   validate(options);
   const LabelledMap input = read_labelled_map(options.input, options.resolution_m);
@@ -93,6 +102,7 @@ void run(const ExportOptions& options) {
   spdlog::info("{}: {} points in {} segments, resolution {:.6g} m", options.input.string(),
                input.map.state.points_W.size(), input.map.segments.size(),
                input.map.state.config.engine.resolution_m);
+  if (!options.segment_folder.empty()) make_folder(options.segment_folder);
   if (!options.segs.empty()) write_segs(input, options);
   if (!options.ply.empty()) write_map_ply(input.map, options.ply);
   if (!options.segment_folder.empty()) {
@@ -115,6 +125,7 @@ int main(int argc, char** argv) {
     CLI::App app{"Writes the segments of a map in the formats of other programs."};
     ExportOptions options;
     add_options(app, options);
+    kintsugi::add_version_flag(app);
     CLI11_PARSE(app, argc, argv);
     run(options);
     return 0;

@@ -32,8 +32,9 @@ void add_options(CLI::App& app, ExportOptions& options) {
   app.add_option(
       "--mesh", options.mesh,
       "a PLY file whose vertices get the segment of the nearest point within two voxels");
-  auto* const folder = app.add_option("--segment-plys", options.segment_folder,
-                                      "write each segment as segment_ID.ply in this folder");
+  auto* const folder =
+      app.add_option("--segment-plys", options.segment_folder,
+                     "write each segment as segment_ID.ply in this folder, made when absent");
   app.add_option("--segments", options.segment_ids,
                  "ID,ID,...: of --segment-plys only these segments (default: all)")
       ->delimiter(',')
@@ -59,9 +60,6 @@ void validate(const ExportOptions& options) {
   }
   for (const auto& file : files) {
     if (file.has_parent_path()) require_folder(file.parent_path(), file);
-  }
-  if (!options.segment_folder.empty()) {
-    require_folder(options.segment_folder, "--segment-plys");
   }
 }
 

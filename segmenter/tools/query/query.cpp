@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "lcmtypes/base/command_line.hpp"
 #include "lcmtypes/base/run_main.hpp"
 #include "lcmtypes/codec/codec.hpp"
 #include "segmenter/io/saved_map.hpp"
@@ -69,6 +70,7 @@ int main(int argc, char** argv) {
         "neighbours.");
     QueryOptions options;
     add_options(app, options);
+    kintsugi::add_version_flag(app);
     CLI11_PARSE(app, argc, argv);
     return run(options);
   });

@@ -11,6 +11,7 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include "lcmtypes/base/command_line.hpp"
 #include "lcmtypes/base/run_main.hpp"
 #include "segmenter/io/cloud_input.hpp"
 #include "segmenter/io/cloud_slices.hpp"
@@ -117,6 +118,7 @@ int main(int argc, char** argv) {
     CLI::App app{"Segments a point cloud from a PLY file (Felzenszwalb and Huttenlocher; Finman)."};
     SegmentCloudOptions options;
     add_options(app, options);
+    kintsugi::add_version_flag(app);
     CLI11_PARSE(app, argc, argv);
     validate(options);
     run(options);

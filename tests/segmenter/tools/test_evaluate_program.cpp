@@ -60,6 +60,9 @@ TEST_F(EvaluateProgram, WritesTablesAndPageOfALog) {
     EXPECT_THAT(result.output, HasSubstr(mode + ": slice 4 of 4, 800 points"));
   }
   EXPECT_GT(lines_of("index.html").size(), 50U);
+  EXPECT_THAT(lines_of("index.html"), Contains(HasSubstr("src=\"data:image/png;base64,")));
+  EXPECT_THAT(lines_of("index.html"), Contains(HasSubstr("<dt>Preset</dt><dd>paper")));
+  EXPECT_GT(std::filesystem::file_size(path("out/map.png")), 100U);
   EXPECT_THAT(result.output, HasSubstr("memory:"));
   for (const auto& entry : std::filesystem::directory_iterator(folder_ / "out")) {
     EXPECT_EQ(entry.path().string().find("partial"), std::string::npos) << entry.path();

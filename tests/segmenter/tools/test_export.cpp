@@ -118,7 +118,6 @@ TEST_F(Export, MeshVerticesGetTheSegmentOfTheNearestPoint) {
 }
 
 TEST_F(Export, OneFileForEachChosenSegment) {
-  std::filesystem::create_directory(folder_ / "parts");
   const std::uint32_t first = map_.segments.at(0).segment_id;
   const std::uint32_t third = map_.segments.at(2).segment_id;
   expect_success("FOLDER/map.kseg --segment-plys FOLDER/parts --segments " + std::to_string(third) +
@@ -133,7 +132,6 @@ TEST_F(Export, OneFileForEachChosenSegment) {
   };
   EXPECT_EQ(count(), 2);
   std::filesystem::remove_all(folder_ / "parts");
-  std::filesystem::create_directory(folder_ / "parts");
   expect_success("FOLDER/map.kseg --segment-plys FOLDER/parts --min-points 20");
   EXPECT_EQ(count(), std::count_if(map_.segments.begin(), map_.segments.end(),
                                    [](const auto& s) { return s.num_points >= 20; }));
@@ -142,8 +140,8 @@ TEST_F(Export, OneFileForEachChosenSegment) {
 TEST_F(Export, SaysWhatIsWrongAndWritesNothing) {
   expect_error("FOLDER/map.kseg", "nothing to write");
   expect_error("FOLDER/map.kseg --csv FOLDER/absent/a.csv", "there is no folder");
-  expect_error("FOLDER/map.kseg --csv FOLDER/a.csv --segment-plys FOLDER/absent",
-               "there is no folder");
+  expect_error("FOLDER/map.kseg --csv FOLDER/a.csv --segment-plys FOLDER/map.kseg/parts",
+               "cannot be made");
   const std::string unknown = std::to_string(map_.state.next_id);
   expect_error("FOLDER/map.kseg --csv FOLDER/a.csv --segment-plys FOLDER --segments " + unknown,
                "there is no segment " + unknown);
