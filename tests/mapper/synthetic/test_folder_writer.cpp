@@ -7,7 +7,8 @@
 #include <opencv2/imgcodecs.hpp>
 #include <unistd.h>
 
-#include "mapper/openni2_driver/recording/folder_recording.hpp"
+#include "mapper/openni2_driver/formats/read_recording.hpp"
+#include "mapper/openni2_driver/recording/file_recording.hpp"
 #include "mapper/synthetic/render/folder_writer.hpp"
 
 namespace kintsugi::synthetic {
@@ -36,7 +37,7 @@ TEST(FolderWriter, FolderPlaysBackWhatWasRendered) {
   for (int frame : {0, 10}) writer.write_frame(frame);
   writer.finish();
 
-  mapper::FolderRecording recording(folder);
+  mapper::FileRecording recording(mapper::read_recording(folder, {}));
   ASSERT_EQ(recording.num_depth_frames(), 2);
   ASSERT_EQ(recording.num_color_frames(), 2);
   EXPECT_EQ(recording.depth_utime(1), sequence.utime(10));
