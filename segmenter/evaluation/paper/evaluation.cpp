@@ -64,11 +64,7 @@ std::vector<ChosenSegment> choose_thetas(const RecordedSession& session,
     chosen.emplace_back().rank = rank;
     labels.push_back(by_size[static_cast<std::size_t>(rank) - 1]);
   }
-  PointCloud cloud;  // its points stand in the order of batch.labels
-  for (const CloudSlice* slice : session.newest_slices()) {
-    cloud.add_slice(slice->id, slice->points_W);
-  }
-  auto histories = theta_histories(cloud, batch.labels, labels, config.engine);
+  auto histories = theta_histories(final_cloud(session), batch.labels, labels, config.engine);
   for (std::size_t i = 0; i < chosen.size(); ++i) chosen[i].history = std::move(histories[i]);
   return chosen;
 }
@@ -82,6 +78,14 @@ std::vector<std::string> evaluation_modes() {
     if (std::find(known.begin(), known.end(), mode) != known.end()) modes.emplace_back(mode);
   }
   return modes;
+}
+
+PointCloud final_cloud(const RecordedSession& session) {
+  PointCloud cloud;
+  for (const CloudSlice* slice : session.newest_slices()) {
+    cloud.add_slice(slice->id, slice->points_W);
+  }
+  return cloud;
 }
 
 void EvaluationConfig::validate() const {
@@ -133,6 +137,7 @@ Evaluation evaluate(RecordedSession session, EvaluationConfig config,
     }
   }
   result.thetas = choose_thetas(session, reference, config);
+  result.labels = reference.labels;
   const ProcessMemory memory = process_memory();
   result.resident_bytes = memory.resident_bytes;
   result.peak_resident_bytes = memory.peak_resident_bytes;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "segmenter/core/points/point_cloud.hpp"
 #include "segmenter/evaluation/agreement/agreement.hpp"
 #include "segmenter/evaluation/paper/theta_history.hpp"
 #include "segmenter/evaluation/session/recorded_session.hpp"
@@ -47,6 +48,8 @@ struct Evaluation {
   RecordedSession session;
   std::int64_t num_vertices = 0;  ///< points of the final map
   std::int64_t num_segments = 0;  ///< of batch
+  /// Of batch, in the order of MeasuredSession::labels.
+  std::vector<std::uint32_t> labels;
   std::vector<ModeResult> modes;
   std::vector<ChosenSegment> thetas;
   double batch_final_ms = 0.0;      ///< batch once over the final map
@@ -54,6 +57,9 @@ struct Evaluation {
   std::int64_t resident_bytes = 0;  ///< memory of the process at the end
   std::int64_t peak_resident_bytes = 0;
 };
+
+/// The final map, in the order of its labels.
+PointCloud final_cloud(const RecordedSession& session);
 
 /// Segments the final map with batch, which is the reference, then measures each mode over the
 /// session.

@@ -3,6 +3,7 @@
 #include "segmenter/evaluation/paper/page.hpp"
 #include "segmenter/evaluation/paper/result_plots.hpp"
 #include "segmenter/evaluation/paper/result_tables.hpp"
+#include "segmenter/evaluation/report/map_picture.hpp"
 #include "segmenter/evaluation/report/text_file.hpp"
 
 namespace kintsugi::segmenter {
@@ -20,13 +21,21 @@ void write_tables(const Evaluation& evaluation, const std::filesystem::path& fol
   }
 }
 
+std::string draw_map(const Evaluation& evaluation) {
+  if (evaluation.labels.empty()) return "";
+  const PointCloud cloud = final_cloud(evaluation.session);
+  return map_picture_png(cloud.points_W(), evaluation.labels, evaluation.session.resolution_m());
+}
+
 }  // namespace
 
 bool write_report(const Evaluation& evaluation, const ReportContext& context,
                   const std::filesystem::path& folder) {
   write_tables(evaluation, folder);
   const auto drawn = draw_figures(figures(evaluation), context.gnuplot_version.has_value(), folder);
-  write_text_file(folder / "index.html", make_page(evaluation, context, drawn));
+  const std::string map_png = draw_map(evaluation);
+  if (!map_png.empty()) write_text_file(folder / "map.png", map_png);
+  write_text_file(folder / "index.html", make_page(evaluation, context, map_png, drawn));
   return are_drawn(drawn);
 }
 

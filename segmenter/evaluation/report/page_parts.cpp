@@ -1,6 +1,9 @@
 #include "segmenter/evaluation/report/page_parts.hpp"
 
+#include <algorithm>
+#include <cstdint>
 #include <fstream>
+#include <string_view>
 #include <thread>
 
 namespace kintsugi::segmenter {
@@ -17,7 +20,7 @@ th:first-child, td:first-child { text-align: left; }
 dl { display: grid; grid-template-columns: max-content auto; gap: .1rem 1.2rem; }
 dt { color: #666; } dd { margin: 0; overflow-wrap: anywhere; }
 .note, figcaption { color: #555; font-size: .92rem; } .remark { color: #a04000; }
-figure { margin: 1rem 0 2rem; } svg { width: 100%; height: auto; }
+figure { margin: 1rem 0 2rem; } svg, img { width: 100%; height: auto; }
 .wide { overflow-x: auto; }
 )";
 
@@ -29,6 +32,24 @@ std::string processor() {
     if (colon != std::string::npos) return line.substr(colon + 2);
   }
   return "unknown processor";
+}
+
+/// As in RFC 4648.
+std::string base64(const std::string& bytes) {
+  constexpr std::string_view kDigits =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    const std::size_t num_bytes = std::min<std::size_t>(3, bytes.size() - i);
+    std::uint32_t group = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      group = group << 8U | (k < num_bytes ? static_cast<unsigned char>(bytes[i + k]) : 0U);
+    }
+    for (std::size_t k = 0; k < 4; ++k) {
+      text += k <= num_bytes ? kDigits[group >> (18U - 6U * k) & 63U] : '=';
+    }
+  }
+  return text;
 }
 
 }  // namespace
@@ -62,6 +83,14 @@ std::string html_list(const Facts& facts) {
 
 std::string html_wide(const Table& table) {
   return "<div class=\"wide\">\n" + to_html(table) + "</div>\n";
+}
+
+std::string html_picture(const std::string& title, const std::string& png,
+                         const std::string& caption) {
+  if (png.empty()) return "";
+  return html_section(title) + "<figure>\n<img alt=\"" + html_escaped(title) +
+         "\" src=\"data:image/png;base64," + base64(png) + "\">\n<figcaption>" +
+         html_escaped(caption) + "</figcaption>\n</figure>\n";
 }
 
 std::string html_figures(const std::vector<DrawnFigure>& figures) {

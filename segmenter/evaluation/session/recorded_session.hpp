@@ -22,8 +22,10 @@ struct RecordedSession {
   /// From the first camera pose (without poses: from the first slice) to the last slice.
   std::optional<double> build_time_s;
   std::optional<double> path_length_m;  ///< of the camera
-  std::vector<std::string> remarks;     ///< what a reader of the results must know
-  bool is_whole = true;                 ///< false: the file is damaged or lacks slices
+  /// Of the segmenter that was on the bus when it was recorded, as far as its statuses tell.
+  std::optional<std::int64_t> segments_of_run;
+  std::vector<std::string> remarks;  ///< what a reader of the results must know
+  bool is_whole = true;              ///< false: the file is damaged or lacks slices
 
   float resolution_m() const { return steps.front().slices.front().resolution_m; }
   /// The newest revision of each slice, by ascending id.

@@ -1,7 +1,9 @@
 #include "segmenter/evaluation/session/session_log.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <map>
+#include <span>
 #include <stdexcept>
 #include <utility>
 
@@ -22,6 +24,7 @@ struct LoggedSession {
   std::int64_t num_wrong_resolution = 0;     // slices left out
   std::optional<float> resolution_m;         // of the first
   std::map<std::int64_t, CameraPose> poses;  // by time
+  std::optional<std::int64_t> num_segments;  // in the last status of a segmenter that had finished
 
   void add(CloudSlice slice) {
     if (slice.resolution_m != resolution_m.value_or(slice.resolution_m)) {
@@ -49,6 +52,15 @@ struct LoggedSession {
 
 using LoggedSessions = std::map<std::int64_t, LoggedSession>;
 
+/// A status that cannot be read says nothing: the evaluation does not need it.
+void note_segments(std::span<const std::uint8_t> data, LoggedSessions& sessions) {
+  try {
+    const auto status = decode<SegmenterStatus>(data);
+    if (status.finished) sessions[status.map_session].num_segments = status.segments;
+  } catch (const DecodeError&) {
+  }
+}
+
 /// Reads all sessions of the log; adds to `faults` what was wrong with it.
 LoggedSessions read_log(const std::filesystem::path& path, std::vector<std::string>& faults) {
   LogReader log(path);
@@ -60,6 +72,7 @@ LoggedSessions read_log(const std::filesystem::path& path, std::vector<std::stri
   });
   while (const auto event = log.next()) {
     if (subscriber.handle(event->channel, event->data)) continue;
+    if (event->channel == channels::kSegmenterStatus) note_segments(event->data, sessions);
     if (event->channel != channels::kCameraPose) continue;
     try {
       const auto pose = decode<CameraPose>(event->data);
@@ -177,6 +190,7 @@ RecordedSession read_session_log(const std::filesystem::path& path) {
   logged.end();
   session.steps = std::move(logged.steps);
   session.num_slices = logged.num_slices;
+  session.segments_of_run = logged.num_segments;
   apply_corrections_of(session);
   if (session.num_points() == 0) {
     throw std::runtime_error(path.string() + ": its slices hold no points" + damage);

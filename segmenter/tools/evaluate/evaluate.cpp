@@ -33,6 +33,7 @@ struct EvaluateOptions {
   std::filesystem::path folder;
   CloudInputConfig cloud;
   SegmentMapConfig map;  // its engine
+  std::string preset = "paper";
   EvaluationConfig evaluation;
   QualityOptions quality;
   TrajectoryOptions trajectory;
@@ -76,7 +77,7 @@ void add_options(CLI::App& app, EvaluateOptions& options) {
       ->delimiter(',')
       ->allow_extra_args(false)
       ->capture_default_str();
-  add_segmentation_options(app, options.map, "paper");
+  add_segmentation_options(app, options.map, options.preset);
   app.remove_option(app.get_option("--mode"));
   auto* const group = app.add_option_group("PLY files");
   add_cloud_options(*group, options.cloud);
@@ -115,7 +116,7 @@ int evaluate_map(EvaluateOptions options, const std::string& command_line) {
   options.quality.comparison.validate();
   options.cloud.validate();
   make_folder(options.folder);
-  const ReportContext context{command_line, kintsugi::version(), gnuplot_version()};
+  const ReportContext context{command_line, options.preset, kintsugi::version(), gnuplot_version()};
   if (!context.gnuplot_version) {
     spdlog::warn("no gnuplot: figures are left out; it is in the Debian package gnuplot-nox");
   }
@@ -145,6 +146,7 @@ int main(int argc, char** argv) {
     add_options(app, options);
     kintsugi::add_version_flag(app);
     CLI11_PARSE(app, argc, argv);
+    options.preset = app.get_option("--preset")->as<std::string>();
     if (!options.trajectory.estimate_file.empty()) {
       evaluate_trajectory(options.trajectory);
       return 0;

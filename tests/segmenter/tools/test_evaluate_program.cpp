@@ -60,10 +60,28 @@ TEST_F(EvaluateProgram, WritesTablesAndPageOfALog) {
     EXPECT_THAT(result.output, HasSubstr(mode + ": slice 4 of 4, 800 points"));
   }
   EXPECT_GT(lines_of("index.html").size(), 50U);
+  EXPECT_THAT(lines_of("index.html"), Contains(HasSubstr("src=\"data:image/png;base64,")));
+  EXPECT_THAT(lines_of("index.html"), Contains(HasSubstr("<dt>Preset</dt><dd>paper")));
+  EXPECT_GT(std::filesystem::file_size(path("out/map.png")), 100U);
   EXPECT_THAT(result.output, HasSubstr("memory:"));
   for (const auto& entry : std::filesystem::directory_iterator(folder_ / "out")) {
     EXPECT_EQ(entry.path().string().find("partial"), std::string::npos) << entry.path();
   }
+}
+
+TEST_F(EvaluateProgram, SaysThatTheRunHadOtherParameters) {
+  testing::LogMessages messages;
+  const auto slices = testing::wavy_session(2, 200);
+  testing::append_slices(slices, messages);
+  SegmenterStatus status;
+  status.session = 1;
+  status.map_session = slices.front().session;
+  status.finished = true;
+  status.segments = 123'456;
+  messages.emplace_back(channels::kSegmenterStatus, encode(status));
+  testing::write_log(path("in.lcm"), messages);
+  EXPECT_THAT(run("--modes batch " + path("in.lcm") + " --out " + path("out")).output,
+              HasSubstr("123,456 segments"));
 }
 
 TEST_F(EvaluateProgram, TakesModesInTheOrderGiven) {

@@ -326,7 +326,7 @@ std::string text_of(const std::filesystem::path& path) {
 
 TEST(Report, IsOnePageThatRefersToNothingElse) {
   const kintsugi::testing::TemporaryFolder folder;
-  const ReportContext context{"kintsugi-evaluate a 'b'", "1.2.3", gnuplot_version()};
+  const ReportContext context{"kintsugi-evaluate a 'b'", "paper", "1.2.3", gnuplot_version()};
   EXPECT_EQ(write_report(hand_made(), context, folder.path()), context.gnuplot_version.has_value());
   const std::string page = text_of(folder / "index.html");
   EXPECT_THAT(page, HasSubstr("some &lt;hand-made&gt; session"));
@@ -353,9 +353,24 @@ TEST(Report, IsOnePageThatRefersToNothingElse) {
   EXPECT_EQ(text_of(folder / "table2.csv"), to_csv(table2(hand_made())));
 }
 
+TEST(Report, SaysThatTheRunHadOtherParameters) {
+  const kintsugi::testing::TemporaryFolder folder;
+  Evaluation evaluation = hand_made();
+  const auto page_with = [&](std::optional<std::int64_t> segments_of_run) {
+    evaluation.session.segments_of_run = segments_of_run;
+    write_report(evaluation, {"", "paper", "", std::nullopt}, folder.path());
+    return text_of(folder / "index.html");
+  };
+  EXPECT_THAT(page_with(evaluation.num_segments + 1), HasSubstr("the run had other parameters"));
+  EXPECT_THAT(page_with(evaluation.num_segments), Not(HasSubstr("other parameters")));
+  const std::string page = page_with(std::nullopt);
+  EXPECT_THAT(page, Not(HasSubstr("other parameters")));
+  EXPECT_THAT(page, HasSubstr("<dt>Preset</dt><dd>paper"));
+}
+
 TEST(Report, SaysWhichPackageTheFiguresNeed) {
   const kintsugi::testing::TemporaryFolder folder;
-  EXPECT_FALSE(write_report(hand_made(), {"", "", std::nullopt}, folder.path()));
+  EXPECT_FALSE(write_report(hand_made(), {"", "", "", std::nullopt}, folder.path()));
   EXPECT_THAT(text_of(folder / "index.html"), HasSubstr("gnuplot-nox"));
   EXPECT_FALSE(std::filesystem::exists(folder / "fig4.svg"));
   EXPECT_TRUE(std::filesystem::exists(folder / "fig4.gp"));
@@ -367,7 +382,7 @@ TEST(Report, WithoutTimesHasNoTable2) {
   result.session.has_times = false;
   result.session.build_time_s.reset();
   for (ModeResult& mode : result.modes) mode.slices_behind.clear();
-  write_report(result, {"", "", std::nullopt}, folder.path());
+  write_report(result, {"", "", "", std::nullopt}, folder.path());
   EXPECT_FALSE(std::filesystem::exists(folder / "table2.csv"));
   EXPECT_THAT(text_of(folder / "index.html"), HasSubstr("Left out: the slices have no times."));
   EXPECT_THAT(text_of(folder / "table1.csv"), HasSubstr("voting,12,3,,"));

@@ -51,6 +51,24 @@ TEST_F(SessionLog, HoldsSlicesTimesAndPath) {
   EXPECT_DOUBLE_EQ(session.build_time_s.value(), 502e-6);
 }
 
+TEST_F(SessionLog, HoldsTheNumberOfSegmentsOfTheRun) {
+  const auto slices = testing::wavy_session(3, 100);
+  testing::append_slices(slices, messages_);
+  EXPECT_FALSE(read().segments_of_run);
+  SegmenterStatus status;
+  status.session = 1;
+  status.map_session = slices.front().session;
+  for (const auto& [finished, segments] : {std::pair(false, 3), {true, 7}, {true, 8}}) {
+    status.finished = finished;
+    status.segments = segments;
+    messages_.emplace_back(channels::kSegmenterStatus, encode(status));
+  }
+  status.map_session += 1;
+  status.segments = 99;
+  messages_.emplace_back(channels::kSegmenterStatus, encode(status));
+  EXPECT_EQ(read().segments_of_run, 8);
+}
+
 TEST_F(SessionLog, WithoutPosesMeasuresAlongTheSlices) {
   auto slices = testing::wavy_session(3, 100);
   slices[1].X_WC.translation().y() = 1.0;
