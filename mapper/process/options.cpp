@@ -13,6 +13,7 @@
 #include "lcmtypes/base/command_line.hpp"
 #include "lcmtypes/codec/codec.hpp"
 #include "mapper/core/frame/sensors.hpp"
+#include "mapper/source/open_source.hpp"
 #include "mapper/source/openni2/device_listing.hpp"
 
 namespace kintsugi::mapper {
@@ -209,6 +210,11 @@ std::variant<Options, int> parse_options(int argc, const char* const* argv) {
   app.add_flag("--list-devices", print_devices,
                "print the modes of the device, or of every camera, and exit")
       ->configurable(false);
+  bool check_only = false;
+  app.add_flag("--check", check_only,
+               "check the flags, open the device (not with --resume, which may need none), and "
+               "exit: 0 if all is well, or with the reason")
+      ->configurable(false);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -223,7 +229,13 @@ std::variant<Options, int> parse_options(int argc, const char* const* argv) {
     std::cout << list_devices(options.source.device);
     return 0;
   }
+  const std::string device = options.source.device;
   complete(options);
+  if (check_only) {
+    options.source.device = device;  // without --ground-truth, which would be written
+    if (options.resume_file.empty()) open_frame_source(options.source);
+    return 0;
+  }
   return options;
 }
 

@@ -178,6 +178,10 @@ std::variant<Options, int> parse_options(int argc, const char* const* argv) {
   bool print_config = false;
   app.add_flag("--print-config", print_config, "print all options with their values, and exit")
       ->configurable(false);
+  bool check_only = false;
+  app.add_flag("--check", check_only,
+               "check the options and exit: 0 if all is well, or with the reason")
+      ->configurable(false);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -185,6 +189,10 @@ std::variant<Options, int> parse_options(int argc, const char* const* argv) {
   }
   if (print_config) {
     std::cout << app.config_to_str(true, true);
+    return 0;
+  }
+  if (check_only) {
+    options.config().validate();
     return 0;
   }
   return options;

@@ -11,8 +11,9 @@ from tempfile import TemporaryDirectory
 
 from trio_fakes import ROOT, UNTIL_TERM, environment, process_is_gone, wait_until, write_program
 
-# Each program notes how it was called. The display of the progress lasts until it is ended; questions are
-# answered at once: there is no other mapper on the bus, everything else is so.
+# Each program accepts all options, and notes how it was called. The display of the progress lasts until it is ended;
+# questions are answered at once: there is no other mapper on the bus, everything else is so.
+CHECK = 'case " $* " in *" --check "*) echo "$@" >>"$CALLS/checked-$(basename "$0")"; exit 0 ;; esac; '
 NOTE = 'echo "$@" >>"$CALLS/$(basename "$0")"; '
 FINISHES = NOTE + "sleep 0.2"
 LASTS = NOTE + UNTIL_TERM
@@ -37,7 +38,7 @@ class CommandTest(unittest.TestCase):
         write_program(self.programs / "lcm-logplayer", FINISHES)
 
     def program(self, name, script):
-        write_program(self.programs / f"kintsugi-{name}", script)
+        write_program(self.programs / f"kintsugi-{name}", CHECK + script)
 
     def start(self, command, *arguments):
         process = subprocess.Popen([ROOT / "scripts" / command, *arguments], cwd=self.work, text=True,
@@ -150,6 +151,14 @@ class Trio(CommandTest):
             said = self.expect(0, "trio", "--resume", "--out", "run")
             self.assertEqual("nothing was resumed" in said.splitlines()[-1], is_told, said)
 
+    def test_a_mapper_that_resumes_is_asked_as_one_that_resumes(self):
+        self.expect(0, "trio", "--out", "run", "--no-log")
+        self.assertEqual(self.call("checked-kintsugi-mapper"), ["--check"])
+        (self.work / "run/mapper.lcm").write_text("slices")
+        self.expect(0, "trio", "--resume", "--out", "run")
+        self.assertEqual(self.call("checked-kintsugi-mapper"),
+                         ["--check", f"--resume={self.work.resolve()}/run/mapper.lcm"])
+
     def test_resume_without_slices_starts_from_the_beginning(self):
         self.expect(0, "trio", "--out", "run", "--no-log")
         self.expect(0, "trio", "--resume", "--out", "run")
@@ -168,6 +177,31 @@ class Trio(CommandTest):
         said = self.expect(1, "trio", "--out", "run", "--no-log")
         self.assertIn("viewer ended with an error (exit code 3):\n  viewer: no folder\n", said)
         self.assertEqual(said.splitlines()[-1], "trio: viewer ended with an error (exit code 3): no folder")
+
+    def test_options_that_a_process_refuses_end_with_2_before_anything_is_written(self):
+        self.expect(0, "trio", "--out", "old", "--no-log")
+        before = sorted(path.name for path in (self.work / "old").iterdir())
+        write_program(self.programs / "kintsugi-mapper", "echo kintsugi-mapper: a.oni: no such file >&2; exit 1")
+        for out in ("old", "new"):
+            said = self.expect(2, "trio", "--out", out, "--device", "a.oni")
+            self.assertEqual(said.splitlines()[-1], "trio: mapper: a.oni: no such file")
+        self.assertEqual(sorted(path.name for path in (self.work / "old").iterdir()), before)
+        self.assertFalse((self.work / "new").exists())
+        self.expect(2, "trio", "--resume", "--out", "old")
+
+    def test_processes_that_do_not_run_are_not_asked(self):
+        write_program(self.programs / "kintsugi-mapper", "exit 1")
+        self.expect(0, "trio", "--only", "segmenter,viewer", "--out", "run", "--no-log", "--preset", "paper")
+        self.assertEqual(self.call("checked-kintsugi-segmenter"), ["--check", "--preset=paper"])
+
+    def test_the_hint_of_a_program_names_the_program(self):
+        write_program(self.programs / "kintsugi-viewer", "echo '--x: no such flag' >&2; "
+                      "echo Run with --help for more information. >&2; exit 109")
+        self.assertIn("trio: viewer: --x: no such flag; see kintsugi-viewer --help",
+                      self.expect(2, "trio", "--out", "run"))
+        (self.work / "run.lcm").write_text("a log")
+        self.assertIn("replay: viewer: --x: no such flag", self.expect(2, "replay", "run.lcm", "--out", "again"))
+        self.assertFalse((self.work / "again").exists())
 
     def test_wrong_options_end_with_2(self):
         self.assertIn("trio: unknown option --nonsense", self.expect(2, "trio", "--nonsense"))

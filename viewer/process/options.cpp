@@ -30,6 +30,7 @@ struct Flags {
   double overview_yaw_deg = rounded_deg(renderer().viewpoint.overview_yaw_rad);
   double overview_pitch_deg = rounded_deg(renderer().viewpoint.overview_pitch_rad);
   bool print_config = false;
+  bool check_only = false;
 
   Painter::Config& painter() { return options.process.painter; }
   MapRenderer::Config& renderer() { return painter().renderer; }
@@ -120,6 +121,9 @@ void add_config_flags(CLI::App& app, Flags& flags) {
   app.add_flag("--print-config", flags.print_config,
                "Print all options as a file for --config and exit")
       ->configurable(false);
+  app.add_flag("--check", flags.check_only,
+               "Check the options and exit: 0 if all is well, or with the reason")
+      ->configurable(false);
 }
 
 /// "1280x720".
@@ -173,6 +177,7 @@ std::variant<Options, int> parse_options(int argc, const char* const* argv) {
     std::cout << app.config_to_str(true, true);
     return 0;
   }
+  if (flags.check_only) return 0;
   return options;
 }
 

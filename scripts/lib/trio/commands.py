@@ -6,6 +6,7 @@ import signal
 import sys
 
 from . import network, options
+from .check import check_options
 from .map_name import map_name, map_option, refuse_second_mapper
 from .messages import Problem, os_error_text, say
 from .process import Process, stop
@@ -44,6 +45,7 @@ def this_command():
 
 def trio(arguments):
     choice = options.parse_trio(arguments)
+    choice.started_in = None  # here
     if choice.resume:
         choice = recalled(choice.out, arguments)
     check_programs([*choice.only, "status"], ["setpriv"] if choice.no_log else ["setpriv", "lcm-logger"])
@@ -51,6 +53,8 @@ def trio(arguments):
     if "mapper" in choice.only and not choice.private:  # nobody else is in a private network
         refuse_second_mapper(choice)
     folder = RunFolder(choice.out)
+    folder.lock_if_used()  # first: what another run has opened cannot be opened to check it
+    check_options({name: words_to_check(name, choice, folder) for name in choice.only}, choice.started_in)
     folder.create()
     folder.lock()
     if choice.resume:
@@ -60,6 +64,12 @@ def trio(arguments):
         folder.remember_options(arguments)
     network.tell_how_to_ask()
     return run_trio(choice, folder)
+
+
+def words_to_check(name, choice, folder):
+    """A mapper that resumes may find its session complete, and then needs no device."""
+    resumes = name == "mapper" and choice.resume and folder.has("mapper.lcm")
+    return [*([f"--resume={folder.file('mapper.lcm')}"] if resumes else []), *getattr(choice, name)]
 
 
 def recalled(out, arguments):
@@ -162,6 +172,8 @@ def replay(arguments):
     check_programs(["segmenter", "viewer", "status"], ["setpriv", "lcm-logplayer"])
     network.choose_network(choice.private, this_command())
     folder = RunFolder(choice.out)
+    folder.lock_if_used()
+    check_options({name: getattr(choice, name) for name in ("segmenter", "viewer")})
     folder.create()
     folder.lock()
     for name in ("segmenter.log", "viewer.log", "player.log", "status.csv"):

@@ -40,7 +40,9 @@ class RunFolder:
 
     def lock(self):
         """Locks the folder until this process and its children, which inherit `lock_descriptor`, have ended.
-        Raises Problem if another run holds the lock."""
+        Raises Problem if another run holds the lock. Again: does nothing."""
+        if self.lock_descriptor is not None:
+            return
         descriptor = os.open(self.file(".lock"), os.O_RDWR | os.O_CREAT, 0o666)
         deadline = time.monotonic() + LOCK_TIMEOUT_S
         while not try_lock(descriptor):
@@ -51,6 +53,11 @@ class RunFolder:
         with contextlib.suppress(OSError):  # on a full disk the message of _held_by lacks the number
             os.ftruncate(descriptor, 0)
             os.pwrite(descriptor, str(os.getpid()).encode(), 0)
+
+    def lock_if_used(self):
+        """lock(), if an earlier run has used the folder. Nothing is written in a new one."""
+        if (self.path / ".lock").exists():
+            self.lock()
 
     def _held_by(self, recorded):
         pid = int(recorded) if recorded.isdigit() else None
