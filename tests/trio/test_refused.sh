@@ -28,7 +28,9 @@ run_trio "${small_room[@]}" --max-frames 20 --no-log --mapper "--output-trajecto
 expect_file 'a folder/path.txt'
 refuse_all # in a folder that holds a run
 
-run_trio --resume --out run
+# From another folder than that of the scripts, by a relative path.
+ln -s "$root" kintsugi
+kintsugi/scripts/trio --private --resume --out run >trio.txt 2>&1 || fail "resumed by a relative path: $(cat trio.txt)"
 tail -n 1 trio.txt | grep -q 'nothing was resumed' || fail "it does not say that nothing was resumed: $(cat trio.txt)"
 
 # Only a camera runs long enough to be asked.

@@ -15,7 +15,7 @@ std::string megabytes(std::int64_t bytes) {
   return decimal(static_cast<double>(bytes) / 1e6, 0) + " MB";
 }
 
-std::string session_facts(const Evaluation& evaluation) {
+std::string session_facts(const Evaluation& evaluation, const ReportContext& context) {
   const RecordedSession& session = evaluation.session;
   Facts facts{{"Source", session.source},
               {"Slices", grouped(session.num_slices)},
@@ -27,18 +27,8 @@ std::string session_facts(const Evaluation& evaluation) {
   }
   std::string text = html_list(facts);
   for (const std::string& remark : session.remarks) text += html_remark(remark);
-  return text;
-}
-
-/// A remark where the map was segmented otherwise when it was recorded.
-std::string other_parameters(const Evaluation& evaluation, const ReportContext& context) {
-  const std::optional<std::int64_t> of_run = evaluation.session.segments_of_run;
-  if (!of_run || *of_run == evaluation.num_segments) return "";
-  return html_remark("The segmenter of the recorded run ended with " + grouped(*of_run) +
-                     " segments, batch has " + grouped(evaluation.num_segments) +
-                     " here: the run had other parameters or another mode. This page is made with "
-                     "preset " +
-                     context.preset + "; --preset objects is the default of runs.");
+  const std::string on_run = remark_on_run(evaluation, context);
+  return on_run.empty() ? text : text + html_remark(on_run);
 }
 
 std::string sampling_note(const Evaluation& evaluation) {
@@ -104,12 +94,21 @@ std::string parameters(const Evaluation& evaluation, const ReportContext& contex
 
 }  // namespace
 
+std::string remark_on_run(const Evaluation& evaluation, const ReportContext& context) {
+  const std::optional<std::int64_t> of_run = evaluation.session.segments_of_run;
+  if (!of_run || *of_run == evaluation.num_segments) return "";
+  return "The segmenter of the recorded run ended with " + grouped(*of_run) +
+         " segments, batch has " + grouped(evaluation.num_segments) +
+         " here: the run had other parameters or another mode. This report is made with preset " +
+         context.preset + "; --preset objects is the default of runs.";
+}
+
 std::string make_page(const Evaluation& evaluation, const ReportContext& context,
                       const std::string& map_png, const std::vector<DrawnFigure>& figures) {
   const std::string source = std::filesystem::path(evaluation.session.source).filename();
   return html_page(
       "Evaluation of " + source,
-      session_facts(evaluation) + other_parameters(evaluation, context) +
+      session_facts(evaluation, context) +
           html_picture("Segments of the final map", map_png,
                        "Batch, preset " + context.preset +
                            ", from obliquely above; surfaces seen from behind are left out.") +

@@ -1,10 +1,12 @@
 #include "segmenter/tools/evaluate/paper_task.hpp"
 
 #include <chrono>
+#include <string>
 #include <utility>
 
 #include <spdlog/spdlog.h>
 
+#include "segmenter/evaluation/paper/page.hpp"
 #include "segmenter/evaluation/paper/report.hpp"
 #include "segmenter/evaluation/paper/result_tables.hpp"
 
@@ -46,6 +48,9 @@ bool report_paper(RecordedSession session, const EvaluationConfig& config,
   const Evaluation evaluation = evaluate(std::move(session), config, ProgressLog());
   const bool is_drawn = write_report(evaluation, context, folder);
   log_results(evaluation);
+  if (const std::string remark = remark_on_run(evaluation, context); !remark.empty()) {
+    spdlog::warn("{}", remark);
+  }
   spdlog::info("memory: {} MB at the end, {} MB at most", evaluation.resident_bytes / 1'000'000,
                evaluation.peak_resident_bytes / 1'000'000);
   return is_drawn;

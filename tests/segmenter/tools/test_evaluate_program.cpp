@@ -69,6 +69,21 @@ TEST_F(EvaluateProgram, WritesTablesAndPageOfALog) {
   }
 }
 
+TEST_F(EvaluateProgram, SaysThatTheRunHadOtherParameters) {
+  testing::LogMessages messages;
+  const auto slices = testing::wavy_session(2, 200);
+  testing::append_slices(slices, messages);
+  SegmenterStatus status;
+  status.session = 1;
+  status.map_session = slices.front().session;
+  status.finished = true;
+  status.segments = 123'456;
+  messages.emplace_back(channels::kSegmenterStatus, encode(status));
+  testing::write_log(path("in.lcm"), messages);
+  EXPECT_THAT(run("--modes batch " + path("in.lcm") + " --out " + path("out")).output,
+              HasSubstr("123,456 segments"));
+}
+
 TEST_F(EvaluateProgram, TakesModesInTheOrderGiven) {
   write_session_log(2);
   run("--segments 2 --modes batch,voting " + path("in.lcm") + " --out " + path("out"));
