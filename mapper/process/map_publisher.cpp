@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "lcmtypes/base/service_notice.hpp"
 #include "lcmtypes/bus/message_subscriber.hpp"
 #include "lcmtypes/channels.hpp"
 #include "mapper/session/mapping_options.hpp"
@@ -141,6 +142,7 @@ void MapPublisher::publish_status(MapperStatus status) {
   status.store_lost_chunks = report.lost_chunks;
   status.store_problem = report.problem.substr(0, kMaxStringBytes);
   publish(channels::kMapperStatus, status);
+  tell_service_manager();
 }
 
 void MapPublisher::publish_frame(const RgbdFrame& frame) {

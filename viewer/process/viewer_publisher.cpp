@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "lcmtypes/base/service_notice.hpp"
 #include "lcmtypes/channels.hpp"
 #include "viewer/output/picture_file.hpp"
 
@@ -38,6 +39,7 @@ void ViewerPublisher::publish_status(ViewerStatus status) {
   status.utime = wall_clock_us();
   status.session = session_;
   bus_.publish(channels::kViewerStatus, status);
+  tell_service_manager();
   next_status_ = Clock::now() + std::chrono::milliseconds(500);
 }
 
