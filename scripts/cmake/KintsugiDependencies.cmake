@@ -3,6 +3,7 @@
 find_package(PkgConfig REQUIRED)
 find_package(Threads REQUIRED)
 pkg_check_modules(LCM REQUIRED IMPORTED_TARGET lcm)
+pkg_check_modules(LZF REQUIRED IMPORTED_TARGET liblzf)
 pkg_check_modules(OPENNI2 REQUIRED IMPORTED_TARGET libopenni2)
 pkg_check_modules(LIBAV REQUIRED IMPORTED_TARGET libavformat libavcodec libavutil libswscale)
 find_program(LCM_GEN lcm-gen REQUIRED)
