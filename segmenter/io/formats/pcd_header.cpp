@@ -55,6 +55,7 @@ class HeaderParser {
     read_data_kind();
     read_points();
     read_fields();
+    keep_viewpoint();
     return std::move(header_);
   }
 
@@ -138,6 +139,15 @@ class HeaderParser {
     }
     header_.table.place = "line " + std::to_string(names.number) + ": the list of FIELDS";
     for (std::size_t i = 0; i < names.words.size(); ++i) add_field(i);
+  }
+
+  void keep_viewpoint() {
+    if (!lines_.contains("VIEWPOINT")) return;
+    std::string comment = "VIEWPOINT";
+    for (const std::string_view word : line("VIEWPOINT").words) {
+      comment.append(" ").append(word);
+    }
+    header_.table.comments.push_back(std::move(comment));
   }
 
   std::size_t count_of(std::size_t field) const {

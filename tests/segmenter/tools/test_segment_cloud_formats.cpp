@@ -140,19 +140,21 @@ TEST_F(SegmentCloudFormats, KeepsEveryPropertyInItsType) {
 
 TEST_F(SegmentCloudFormats, SegmentsByColoursOfEachName) {
   // One plate, half of it red.
-  std::string rows;
-  for (int i = 0; i < 1200; ++i) {
-    rows += std::to_string(0.01 * (i % 60)) + " " + std::to_string(0.01 * (i / 60)) + " 0 0 0 1 " +
-            (i % 60 < 30 ? "200" : "1") + " 1 1\n";
+  std::ostringstream rows;
+  for (int row = 0; row < 20; ++row) {
+    for (int column = 0; column < 60; ++column) {
+      rows << 0.01 * column << ' ' << 0.01 * row << " 0 0 0 1 " << (column < 30 ? 200 : 1)
+           << " 1 1\n";
+    }
   }
   for (const std::string prefix : {"diffuse_red diffuse_green diffuse_blue", "r g b"}) {
     std::istringstream names(prefix);
-    std::string properties;
-    for (std::string name; names >> name;) properties += "property uchar " + name + "\n";
+    std::ostringstream properties;
+    for (std::string name; names >> name;) properties << "property uchar " << name << '\n';
     write("a.ply",
           "ply\nformat ascii 1.0\nelement vertex 1200\nproperty float x\nproperty float y\n"
           "property float z\nproperty float nx\nproperty float ny\nproperty float nz\n" +
-              properties + "end_header\n" + rows);
+              properties.str() + "end_header\n" + rows.str());
     EXPECT_THAT(run(path("a.ply") + " " + out()).output, HasSubstr("2 segments of 1200 points"));
   }
 }
@@ -191,15 +193,16 @@ TEST_F(SegmentCloudFormats, RefusesToOverwriteItsInput) {
   const std::string input = write("a.ply", text);
   std::filesystem::create_symlink(input, path("link.ply"));
   std::filesystem::create_hard_link(input, path("hard.ply"));
+  const std::string arguments = input + " ";
   for (const std::string& other :
        {input, path("link.ply"), path("hard.ply"), (folder_ / "." / "a.ply").string()}) {
-    const auto result = run(input + " " + other);
+    const auto result = run(arguments + other);
     EXPECT_EQ(result.exit_code, 1);
     EXPECT_THAT(result.output, HasSubstr("the same file as"));
-    const auto as_json = run(input + " " + out() + " --json " + other);
+    const auto as_json = run(arguments + out() + " --json " + other);
     EXPECT_THAT(as_json.output, HasSubstr("--json is " + other));
   }
-  EXPECT_THAT(run(input + " " + out() + " --json " + out()).output, HasSubstr("the same file as"));
+  EXPECT_THAT(run(arguments + out() + " --json " + out()).output, HasSubstr("the same file as"));
   EXPECT_EQ(read_file_bytes(input), text);
   EXPECT_FALSE(std::filesystem::exists(out()));
 }
@@ -228,11 +231,12 @@ TEST_F(SegmentCloudFormats, DividesACubeIntoItsFaces) {
   std::set<Position> points;  // those on edges once
   for (int axis = 0; axis < 3; ++axis) {
     for (int i = 0; i <= kSide; ++i) {
-      for (int j = 0; j <= 2 * kSide + 1; ++j) {
+      for (int j = 0; j <= kSide; ++j) {
         Position p{};
-        p.at(axis) = j % 2;
         p.at((axis + 1) % 3) = i / double{kSide};
-        p.at((axis + 2) % 3) = (j / 2) / double{kSide};
+        p.at((axis + 2) % 3) = j / double{kSide};
+        points.insert(p);
+        p.at(axis) = 1.0;
         points.insert(p);
       }
     }

@@ -10,7 +10,6 @@
 namespace kintsugi::segmenter {
 namespace {
 
-using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using testing::names_of;
@@ -31,6 +30,7 @@ TEST(PcdCloud, ReadsBinaryAndCompressed) {
     testing::expect_example(table);
     EXPECT_EQ(value(table, 2, "pair_0"), -5.0);
     EXPECT_EQ(value(table, 2, "pair_1"), 7.0);
+    EXPECT_THAT(table.comments, ElementsAre("VIEWPOINT 0 0 0 1 0 0 0"));
   }
 }
 
