@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "segmenter/io/formats/cloud_file.hpp"
+#include "segmenter/io/points/file_cloud.hpp"
 #include "tests/decoder_fuzz/input_file.hpp"
 #include "tests/decoder_fuzz/require.hpp"
 

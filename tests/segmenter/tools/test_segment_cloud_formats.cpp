@@ -194,15 +194,16 @@ TEST_F(SegmentCloudFormats, RefusesToOverwriteItsInput) {
   std::filesystem::create_symlink(input, path("link.ply"));
   std::filesystem::create_hard_link(input, path("hard.ply"));
   const std::string arguments = input + " ";
+  const std::string with_json = arguments + out() + " --json ";
   for (const std::string& other :
        {input, path("link.ply"), path("hard.ply"), (folder_ / "." / "a.ply").string()}) {
     const auto result = run(arguments + other);
     EXPECT_EQ(result.exit_code, 1);
     EXPECT_THAT(result.output, HasSubstr("the same file as"));
-    const auto as_json = run(arguments + out() + " --json " + other);
+    const auto as_json = run(with_json + other);
     EXPECT_THAT(as_json.output, HasSubstr("--json is " + other));
   }
-  EXPECT_THAT(run(arguments + out() + " --json " + out()).output, HasSubstr("the same file as"));
+  EXPECT_THAT(run(with_json + out()).output, HasSubstr("the same file as"));
   EXPECT_EQ(read_file_bytes(input), text);
   EXPECT_FALSE(std::filesystem::exists(out()));
 }
