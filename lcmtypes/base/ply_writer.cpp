@@ -65,12 +65,13 @@ bool PlyWriter::counts_are_known() const {
   return std::ranges::all_of(lists_, [](const List& list) { return list.temporary == nullptr; });
 }
 
-void PlyWriter::write_record(std::size_t element, const char* record, std::size_t size) {
+void PlyWriter::append_records(std::size_t element, std::span<const char> records,
+                               std::int64_t count) {
   List& list = lists_.at(element);
   AtomicFile& file = list.temporary ? *list.temporary : file_;
-  file.stream().write(record, static_cast<std::streamsize>(size));
-  ++list.count;
-  list.record_bytes = size;
+  file.stream().write(records.data(), std::ssize(records));
+  list.count += count;
+  if (count > 0) list.record_bytes = records.size() / static_cast<std::size_t>(count);
 }
 
 void PlyWriter::write_header(AtomicFile& file, const std::vector<std::int64_t>& counts) const {

@@ -50,8 +50,12 @@ class PlyWriter {
     std::array<char, (sizeof(Values) + ...)> record;
     std::size_t size = 0;
     ((std::memcpy(record.data() + size, &values, sizeof values), size += sizeof values), ...);
-    write_record(element, record.data(), record.size());
+    append_records(element, {record.data(), size}, 1);
   }
+
+  /// Appends `count` records that are in memory as the file has them. Records of lists may differ
+  /// in size if the counts of all elements are known.
+  void append_records(std::size_t element, std::span<const char> records, std::int64_t count);
 
   /// Records of element number `element` that were appended.
   std::int64_t count(std::size_t element) const { return lists_.at(element).count; }
@@ -82,7 +86,6 @@ class PlyWriter {
   };
 
   bool counts_are_known() const;
-  void write_record(std::size_t element, const char* record, std::size_t size);
   std::vector<std::int64_t> write_all(AtomicFile& file, const std::filesystem::path& path,
                                       const Rewrite& rewrite);
   std::int64_t write_kept(std::size_t element, const Rewrite& rewrite, AtomicFile& kept);

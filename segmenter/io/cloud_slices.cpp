@@ -11,7 +11,7 @@ constexpr std::int64_t kSession = 1;  // there is one
 
 }  // namespace
 
-CloudSlices cut_into_slices(const PlyCloud& cloud, float resolution_m,
+CloudSlices cut_into_slices(const FileCloud& cloud, float resolution_m,
                             const std::string& map_name) {
   std::map<std::int32_t, std::vector<std::size_t>> indices_by_id;
   for (std::size_t i = 0; i < cloud.points_W.size(); ++i) {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "lcmtypes/messages.hpp"
-#include "segmenter/io/ply/ply_reader.hpp"
+#include "segmenter/io/points/file_cloud.hpp"
 #include "segmenter/map/segment_map.hpp"
 
 namespace kintsugi::segmenter {
@@ -19,7 +19,8 @@ struct CloudSlices {
 
 /// Groups the points by slice_id; a cloud without slice_id is one slice, 0. The last slice is
 /// final.
-CloudSlices cut_into_slices(const PlyCloud& cloud, float resolution_m, const std::string& map_name);
+CloudSlices cut_into_slices(const FileCloud& cloud, float resolution_m,
+                            const std::string& map_name);
 
 /// The segment id of each point of the cloud, kNoSegment where it was rejected.
 std::vector<std::uint32_t> labels_in_input_order(const SegmentMap& map, const CloudSlices& slices);

@@ -1,6 +1,7 @@
 #include "segmenter/io/map_files.hpp"
 
 #include <array>
+#include <cmath>
 #include <set>
 #include <string>
 #include <vector>
@@ -54,6 +55,28 @@ Json segment_json(const SegmentDescription& segment) {
   json["planar"] = segment.shape.is_planar;
   json["neighbours"] = neighbours_json(segment.neighbours);
   return json;
+}
+
+/// Moves what a segment has of places by `origin_W`. In double: float32 would lose centimetres
+/// there.
+void move_by(const Eigen::Vector3d& origin_W, Json& segment) {
+  // Whole micrometres, so that no digits appear that the float32 did not have.
+  const auto moved = [](const Json& number, double by) {
+    constexpr double kMicrometres = 1e6;
+    return std::round((number.get<double>() + by) * kMicrometres) / kMicrometres;
+  };
+  const auto move_place = [&](Json& place) {
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+      Json& number = place[static_cast<std::size_t>(axis)];
+      number = moved(number, origin_W[axis]);
+    }
+  };
+  for (const char* key : {"centroid", "box_min", "box_max"}) move_place(segment[key]);
+  move_place(segment["oriented_box"]["center"]);
+  Json& plane = segment["plane"];
+  const Json& n = plane["normal"];
+  const Eigen::Vector3d normal_W(n[0].get<double>(), n[1].get<double>(), n[2].get<double>());
+  plane["offset"] = moved(plane["offset"], normal_W.dot(origin_W));
 }
 
 /// By name, and behind a parameter what follows from it. Lengths are given as the float32 that is
@@ -118,7 +141,8 @@ Json revisions_json(const std::vector<SliceRecord>& records) {
 
 /// `head` and the segments behind it.
 void write_json(const Json& head, std::span<const SegmentDescription> segments,
-                const std::filesystem::path& path) {
+                const std::filesystem::path& path,
+                const Eigen::Vector3d& origin_W = Eigen::Vector3d::Zero()) {
   AtomicFile file(path);
   std::ostream& out = file.stream();
   // One line for each segment: a person can read it, and the text of millions is never in memory.
@@ -127,7 +151,9 @@ void write_json(const Json& head, std::span<const SegmentDescription> segments,
   out << text << ",\n \"segments\": [";
   const char* separator = "\n";
   for (const SegmentDescription& segment : segments) {
-    out << separator << "  " << segment_json(segment).dump();
+    Json json = segment_json(segment);
+    if (!origin_W.isZero(0.0)) move_by(origin_W, json);
+    out << separator << "  " << json.dump();
     separator = ",\n";
   }
   out << "\n ]\n}\n";
@@ -167,15 +193,17 @@ void write_map_ply(const MapSnapshot& map, const std::filesystem::path& path) {
 }
 
 void write_segments_json(const MapSnapshot& map, std::span<const SegmentDescription> segments,
-                         const std::filesystem::path& path) {
+                         const std::filesystem::path& path, const Eigen::Vector3d& origin_W) {
   Json head = header_json(map);
+  if (!origin_W.isZero(0.0)) head["origin"] = {origin_W.x(), origin_W.y(), origin_W.z()};
   head["revisions"] = revisions_json(map.state.slices);
   head["rejected"] = rejected_json(map.state.slices);
-  write_json(head, segments, path);
+  write_json(head, segments, path, origin_W);
 }
 
-void write_segments_json(const MapSnapshot& map, const std::filesystem::path& path) {
-  write_segments_json(map, describe_segments(map), path);
+void write_segments_json(const MapSnapshot& map, const std::filesystem::path& path,
+                         const Eigen::Vector3d& origin_W) {
+  write_segments_json(map, describe_segments(map), path, origin_W);
 }
 
 void write_segments_json(const LabelledCloud& cloud, std::span<const SegmentDescription> segments,

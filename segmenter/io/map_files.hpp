@@ -19,10 +19,14 @@ void write_map_ply(const MapSnapshot& map, const std::filesystem::path& path);
 /// with the description of each segment, by ascending id. Metres, frame W. segmenter/README.md
 /// lists the keys.
 /// @param segments describe_segments() of the map
+/// @param origin_W of a cloud that was moved before it was segmented: is added to every place, and
+///   written as `origin` unless it is zero
 void write_segments_json(const MapSnapshot& map, std::span<const SegmentDescription> segments,
-                         const std::filesystem::path& path);
+                         const std::filesystem::path& path,
+                         const Eigen::Vector3d& origin_W = Eigen::Vector3d::Zero());
 /// The same; computes the descriptions itself.
-void write_segments_json(const MapSnapshot& map, const std::filesystem::path& path);
+void write_segments_json(const MapSnapshot& map, const std::filesystem::path& path,
+                         const Eigen::Vector3d& origin_W = Eigen::Vector3d::Zero());
 /// The same for a labelled cloud that is not a saved map: without mode, sessions and slices.
 void write_segments_json(const LabelledCloud& cloud, std::span<const SegmentDescription> segments,
                          const std::filesystem::path& path);

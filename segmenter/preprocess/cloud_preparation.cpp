@@ -17,6 +17,19 @@ std::vector<CloudPoint> with_usable_position(std::span<const CloudPoint> points_
   return usable_W;
 }
 
+/// Calls `compute` with the points whose position is admissible, and takes what it makes of them.
+template <class Compute>
+void on_usable(std::span<CloudPoint> points_W, const Compute& compute) {
+  std::vector<CloudPoint> usable_W = with_usable_position(points_W);
+  compute(usable_W);
+  auto next = usable_W.begin();
+  for (CloudPoint& p : points_W) {
+    if (!reason_to_reject_position(p)) {
+      p = *next++;
+    }
+  }
+}
+
 Eigen::Vector3d normal_W(const CloudPoint& p) { return {p.nx, p.ny, p.nz}; }
 
 }  // namespace
@@ -42,14 +55,21 @@ std::int64_t normalize_normals(std::span<CloudPoint> points_W) {
 
 void compute_normals(std::span<CloudPoint> points_W, const NormalsConfig& config,
                      const std::function<void(double)>& progress) {
-  std::vector<CloudPoint> usable_W = with_usable_position(points_W);
-  estimate_normals(usable_W, config, progress);
-  auto next = usable_W.begin();
-  for (CloudPoint& p : points_W) {
-    if (!reason_to_reject_position(p)) {
-      p = *next++;
-    }
+  on_usable(points_W, [&](auto& usable_W) { estimate_normals(usable_W, config, progress); });
+}
+
+void compute_missing_normals(std::span<CloudPoint> points_W, const NormalsConfig& config) {
+  on_usable(points_W, [&](auto& usable_W) { estimate_missing_normals(usable_W, config); });
+}
+
+NormalCount count_missing_normals(std::span<const CloudPoint> points_W) {
+  NormalCount count;
+  for (const CloudPoint& p : points_W) {
+    if (reason_to_reject_position(p)) continue;
+    ++count.num_points;
+    if (lacks_normal(p)) ++count.num_missing;
   }
+  return count;
 }
 
 void average_normals(std::span<CloudPoint> points_W, float radius_m) {

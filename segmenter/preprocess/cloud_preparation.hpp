@@ -20,6 +20,16 @@ std::int64_t normalize_normals(std::span<CloudPoint> points_W);
 void compute_normals(std::span<CloudPoint> points_W, const NormalsConfig& config,
                      const std::function<void(double)>& progress);
 
+/// estimate_missing_normals() over the same points.
+void compute_missing_normals(std::span<CloudPoint> points_W, const NormalsConfig& config);
+
+/// How many points lack a normal, of those whose position is admissible, and how many those are.
+struct NormalCount {
+  std::int64_t num_missing = 0;
+  std::int64_t num_points = 0;
+};
+NormalCount count_missing_normals(std::span<const CloudPoint> points_W);
+
 /// Replaces each normal by the mean of its own and those of the points closer than `radius_m` (> 0)
 /// that do not face away from it (n . n' > 0), scaled to length 1. This reduces noise and keeps the
 /// two sides of a thin board apart. Points that cannot be segmented, for instance those without a

@@ -2,6 +2,8 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <vector>
 
 #include <tbb/blocked_range.h>
@@ -10,15 +12,22 @@
 #include "lcmtypes/base/argument_check.hpp"
 #include "segmenter/preprocess/nearest_neighbours.hpp"
 #include "segmenter/preprocess/normal_orientation.hpp"
+#include "segmenter/preprocess/normal_sharpening.hpp"
 
 namespace kintsugi::segmenter {
 namespace {
 
 Eigen::Vector3d position_W(const CloudPoint& p) { return {p.x, p.y, p.z}; }
 
-// The direction of least variance; zero when the points lie on a line.
-Eigen::Vector3d plane_normal(std::span<const CloudPoint> points_W,
-                             std::span<const std::uint32_t> neighbours) {
+struct FittedPlane {
+  Eigen::Vector3d normal_W = Eigen::Vector3d::Zero();
+  LocalPlane plane;
+};
+
+// The plane across the direction of least variance; none, of normal zero, when the points lie on a
+// line.
+FittedPlane fit_plane(std::span<const CloudPoint> points_W,
+                      std::span<const std::uint32_t> neighbours) {
   // Relative to the nearest one, so that nothing cancels far from the origin.
   const Eigen::Vector3d origin_W = position_W(points_W[neighbours.front()]);
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
@@ -36,15 +45,26 @@ Eigen::Vector3d plane_normal(std::span<const CloudPoint> points_W,
   constexpr double kMinVarianceRatio = 1e-6;
   const Eigen::Vector3d& variances = solver.eigenvalues();  // ascending
   if (!(variances[1] > kMinVarianceRatio * variances[2])) {
-    return Eigen::Vector3d::Zero();
+    return {};
   }
-  return solver.eigenvectors().col(0).normalized();
+  const auto deviation = [&](int axis) {
+    return static_cast<float>(std::sqrt(std::max(variances[axis], 0.0)));
+  };
+  return {.normal_W = solver.eigenvectors().col(0).normalized(),
+          .plane = {.mean_W = (origin_W + mean).cast<float>(),
+                    .thickness_m = deviation(0),
+                    .width_m = deviation(1)}};
 }
 
 void set_normal(CloudPoint& point, const Eigen::Vector3d& normal_W) {
   point.nx = static_cast<float>(normal_W.x());
   point.ny = static_cast<float>(normal_W.y());
   point.nz = static_cast<float>(normal_W.z());
+}
+
+// Of a disc with so many points one step apart, rounded up.
+int radius_in_steps(int num_points) {
+  return static_cast<int>(std::ceil(std::sqrt(num_points / std::numbers::pi)));
 }
 
 Eigen::Vector3d mean_position_W(std::span<const CloudPoint> points_W) {
@@ -67,6 +87,7 @@ std::int64_t estimate_normals(std::span<CloudPoint> points_W, const NormalsConfi
   config.validate();
   const NearestNeighbours tree(points_W);
   NeighbourGraph graph(points_W.size());
+  std::vector<LocalPlane> planes(points_W.size());
   constexpr std::size_t kBatch = 1 << 18;  // between two reports
   constexpr std::size_t kGrain = 1 << 10;
   for (std::size_t begin = 0; begin < points_W.size(); begin += kBatch) {
@@ -78,7 +99,9 @@ std::int64_t estimate_normals(std::span<CloudPoint> points_W, const NormalsConfi
       for (std::size_t i = range.begin(); i < range.end(); ++i) {
         const std::span<const std::uint32_t> neighbours(
             found.indices.data() + (i - range.begin()) * count, count);
-        set_normal(points_W[i], plane_normal(points_W, neighbours));
+        const FittedPlane fitted = fit_plane(points_W, neighbours);
+        set_normal(points_W[i], fitted.normal_W);
+        planes[i] = fitted.plane;
         graph.set_neighbours(i, neighbours);
       }
     });
@@ -87,9 +110,42 @@ std::int64_t estimate_normals(std::span<CloudPoint> points_W, const NormalsConfi
     }
   }
   orient_normals(points_W, graph, config.viewpoint_W.value_or(mean_position_W(points_W)));
+  sharpen_normals(points_W, planes, graph, radius_in_steps(config.num_neighbours) + 1);
   return std::count_if(points_W.begin(), points_W.end(), [](const CloudPoint& p) {
     return p.nx == 0.0F && p.ny == 0.0F && p.nz == 0.0F;
   });
+}
+
+void estimate_missing_normals(std::span<CloudPoint> points_W, const NormalsConfig& config) {
+  config.validate();
+  std::vector<std::size_t> missing;
+  std::vector<CloudPoint> queries_W;
+  for (std::size_t i = 0; i < points_W.size(); ++i) {
+    if (!lacks_normal(points_W[i])) continue;
+    missing.push_back(i);
+    queries_W.push_back(points_W[i]);
+  }
+  if (missing.empty()) return;
+  NearestNeighbours::Result found;
+  NearestNeighbours(points_W).find(queries_W, config.num_neighbours + 1, found);
+  const auto count = static_cast<std::size_t>(found.count);
+  // All are computed from the given ones, so that the order of the points does not matter.
+  for (std::size_t k = 0; k < missing.size(); ++k) {
+    const std::span<const std::uint32_t> neighbours(found.indices.data() + k * count, count);
+    Eigen::Vector3d sum_W = Eigen::Vector3d::Zero();
+    for (const std::uint32_t j : neighbours) {
+      const CloudPoint& p = points_W[j];
+      if (!lacks_normal(p)) sum_W += Eigen::Vector3d(p.nx, p.ny, p.nz);
+    }
+    const Eigen::Vector3d normal_W = fit_plane(points_W, neighbours).normal_W;
+    set_normal(queries_W[k], normal_W.dot(sum_W) < 0.0 ? Eigen::Vector3d(-normal_W) : normal_W);
+  }
+  for (std::size_t k = 0; k < missing.size(); ++k) points_W[missing[k]] = queries_W[k];
+}
+
+bool lacks_normal(const CloudPoint& point) {
+  const float squared_length = point.nx * point.nx + point.ny * point.ny + point.nz * point.nz;
+  return !std::isfinite(squared_length) || squared_length == 0.0F;
 }
 
 }  // namespace kintsugi::segmenter

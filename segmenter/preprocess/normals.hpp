@@ -37,4 +37,13 @@ struct NormalsConfig {
 std::int64_t estimate_normals(std::span<CloudPoint> points_W, const NormalsConfig& config,
                               const std::function<void(double)>& progress = {});
 
+/// Sets the normals that are missing, of length 0 or NaN, as estimate_normals() does, and turns
+/// each so that it agrees with the sum of those that its neighbours have already. The others stay.
+///
+/// @param points_W all with finite positions
+void estimate_missing_normals(std::span<CloudPoint> points_W, const NormalsConfig& config);
+
+/// Whether a point has no normal: it is of length 0, or not finite.
+bool lacks_normal(const CloudPoint& point);
+
 }  // namespace kintsugi::segmenter

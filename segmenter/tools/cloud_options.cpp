@@ -14,9 +14,15 @@ void add_cloud_options(CLI::App& app, CloudInputConfig& config) {
   app.add_flag(
       "--average-normals", config.averages_given_normals,
       "also average the normals that the file gives within two voxels, as computed ones are");
-  app.add_option("--viewpoint", config.viewpoint_W,
-                 "X Y Z: computed normals point towards here (default: the mean of the points)")
+  app.add_option(
+         "--viewpoint", config.viewpoint_W,
+         "X Y Z: computed normals point towards here, metres (default: the mean of the points)")
       ->expected(3);
+  app.add_option(
+         "--unit", config.unit,
+         "unit of the coordinates: m, cm or mm (default: m, with a warning where that seems "
+         "wrong)")
+      ->check(CLI::IsMember({"m", "cm", "mm"}));
 }
 
 }  // namespace kintsugi::segmenter

@@ -1,5 +1,5 @@
 #pragma once
-// The flags of programs that read a cloud from a PLY file.
+// The flags of programs that read a cloud from a file.
 
 #include "segmenter/io/cloud_input.hpp"
 
@@ -9,8 +9,8 @@ class App;
 
 namespace kintsugi::segmenter {
 
-/// --resolution, --normals-k, --average-normals and --viewpoint, into `config`, whose values are
-/// the defaults.
+/// --resolution, --normals-k, --average-normals, --viewpoint and --unit, into `config`, whose
+/// values are the defaults.
 void add_cloud_options(CLI::App& app, CloudInputConfig& config);
 
 }  // namespace kintsugi::segmenter

@@ -30,6 +30,7 @@ void write_all(const fs::path& folder) {
   write(folder / "image", image_seeds());
   write(folder / "cloud_file", cloud_file_seeds());
   write(folder / "ply", ply_seeds());
+  write(folder / "point_file", point_file_seeds());
   write(folder / "saved_map", saved_map_seeds());
   write(folder / "oni_file", oni_seeds());
   write(folder / "recording_file", recording_file_seeds());

@@ -21,6 +21,7 @@ Seeds rgbd_frame_seeds();
 Seeds image_seeds();
 Seeds cloud_file_seeds();
 Seeds ply_seeds();
+Seeds point_file_seeds();
 Seeds saved_map_seeds();
 Seeds oni_seeds();
 Seeds recording_file_seeds();

@@ -11,6 +11,7 @@
 #include "segmenter/io/saved_map.hpp"
 #include "tests/decoder_fuzz/input_file.hpp"
 #include "tests/decoder_fuzz/seeds.hpp"
+#include "tests/segmenter/io/formats/example_clouds.hpp"
 #include "tests/segmenter/process/slice_session.hpp"
 #include "tests/support/example_messages.hpp"
 
@@ -108,6 +109,22 @@ Seeds ply_seeds() {
                              "0 1e-3 +2 1 2 255\n-1 nan inf 0 0 0\n3 0 1 1\n")},
           {"big_endian", bytes_of("ply\nformat binary_big_endian 1.0" + vertices +
                                   std::string(38, '\0') + "\x01" + std::string(4, '\0'))}};
+}
+
+Seeds point_file_seeds() {
+  Seeds seeds = ply_seeds();
+  seeds["npy"] = bytes_of(segmenter::testing::npy_cloud());
+  seeds["pcd"] = bytes_of(segmenter::testing::pcd_binary());
+  seeds["pcd_compressed"] = bytes_of(segmenter::testing::pcd_compressed());
+  seeds["pcd_ascii"] = bytes_of(
+      "FIELDS x y z rgb _ n\nSIZE 4 4 4 4 1 2\nTYPE F F F U U I\nCOUNT 1 1 1 1 2 3\nWIDTH 1\n"
+      "HEIGHT 1\nDATA ascii\n1 2 3 255 0 0 -1 2 3\n");
+  for (const unsigned format : {0U, 3U, 8U}) {
+    seeds["las" + std::to_string(format)] = bytes_of(segmenter::testing::las_cloud(format));
+  }
+  seeds["pts"] = bytes_of("2\n1 2 3 -4 10 20 30\n4 5 6 7 255 0 1\n");
+  seeds["csv"] = bytes_of("a,X,Y,Z,\"R\",G,B\n1,2,3,,10,20,30\n");
+  return seeds;
 }
 
 Seeds saved_map_seeds() {

@@ -11,8 +11,12 @@
 
 namespace kintsugi::segmenter {
 
+/// A segment id as PLY files have it: int, as Open3D passes over uint.
+/// @throws std::overflow_error for ids from 2^31 on
+std::int32_t signed_label(std::uint32_t segment_id);
+
 /// Writes a binary little-endian PLY with the vertex properties
-///   float x y z nx ny nz, uchar red green blue, uint segment_id, int slice_id, float weight,
+///   float x y z nx ny nz, uchar red green blue, int segment_id, int slice_id, float weight,
 ///   uchar in_volume (1: of a patch that may still change)
 /// in that order. Positions and normals are exactly those that were segmented, so that anyone can
 /// check the labels. The complete file appears under its name at commit().

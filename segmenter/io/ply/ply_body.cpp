@@ -2,48 +2,13 @@
 
 #include <algorithm>
 #include <bit>
-#include <charconv>
-#include <cstring>
-#include <limits>
+#include <optional>
 #include <stdexcept>
-#include <utility>
+
+#include "segmenter/io/points/text_words.hpp"
 
 namespace kintsugi::segmenter {
 namespace {
-
-template <typename T>
-double read_as(const char* bytes, bool swap) {
-  char buffer[sizeof(T)];
-  std::copy_n(bytes, sizeof(T), buffer);
-  if (swap) {
-    std::reverse(std::begin(buffer), std::end(buffer));
-  }
-  T value;
-  std::memcpy(&value, buffer, sizeof(T));
-  return static_cast<double>(value);
-}
-
-double read_scalar(const char* bytes, PlyType type, bool swap) {
-  switch (type) {
-    case PlyType::kInt8:
-      return read_as<std::int8_t>(bytes, swap);
-    case PlyType::kUint8:
-      return read_as<std::uint8_t>(bytes, swap);
-    case PlyType::kInt16:
-      return read_as<std::int16_t>(bytes, swap);
-    case PlyType::kUint16:
-      return read_as<std::uint16_t>(bytes, swap);
-    case PlyType::kInt32:
-      return read_as<std::int32_t>(bytes, swap);
-    case PlyType::kUint32:
-      return read_as<std::uint32_t>(bytes, swap);
-    case PlyType::kFloat32:
-      return read_as<float>(bytes, swap);
-    case PlyType::kFloat64:
-      return read_as<double>(bytes, swap);
-  }
-  return 0.0;
-}
 
 class BinaryBody final : public PlyBody {
  public:
@@ -55,23 +20,24 @@ class BinaryBody final : public PlyBody {
   void read_row(const PlyElement& element, std::int64_t row, std::vector<double>& values) override {
     values.clear();
     for (const PlyProperty& property : element.properties) {
-      values.push_back(property.list_count ? skip_list(element, row, property)
+      values.push_back(property.list_count ? pass_list(element, row, property)
                                            : take(element, row, property, property.type));
     }
   }
 
  private:
   double take(const PlyElement& element, std::int64_t row, const PlyProperty& property,
-              PlyType type) {
+              ScalarType type) {
     if (size_of(type) > num_bytes_left()) {
       fail(element, row, "the file ends inside property '" + property.name + "'");
     }
     const double value = read_scalar(bytes_.data() + position_, type, swap_);
     position_ += size_of(type);
+    keep(value, type);
     return value;
   }
 
-  double skip_list(const PlyElement& element, std::int64_t row, const PlyProperty& property) {
+  double pass_list(const PlyElement& element, std::int64_t row, const PlyProperty& property) {
     const double length = take(element, row, property, *property.list_count);
     const std::size_t room = num_bytes_left() / size_of(property.type);
     if (length < 0.0 || length > static_cast<double>(room)) {
@@ -80,7 +46,9 @@ class BinaryBody final : public PlyBody {
                std::to_string(static_cast<std::int64_t>(length)) + " entries, expected 0 to the " +
                std::to_string(room) + " that the rest of the file can hold");
     }
-    position_ += static_cast<std::size_t>(length) * size_of(property.type);
+    for (auto left = static_cast<std::size_t>(length); left > 0; --left) {
+      take(element, row, property, property.type);
+    }
     return length;
   }
 
@@ -107,15 +75,15 @@ class AsciiBody final : public PlyBody {
     values.clear();
     for (const PlyProperty& property : element.properties) {
       if (!property.list_count) {
-        values.push_back(next_value(element, row, property));
+        values.push_back(next_value(element, row, property, property.type));
         continue;
       }
-      const double length = next_value(element, row, property);
+      const double length = next_value(element, row, property, *property.list_count);
       if (!(length >= 0.0)) {
         fail(element, row, "the length of list '" + property.name + "' is negative");
       }
       for (double i = 0.0; i < length; ++i) {
-        next_value(element, row, property);
+        next_value(element, row, property, property.type);
       }
       values.push_back(length);
     }
@@ -140,31 +108,19 @@ class AsciiBody final : public PlyBody {
     } while (line_.find_first_not_of(kBlanks) == std::string_view::npos);
   }
 
-  double next_value(const PlyElement& element, std::int64_t row, const PlyProperty& property) {
+  double next_value(const PlyElement& element, std::int64_t row, const PlyProperty& property,
+                    ScalarType type) {
     line_.remove_prefix(std::min(line_.find_first_not_of(kBlanks), line_.size()));
-    std::string_view word = line_.substr(0, std::min(line_.find_first_of(kBlanks), line_.size()));
+    const std::string_view word =
+        line_.substr(0, std::min(line_.find_first_of(kBlanks), line_.size()));
     line_.remove_prefix(word.size());
     if (word.empty()) {
       fail(element, row, "the line ends before property '" + property.name + "'");
     }
-    if (word.size() > 1 && word[0] == '+' && word[1] != '-') {
-      word.remove_prefix(1);
-    }
-    double value = 0.0;
-    const char* const end = word.data() + word.size();
-    const auto [rest, error] = std::from_chars(word.data(), end, value);
-    if (rest != end || error == std::errc::invalid_argument) {
-      fail(element, row, "property '" + property.name + "' is not a number");
-    }
-    return error == std::errc::result_out_of_range ? out_of_range_value(word) : value;
-  }
-
-  // The value of a number beyond the range of double: zero when too small, else infinity.
-  static double out_of_range_value(std::string_view word) {
-    const bool is_small =
-        word.find("e-") != std::string_view::npos || word.find("E-") != std::string_view::npos;
-    const double magnitude = is_small ? 0.0 : std::numeric_limits<double>::infinity();
-    return word[0] == '-' ? -magnitude : magnitude;
+    const std::optional<double> value = parse_number(word);
+    if (!value) fail(element, row, "property '" + property.name + "' is not a number");
+    keep(*value, type);
+    return *value;
   }
 
   // A digit and a blank for each value; the last line may lack its end.
@@ -193,15 +149,23 @@ void PlyBody::check_count(const PlyElement& element) const {
                            " bytes from " + place());
 }
 
-void PlyBody::skip(const PlyElement& element) {
+void PlyBody::keep(double value, ScalarType type) {
+  if (records_ == nullptr) return;
+  records_->resize(records_->size() + size_of(type));
+  write_scalar(value, type, records_->data() + records_->size() - size_of(type));
+}
+
+void PlyBody::pass(const PlyElement& element, std::string* records) {
   check_count(element);
   if (element.properties.empty()) {
     return;
   }
+  records_ = records;
   std::vector<double> values;
   for (std::int64_t row = 0; row < element.count; ++row) {
     read_row(element, row, values);
   }
+  records_ = nullptr;
 }
 
 void PlyBody::expect_end() const {

@@ -25,7 +25,9 @@ class PlyBody {
   virtual void read_row(const PlyElement& element, std::int64_t row,
                         std::vector<double>& values) = 0;
 
-  void skip(const PlyElement& element);
+  /// Passes all rows of an element, and appends them to `records`, if that is not null, as a binary
+  /// little-endian file has them.
+  void pass(const PlyElement& element, std::string* records);
 
   /// @throws std::runtime_error when anything but blanks follows the last row
   void expect_end() const;
@@ -43,9 +45,15 @@ class PlyBody {
   /// "line 12" or "byte 345".
   virtual std::string place() const = 0;
 
+  /// Every value that is read, in the order of the file; goes to where pass() says.
+  void keep(double value, ScalarType type);
+
   std::string_view bytes_;
   std::size_t position_;
   std::string path_;
+
+ private:
+  std::string* records_ = nullptr;
 };
 
 /// @param bytes the whole file; must outlive the result

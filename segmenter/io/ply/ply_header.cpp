@@ -1,55 +1,14 @@
 #include "segmenter/io/ply/ply_header.hpp"
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <stdexcept>
 #include <utility>
 
+#include "segmenter/io/points/text_words.hpp"
+
 namespace kintsugi::segmenter {
 namespace {
-
-struct TypeInfo {
-  PlyType type;
-  std::size_t size;
-  std::string_view name;
-  std::string_view other_name;
-};
-
-// In the order of PlyType.
-constexpr std::array<TypeInfo, 8> kTypes{{
-    {PlyType::kInt8, 1, "char", "int8"},
-    {PlyType::kUint8, 1, "uchar", "uint8"},
-    {PlyType::kInt16, 2, "short", "int16"},
-    {PlyType::kUint16, 2, "ushort", "uint16"},
-    {PlyType::kInt32, 4, "int", "int32"},
-    {PlyType::kUint32, 4, "uint", "uint32"},
-    {PlyType::kFloat32, 4, "float", "float32"},
-    {PlyType::kFloat64, 8, "double", "float64"},
-}};
-
-const TypeInfo& info(PlyType type) { return kTypes.at(static_cast<std::size_t>(type)); }
-
-// A quotation for an error message: short, and printable whatever the file contains.
-std::string in_quotes(std::string_view text) {
-  constexpr std::size_t kMaxQuoted = 40;
-  std::string result = "'";
-  for (const char c : text.substr(0, kMaxQuoted)) {
-    result += c >= ' ' && c <= '~' ? c : '?';
-  }
-  return result + (text.size() > kMaxQuoted ? "...'" : "'");
-}
-
-std::vector<std::string_view> split(std::string_view line) {
-  std::vector<std::string_view> words;
-  constexpr std::string_view kBlanks = " \t";
-  for (auto begin = line.find_first_not_of(kBlanks); begin != std::string_view::npos;) {
-    const auto end = std::min(line.find_first_of(kBlanks, begin), line.size());
-    words.push_back(line.substr(begin, end - begin));
-    begin = line.find_first_not_of(kBlanks, end);
-  }
-  return words;
-}
 
 // What follows the first of these words of a line.
 std::string_view text_after(const std::vector<std::string_view>& words) {
@@ -66,7 +25,7 @@ class HeaderParser {
     if (next_line("'ply'") != "ply") {
       fail("not a PLY file: the first line must be 'ply'");
     }
-    parse_format(split(next_line("'format'")));
+    parse_format(split_words(next_line("'format'")));
     while (!parse_declaration(next_line("'end_header'"))) {
     }
     header_.num_bytes = position_;
@@ -116,7 +75,7 @@ class HeaderParser {
 
   // Returns true at end_header.
   bool parse_declaration(std::string_view line) {
-    const auto words = split(line);
+    const auto words = split_words(line);
     const std::string_view keyword = words.empty() ? std::string_view{} : words[0];
     if (keyword == "end_header") {
       return true;
@@ -176,12 +135,8 @@ class HeaderParser {
     element.properties.push_back(std::move(property));
   }
 
-  PlyType parse_type(std::string_view word) const {
-    for (const TypeInfo& candidate : kTypes) {
-      if (word == candidate.name || word == candidate.other_name) {
-        return candidate.type;
-      }
-    }
+  ScalarType parse_type(std::string_view word) const {
+    if (const auto type = scalar_type_of(word)) return *type;
     fail("unknown type " + in_quotes(word) +
          ", expected char, uchar, short, ushort, int, uint, float or double");
   }
@@ -194,12 +149,6 @@ class HeaderParser {
 };
 
 }  // namespace
-
-std::size_t size_of(PlyType type) { return info(type).size; }
-
-bool is_integer(PlyType type) { return type != PlyType::kFloat32 && type != PlyType::kFloat64; }
-
-std::string_view name_of(PlyType type) { return info(type).name; }
 
 std::optional<std::size_t> PlyElement::find(std::string_view property) const {
   const auto found = std::find_if(properties.begin(), properties.end(),

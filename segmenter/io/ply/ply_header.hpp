@@ -8,20 +8,16 @@
 #include <string_view>
 #include <vector>
 
+#include "segmenter/io/points/scalar_type.hpp"
+
 namespace kintsugi::segmenter {
 
 enum class PlyFormat { kAscii, kBinaryLittleEndian, kBinaryBigEndian };
 
-enum class PlyType { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat32, kFloat64 };
-
-std::size_t size_of(PlyType type);  ///< bytes in a binary file
-bool is_integer(PlyType type);
-std::string_view name_of(PlyType type);  ///< "uchar", "float", ...
-
 struct PlyProperty {
   std::string name;
-  PlyType type = PlyType::kFloat32;
-  std::optional<PlyType> list_count;  ///< type of a list's length; absent: a scalar
+  ScalarType type = ScalarType::kFloat32;
+  std::optional<ScalarType> list_count;  ///< type of a list's length; absent: a scalar
 };
 
 struct PlyElement {

@@ -18,6 +18,7 @@
 #include "segmenter/evaluation/report/plot.hpp"
 #include "segmenter/evaluation/session/session_cloud.hpp"
 #include "segmenter/evaluation/session/session_log.hpp"
+#include "segmenter/io/formats/cloud_file.hpp"
 #include "segmenter/process/options.hpp"
 #include "segmenter/tools/cloud_options.hpp"
 #include "segmenter/tools/evaluate/live_task.hpp"
@@ -57,9 +58,10 @@ void require_task(const EvaluateOptions& options) {
 
 void add_options(CLI::App& app, EvaluateOptions& options) {
   EvaluationConfig& evaluation = options.evaluation;
-  app.add_option(
-      "IN", options.input,
-      "an LCM log with CLOUD_SLICE, or a PLY file (*.ply), whose slice_id gives the slices");
+  app.add_option("IN", options.input,
+                 "an LCM log with CLOUD_SLICE, or a point cloud (*.ply, *.pcd, *.las, *.npy, "
+                 "*.xyz, ...), whose "
+                 "slice_id gives the slices");
   app.add_option("--out", options.folder,
                  "the folder to write into, made when absent; required with IN");
   app.add_option("--modes", evaluation.modes, "the modes to compare, in this order")
@@ -79,7 +81,7 @@ void add_options(CLI::App& app, EvaluateOptions& options) {
       ->capture_default_str();
   add_segmentation_options(app, options.map, options.preset);
   app.remove_option(app.get_option("--mode"));
-  auto* const group = app.add_option_group("PLY files");
+  auto* const group = app.add_option_group("Point clouds");
   add_cloud_options(*group, options.cloud);
   add_quality_options(*app.add_option_group("Quality"), options.quality);
   add_trajectory_options(*app.add_option_group("Camera paths"), options.trajectory);
@@ -100,7 +102,7 @@ void make_folder(const std::filesystem::path& folder) {
 }
 
 RecordedSession read(const EvaluateOptions& options) {
-  RecordedSession session = options.input.extension() == ".ply"
+  RecordedSession session = has_cloud_extension(options.input)
                                 ? read_session_cloud(options.input, options.cloud)
                                 : read_session_log(options.input);
   spdlog::info("{}: {} slices, {} points", session.source, session.num_slices,

@@ -6,6 +6,8 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <system_error>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <spdlog/sinks/stdout_color_sinks.h>
@@ -15,8 +17,9 @@
 #include "lcmtypes/base/run_main.hpp"
 #include "segmenter/io/cloud_input.hpp"
 #include "segmenter/io/cloud_slices.hpp"
+#include "segmenter/io/formats/cloud_file.hpp"
+#include "segmenter/io/labelled_cloud.hpp"
 #include "segmenter/io/map_files.hpp"
-#include "segmenter/io/ply/labelled_ply_writer.hpp"
 #include "segmenter/process/options.hpp"
 #include "segmenter/tools/cloud_options.hpp"
 
@@ -33,17 +36,46 @@ struct SegmentCloudOptions {
 
 void add_options(CLI::App& app, SegmentCloudOptions& options) {
   app.add_option("IN", options.input,
-                 "a PLY file: x y z, and optionally nx ny nz, red green blue, slice_id")
+                 "a point cloud: PLY, PCD, LAS, NPY, or text (XYZ, PTS, CSV, ...) with x y z and "
+                 "optionally nx ny nz, red green blue, slice_id")
       ->required();
-  app.add_option("OUT", options.output, "the labelled PLY to write")->required();
+  app.add_option("OUT", options.output,
+                 "the PLY file to write: IN with all its properties, and segment_id")
+      ->required();
   app.add_option("--json", options.json, "also write the description of every segment as JSON");
   add_cloud_options(app, options.input_config);
   add_segmentation_options(app, options.map);
 }
 
+/// Whether two paths lead to the same file, by links, other spellings, or as they are.
+bool is_same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
+  std::error_code error;
+  if (std::filesystem::equivalent(a, b, error)) return true;
+  return std::filesystem::weakly_canonical(a, error) == std::filesystem::weakly_canonical(b, error);
+}
+
+void check_different(const std::filesystem::path& taken, const std::filesystem::path& output,
+                     const std::string& name) {
+  if (output.empty() || !is_same_file(taken, output)) return;
+  throw std::runtime_error(name + " is " + output.string() + ", the same file as " +
+                           taken.string() + ": give it another name");
+}
+
+/// A file whose name promises another format would be refused by the program that opens it.
+void check_extension(const std::filesystem::path& output) {
+  const std::string extension = output.extension().string();
+  if (extension == ".ply" || !has_cloud_extension(output)) return;
+  throw std::runtime_error("OUT is " + output.string() +
+                           ", but it is written as PLY: let its name end in .ply");
+}
+
 void validate(const SegmentCloudOptions& options) {
   options.input_config.validate();
   options.map.validate();
+  check_extension(options.output);
+  check_different(options.input, options.output, "OUT");
+  check_different(options.input, options.json, "--json");
+  check_different(options.output, options.json, "--json");
   for (const auto& path : {options.output, options.json}) {
     if (path.has_parent_path() && !std::filesystem::is_directory(path.parent_path())) {
       throw std::runtime_error(path.string() + ": there is no folder " +
@@ -80,29 +112,31 @@ std::unique_ptr<SegmentMap> segment_slices(const CloudSlices& slices,
   return map;
 }
 
-void write_labelled_cloud(const SegmentMap& map, const CloudSlices& slices, const PlyCloud& cloud,
-                          const SegmentCloudOptions& options) {
-  const auto labels = labels_in_input_order(map, slices);
-  LabelledPlyWriter writer(options.output, static_cast<std::int64_t>(cloud.points_W.size()),
-                           {"segmented by kintsugi-segment-cloud, mode " + options.map.mode,
-                            "segment_id 0: a point that cannot be segmented"});
-  for (std::size_t i = 0; i < cloud.points_W.size(); ++i) {
-    writer.append(cloud.points_W[i], labels[i], cloud.slice_ids.empty() ? 0 : cloud.slice_ids[i]);
+/// What the header of the labelled cloud says about it.
+std::vector<std::string> comments_on(const CloudInput& input, const SegmentCloudOptions& options) {
+  std::vector<std::string> comments{"segmented by kintsugi-segment-cloud, mode " + options.map.mode,
+                                    "segment_id 0: a point that cannot be segmented"};
+  if (!options.input_config.unit.empty()) comments.push_back("unit " + options.input_config.unit);
+  if (!input.origin_W.isZero(0.0)) {
+    comments.push_back(
+        fmt::format("segmented relative to {:.0f} {:.0f} {:.0f} metres; x y z are not shifted",
+                    input.origin_W.x(), input.origin_W.y(), input.origin_W.z()));
   }
-  writer.commit();
-  if (!options.json.empty()) {
-    write_segments_json(take_snapshot(map), options.json);
-  }
+  return comments;
 }
 
 void run(const SegmentCloudOptions& options) {
-  const auto [cloud, resolution_m] = read_cloud(options.input, options.input_config);
+  const CloudInput input = read_cloud(options.input, options.input_config);
   const CloudSlices slices =
-      cut_into_slices(cloud, resolution_m, options.input.filename().string());
+      cut_into_slices(input.cloud, input.resolution_m, options.input.filename().string());
   const auto map = segment_slices(slices, options.map, [](double share) {
     spdlog::info("segmented {:3.0f} %", 100.0 * share);
   });
-  write_labelled_cloud(*map, slices, cloud, options);
+  write_labelled_cloud(input, labels_in_input_order(*map, slices), comments_on(input, options),
+                       options.output);
+  if (!options.json.empty()) {
+    write_segments_json(take_snapshot(*map), options.json, input.origin_W);
+  }
   spdlog::info("{}: {} segments of {} points", options.output.string(),
                map->segment_ids().num_segments(), map->cloud().size());
 }
@@ -115,8 +149,10 @@ int main(int argc, char** argv) {
   return kintsugi::run_main(argv, [&] {
     spdlog::set_default_logger(spdlog::stderr_color_mt("kintsugi-segment-cloud"));
     spdlog::set_pattern("%^%l%$: %v");
-    CLI::App app{"Segments a point cloud from a PLY file (Felzenszwalb and Huttenlocher; Finman)."};
+    CLI::App app{"Segments a point cloud from a file (Felzenszwalb and Huttenlocher; Finman)."};
     SegmentCloudOptions options;
+    options.input_config.shifts_origin = true;
+    options.input_config.labels = LabelUse::kIgnore;  // they are replaced, or pass as they are
     add_options(app, options);
     kintsugi::add_version_flag(app);
     CLI11_PARSE(app, argc, argv);

@@ -67,7 +67,7 @@ TEST(MapFiles, PlyHasTheDocumentedProperties) {
                         "property float x\nproperty float y\nproperty float z\n"
                         "property float nx\nproperty float ny\nproperty float nz\n"
                         "property uchar red\nproperty uchar green\nproperty uchar blue\n"
-                        "property uint segment_id\nproperty int slice_id\nproperty float weight\n"
+                        "property int segment_id\nproperty int slice_id\nproperty float weight\n"
                         "property uchar in_volume\n"
                         "end_header\n"));
   EXPECT_EQ(text.size(), text.find("end_header\n") + 11 + std::size_t{158} * 40);
