@@ -6,11 +6,11 @@ source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 package="$(realpath "$1")"
 work="$(mktemp -d)"
 root="$work/root"
-trap 'umount --recursive "$root" 2>/dev/null || true; rm -rf --one-file-system "$work"' EXIT
+trap 'umount "$root/dev" "$root/proc" 2>/dev/null || true; rm -rf --one-file-system "$work"' EXIT
 
 # The mirror of this machine, in either of apt's two formats.
 mirror="$(cat /etc/apt/sources.list /etc/apt/sources.list.d/* 2>/dev/null |
-  sed -nE 's/^(URIs: *|deb +(\[[^]]*\] +)?)(http[^ ]+).*/\3/p' | grep -v security | head -1)"
+  sed -nE 's/^(URIs: *|deb +(\[[^]]*\] +)?)(http[^ ]+).*/\3/p' | grep -v security | head -1 || true)"  # a file may not be there
 debootstrap --variant=minbase bookworm "$root" "${mirror:-http://deb.debian.org/debian}" >"$work/debootstrap.log" ||
   { tail -5 "$work/debootstrap.log" >&2; say "debootstrap failed"; exit 1; }
 cp /etc/apt/apt.conf.d/*proxy* "$root/etc/apt/apt.conf.d/" 2>/dev/null || true
