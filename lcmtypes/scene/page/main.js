@@ -224,10 +224,15 @@ class Page {
     if (times.length > 12) times.shift();
     if (times.length < 6) return;
     const mean_ms = (now - times[0]) / (times.length - 1);
-    if (mean_ms > 33) this.budget = Math.max(1e5, this.budget * 0.9);
-    if (mean_ms < 20) this.budget = Math.min(kMaxDrawn, this.budget * 1.1);
+    if (mean_ms > 33) this.setBudget(Math.max(5e4, this.budget * Math.max(0.5, 30 / mean_ms)));
+    if (mean_ms < 20) this.setBudget(Math.min(kMaxDrawn, this.budget * 1.3));
     const text = `${Math.round(1000 / mean_ms)} frames/s, ${(this.tiles.drawn / 1e6).toFixed(2)} M points drawn`;
     element('frame_rate').textContent = text;
+  }
+
+  setBudget(points) {
+    this.budget = points;
+    this.frames.times.length = 0;  // those of another number of points
   }
 
   overview(isAsked = true) {

@@ -38,7 +38,7 @@ export class Orbit {
   /** The whole box [min, max] in the picture. */
   fit(min, max) {
     this.target = scaled(add(min, max), 0.5);
-    this.distance = Math.max(0.5, 0.5 * norm(sub(max, min)) / Math.tan(kFov_rad / 2) * 0.8);
+    this.distance = Math.max(0.5, 0.5 * norm(sub(max, min)) / Math.tan(kFov_rad / 2) * 0.9);
     this.onChange(false);
   }
 
