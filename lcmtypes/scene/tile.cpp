@@ -18,13 +18,13 @@ constexpr std::uint32_t kMagic = 0x314C544B;  // "KTL1"
 
 void put_position(const CloudPoint& point_P, const TilePoints& tile, std::uint8_t* record) {
   const Eigen::Vector3f p_P(point_P.x, point_P.y, point_P.z);
-  for (int axis = 0; axis < 3; ++axis) {
+  for (int axis = 0; axis < 3; ++axis, record += sizeof(std::uint16_t)) {
     const float size = tile.box_size_P[axis];
     const float share = size > 0.0F ? (p_P[axis] - tile.box_min_P[axis]) / size : 0.0F;
     // Not clamp(): that keeps a value that is not a number.
     const float bounded = share > 0.0F ? std::min(share, 1.0F) : 0.0F;
     const auto q = static_cast<std::uint16_t>(std::lround(bounded * kSteps));
-    std::memcpy(record + 2 * axis, &q, sizeof(q));
+    std::memcpy(record, &q, sizeof(q));
   }
 }
 

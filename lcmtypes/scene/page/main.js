@@ -184,7 +184,9 @@ class Page {
       }
       try {
         const kind = request.points ? 'points' : 'labels';
-        this.tiles.accept(await this.source[kind](request[kind]));
+        const {epoch} = this;
+        const blocks = await this.source[kind](request[kind]);
+        if (epoch === this.epoch) this.tiles.accept(blocks);
       } catch (error) {
         await new Promise((resolve) => setTimeout(resolve, 1000));
       }

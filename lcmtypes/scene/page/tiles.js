@@ -184,6 +184,9 @@ export class Tiles {
     const end = hasPoints ? pointsAt + padded(count * kPointBytes) : pointsAt;
     const tile = this.byId.get(id);
     if (!tile) return end;
+    // The answer may be newer than the state that was asked for last.
+    tile.newRevision = Math.max(tile.newRevision, revision);
+    tile.newLabels = Math.max(tile.newLabels, labelsRevision);
     const block = {revision, labels: labelsRevision, first, count, total, ids,
       box: {min: [...floats.slice(0, 3)], size: [...floats.slice(3, 6)]}};
     if (hasPoints) {

@@ -31,10 +31,11 @@ CloudSlice floor_patch(std::int32_t id, float x_m, std::int32_t revision = 0) {
   slice.utime = 1'000'000 + id;
   slice.resolution_m = kResolution_m;
   for (int i = 0; i < 400; ++i) {
+    const int row = i / 20;
     CloudPoint point;
     point.x = x_m + kResolution_m * static_cast<float>(i % 20);
     point.y = 1.0F;
-    point.z = kResolution_m * static_cast<float>(i / 20);
+    point.z = kResolution_m * static_cast<float>(row);
     point.ny = -1.0F;
     slice.points_W.push_back(point);
   }

@@ -94,6 +94,7 @@ std::vector<Neighbour> neighbours_of(std::span<const Tile> tiles, std::uint32_t 
     });
   }
   std::vector<Neighbour> neighbours;
+  neighbours.reserve(contacts.size());
   for (const auto& [id, count] : contacts) neighbours.push_back({id, count});
   std::ranges::sort(neighbours, [](const Neighbour& a, const Neighbour& b) {
     return a.contacts != b.contacts ? a.contacts > b.contacts : a.segment_id < b.segment_id;

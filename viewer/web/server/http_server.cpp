@@ -102,13 +102,14 @@ struct HttpServer::Implementation {
       Answer found = answer(scene, request.path, request.params);
       add_headers(response);
       response.status = found.status;
-      response.set_content(std::move(found.body), found.type);
+      response.body = std::move(found.body);  // set_content() would copy it
+      response.set_header("Content-Type", found.type);
     });
     server.set_error_handler([](const httplib::Request&, httplib::Response& response) {
       if (response.body.empty()) refuse(response, response.status, "This request cannot be used.");
     });
     server.set_exception_handler(
-        [](const httplib::Request&, httplib::Response& response, std::exception_ptr) {
+        [](const httplib::Request&, httplib::Response& response, const std::exception_ptr&) {
           refuse(response, 500, "The viewer could not answer.");
         });
   }
