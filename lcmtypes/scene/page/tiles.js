@@ -119,7 +119,7 @@ export class Tiles {
       const drawn = Math.min(tile.loaded, Math.ceil(tile.wanted * cut));
       // Fewer points are wider, so that the surface stays closed.
       const width = drawn < tile.total ? 1.9 * Math.sqrt(tile.total / drawn) : 1.3;
-      this.renderer.setWidth(tile.index, Math.min(width, 8) * tile.resolution);
+      this.renderer.setWidth(tile.index, Math.min(width, 24) * tile.resolution);
       let batch = pages.get(tile.range.page);
       if (!batch) pages.set(tile.range.page, batch = {page: tile.range.page, firsts: [], counts: []});
       batch.firsts.push(tile.range.first);

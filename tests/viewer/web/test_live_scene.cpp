@@ -1,8 +1,11 @@
 // What browsers are told of a map that changes.
 
+#include <atomic>
 #include <cmath>
 #include <cstring>
+#include <memory>
 #include <thread>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
@@ -216,6 +219,46 @@ TEST_F(WebScene, ANewerMapSessionBeginsAnew) {
   const Json after = state(0);
   EXPECT_EQ(after["epoch"], kSession + 1);
   EXPECT_THAT(tiles_in(after), ElementsAre(5));
+}
+
+TEST(LiveScene, ManyMayAskWhileItChanges) {
+  LiveScene scene;
+  scene.begin(kSession);
+  std::atomic<bool> has_ended = false;
+  std::vector<std::jthread> browsers;
+  for (int i = 0; i < 4; ++i) {
+    browsers.emplace_back([&] {
+      while (!has_ended) {
+        const Json state = Json::parse(scene.state(kSession, 0));
+        EXPECT_LE(state["tiles"].size(), 3U);
+        EXPECT_TRUE(Json::accept(scene.segments(kSession, 0)));
+        EXPECT_EQ(scene.blocks({{1, 0, 400}}, true).size() % 4, 0U);
+        scene.segment(10);
+        scene.path(0);
+        scene.image();
+      }
+    });
+  }
+  for (std::uint32_t n = 0; n < 200; ++n) {
+    const CloudSlice slice = floor_patch(static_cast<std::int32_t>(n % 3), 0.0F);
+    scene::Tile tile;
+    tile.id = n % 3;
+    tile.resolution_m = kResolution_m;
+    tile.points = std::make_shared<const scene::TilePoints>(scene::make_points(slice.points_W, n));
+    tile.labels = std::make_shared<const scene::TileLabels>(
+        scene::make_labels(std::vector<std::uint32_t>(400, 10 + n % 2), n));
+    LiveScene::Changes changes;
+    changes.header = {{"points", n}};
+    changes.tiles.push_back(std::move(tile));
+    changes.segments.emplace_back(10 + n % 2, nlohmann::ordered_json{{"id", 10 + n % 2}});
+    if (n % 5 == 0) changes.removed_tiles.push_back(n % 3);
+    scene.publish(std::move(changes));
+    scene.add(update_of(slice, 10, n));
+    scene.set_path(0, std::vector<float>(n, 1.0F));
+    scene.set_image(std::vector<std::uint8_t>(n, 1));
+    if (n == 100) scene.begin(kSession + 1);
+  }
+  has_ended = true;
 }
 
 TEST(SceneFeed, DoesNothingWhileNobodyLooks) {
