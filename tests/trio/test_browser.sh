@@ -14,6 +14,7 @@ run_trio "${small_room[@]}" --out run
 ! grep -qE 'https?://' scene.html || fail "scene.html names an address"
 python3 "$root/tests/trio/browser_page.py" "file://$work/scene.html" "$work/export.png" || fail "the exported page"
 
+touch viewer.log
 "$KINTSUGI_BIN/kintsugi-viewer" --log run/run.lcm --every 1000 --out pictures --http 127.0.0.1:0 >viewer.log 2>&1 &
 viewer=$!
 trap 'kill "$viewer" 2>/dev/null || true; rm -rf "$work"' EXIT
