@@ -3,6 +3,7 @@
 import {cssColour} from './palette.js';
 
 const kMaxRows = 200;
+const kAskAgain_ms = 3000;  // about a segment that changes
 const byId = (id) => document.getElementById(id);
 const metres = (v) => `${v.map((x) => x.toFixed(2)).join(', ')} m`;
 
@@ -47,7 +48,12 @@ export class Panel {
     for (const segment of segments) this.segments.set(segment.id, segment);
     for (const id of removed) this.segments.delete(id);
     this.list();
-    if (this.selected !== 0) this.describe();
+    if (this.selected === 0) return;
+    this.describe();
+    this.isOutdated ||= segments.some((s) => s.id === this.selected);
+    if (this.isOutdated && performance.now() - this.askedAt_ms > kAskAgain_ms) {
+      this.askAbout(this.selected);
+    }
   }
 
   /** Segments whose id begins with the text, of enough points, the largest first. */
@@ -109,6 +115,8 @@ export class Panel {
 
   /** What takes the server some time. */
   async askAbout(id) {
+    this.askedAt_ms = performance.now();
+    this.isOutdated = false;
     const {neighbours, timeline} = await this.source.segment(id).catch(() => ({neighbours: []}));
     if (this.selected !== id) return;
     byId('neighbours').replaceChildren(...neighbours.map(([other, pairs]) =>
