@@ -23,6 +23,8 @@ struct Flags {
   std::string log;
   std::string folder = options.process.folder.string();
   std::string video;
+  std::string http;
+  std::string http_token;
   std::string viewpoint = "follow";
   std::string size =
       std::to_string(renderer().width_px) + "x" + std::to_string(renderer().height_px);
@@ -115,6 +117,15 @@ void add_drawing_flags(CLI::App& app, Flags& flags) {
       ->capture_default_str();
 }
 
+void add_web_flags(CLI::App& app, Flags& flags) {
+  auto* const http = app.add_option(
+      "--http", flags.http, "Serve the map to browsers at HOST:PORT, for instance 127.0.0.1:8080");
+  app.add_option("--http-token", flags.http_token,
+                 "Only who brings the first line of this file (16 or more letters and digits) sees "
+                 "the map; needed to listen at other than a loopback address")
+      ->needs(http);
+}
+
 void add_config_flags(CLI::App& app, Flags& flags) {
   add_version_flag(app);
   add_config_flag(app, "Read options from this file; flags override it");
@@ -153,6 +164,12 @@ Options options_of(Flags flags) {
     flags.painter().max_drawing_share = 1.0;
   }
   flags.options.process.validate();
+  if (!flags.http.empty()) {
+    const Address address = parse_address(flags.http);
+    const std::string token = flags.http_token.empty() ? "" : read_token(flags.http_token);
+    const Access checked(address, token);
+    flags.options.web = {address, token, renderer.splat};
+  }
   return flags.options;
 }
 
@@ -166,6 +183,7 @@ std::variant<Options, int> parse_options(int argc, const char* const* argv) {
   add_output_flags(app, flags);
   add_segment_flags(app, flags);
   add_drawing_flags(app, flags);
+  add_web_flags(app, flags);
   add_config_flags(app, flags);
   try {
     app.parse(argc, argv);

@@ -7,6 +7,7 @@
 #include <variant>
 
 #include "viewer/process/viewer_process.hpp"
+#include "viewer/web/web_view.hpp"
 
 namespace kintsugi::viewer {
 
@@ -18,6 +19,7 @@ struct Options {
   double max_queue_mb = 256;  ///< memory for messages received and not yet used, 1e6 bytes
   bool exit_on_final = false;
   ViewerProcess::Config process;
+  std::optional<WebView::Config> web;  ///< nothing: no browser is served
 
   std::size_t max_queue_bytes() const { return static_cast<std::size_t>(1e6 * max_queue_mb); }
 };

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <filesystem>
 #include <optional>
+#include <thread>
 #include <utility>
 
 #include <spdlog/spdlog.h>
@@ -47,7 +48,9 @@ class RunOnBus {
                       [this](const cv::Mat3b& picture, const std::string& caption) {
                         publisher_.publish_picture(picture, caption);
                       },
-                  .on_forgotten = [this](std::int64_t session) { receiver_.forget(session); }}) {}
+                  .on_forgotten = [this](std::int64_t session) { receiver_.forget(session); }}) {
+    if (options.web) web_.emplace(*options.web);
+  }
 
   int run() {
     if (const auto advice = receive_buffer_advice()) spdlog::warn("{}", *advice);
@@ -61,7 +64,7 @@ class RunOnBus {
       if (options_.exit_on_final && process_.finished()) break;
     }
     while (auto message = inbox_.take(std::chrono::milliseconds(0))) {
-      process_.add(*std::move(message), clock_.now_s());
+      use(*std::move(message));
     }
     process_.close();
     publish_status();
@@ -71,6 +74,11 @@ class RunOnBus {
   }
 
  private:
+  void use(Message message) {
+    if (web_) web_->use(message);
+    process_.add(std::move(message), clock_.now_s());
+  }
+
   /// Uses messages for at most 0.1 s, so that pictures are drawn even while messages keep arriving.
   void use_messages() {
     constexpr double kMaxTime_s = 0.1;
@@ -78,7 +86,7 @@ class RunOnBus {
     auto message = inbox_.take(std::chrono::milliseconds(50));
     while (message) {
       const double now_s = clock_.now_s();
-      process_.add(*std::move(message), now_s);
+      use(*std::move(message));
       if (now_s - start_s >= kMaxTime_s) return;
       message = inbox_.take(std::chrono::milliseconds(0));
     }
@@ -88,6 +96,7 @@ class RunOnBus {
     process_.draw_if_due();
     if (take_write_request()) process_.draw_snapshot_now();
     if (inbox_.is_empty()) process_.write_finals(clock_.now_s(), receiver_.may_still_come());
+    if (web_) web_->refresh(process_.current(), process_.status());
   }
 
   void publish_status() {
@@ -103,16 +112,32 @@ class RunOnBus {
   Inbox inbox_;
   Receiver receiver_;
   ViewerProcess process_;
+  std::optional<WebView> web_;
   PatientClock clock_;
 };
+
+/// The log has been read: browsers are shown its map until somebody ends the viewer.
+void serve_until_stopped(WebView& web, const ViewerProcess& process) {
+  spdlog::info("the log has been read; Ctrl-C ends the viewer");
+  while (!stop_requested()) {
+    web.refresh(process.current(), process.status());
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+}
 
 int run_on_log(const Options& options) {
   LogReader log(*options.log);
   ViewerProcess process(options.process, {});
   constexpr double kNow_s = 0.0;  // a log is read as fast as possible: no waiting, no retries
+  std::optional<WebView> web;
+  if (options.web) web.emplace(*options.web);
   Receiver receiver(
       {.map_name = options.map_name, .has_room = {}},
-      [&](Message message) { process.add(std::move(message), kNow_s); }, report_bad);
+      [&](Message message) {
+        if (web) web->use(message);
+        process.add(std::move(message), kNow_s);
+      },
+      report_bad);
   spdlog::info("viewing {}, pictures in {}", options.log->string(),
                options.process.folder.string());
 
@@ -120,6 +145,7 @@ int run_on_log(const Options& options) {
     receiver.handle(event->channel, event->data);
     process.draw_if_due();
     if (take_write_request()) process.draw_snapshot_now();
+    if (web) web->refresh(process.current(), process.status());
     if (stop_requested()) break;
   }
   process.close();
@@ -129,6 +155,7 @@ int run_on_log(const Options& options) {
   if (status.chunks_missing > 0) spdlog::warn("{} chunks missing", status.chunks_missing);
   if (!status.problem.empty()) spdlog::warn("{}", status.problem);
   if (log.damage()) spdlog::error("{}", *log.damage());
+  if (web) serve_until_stopped(*web, process);
   return process.failures() > 0 || log.damage() ? 1 : 0;
 }
 

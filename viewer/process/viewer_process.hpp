@@ -68,6 +68,8 @@ class ViewerProcess {
   /// Writes all final pictures that are due and closes the video. Call once, at the end.
   void close();
 
+  /// The session that is drawn; nullptr: there is none.
+  const MapSession* current() const { return sessions_.current(); }
   /// All fields but those of the receiver.
   ViewerStatus status() const;
   /// Number of snapshots, sets of final pictures and videos that could not be written.

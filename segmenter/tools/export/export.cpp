@@ -20,6 +20,7 @@
 #include "segmenter/io/segment_plys.hpp"
 #include "segmenter/io/segments_csv.hpp"
 #include "segmenter/tools/export/export_options.hpp"
+#include "segmenter/tools/export/html_scene.hpp"
 #include "segmenter/tools/export/labelled_map.hpp"
 #include "segmenter/tools/export/mesh_segments.hpp"
 
@@ -81,6 +82,7 @@ void write_descriptions(const LabelledMap& input, const ExportOptions& options) 
       describe_segments(cloud, input.map.segments, input.map.state.last_changes, graph);
   if (!options.csv.empty()) write_segments_csv(segments, options.csv);
   if (!options.graph.empty()) write_graph(graph, segments, options.graph);
+  if (!options.html.empty()) write_html_scene(input.map, segments, options.html);
   if (options.json.empty()) return;
   if (input.is_saved_map) {
     write_segments_json(input.map, segments, options.json);
@@ -109,7 +111,8 @@ void run(const ExportOptions& options) {
     write_segment_plys(input.map, chosen, options.segment_folder);
     spdlog::info("{}: {} segments", options.segment_folder.string(), chosen.size());
   }
-  if (!options.json.empty() || !options.csv.empty() || !options.graph.empty()) {
+  if (!options.json.empty() || !options.csv.empty() || !options.graph.empty() ||
+      !options.html.empty()) {
     write_descriptions(input, options);
   }
 }

@@ -23,6 +23,8 @@ void add_options(CLI::App& app, ExportOptions& options) {
   app.add_option("--json", options.json, "write the description of every segment as JSON");
   app.add_option("--csv", options.csv, "write the same as a table, one line for each segment");
   app.add_option("--graph", options.graph, "write the graph of touching segments as GraphML");
+  app.add_option("--html", options.html,
+                 "write a page that shows the map in a browser, as one file that loads nothing");
   app.add_option("--ply", options.ply, "write all points with their segment_id");
   app.add_option("--segs", options.segs,
                  "write ScanNet's segs.json: the segment of each vertex of --mesh, otherwise of "
@@ -49,11 +51,12 @@ void add_options(CLI::App& app, ExportOptions& options) {
 }
 
 void validate(const ExportOptions& options) {
-  const auto files = {options.json, options.csv, options.graph, options.ply, options.segs};
+  const auto files = {options.json, options.csv, options.graph,
+                      options.html, options.ply, options.segs};
   if (options.segment_folder.empty() &&
       std::all_of(files.begin(), files.end(), [](const auto& file) { return file.empty(); })) {
     throw std::runtime_error(
-        "nothing to write: give --json, --csv, --graph, --ply, --segs or --segment-plys");
+        "nothing to write: give --json, --csv, --graph, --html, --ply, --segs or --segment-plys");
   }
   if (!options.mesh.empty() && options.segs.empty()) {
     throw std::runtime_error("--mesh is of no use without --segs");

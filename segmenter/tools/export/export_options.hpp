@@ -20,6 +20,7 @@ struct ExportOptions {
   std::filesystem::path ply;
   std::filesystem::path graph;
   std::filesystem::path segs;
+  std::filesystem::path html;
   std::string scene_id;                    ///< of `segs`; empty: its file name without .segs.json
   std::filesystem::path mesh;              ///< whose vertices `segs` is of
   std::filesystem::path segment_folder;    ///< for one PLY file a segment

@@ -117,6 +117,34 @@ TEST_F(Export, MeshVerticesGetTheSegmentOfTheNearestPoint) {
             json({ids[900], ids[3], ids[400], 0}));
 }
 
+TEST_F(Export, APageHasTheMapAndLoadsNothing) {
+  expect_success("FOLDER/map.kseg --html FOLDER/scene.html");
+  const std::string html = read("scene.html");
+  EXPECT_THAT(html, ::testing::StartsWith("<!doctype html>"));
+  EXPECT_THAT(html, HasSubstr("default-src 'none'"));
+  for (const char* const loading :
+       {"http://", "https://", "src=\"page", "href=\"page", "@import"}) {
+    EXPECT_THAT(html, ::testing::Not(HasSubstr(loading)));
+  }
+  const auto data = [&](const std::string& id) {
+    const std::string begin = "id=\"" + id + "\">";
+    const std::size_t from = html.find(begin) + begin.size();
+    return html.substr(from, html.find("</script>", from) - from);
+  };
+  const json scene = json::parse(data("scene"));
+  EXPECT_EQ(scene.at("segments").at("segments").size(), map_.segments.size());
+  std::size_t points = 0;
+  for (const json& tile : scene.at("state").at("tiles")) points += tile.at(3).get<std::size_t>();
+  EXPECT_EQ(points, map_.state.points_W.size());
+  const std::string blocks = data("tiles");
+  EXPECT_EQ(std::count(blocks.begin(), blocks.end(), '\n') + 1,
+            static_cast<std::ptrdiff_t>(scene.at("state").at("tiles").size()));
+  EXPECT_EQ(blocks.substr(0, 5), "S1RMM");  // "KTL1" in base 64
+
+  expect_success("FOLDER/segments.ply --resolution 0.01 --html FOLDER/of_ply.html");
+  expect_error("FOLDER/map.kseg --html FOLDER/absent/a.html", "there is no folder");
+}
+
 TEST_F(Export, OneFileForEachChosenSegment) {
   const std::uint32_t first = map_.segments.at(0).segment_id;
   const std::uint32_t third = map_.segments.at(2).segment_id;

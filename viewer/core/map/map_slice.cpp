@@ -75,6 +75,7 @@ UpdateEffect MapSlice::apply(const NumberedRun& update) {
 bool MapSlice::set_label(std::size_t point, std::uint32_t segment_id, std::uint32_t update_number) {
   if (label_updates_[point] > update_number + 1) return false;
   const bool changed = labels_[point] != segment_id;
+  if (changed) ++label_changes_;
   labels_[point] = segment_id;
   label_updates_[point] = update_number + 1;
   return changed;
@@ -90,6 +91,7 @@ void MapSlice::discard_old_labels() {
   for (std::size_t i = 0; i < labels_.size(); ++i) {
     if (label_updates_[i] == 0) labels_[i] = kNoSegment;
   }
+  ++label_changes_;
   was_labelled_ = false;
 }
 

@@ -35,6 +35,14 @@ class MapSlice {
   bool in_volume() const { return in_volume_; }
   const std::vector<CloudPoint>& points_W() const { return points_W_; }
   const std::vector<std::uint32_t>& labels() const { return labels_; }
+  float resolution_m() const { return resolution_m_; }
+  /// The points in the frame P of the patch, and where P is: what a correction changes is the pose.
+  const std::vector<CloudPoint>& points_P() const {
+    return points_P_.empty() ? points_W_ : points_P_;
+  }
+  PatchPose X_WP() const { return points_P_.empty() ? PatchPose() : place_.X_WP; }
+  /// Grows whenever a label changes.
+  std::uint64_t label_changes() const { return label_changes_; }
   void append_chunks(std::vector<PointChunk>& chunks) const;
 
   /// The update with this slice's labels has been applied, from the present segmenter.
@@ -69,6 +77,7 @@ class MapSlice {
   std::vector<CloudPoint> points_W_;
   std::vector<std::uint32_t> labels_;
   std::vector<std::uint32_t> label_updates_;  // 1 + number of the update behind each label; 0: none
+  std::uint64_t label_changes_ = 0;
   std::vector<Eigen::AlignedBox3f> chunk_boxes_W_;
   bool is_labelled_ = false;
   bool was_labelled_ = false;

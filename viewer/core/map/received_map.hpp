@@ -8,13 +8,13 @@
 
 #include "lcmtypes/messages.hpp"
 #include "lcmtypes/patch_motions.hpp"
+#include "lcmtypes/scene/up_direction.hpp"
 #include "viewer/core/map/camera_track.hpp"
 #include "viewer/core/map/label_update.hpp"
 #include "viewer/core/map/map_slice.hpp"
 #include "viewer/core/map/pending_updates.hpp"
 #include "viewer/core/map/point_chunk.hpp"
 #include "viewer/core/map/slice_revisions.hpp"
-#include "viewer/core/map/up_direction.hpp"
 
 namespace kintsugi::viewer {
 
@@ -93,6 +93,12 @@ class ReceivedMap {
   bool final_update_seen() const { return final_update_seen_; }
 
   const MapSlice* slice(std::int32_t id) const;  ///< as it is shown; nullptr: not here
+
+  /// Calls function(const MapSlice&) for every slice as it is shown, by ascending id.
+  template <class Function>
+  void for_each_shown(Function&& function) const {
+    for (const auto& [id, slice] : slices_) function(slice.shown());
+  }
 
   /// The parts that have points.
   std::set<std::int32_t> parts() const;

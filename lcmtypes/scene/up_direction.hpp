@@ -8,7 +8,7 @@
 
 #include "lcmtypes/messages.hpp"
 
-namespace kintsugi::viewer {
+namespace kintsugi {
 
 /// Estimates the upward direction in W from the normals of the map.
 ///
@@ -46,4 +46,4 @@ class UpDirection {
   mutable std::optional<Eigen::Vector3d> up_W_;  ///< of these bins; nothing: not estimated yet
 };
 
-}  // namespace kintsugi::viewer
+}  // namespace kintsugi

@@ -1,9 +1,9 @@
-#include "viewer/core/map/up_direction.hpp"
+#include "lcmtypes/scene/up_direction.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-namespace kintsugi::viewer {
+namespace kintsugi {
 namespace {
 
 /// Normals are rounded to multiples of 2^-20, so that sums of up to 2^32 of them are exact in
@@ -86,4 +86,4 @@ Eigen::Vector3d UpDirection::estimate_W() const {
   return up;
 }
 
-}  // namespace kintsugi::viewer
+}  // namespace kintsugi
