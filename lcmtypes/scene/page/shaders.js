@@ -55,8 +55,9 @@ void main() {
     v_colour = vec4(bytes) / 255.0;
     return;
   }
-  vec3 colour = u_mode == 1 ? segmentColour(a_id) : a_colour;
-  float light = u_mode == 1 ? 0.5 + 0.5 * abs(facing) : 0.75 + 0.25 * abs(facing);
+  bool colourless = u_mode == 0 && a_colour == vec3(0.0);  // none was seen: as in the pictures
+  vec3 colour = u_mode == 1 ? segmentColour(a_id) : colourless ? vec3(0.745) : a_colour;
+  float light = u_mode == 1 || colourless ? 0.5 + 0.5 * abs(facing) : 0.75 + 0.25 * abs(facing);
   if (u_selected != 0u) {
     if (a_id == u_selected) {
       colour = mix(colour, u_mode == 1 ? vec3(1.0) : segmentColour(a_id), 0.35);

@@ -67,6 +67,28 @@ TEST(MapRenderer, ShowsTheFloorInItsColorFromAbove) {
   EXPECT_NEAR(150, floor[2], 12);
 }
 
+TEST(MapRenderer, ShowsAMapWithoutColoursInGreyAndNotInBlack) {
+  Furnished room;
+  SyntheticMap colorless = make_room(4.0, 0.04);
+  for (CloudSlice& slice : colorless.slices) {
+    ++slice.revision;
+    for (CloudPoint& point : slice.points_W) point.red = point.green = point.blue = 0;
+    room.map.add_slice(slice);
+  }
+  for (SegmentUpdate& update : colorless.updates) {
+    ++update.slice_revision;
+    for (LabelRun& run : update.runs) ++run.slice_revision;
+    update.sequence += 1000;
+    room.map.apply_update(update);
+  }
+  const Viewpoint from_above = FixedViewpoint{{0.0, -8.0, 2.0}, {0.0, 0.0, 2.001}};
+  const cv::Mat3b map = MapRenderer(small()).draw_map(room.seen(from_above), Coloring::kTrue);
+  const cv::Vec3b& floor = map(135 + 20, 240 + 40);
+  EXPECT_EQ(floor[0], floor[1]);
+  EXPECT_EQ(floor[1], floor[2]);
+  EXPECT_GT(floor[0], 150);
+}
+
 TEST(MapRenderer, DrawsALineBetweenTheTwoPlacesOfALoop) {
   const Furnished room;
   Subject subject = room.seen(FixedViewpoint{{0.0, -8.0, 2.0}, {0.0, 0.0, 2.001}});

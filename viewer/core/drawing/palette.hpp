@@ -31,6 +31,7 @@ inline constexpr Rgb kCameraPath{255, 190, 40};
 inline constexpr Rgb kLoop{255, 70, 200};
 inline constexpr Rgb kCameraFrustum{120, 255, 80};
 inline constexpr Rgb kUnlabelledPoint{120, 120, 120};
+inline constexpr Rgb kColorlessPoint{190, 190, 190};  ///< in true colour, where none was seen
 inline constexpr Rgb kHighlightOutline{255, 255, 255};
 inline constexpr Rgb kPictureText{235, 235, 235};   ///< titles, segment ids and their leader lines
 inline constexpr Rgb kPictureTextEdge{14, 16, 20};  ///< around them

@@ -16,9 +16,23 @@ struct Light {
   float edge = 0.0F;     ///< strength of the darkening at edges in depth
 };
 
-/// True colours contain the shading of the room: less is added.
-Light light_of(Coloring coloring) {
-  return coloring == Coloring::kTrue ? Light{0.75F, 4.0F} : Light{0.45F, 6.0F};
+/// What a point looks like before it is lit.
+struct Paint {
+  cv::Vec3b color;
+  bool is_true = false;  ///< it contains the shading of the room
+};
+
+/// A map without colour, and points at which none was seen, have black ones: they are shown grey, and
+/// their shape by the light.
+Paint paint_of(const CloudPoint& point, std::uint32_t segment_id, Coloring coloring) {
+  if (coloring != Coloring::kTrue) return {.color = segment_color(segment_id)};
+  if (point.red == 0 && point.green == 0 && point.blue == 0) return {.color = palette::kColorlessPoint};
+  return {.color = Rgb{point.red, point.green, point.blue}, .is_true = true};
+}
+
+/// To true colours less is added.
+Light light_of(const Paint& paint) {
+  return paint.is_true ? Light{0.75F, 4.0F} : Light{0.45F, 6.0F};
 }
 
 /// How much nearer the neighbourhood is than this pixel: mean of max(0, log2 z - log2 z') over the
@@ -52,19 +66,18 @@ cv::Mat3b shade(const VisibilityImage& visible, std::span<const PointChunk> chun
                 const VirtualCamera& camera, Coloring coloring, const Highlight& highlight) {
   cv::Mat3b image(visible.height(), visible.width(), palette::kBackground);
   const Eigen::Vector3f eye_W = camera.X_WV.translation().cast<float>();
-  const Light light = light_of(coloring);
   tbb::parallel_for(0, visible.height(), [&](int v) {
     for (int u = 0; u < visible.width(); ++u) {
       if (visible.empty(u, v)) continue;
       const PointChunk& chunk = chunks[visible.chunk(u, v)];
       const std::size_t index = visible.point(u, v);
       const CloudPoint& point = chunk.points_W[index];
+      const std::uint32_t id = chunk.labels[index];
+      const Paint paint = paint_of(point, id, coloring);
+      const Light light = light_of(paint);
       const float brightness = (light.ambient + (1.0F - light.ambient) * facing(point, eye_W)) *
                                std::exp(-light.edge * occlusion(visible, u, v));
-      const std::uint32_t id = chunk.labels[index];
-      const cv::Vec3b color =
-          coloring == Coloring::kTrue ? Rgb{point.red, point.green, point.blue} : segment_color(id);
-      const cv::Vec3b lit = cv::Vec3f(color) * brightness;
+      const cv::Vec3b lit = cv::Vec3f(paint.color) * brightness;
       image(v, u) = highlight.empty() || highlight.contains(id) ? lit : dimmed(lit);
     }
   });
