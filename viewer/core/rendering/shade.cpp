@@ -22,11 +22,12 @@ struct Paint {
   bool is_true = false;  ///< it contains the shading of the room
 };
 
-/// A map without colour, and points at which none was seen, have black ones: they are shown grey, and
-/// their shape by the light.
+/// A map without colour, and points at which none was seen, have black ones: they are shown grey,
+/// and their shape by the light.
 Paint paint_of(const CloudPoint& point, std::uint32_t segment_id, Coloring coloring) {
   if (coloring != Coloring::kTrue) return {.color = segment_color(segment_id)};
-  if (point.red == 0 && point.green == 0 && point.blue == 0) return {.color = palette::kColorlessPoint};
+  if (point.red == 0 && point.green == 0 && point.blue == 0)
+    return {.color = palette::kColorlessPoint};
   return {.color = Rgb{point.red, point.green, point.blue}, .is_true = true};
 }
 
