@@ -46,12 +46,20 @@ py::array_t<Number, py::array::c_style> floats(const py::handle& object, const s
   return py::array_t<Number, py::array::c_style | py::array::forcecast>::ensure(array);
 }
 
+/// True for records with the fields of POINT; numpy leaves out the gaps between them where it makes
+/// an array from several.
+bool is_points(const py::array& array) {
+  return array.dtype().kind() == 'V' &&
+         array.dtype().attr("names").equal(dtype_of<CloudPoint>().attr("names"));
+}
+
 std::vector<CloudPoint> records(const py::array& array) {
   if (array.ndim() != 1) {
     throw std::invalid_argument("points of dtype POINT must have the shape (N,), not " +
                                 shape_text(array));
   }
-  const py::array packed = py::array::ensure(array, py::array::c_style);
+  const py::array packed =
+      py::array::ensure(array.attr("astype")(dtype_of<CloudPoint>(), "C", py::arg("copy") = false));
   const auto* const first = static_cast<const CloudPoint*>(packed.data());
   return {first, first + packed.size()};
 }
@@ -77,7 +85,7 @@ void set_colors(const py::handle& colors, std::vector<CloudPoint>& points) {
 PointsArgument points_argument(const py::handle& points, const py::handle& normals,
                                const py::handle& colors) {
   const py::array given = any_array(points, "points");
-  if (given.dtype().equal(dtype_of<CloudPoint>())) {
+  if (is_points(given)) {
     if (!normals.is_none() || !colors.is_none()) {
       throw std::invalid_argument("points of dtype POINT have normals and colours already");
     }

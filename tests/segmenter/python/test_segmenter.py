@@ -42,6 +42,29 @@ class SegmenterTest(unittest.TestCase):
         self.assertEqual(segments["points"].tolist(), [800, 400])
         np.testing.assert_allclose(segments["box_max"][0], [0.39, 0.19, 1.0], atol=1e-6)
 
+    def test_equals_a_batch_run_over_the_points_where_they_are(self):
+        random = np.random.default_rng(1)
+        pieces = {}
+        for _ in range(12):
+            points = square(*random.uniform(-0.3, 0.3, 2).round(2))
+            normals = FACING + random.normal(0.0, 0.03, points.shape)
+            colors = random.choice(np.uint8([[250, 10, 10], [10, 250, 10]]), 1).repeat(400, axis=0)
+            pieces[self.segmenter.add(points, normals, colors)] = points, normals, colors
+        for piece in list(pieces)[::3]:
+            x = random.uniform(-0.3, 0.3)
+            self.segmenter.move(piece, shifted(x))
+            pieces[piece] = pieces[piece][0] + [x, 0.0, 0.0], *pieces[piece][1:]
+        self.segmenter.remove(list(pieces)[4])
+        pieces.pop(list(pieces)[4])
+        batch = kintsugi.Segmenter(mode="batch")
+        given = np.concatenate([self.segmenter.points(piece) for piece in pieces])
+        np.testing.assert_allclose(given["position"], np.concatenate([p[0] for p in pieces.values()]), atol=1e-6)
+        ours, theirs = self.segmenter.labels(), batch.labels(batch.add(given))
+        pairs = np.unique(np.stack([ours, theirs]), axis=1)  # a bijection of ids
+        self.assertEqual(pairs.shape[1], len(np.unique(ours)))
+        self.assertEqual(pairs.shape[1], len(np.unique(theirs)))
+        self.assertGreater(pairs.shape[1], 2)
+
     def test_moves_replaces_and_removes(self):
         a = self.segmenter.add(square(), FACING)
         b = self.segmenter.add(square(2.0), FACING)
