@@ -137,11 +137,8 @@ X_WP        (4, 4) floats: pose of the piece, p_W = X_WP p_P, where p_P are the 
 
 Raises ValueError for a matrix that is not a rotation and a translation, or a piece that there is not.)";
 
-}  // namespace
-
-void add_segmenter(py::module_& module) {
-  py::class_<Self> type(module, "Segmenter",
-                        R"(The segment map of a cloud that is given in pieces.
+constexpr char kClassHelp[] =
+    R"(The segment map of a cloud that is given in pieces.
 
 After each change the segments equal those of a batch segmentation of the whole cloud, at the cost of
 what the change touches; segments keep their ids as far as possible. Ids of segments begin at 1; a
@@ -154,15 +151,9 @@ parameters  dict of values that replace those of the preset: threshold, scale, c
             min_points, beta, radius_factor
 
 Long calls release the interpreter's lock; threads may share an object.
-Raises ValueError naming the argument, its value and its bound.)");
-  type.def(py::init([](double resolution, const std::string& preset, const std::string& mode,
-                       const std::optional<std::map<std::string, double>>& parameters) {
-             SegmenterOptions options{resolution, preset, mode,
-                                      parameters.value_or(std::map<std::string, double>())};
-             return std::make_unique<Self>(Segmenter(options), resolution);
-           }),
-           py::arg("resolution") = 0.01, py::arg("preset") = "objects", py::arg("mode") = "exact",
-           py::arg("parameters") = py::none());
+Raises ValueError naming the argument, its value and its bound.)";
+
+void add_changes(py::class_<Self>& type) {
   type.def("add", &add, py::arg("points"), py::arg("normals") = py::none(),
            py::arg("colors") = py::none(), py::arg("viewpoint") = py::none(), kAddHelp);
   type.def(
@@ -177,6 +168,9 @@ Raises ValueError naming the argument, its value and its bound.)");
         self.shared.with([&](Segmenter& segmenter) { segmenter.remove(piece); });
       },
       py::arg("piece"), "Remove a piece and its points.");
+}
+
+void add_results(py::class_<Self>& type) {
   type.def("labels", &labels, py::arg("piece") = py::none(),
            "(N,) uint32: the segment of each point of a piece, in the order of add(); 0: none.\n"
            "Without a piece: of all pieces, one after the other, in the order of `pieces`.");
@@ -206,6 +200,9 @@ Raises ValueError naming the argument, its value and its bound.)");
       py::arg("file"),
       "Write the map into a file that load_map(), kintsugi-export and kintsugi-query read.\n"
       "Raises RuntimeError naming the file and the reason.");
+}
+
+void add_state(py::class_<Self>& type) {
   type.def_property_readonly("pieces",
                              getter([](Segmenter& segmenter) { return segmenter.pieces(); }),
                              "Numbers of the pieces, ascending.");
@@ -227,6 +224,23 @@ Raises ValueError naming the argument, its value and its bound.)");
                              }),
                              "Numbers of the pieces whose labels the last change changed.");
   type.def_readonly("resolution", &Self::resolution_m, "Metres.");
+}
+
+}  // namespace
+
+void add_segmenter(py::module_& module) {
+  py::class_<Self> type(module, "Segmenter", kClassHelp);
+  type.def(py::init([](double resolution, const std::string& preset, const std::string& mode,
+                       const std::optional<std::map<std::string, double>>& parameters) {
+             SegmenterOptions options{resolution, preset, mode,
+                                      parameters.value_or(std::map<std::string, double>())};
+             return std::make_unique<Self>(Segmenter(options), resolution);
+           }),
+           py::arg("resolution") = 0.01, py::arg("preset") = "objects", py::arg("mode") = "exact",
+           py::arg("parameters") = py::none());
+  add_changes(type);
+  add_results(type);
+  add_state(type);
   type.def("__repr__", [](Self& self) {
     return self.shared.with([](Segmenter& segmenter) {
       return "<kintsugi.Segmenter: " + std::to_string(segmenter.pieces().size()) + " pieces, " +
