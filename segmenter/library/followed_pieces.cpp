@@ -1,5 +1,6 @@
 #include "segmenter/library/followed_pieces.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <stdexcept>
 #include <string>
@@ -98,6 +99,15 @@ FollowedPieces::Points FollowedPieces::points_W(std::int32_t id) const {
                                moved(*piece.points_P, piece.place.X_WP));
   }
   return piece.points_W;
+}
+
+bool FollowedPieces::lacks_points() const {
+  return std::ranges::any_of(labels_, [this](const auto& entry) {
+    const auto& [id, revisions] = entry;
+    if (revisions.empty() || revisions.rbegin()->second.labels().empty()) return false;
+    const auto piece = pieces_.find(id);
+    return piece == pieces_.end() || piece->second.revision < revisions.rbegin()->first;
+  });
 }
 
 std::vector<std::uint32_t> FollowedPieces::labels(std::int32_t id) const {

@@ -28,6 +28,8 @@ class FollowedPieces {
   [[nodiscard]] std::vector<std::int32_t> ids() const;
   /// @throws std::invalid_argument when there is no such piece
   [[nodiscard]] Points points_W(std::int32_t id) const;
+  /// There are labels of points that have not come.
+  [[nodiscard]] bool lacks_points() const;
   /// Of each of these points.
   /// @throws std::invalid_argument when there is no such piece
   [[nodiscard]] std::vector<std::uint32_t> labels(std::int32_t id) const;

@@ -15,6 +15,9 @@ using std::chrono::milliseconds;
 using Clock = std::chrono::steady_clock;
 
 constexpr milliseconds kTickPeriod(20);
+/// How long has_ended() waits for points that the segmenter has and this client has not: their
+/// mapper may have ended.
+constexpr double kPatience_s = 5.0;
 /// So many messages wait() takes after the first change, before it hands out what there is.
 constexpr int kMaxMessages = 10'000;
 
@@ -41,7 +44,9 @@ class MapClient::Implementation {
   }
 
   bool has_ended() const {
-    return log_ ? log_ended_ : follower_.segments().has_ended() && follower_.has_slices();
+    if (log_) return log_ended_;
+    return follower_.segments().has_ended() && follower_.has_slices() &&
+           (!follower_.pieces().lacks_points() || patient_until_s_ < clock_.now_s());
   }
   std::string damage() const { return log_ ? log_->damage().value_or("") : ""; }
 
@@ -76,6 +81,7 @@ class MapClient::Implementation {
       bus_->handle(std::clamp(left, milliseconds(0), kTickPeriod));
       request_missing();
     } while (!follower_.has_changes() && Clock::now() < end);
+    if (follower_.has_changes()) patient_until_s_ = clock_.now_s() + kPatience_s;
     for (int i = 0; i < kMaxMessages && bus_->handle(milliseconds(0)); ++i) request_missing();
   }
 
@@ -91,7 +97,8 @@ class MapClient::Implementation {
   std::optional<Bus> bus_;  // after follower_, which it calls
   std::optional<LogReader> log_;
   bool log_ended_ = false;
-  PatientClock clock_;
+  mutable PatientClock clock_;
+  double patient_until_s_ = 0.0;
   double next_request_s_ = 0.0;
   std::unique_ptr<segmenter::QueryClient> queries_;
 };

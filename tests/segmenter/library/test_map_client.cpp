@@ -138,6 +138,18 @@ TEST(FollowedPieces, HaveNoSegmentsUntilThoseOfANewSegmenterArrive) {
   EXPECT_THAT(pieces.labels(0), Each(kNoSegment));
 }
 
+TEST(FollowedPieces, KnowThatPointsAreMissing) {
+  const Played played;
+  segmenter::FollowedPieces pieces;
+  std::set<std::int32_t> changed;
+  for (const SegmentUpdate& update : played.updates) pieces.apply(update, changed);
+  for (const CloudSlice& slice : played.slices) {
+    EXPECT_EQ(pieces.lacks_points(), slice.id < 6);  // the last but one is a patch
+    pieces.add(slice, changed);
+  }
+  EXPECT_FALSE(pieces.lacks_points());
+}
+
 TEST(FollowedPieces, IgnoreRunsBeyondThePieceAndRefuseUnknownPieces) {
   Played played;
   segmenter::FollowedPieces pieces;
