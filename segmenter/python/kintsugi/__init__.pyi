@@ -22,7 +22,7 @@ SPLIT: int
 RETIRED: int
 
 _File = Union[str, os.PathLike[str]]
-_Vector = Sequence[float]
+_Vector = Union[Sequence[float], NDArray[Any]]
 _Records = NDArray[np.void]
 _Labels = NDArray[np.uint32]
 
