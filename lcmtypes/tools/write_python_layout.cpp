@@ -1,5 +1,5 @@
-// Writes kintsugi_layout.py: packed records, for programs in Python. The build runs it, so that the
-// record of the statistics of a segment is described once, by SegmentStatistics.
+// Writes kintsugi/lcm/layout.py: packed records, for programs in Python. The build runs it, so that
+// the record of the statistics of a segment is described once, by SegmentStatistics.
 
 #include <cstddef>
 #include <cstdint>

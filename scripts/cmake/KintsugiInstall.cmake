@@ -15,7 +15,12 @@ file(RELATIVE_PATH libraries_from_bin /${CMAKE_INSTALL_BINDIR} /${CMAKE_INSTALL_
 set_target_properties(${installed} PROPERTIES
   INSTALL_RPATH "$ORIGIN/${private_from_bin};$ORIGIN/${libraries_from_bin}")
 install(TARGETS ${installed} RUNTIME)
-add_custom_target(kintsugi_programs DEPENDS ${installed} kintsugi_openni2_driver)  # all that is installed
+# All that is installed, with the libraries and the Python package, which install themselves.
+add_custom_target(kintsugi_programs DEPENDS ${installed} kintsugi_openni2_driver kintsugi_segmentation
+                  kintsugi_bus)
+if(TARGET kintsugi_python_package)
+  add_dependencies(kintsugi_programs kintsugi_python_package)
+endif()
 set(CMAKE_SKIP_INSTALL_ALL_DEPENDENCY TRUE)  # but no tests
 
 # The private runtime of OpenNI2: our driver, and links to the system's library and drivers.
@@ -81,7 +86,8 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_DEPENDS "liblcm-bin, libopenni2-0, python3, iproute2, util-linux")
-set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "gnuplot-nox, nftables, systemd")
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "gnuplot-nox, nftables, python3-numpy, systemd")
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "libeigen3-dev")  # for programs with find_package(Kintsugi)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA ${packaging}/postinst ${packaging}/postrm)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 set(CPACK_STRIP_FILES ON)

@@ -1,0 +1,129 @@
+#include "segmenter/library/map_follower.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "lcmtypes/bus/message_subscriber.hpp"
+#include "lcmtypes/channels.hpp"
+
+namespace kintsugi::segmenter {
+
+MapFollower::MapFollower(const MapClientOptions& options)
+    : options_(options),
+      listener_(options.map_name, [this](const SegmentUpdate& update) { use(update); }),
+      slices_(
+          channels::kCloudSlice, [this](CloudSlice slice) { use(std::move(slice)); }, {},
+          [&] {
+            StreamSubscriberConfig<CloudSlice> config;
+            config.receiver = new_session();
+            config.wanted_map_name = options.map_name;
+            config.wanted = [this](const CloudSlice& header) { return is_wanted(header); };
+            return config;
+          }()) {}
+
+void MapFollower::subscribe(Bus& bus) {
+  listener_.subscribe(bus);
+  if (options_.with_points) slices_.subscribe(bus);
+  kintsugi::subscribe<CameraPose>(bus, channels::kCameraPose,
+                                  [this](const CameraPose& pose) { use(pose); });
+}
+
+void MapFollower::ask(Bus& bus, double now_s) {
+  listener_.ask(bus, now_s);
+  if (options_.with_points) slices_.ask(bus, now_s);
+}
+
+void MapFollower::handle(const std::string& channel, ByteView message) {
+  listener_.handle(channel, message);
+  if (options_.with_points) slices_.handle(channel, message);
+  if (channel == channels::kCameraPose) use_pose(message);
+}
+
+void MapFollower::use_pose(ByteView message) {
+  CameraPose pose;
+  try {
+    pose = decode<CameraPose>(message);
+  } catch (const DecodeError&) {
+    return;  // as one that was lost
+  }
+  use(pose);
+}
+
+/// 0: nothing was received.
+std::int64_t MapFollower::current_session() const {
+  if (const SegmentUpdate* const newest = listener_.table().newest()) return newest->map_session;
+  return sessions_.empty() ? 0 : sessions_.rbegin()->first;
+}
+
+bool MapFollower::is_wanted(const CloudSlice& header) const {
+  if (const SegmentUpdate* const newest = listener_.table().newest()) {
+    return header.map_name == newest->map_name && header.session >= newest->map_session;
+  }
+  return options_.map_name.empty() || header.map_name == options_.map_name;
+}
+
+void MapFollower::use(CloudSlice slice) {
+  const std::int64_t id = slice.session;
+  Session& session = sessions_[id];
+  session.map_name = slice.map_name;
+  std::set<std::int32_t> changed;
+  session.pieces.add(std::move(slice), changed);
+  if (id == current_session()) changed_pieces_.merge(changed);
+}
+
+void MapFollower::use(const SegmentUpdate& update) {
+  changes_.updates.push_back(update);
+  Session& session = sessions_[update.map_session];
+  session.map_name = update.map_name;
+  if (options_.with_points) session.pieces.apply(update, changed_pieces_);
+  if (sessions_.size() > 1) forget_others();
+}
+
+void MapFollower::use(const CameraPose& pose) {
+  if (pose.session != current_session() && current_session() != 0) return;
+  camera_ = pose;
+  changes_.poses.push_back(pose);
+}
+
+/// Other maps, and earlier sessions of this one. A newer session has no segments yet.
+void MapFollower::forget_others() {
+  const SegmentUpdate& newest = *listener_.table().newest();
+  std::erase_if(sessions_, [&](const auto& entry) {
+    const auto& [id, session] = entry;
+    const bool is_other = id < newest.map_session || session.map_name != newest.map_name;
+    if (is_other) slices_.forget(id);
+    return is_other;
+  });
+}
+
+MapChanges MapFollower::take_changes() {
+  changes_.pieces.assign(changed_pieces_.begin(), changed_pieces_.end());
+  changed_pieces_.clear();
+  return std::exchange(changes_, {});
+}
+
+bool MapFollower::has_changes() const {
+  return !changes_.updates.empty() || !changes_.poses.empty() || !changed_pieces_.empty();
+}
+
+const FollowedPieces& MapFollower::pieces() const {
+  static const FollowedPieces kNone;
+  const auto found = sessions_.find(current_session());
+  return found != sessions_.end() ? found->second.pieces : kNone;
+}
+
+bool MapFollower::has_slices() const {
+  const std::int64_t session = current_session();
+  return !options_.with_points || slices_.has_given_up(session) ||
+         std::ranges::none_of(slices_.gaps(),
+                              [&](const StreamGap& gap) { return gap.session == session; });
+}
+
+std::string MapFollower::dropped() const {
+  const std::int64_t num_bad = slices_.counts().messages_bad;
+  if (num_bad == 0) return listener_.dropped();
+  const std::string bad = "slices dropped: " + std::to_string(num_bad);
+  return listener_.dropped().empty() ? bad : bad + "; " + listener_.dropped();
+}
+
+}  // namespace kintsugi::segmenter

@@ -1,0 +1,66 @@
+#pragma once
+// Receives one map from any source of messages.
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+
+#include "lcmtypes/client/segment_listener.hpp"
+#include "segmenter/library/bus.hpp"
+#include "segmenter/library/followed_pieces.hpp"
+
+namespace kintsugi::segmenter {
+
+/// Chooses the map, and applies its slices, updates and camera poses.
+class MapFollower {
+ public:
+  explicit MapFollower(const MapClientOptions& options);
+  MapFollower(const MapFollower&) = delete;  // the subscribers call it
+  MapFollower& operator=(const MapFollower&) = delete;
+
+  /// From now on bus.handle() applies messages. This must outlive the last bus.handle().
+  void subscribe(Bus& bus);
+  /// Requests what is missing; `now_s` is the time of a PatientClock.
+  void ask(Bus& bus, double now_s);
+  /// Handles one message of a log.
+  void handle(const std::string& channel, ByteView message);
+
+  /// What has changed since the last call.
+  MapChanges take_changes();
+  [[nodiscard]] bool has_changes() const;
+
+  [[nodiscard]] const SegmentListener& segments() const { return listener_; }
+  /// Points and labels of the map that is followed.
+  [[nodiscard]] const FollowedPieces& pieces() const;
+  [[nodiscard]] const std::optional<CameraPose>& camera() const { return camera_; }
+  /// No slice that is known of is missing, or it is not sent any more.
+  [[nodiscard]] bool has_slices() const;
+  [[nodiscard]] std::string dropped() const;
+
+ private:
+  struct Session {
+    std::string map_name;
+    FollowedPieces pieces;
+  };
+
+  [[nodiscard]] std::int64_t current_session() const;
+  [[nodiscard]] bool is_wanted(const CloudSlice& header) const;
+  void use(CloudSlice slice);
+  void use(const SegmentUpdate& update);
+  void use(const CameraPose& pose);
+  void use_pose(ByteView message);
+  void forget_others();
+
+  const MapClientOptions options_;
+  SegmentListener listener_;
+  StreamSubscriber<CloudSlice> slices_;
+  /// Of the mapper. As long as no update has told which map it is: of every map.
+  std::map<std::int64_t, Session> sessions_;
+  std::optional<CameraPose> camera_;
+  MapChanges changes_;
+  std::set<std::int32_t> changed_pieces_;
+};
+
+}  // namespace kintsugi::segmenter

@@ -1,0 +1,189 @@
+// kintsugi.MapClient, kintsugi.connect, kintsugi.open_log, kintsugi.read_log
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include "segmenter/library/bus.hpp"
+#include "segmenter/python/arrays.hpp"
+#include "segmenter/python/bind.hpp"
+#include "segmenter/python/queries.hpp"
+
+namespace kintsugi::python {
+namespace {
+
+using Self = Shared<MapClient>;
+using Seconds = MapClient::Seconds;
+
+constexpr Seconds kSignalPeriod(0.1);
+
+/// A log is read in steps, so that Ctrl-C is heard.
+void raise_signals() {
+  if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+}
+
+MapChanges wait(Self& self, double timeout_s) {
+  if (!(timeout_s >= 0.0)) {
+    throw std::invalid_argument("timeout is " + std::to_string(timeout_s) +
+                                ", must be >= 0 seconds");
+  }
+  const auto start = std::chrono::steady_clock::now();
+  while (true) {
+    const Seconds left = Seconds(timeout_s) - (std::chrono::steady_clock::now() - start);
+    bool has_ended = false;
+    MapChanges changes = self.with([&](MapClient& client) {
+      MapChanges received = client.wait(std::clamp(left, Seconds(0.0), kSignalPeriod));
+      has_ended = client.has_ended();
+      return received;
+    });
+    raise_signals();
+    if (!changes.is_empty() || has_ended || left <= Seconds(0.0)) return changes;
+  }
+}
+
+std::unique_ptr<Self> read_log_of(const std::filesystem::path& file, const std::string& map_name,
+                                  bool with_points) {
+  auto self = std::make_unique<Self>(MapClient::open_log(file, {"", map_name, with_points}));
+  while (!self->with([](MapClient& client) {
+    for (int i = 0; i < 1000 && !client.has_ended(); ++i) client.wait(Seconds(0.0));
+    return client.has_ended();
+  })) {
+    raise_signals();
+  }
+  return self;
+}
+
+SegmentAnswer query(Self& self, double timeout_s, const py::kwargs& keywords) {
+  const SegmentQuery asked = query_of(keywords);
+  return self.with([&](MapClient& client) { return client.ask(asked, Seconds(timeout_s)); });
+}
+
+/// A getter without arguments that may have to wait for another thread.
+template <class Function>
+auto getter(Function function) {
+  return [function](Self& self) { return self.with(function); };
+}
+
+constexpr char kClassHelp[] =
+    R"(One map as its mapper and segmenter publish it, from the bus or a log.
+
+connect(), open_log() and read_log() make one. It has the pieces (slices) with their points where all
+corrections have put them, the segment of each point, every segment, and the camera. On the bus, what
+was lost or sent before is requested again, so the map is whole after a while, whenever the client
+starts. Nothing is received but in wait(), which is to be called regularly.
+
+Long calls release the interpreter's lock; threads may share an object.)";
+
+constexpr char kWaitHelp[] =
+    R"(Receive until something has changed, or for `timeout` seconds; return Changes.
+
+With timeout=0 it takes what has arrived. From a log it reads up to the next change.
+Raises RuntimeError when the connection is lost, KeyboardInterrupt on Ctrl-C.)";
+
+void add_state(py::class_<Self>& type) {
+  type.def_property_readonly("has_ended",
+                             getter([](MapClient& client) { return client.has_ended(); }),
+                             "Of a log: it is read. On the bus: the map is complete, and nothing "
+                             "is missing that is still sent.");
+  type.def_property_readonly("is_complete",
+                             getter([](MapClient& client) { return client.is_complete(); }),
+                             "The final piece and all others are segmented.");
+  type.def_property_readonly("problem", getter([](MapClient& client) { return client.problem(); }),
+                             "What is missing in the table of segments; empty: nothing.");
+  type.def_property_readonly("damage", getter([](MapClient& client) { return client.damage(); }),
+                             "Of a log: where and how it is damaged; empty: it is not.");
+  type.def_property_readonly("dropped", getter([](MapClient& client) { return client.dropped(); }),
+                             "How many messages were refused, and why the last was; empty: none.");
+  type.def_property_readonly("newest_update", getter([](MapClient& client) {
+                               const SegmentUpdate* const newest = client.newest_update();
+                               return newest != nullptr ? std::optional(*newest) : std::nullopt;
+                             }),
+                             "Names, sessions and counts of the map, an Update without arrays; "
+                             "None: nothing was received.");
+  type.def_property_readonly("camera", getter([](MapClient& client) { return client.camera(); }),
+                             "The newest CameraPose; None: none was received.");
+}
+
+void add_map(py::class_<Self>& type) {
+  type.def_property_readonly("pieces", getter([](MapClient& client) { return client.pieces(); }),
+                             "Numbers of the pieces that were received, ascending.");
+  type.def(
+      "points",
+      [](Self& self, std::int32_t piece) {
+        return array_of(self.with([&](MapClient& client) { return client.points_W(piece); }));
+      },
+      py::arg("piece"),
+      "(N,) of dtype POINT, read-only: the points of a piece where it is now; metres, W.\n"
+      "The array never changes: after a change of the piece, ask again.");
+  type.def(
+      "labels",
+      [](Self& self, std::int32_t piece) {
+        return array_of(self.with([&](MapClient& client) { return client.labels(piece); }));
+      },
+      py::arg("piece"),
+      "(N,) uint32: the segment of each of these points; 0: none, or not segmented yet.");
+  type.def(
+      "segments",
+      [](Self& self) {
+        return array_of(self.with([](MapClient& client) { return client.segments(); }));
+      },
+      "(S,) of dtype SEGMENT: every segment, by ascending id; metres, W.");
+  type.def(
+      "birth",
+      [](Self& self, std::uint32_t id) -> py::object {
+        const auto birth = self.with([&](MapClient& client) { return client.birth(id); });
+        if (!birth) return py::none();
+        return py::make_tuple(birth->slice_id, birth->parent_id);
+      },
+      py::arg("id"),
+      "(piece, parent) of a segment: with which piece it came, and from which segment it was "
+      "split\n"
+      "off (0: none). None: unknown.");
+  type.def("query", &query, py::arg("timeout") = 5.0,
+           (std::string("Ask the segmenter; wait for `timeout` seconds at most.") + kQueryHelp +
+            "\nRaises RuntimeError when nobody answers, and for a log.")
+               .c_str());
+}
+
+}  // namespace
+
+void add_map_client(py::module_& module) {
+  py::class_<Self> type(module, "MapClient", kClassHelp);
+  type.def("wait", &wait, py::arg("timeout") = 1.0, kWaitHelp);
+  add_state(type);
+  add_map(type);
+
+  module.def(
+      "connect",
+      [](const std::string& url, const std::string& map_name, bool with_points) {
+        return std::make_unique<Self>(MapClient::connect({url, map_name, with_points}));
+      },
+      py::arg("url") = "", py::arg("map_name") = "", py::arg("with_points") = true,
+      "Follow a map on the bus; return a MapClient.\n\n"
+      "url          of LCM; empty: LCM_DEFAULT_URL, or multicast on this host\n"
+      "map_name     empty: the map of the first segment update that is received\n"
+      "with_points  False: without points and labels, with less memory and traffic\n\n"
+      "Raises RuntimeError when the bus cannot be opened.");
+  module.def(
+      "open_log",
+      [](const std::filesystem::path& file, const std::string& map_name, bool with_points) {
+        return std::make_unique<Self>(MapClient::open_log(file, {"", map_name, with_points}));
+      },
+      py::arg("file"), py::arg("map_name") = "", py::arg("with_points") = true,
+      "Open an LCM log, in which wait() reads on; return a MapClient. Arguments as connect().\n"
+      "Raises RuntimeError when it cannot be read or is no LCM log.");
+  module.def(
+      "read_log", &read_log_of, py::arg("file"), py::arg("map_name") = "",
+      py::arg("with_points") = true,
+      "Read an LCM log to its end or first damage; return a MapClient. Arguments as connect().\n"
+      "Raises RuntimeError when it cannot be read or is no LCM log.");
+}
+
+}  // namespace kintsugi::python
