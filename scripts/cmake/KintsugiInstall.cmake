@@ -85,7 +85,11 @@ set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_PACKAGE_DEPENDS "liblcm-bin, libopenni2-0, python3, iproute2, util-linux")
+# The Python module is of this minor version.
+find_package(Python3 REQUIRED COMPONENTS Interpreter)
+math(EXPR python_next_minor "${Python3_VERSION_MINOR} + 1")
+set(CPACK_DEBIAN_PACKAGE_DEPENDS "liblcm-bin, libopenni2-0, python3 (>= 3.${Python3_VERSION_MINOR}), python3 (<< 3.${python_next_minor}), \
+python3-numpy, iproute2, util-linux")
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "gnuplot-nox, nftables, python3-numpy, systemd")
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS "libeigen3-dev")  # for programs with find_package(Kintsugi)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA ${packaging}/postinst ${packaging}/postrm)

@@ -32,6 +32,15 @@ inside bash -c 'cd /root && kintsugi-trio --private --device synthetic://office 
   { say "the demo failed"; exit 1; }
 [[ -s "$root/root/demo/final.png" && -s "$root/root/demo/segments.ply" ]] || { say "the demo wrote no map"; exit 1; }
 say "first map and picture $(($(date +%s) - start)) s after 'apt install' began"
+# A Python example, with what 'apt install' brought.
+inside /usr/bin/python3 -c "
+import numpy, kintsugi
+x, y = numpy.meshgrid(numpy.arange(40) * 0.01, numpy.arange(40) * 0.01)
+segmenter = kintsugi.Segmenter(resolution=0.01)
+points = numpy.stack([x.ravel(), y.ravel(), 0.0 * x.ravel()], axis=1)
+segmenter.add(points, normals=numpy.tile([0.0, 0.0, 1.0], (len(points), 1)))
+assert segmenter.num_segments == 1, segmenter.segments()
+print('python:', len(points), 'points,', segmenter.num_segments, 'segment')" || { say "the Python package does not work"; exit 1; }
 # The units, as systemd itself reads them; their exposure is of 10.
 inside apt-get install -y -qq --no-install-recommends systemd >/dev/null 2>&1
 for unit in kintsugi-mapper@hall kintsugi-segmenter kintsugi-viewer; do
