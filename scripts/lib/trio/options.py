@@ -16,8 +16,8 @@ STORE = "store"  # for the command itself
 # Flag, metavar (None: a switch), what is done with it, for which process or with which default, help.
 TRIO_OPTIONS = (
     ("--device", "URI", PASS_ON, "mapper",
-     "where frames come from: a recording's path (its formats are in mapper/README.md), synthetic://NAME (a scene there), or a camera's "
-     "URI; empty or not given: the first camera"),
+     "where frames come from: a recording's path (its formats are in mapper/README.md), synthetic://NAME (a scene "
+     "there), or a camera's URI; empty or not given: the first camera"),
     ("--out", "DIR", STORE, "out/trio",
      "folder of the run (default %(default)s); files of an earlier run in it are moved to DIR/earlier"),
     ("--resume", None, STORE, False,
