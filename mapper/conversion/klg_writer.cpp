@@ -14,8 +14,8 @@
 
 #include "lcmtypes/base/atomic_file.hpp"
 #include "mapper/conversion/calibration_writer.hpp"
-#include "mapper/conversion/depth_values.hpp"
 #include "mapper/conversion/writers.hpp"
+#include "mapper/source/frames/depth_values.hpp"
 
 namespace kintsugi::mapper {
 namespace {

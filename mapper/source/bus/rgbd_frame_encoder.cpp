@@ -1,31 +1,23 @@
 #include "mapper/source/bus/rgbd_frame_encoder.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
+
+#include "mapper/source/frames/depth_values.hpp"
 
 namespace kintsugi::mapper {
 namespace {
 
 constexpr double kFineUnitsPerM = 10000.0;
 constexpr double kCoarseUnitsPerM = 5000.0;
-constexpr double kMaxValue = 65534.0;  // 65535 means "invalid" to some
 
 double choose_units_per_m(const cv::Mat_<float>& depth_m) {
-  const bool near = std::ranges::all_of(
-      depth_m, [](float z) { return !(z > kMaxValue / kFineUnitsPerM); });  // NaN is not beyond
+  const bool near = std::ranges::all_of(depth_m, [](float z) {
+    return !(z > kMaxDepthValue / kFineUnitsPerM);
+  });  // NaN is not beyond
   return near ? kFineUnitsPerM : kCoarseUnitsPerM;
-}
-
-cv::Mat_<std::uint16_t> to_raw(const cv::Mat_<float>& depth_m, double units_per_m) {
-  cv::Mat_<std::uint16_t> raw(depth_m.size());
-  std::ranges::transform(depth_m, raw.begin(), [&](float z) -> std::uint16_t {
-    const double value = std::round(z * units_per_m);
-    return value >= 0.0 && value <= kMaxValue ? static_cast<std::uint16_t>(value) : 0;
-  });
-  return raw;
 }
 
 }  // namespace
@@ -39,7 +31,7 @@ RgbdFrameMessage encode_rgbd_frame(const RgbdFrame& frame, std::int64_t session,
   message.intrinsics = frame.intrinsics;
   message.depth_units_per_m = choose_units_per_m(frame.depth_m);
   constexpr int kFastest = 1;
-  cv::imencode(".png", to_raw(frame.depth_m, message.depth_units_per_m), message.depth_png,
+  cv::imencode(".png", depth_values(frame.depth_m, message.depth_units_per_m), message.depth_png,
                {cv::IMWRITE_PNG_COMPRESSION, kFastest});
   if (frame.color_rgb.empty()) return message;
   cv::Mat bgr;
