@@ -5,6 +5,7 @@
 #include <spdlog/spdlog.h>
 
 #include "lcmtypes/base/argument_check.hpp"
+#include "lcmtypes/base/service_notice.hpp"
 #include "lcmtypes/base/stop_signal.hpp"
 #include "segmenter/output/map_stem.hpp"
 #include "segmenter/process/resumed_map.hpp"
@@ -95,6 +96,7 @@ void SegmentationLoop::add(std::vector<CloudSlice> slices) {
 }
 
 bool SegmentationLoop::step() {
+  tell_service_manager();
   StepResult result = maps_.step(now());
   for (SegmentUpdate& update : result.updates) {
     with_.updates.publish(std::move(update));
@@ -109,6 +111,7 @@ bool SegmentationLoop::step() {
 }
 
 void SegmentationLoop::serve() {
+  tell_service_manager();
   if (with_.updates.take_state_request(with_.clock.now_s())) {
     with_.updates.publish_state(maps_.describe(), with_.clock.now_s());
   }

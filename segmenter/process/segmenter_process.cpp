@@ -6,7 +6,6 @@
 #include <spdlog/spdlog.h>
 
 #include "lcmtypes/base/argument_check.hpp"
-#include "lcmtypes/base/service_notice.hpp"
 #include "lcmtypes/base/stop_signal.hpp"
 #include "lcmtypes/channels.hpp"
 #include "segmenter/process/process_status.hpp"
@@ -138,7 +137,6 @@ std::string SegmenterProcess::problem() const {
 void SegmenterProcess::publish_status_when_due() {
   if (const auto now = std::chrono::steady_clock::now(); now >= next_status_) {
     publish_status();
-    tell_service_manager();
     next_status_ = now + config_.status_period;
   }
 }
