@@ -253,6 +253,9 @@ RecordingContents read_ros_bag(const fs::path& path, const BagTopics& topics) {
     } catch (const rosbag::BagUnindexedException&) {
       throw std::runtime_error(
           "has no index, as it was cut off while it was recorded; 'rosbag reindex' mends it");
+    } catch (const rosbag::BagException& error) {
+      throw std::runtime_error(
+          std::string("is damaged or cut off, which 'rosbag reindex' may mend: ") + error.what());
     }
   });
 }

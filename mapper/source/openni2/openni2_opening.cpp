@@ -1,5 +1,7 @@
 #include "mapper/source/openni2/openni2_opening.hpp"
 
+#include <algorithm>
+#include <array>
 #include <filesystem>
 #include <stdexcept>
 
@@ -50,7 +52,11 @@ std::unique_ptr<OpenNi2Device> open_uri(const std::string& uri, const SourceConf
 
 bool names_a_file(const std::string& device) {
   if (device.empty() || device.find("://") != std::string::npos) return false;
-  return fs::exists(device) || device.ends_with(".oni") || device.starts_with('/') ||
+  const fs::path extension = fs::path(device).extension();
+  const bool is_named_like_one =
+      std::ranges::any_of(std::array{".oni", ".klg", ".sens", ".bag"},
+                          [&](const char* one) { return extension == one; });
+  return fs::exists(device) || is_named_like_one || device.starts_with('/') ||
          device.starts_with('.');
 }
 

@@ -222,6 +222,7 @@ TEST(OpenNi2Source, SaysWhyItCannotOpen) {
   EXPECT_EQ(
       error("folder:///no/such/folder"),
       "cannot open device 'folder:///no/such/folder': /no/such/folder: no such file or folder");
+  EXPECT_THAT(error("nowhere.klg"), HasSubstr("nowhere.klg: no such file or folder"));
   EXPECT_THAT(error("synthetic://no-such-room"), HasSubstr("no-such-room"));
   EXPECT_THAT(error("1d27/0601@9/99"), HasSubstr("cannot open device '1d27/0601@9/99'"));
   EXPECT_THAT(error("folder://" + std::string(300, 'x')), HasSubstr("255"));

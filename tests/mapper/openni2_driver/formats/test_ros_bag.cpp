@@ -232,7 +232,7 @@ TEST_F(RosBag, ABagThatWasCutOffIsNamed) {
   bag_.close();
   fs::resize_file(file_, fs::file_size(file_) / 2);
   EXPECT_THAT(error_of<std::runtime_error>([&] { (void)open_recording_at(file_); }),
-              HasSubstr("walk.bag"));
+              AllOf(HasSubstr("walk.bag"), HasSubstr("cut off"), HasSubstr("rosbag reindex")));
 }
 
 TEST(RosTopics, RegisteredRawDepthIsPreferred) {
