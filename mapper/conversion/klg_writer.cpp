@@ -15,6 +15,7 @@
 #include "lcmtypes/base/atomic_file.hpp"
 #include "mapper/conversion/calibration_writer.hpp"
 #include "mapper/conversion/writers.hpp"
+#include "mapper/openni2_driver/formats/camera_file.hpp"
 #include "mapper/source/frames/depth_values.hpp"
 
 namespace kintsugi::mapper {
@@ -72,7 +73,7 @@ class KlgWriter : public RecordingWriter {
     out_.close();
     check();
     file_.commit();
-    write_calibration(path_.string() + ".camera.txt", camera_.value(), kUnits_per_m);
+    write_calibration(calibration_file_beside(path_), camera_.value(), kUnits_per_m);
   }
 
  private:

@@ -13,7 +13,8 @@ namespace kintsugi::mapper {
 std::unique_ptr<RecordingWriter> make_tum_writer(const std::filesystem::path& folder);
 
 /// Depth in millimetres, compressed with zlib; colour as JPEG, or raw without loss. Poses and the
-/// camera have no place in it: the camera is written beside it, as camera.txt is for any recording.
+/// camera have no place in it: the camera is written beside it, to FILE.camera.txt, where our
+/// reader looks for it.
 std::unique_ptr<RecordingWriter> make_klg_writer(const std::filesystem::path& file,
                                                  const WritingOptions& options);
 

@@ -41,6 +41,14 @@ std::optional<Calibration> own_calibration(const fs::path& folder) {
   return read_calibration(file);
 }
 
+fs::path calibration_file_beside(const fs::path& file) { return file.string() + ".camera.txt"; }
+
+std::optional<Calibration> calibration_beside(const fs::path& file) {
+  const fs::path beside = calibration_file_beside(file);
+  if (!fs::exists(beside)) return std::nullopt;
+  return read_calibration(beside);
+}
+
 Intrinsics read_camera_matrix(const fs::path& file, cv::Size size) {
   const std::vector<TextLine> lines = read_text_lines(file);
   if (lines.size() < 3) throw std::runtime_error(file.string() + ": expected a 3x3 matrix");

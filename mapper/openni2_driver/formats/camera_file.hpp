@@ -16,6 +16,12 @@ namespace kintsugi::mapper {
 /// @throws std::runtime_error as read_calibration()
 std::optional<Calibration> own_calibration(const std::filesystem::path& folder);
 
+/// The camera of a file FILE that has none in it: FILE.camera.txt, if there is one.
+/// @throws std::runtime_error as read_calibration()
+std::optional<Calibration> calibration_beside(const std::filesystem::path& file);
+/// Where calibration_beside() looks, and kintsugi-convert writes.
+std::filesystem::path calibration_file_beside(const std::filesystem::path& file);
+
 /// A matrix of at least 3 x 3 numbers, one row a line, separated by blanks or commas, with the
 /// focal lengths and the principal point of images of `size`.
 /// @throws std::runtime_error naming file, line and what was expected

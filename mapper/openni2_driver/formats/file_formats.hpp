@@ -12,8 +12,8 @@
 
 namespace kintsugi::mapper {
 
-/// The log of Kintinuous and ElasticFusion. Depth is in millimetres. It has no camera: that of the
-/// two programs' default is taken.
+/// The log of Kintinuous and ElasticFusion. Depth is in millimetres. It has no camera: that of
+/// FILE.camera.txt is taken, or else the two programs' default.
 bool is_klg_file(const std::filesystem::path& file);
 /// @param swap_colors red and blue change places: some converters write blue first
 RecordingContents read_klg_file(const std::filesystem::path& file, bool swap_colors);

@@ -8,6 +8,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "mapper/openni2_driver/formats/binary_file.hpp"
+#include "mapper/openni2_driver/formats/camera_file.hpp"
 #include "mapper/openni2_driver/formats/file_formats.hpp"
 #include "mapper/openni2_driver/formats/image_header.hpp"
 #include "mapper/openni2_driver/formats/packed_image.hpp"
@@ -168,12 +169,18 @@ RecordingContents read_klg_file(const fs::path& path, bool swap_colors) {
     contents.remarks.push_back(std::to_string(num_out_of_order) +
                                " frames that are not after the one before are left out");
   }
-  const cv::Size size = find_size(file, frames.front());
-  contents.calibration = {.intrinsics = default_camera(size), .depth_units_per_m = kUnits_per_m};
-  contents.remarks.emplace_back(
-      "a .klg has no camera: taken is the default of Kintinuous and ElasticFusion (focal length "
-      "528 "
-      "pixels at a width of 640); --calibration gives the right one");
+  cv::Size size = find_size(file, frames.front());
+  const auto beside = calibration_beside(path);
+  contents.calibration = beside.value_or(
+      Calibration{.intrinsics = default_camera(size), .depth_units_per_m = kUnits_per_m});
+  if (beside) {
+    size = {beside->intrinsics.width, beside->intrinsics.height};
+  } else {
+    contents.remarks.emplace_back(
+        "a .klg has no camera: taken is the default of Kintinuous and ElasticFusion (focal length "
+        "528 "
+        "pixels at a width of 640); --calibration gives the right one");
+  }
   auto images = std::make_unique<KlgImages>(std::move(file), size, swap_colors);
   for (const KlgFrame& frame : frames) {
     contents.depth_utimes.push_back(frame.utime);

@@ -97,7 +97,9 @@ TEST_F(RecordingWriterTest, ATumFolderComesBackToTheBit) {
 TEST_F(RecordingWriterTest, AKlgFileComesBackToTheBitWithItsCameraBeside) {
   const fs::path path = write("walk.klg", kLossless);
   expect_the_frames(path);
-  EXPECT_EQ(read_calibration(folder_ / "walk.klg.camera.txt").intrinsics.fy, 51.5);
+  const FileRecording recording(read_recording(path, {}));
+  EXPECT_EQ(recording.intrinsics().fy, 51.5) << "of walk.klg.camera.txt, and not the default";
+  EXPECT_EQ(recording.remark(), "");
 }
 
 TEST_F(RecordingWriterTest, JpegIsSmallerAndLosesLittle) {
