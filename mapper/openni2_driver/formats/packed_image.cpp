@@ -23,15 +23,27 @@ std::size_t num_pixels(cv::Size size) {
 
 }  // namespace
 
-cv::Mat_<std::uint16_t> unpack_depth(Bytes bytes, cv::Size size, const std::string& what) {
-  cv::Mat_<std::uint16_t> depth(size);
+bool can_be_depth(Bytes bytes, cv::Size size) {
   const std::size_t num_bytes = num_pixels(size) * sizeof(std::uint16_t);
+  return bytes.size() == num_bytes || inflated_size(bytes) == static_cast<std::int64_t>(num_bytes);
+}
+
+cv::Mat_<std::uint16_t> unpack_depth(Bytes bytes, cv::Size size, const std::string& what) {
+  const std::size_t num_bytes = num_pixels(size) * sizeof(std::uint16_t);
+  // Before memory is taken for what the file only says: zlib makes at most 1032 bytes of one.
+  constexpr std::size_t kMaxRatio = 1100;
+  auto inflated = static_cast<uLongf>(num_bytes);
+  int result = Z_DATA_ERROR;
+  cv::Mat_<std::uint16_t> depth;
   if (bytes.size() == num_bytes) {
+    depth.create(size);
     std::ranges::copy(bytes, depth.data);
     return depth;
   }
-  auto inflated = static_cast<uLongf>(num_bytes);
-  const int result = uncompress(depth.data, &inflated, bytes.data(), bytes.size());
+  if (num_bytes / kMaxRatio <= bytes.size()) {
+    depth.create(size);
+    result = uncompress(depth.data, &inflated, bytes.data(), bytes.size());
+  }
   if (result != Z_OK || inflated != num_bytes) {
     throw std::runtime_error(what + ": " + std::to_string(bytes.size()) +
                              " bytes of depth are neither raw nor compressed with zlib, expected " +

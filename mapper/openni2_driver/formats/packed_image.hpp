@@ -14,6 +14,9 @@ namespace kintsugi::mapper {
 cv::Mat_<std::uint16_t> unpack_depth(std::span<const std::uint8_t> bytes, cv::Size size,
                                      const std::string& what);
 
+/// Whether unpack_depth() would find an image of this size, told without taking memory for it.
+bool can_be_depth(std::span<const std::uint8_t> bytes, cv::Size size);
+
 /// Raw with red first where the number of bytes says so, else JPEG or PNG.
 /// @throws std::runtime_error as above
 cv::Mat_<cv::Vec3b> unpack_color(std::span<const std::uint8_t> bytes, cv::Size size,

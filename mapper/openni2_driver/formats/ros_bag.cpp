@@ -174,7 +174,7 @@ Intrinsics camera_of(const rosbag::Bag& bag, const std::string& topic, const cha
 
 /// @param size of the images, 0x0 when they do not say
 void check_size(const Intrinsics& camera, cv::Size size, const std::string& topic) {
-  constexpr int kMaxSide = 16384;
+  constexpr int kMaxSide = 4096;  // what is made for a camera takes memory by its size
   const bool is_size = camera.width > 0 && camera.width <= kMaxSide && camera.height > 0 &&
                        camera.height <= kMaxSide;
   if (is_size && (size.empty() || size == size_of(camera))) return;

@@ -40,7 +40,7 @@ Eigen::Matrix4d read_matrix(BinaryFile& file) {
 }
 
 int read_side(BinaryFile& file) {
-  constexpr std::uint32_t kMaxSide = 16384;
+  constexpr std::uint32_t kMaxSide = 4096;  // several times what depth cameras have
   const auto side = file.read<std::uint32_t>();
   if (side > kMaxSide) fail(file, "an image has a side of " + std::to_string(side) + " pixels");
   return static_cast<int>(side);
@@ -120,6 +120,19 @@ std::optional<SensFrame> read_frame(BinaryFile& file) {
   return frame;
 }
 
+/// What is made for the cameras takes memory by their sizes: these must be those of an image.
+void check_depth_size(BinaryFile& file, const SensHeader& header,
+                      const std::vector<SensFrame>& frames) {
+  const cv::Size size(header.depth.width, header.depth.height);
+  const bool is_size = std::ranges::any_of(frames, [&](const SensFrame& frame) {
+    file.seek(frame.place + frame.color_bytes);
+    return can_be_depth(file.read_bytes(frame.depth_bytes), size);
+  });
+  if (is_size) return;
+  fail(file, "none of its depth images has the size that it says, " + std::to_string(size.width) +
+                 "x" + std::to_string(size.height));
+}
+
 class SensImages : public ImageStore {
  public:
   SensImages(BinaryFile file, const SensHeader& header, std::vector<SensFrame> frames,
@@ -188,6 +201,7 @@ RecordingContents read_sens_file(const fs::path& path) {
     frames.push_back(*std::move(frame));
   }
   if (frames.empty()) throw std::runtime_error(path.string() + ": has no complete frame");
+  check_depth_size(file, header, frames);
   RecordingContents contents;
   contents.format = "sensor stream of ScanNet (.sens)";
   contents.name = header.sensor.empty() ? path.filename().string() : header.sensor;

@@ -17,6 +17,7 @@ struct Stream {
   std::int32_t depth_compression = 1;
   double baseline_m = 0.0;
   std::uint64_t announced = 3;
+  int width = test::kWidth;  ///< that the header says
   std::vector<std::uint64_t> stamps = {1'000'000, 1'033'333, 1'066'666};
 };
 
@@ -46,7 +47,7 @@ std::string bytes_of(const Stream& stream) {
   put_matrix(bytes, Eigen::Matrix4f::Identity());
   bytes.put(std::int32_t{2}).put(stream.depth_compression);
   for (int camera = 0; camera < 2; ++camera) {
-    bytes.put(static_cast<std::uint32_t>(test::kWidth));
+    bytes.put(static_cast<std::uint32_t>(stream.width));
     bytes.put(static_cast<std::uint32_t>(test::kHeight));
   }
   bytes.put(1000.0F).put(stream.announced);
@@ -131,6 +132,18 @@ TEST_F(SensFile, OfACutOffFileTheCompleteFramesAreRead) {
   const FileRecording recording = open(whole.substr(0, whole.size() - 100));
   EXPECT_EQ(recording.num_depth_frames(), 2);
   EXPECT_THAT(recording.remark(), AllOf(HasSubstr("3 frames"), HasSubstr("2 are complete")));
+}
+
+TEST_F(SensFile, SizesThatNoImageHasAreRefusedBeforeMemoryIsTaken) {
+  for (const int width : {4096, 5000}) {
+    Stream stream;
+    stream.width = width;
+    stream.baseline_m = 0.05;  // colour needs memory by the size of depth
+    test::write_text(folder_ / "scene.sens", bytes_of(stream));
+    EXPECT_TRUE(error_of<std::runtime_error>([&] {
+                  (void)open_recording_at(file_);
+                }).find("scene.sens") != std::string::npos);
+  }
 }
 
 TEST_F(SensFile, AnUnknownCompressionIsRefused) {
