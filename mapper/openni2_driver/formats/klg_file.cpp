@@ -73,7 +73,8 @@ cv::Size find_size(BinaryFile& file, const KlgFrame& frame) {
   file.seek(frame.place);
   const auto depth = file.read_bytes(frame.depth_bytes);
   const auto color = file.read_bytes(frame.color_bytes);
-  if (const auto header = read_image_header(color)) return header->size;
+  const auto header = read_image_header(color);
+  if (header && !header->size.empty()) return header->size;
   const std::int64_t inflated = inflated_size(depth);
   const std::int64_t depth_bytes = inflated > 0 ? inflated : frame.depth_bytes;
   const auto size = depth_bytes % 2 == 0 ? size_of(depth_bytes / 2) : std::nullopt;

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -57,7 +58,9 @@ Intrinsics camera_of(const Eigen::Matrix4d& K, int width, int height) {
 }
 
 bool is_camera(const Intrinsics& camera) {
-  return camera.fx > 0.0 && camera.fy > 0.0 && camera.width > 0 && camera.height > 0;
+  const bool is_finite = std::isfinite(camera.fx) && std::isfinite(camera.fy) &&
+                         std::isfinite(camera.cx) && std::isfinite(camera.cy);
+  return is_finite && camera.fx > 0.0 && camera.fy > 0.0 && camera.width > 0 && camera.height > 0;
 }
 
 SensHeader read_header(BinaryFile& file) {

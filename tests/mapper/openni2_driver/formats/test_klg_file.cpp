@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -94,6 +96,16 @@ TEST_F(KlgFile, HostileSizesAreRefusedBeforeMemoryIsTaken) {
   bytes.replace(second_frame + 8, 4, reinterpret_cast<const char*>(&huge), 4);
   EXPECT_THAT(error_of<std::runtime_error>([&] { (void)open(bytes); }),
               AllOf(HasSubstr("walk.klg"), HasSubstr("frame 1"), HasSubstr("-5 bytes of depth")));
+}
+
+TEST_F(KlgFile, AJpegOfNoSizeDoesNotTellTheSize) {
+  KlgImages images = packed(0);
+  // The frame header of a JPEG: ff c0, length, bits, height, width.
+  const std::vector<std::uint8_t> start_of_frame = {0xff, 0xc0};
+  const auto place = std::ranges::search(images.color, start_of_frame).begin();
+  ASSERT_NE(place, images.color.end());
+  std::fill(place + 5, place + 9, std::uint8_t{0});
+  EXPECT_EQ(open(klg_bytes({images}, 1)).intrinsics().width, test::kWidth) << "that of the depth";
 }
 
 TEST_F(KlgFile, ADamagedImageIsNamedAndTheOthersAreRead) {
