@@ -2,9 +2,8 @@
 // Where the camera has seen that there is nothing, where it measured surface, and where it never
 // looked.
 
-#include <vector>
-
 #include <Eigen/Core>
+#include <vector>
 
 #include "segmenter/views/map_view.hpp"
 
