@@ -11,8 +11,8 @@ namespace kintsugi::segmenter {
 
 /// One occasion on which an object was taught.
 struct Lesson {
-  std::string map_name;          ///< of the mapper; empty: not known
-  std::int64_t map_session = 0;  ///< of the mapper; 0: not known
+  std::string map_name;                    ///< of the mapper; empty: not known
+  std::int64_t map_session = 0;            ///< of the mapper; 0: not known
   std::vector<std::uint32_t> segment_ids;  ///< in that map, ascending
   std::int64_t time_s = 0;                 ///< when it was taught: seconds since 1970, UTC
 

@@ -33,8 +33,8 @@ std::string read_bounded(const fs::path& path, std::uintmax_t max_bytes) {
   std::error_code error;
   const std::uintmax_t size = fs::file_size(path, error);
   if (!error && size > max_bytes) {
-    throw std::runtime_error(path.string() + ": has " + std::to_string(size) +
-                             " bytes, at most " + std::to_string(max_bytes) + " were expected");
+    throw std::runtime_error(path.string() + ": has " + std::to_string(size) + " bytes, at most " +
+                             std::to_string(max_bytes) + " were expected");
   }
   return read_file_bytes(path);
 }
@@ -55,13 +55,13 @@ auto naming(const fs::path& file, const Make& make) {
 }
 
 void write_model(const std::vector<CloudPoint>& points_O, const fs::path& path) {
-  PlyWriter writer(path,
-                   {{.name = "vertex",
-                     .properties = {"float x", "float y", "float z", "float nx", "float ny",
-                                    "float nz", "uchar red", "uchar green", "uchar blue",
-                                    "float weight"},
-                     .count = std::ssize(points_O)}},
-                   {"kintsugi object, frame O, metres"});
+  PlyWriter writer(
+      path,
+      {{.name = "vertex",
+        .properties = {"float x", "float y", "float z", "float nx", "float ny", "float nz",
+                       "uchar red", "uchar green", "uchar blue", "float weight"},
+        .count = std::ssize(points_O)}},
+      {"kintsugi object, frame O, metres"});
   for (const CloudPoint& p : points_O) {
     writer.append(0, p.x, p.y, p.z, p.nx, p.ny, p.nz, p.red, p.green, p.blue, p.weight);
   }

@@ -1,5 +1,7 @@
 #include "segmenter/objects/library/object_json.hpp"
 
+#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -8,8 +10,6 @@
 #include <limits>
 #include <stdexcept>
 
-#include <Eigen/Core>
-#include <Eigen/Geometry>
 #include <nlohmann/json.hpp>
 
 #include "lcmtypes/base/number_text.hpp"
@@ -226,8 +226,8 @@ KnownObject object_of(const Json& json) {
   object.model.name = text(json, "name");
   object.model.resolution_m = static_cast<float>(number(json, "resolution_m"));
   object.model.has_up = truth(json, "has_up");
-  object.model.times_taught = static_cast<std::int32_t>(
-      whole(at(json, "times_taught"), "times_taught", 1, kMaxTimes));
+  object.model.times_taught =
+      static_cast<std::int32_t>(whole(at(json, "times_taught"), "times_taught", 1, kMaxTimes));
   object.wholeness = number(json, "wholeness");
   object.model.parameters = parameters_of(at(json, "parameters"));
   for (const Json& lesson : list(json, "lessons")) object.lessons.push_back(lesson_of(lesson));

@@ -14,9 +14,9 @@ inline constexpr int kObjectVersion = 1;
 
 /// object.json, and what it says of the points, which are in a file of their own.
 struct ObjectDocument {
-  KnownObject object;               ///< without points
-  std::uint64_t num_points = 0;     ///< of model.ply
-  std::uint32_t model_crc32 = 0;    ///< of all bytes of model.ply
+  KnownObject object;             ///< without points
+  std::uint64_t num_points = 0;   ///< of model.ply
+  std::uint32_t model_crc32 = 0;  ///< of all bytes of model.ply
 };
 
 /// The size of the object's box and its mean colour are in the text for people, and nobody reads

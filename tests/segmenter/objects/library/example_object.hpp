@@ -29,13 +29,15 @@ inline KnownObject example_object(const std::string& name) {
       p.weight = 3.5F;
     }
   }
-  object.model.views_O = {Eigen::Vector3f(1.0F, 2.0F, 0.5F).normalized(), -Eigen::Vector3f::UnitY()};
+  object.model.views_O = {Eigen::Vector3f(1.0F, 2.0F, 0.5F).normalized(),
+                          -Eigen::Vector3f::UnitY()};
   object.model.parameters = preset("objects");
   object.model.parameters.scale = 0.0013;
   object.model.times_taught = 2;
   object.wholeness = 0.875;
-  object.lessons = {{.map_name = "hall", .map_session = 77, .segment_ids = {12, 34}, .time_s = 1'700'000'000},
-                    {.map_name = "", .map_session = 0, .segment_ids = {}, .time_s = 0}};
+  object.lessons = {
+      {.map_name = "hall", .map_session = 77, .segment_ids = {12, 34}, .time_s = 1'700'000'000},
+      {.map_name = "", .map_session = 0, .segment_ids = {}, .time_s = 0}};
   return object;
 }
 

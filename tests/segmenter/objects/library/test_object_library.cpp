@@ -1,5 +1,3 @@
-#include "segmenter/objects/library/object_library.hpp"
-
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -15,6 +13,7 @@
 #include "segmenter/objects/library/library_lock.hpp"
 #include "segmenter/objects/library/object_files.hpp"
 #include "segmenter/objects/library/object_json.hpp"
+#include "segmenter/objects/library/object_library.hpp"
 #include "segmenter/objects/library/object_name.hpp"
 #include "tests/segmenter/objects/library/example_object.hpp"
 #include "tests/support/allocation_limit.hpp"
@@ -25,8 +24,8 @@ namespace kintsugi::segmenter {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::example_object;
 using ::testing::AllOf;
+using testing::example_object;
 using ::testing::HasSubstr;
 
 std::string contents(const fs::path& path) {
@@ -319,7 +318,8 @@ TEST(ObjectName, IsThatOfAFolderWithoutSurprises) {
   }
   EXPECT_FALSE(reason_to_refuse_name(std::string(64, 'a')).has_value());
   EXPECT_TRUE(reason_to_refuse_name(std::string(65, 'a')).has_value());
-  for (const char* const name : {"", "-x", ".", "..", "a/b", "a b", "tasse\n", "t\xc3\xa4sse", "a.tmp"}) {
+  for (const char* const name :
+       {"", "-x", ".", "..", "a/b", "a b", "tasse\n", "t\xc3\xa4sse", "a.tmp"}) {
     EXPECT_TRUE(reason_to_refuse_name(name).has_value()) << name;
   }
 }
