@@ -10,6 +10,8 @@
 #include "segmenter/io/ply/labelled_ply_writer.hpp"
 #include "segmenter/io/saved_map.hpp"
 #include "segmenter/objects/library/object_files.hpp"
+#include "segmenter/io/views_file.hpp"
+#include "segmenter/views/view_record.hpp"
 #include "tests/decoder_fuzz/input_file.hpp"
 #include "tests/decoder_fuzz/seeds.hpp"
 #include "tests/segmenter/io/formats/example_clouds.hpp"
@@ -154,6 +156,26 @@ Seeds object_seeds() {
   const auto mug = folder / "mug";
   return {{"mug", bytes_of(contents(mug / segmenter::kObjectFile) + '\0' +
                            contents(mug / segmenter::kModelFile))}};
+}
+
+Seeds views_file_seeds() {
+  segmenter::ViewRecord record(5, "map");
+  CloudSlice patch = segmenter::testing::wavy_session(1, 1)[0];
+  patch.kind = SliceKind::kPatch;
+  record.add(patch);
+  for (int i = 1; i < 4; ++i) {
+    CameraView view;
+    view.utime = 1'000'000 * i;
+    view.session = 5;
+    view.state = TrackingState::kTracking;
+    view.X_WC.translation().x() = i;
+    view.intrinsics = {.fx = 5, .fy = 5, .cx = 3, .cy = 2, .width = 6, .height = 4};
+    view.depth_mm.assign(24, static_cast<std::uint16_t>(900 + i));
+    record.add(view);
+  }
+  const auto path = input_folder() / "views";
+  segmenter::write_views(record.views(), path);
+  return {{"three_views", bytes_of(contents(path))}};
 }
 
 Seeds oni_seeds() { return {{"whole", oni_recording(true)}, {"cut_off", oni_recording(false)}}; }
