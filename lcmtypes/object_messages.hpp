@@ -35,24 +35,24 @@ enum class DetectionEvent : std::int8_t {
 };
 
 /// The last event of one detection of a known object, and what is known of it. A detector sends it
-/// at the event, and again about once a second, with the same `event_number`: a late listener learns
-/// it so, and what was lost is mended.
+/// at the event, and again about once a second, with the same `event_number`: a late listener
+/// learns it so, and what was lost is mended.
 struct ObjectDetection {
-  std::int64_t utime = 0;        ///< device time of the newest slice looked at, microseconds
-  std::int64_t session = 0;      ///< of the detector; > 0
-  std::int64_t map_session = 0;  ///< of the mapper; > 0
-  std::string map_name;          ///< of the mapper
-  std::int32_t detection = 0;    ///< its number in the session, 1 .. num_detections
+  std::int64_t utime = 0;           ///< device time of the newest slice looked at, microseconds
+  std::int64_t session = 0;         ///< of the detector; > 0
+  std::int64_t map_session = 0;     ///< of the mapper; > 0
+  std::string map_name;             ///< of the mapper
+  std::int32_t detection = 0;       ///< its number in the session, 1 .. num_detections
   std::int32_t num_detections = 0;  ///< in the session so far
   /// Of its last event: ascending in the session over the events of all detections, from 1.
   std::int64_t event_number = 0;
   DetectionEvent event = DetectionEvent::kFound;
-  std::string name;              ///< of the object in the library; is_object_name()
-  Pose X_WO = Pose::Identity();  ///< when gone, the last known pose
-  float score = 0.0F;            ///< 0 to 1
-  float box_min_O[3] = {};       ///< of the model, metres
-  float box_max_O[3] = {};       ///< at least box_min_O
-  std::int32_t points = 0;       ///< map points that the model explains
+  std::string name;                        ///< of the object in the library; is_object_name()
+  Pose X_WO = Pose::Identity();            ///< when gone, the last known pose
+  float score = 0.0F;                      ///< 0 to 1
+  float box_min_O[3] = {};                 ///< of the model, metres
+  float box_max_O[3] = {};                 ///< at least box_min_O
+  std::int32_t points = 0;                 ///< map points that the model explains
   std::vector<std::uint32_t> segment_ids;  ///< of which it consists, ascending
 };
 
