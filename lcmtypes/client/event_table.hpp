@@ -27,7 +27,8 @@ inline bool is_present(const ChangeReport& change) { return change.kind != Chang
 /// - The caller passes messages of one map only. The table has the newest session of it: a message
 ///   of a newer session of the mapper or the sender clears the table first, one of an older session
 ///   is ignored.
-/// - A detection that is not repeated for kSilence_s while its sender is heard is dropped, at most a second
+/// - A detection that is not repeated for kSilence_s while its sender is heard is dropped, at most
+/// a second
 ///   later.
 ///
 /// `now_s` is the time of a clock of the caller that never goes back.
@@ -35,8 +36,8 @@ template <class Message>
 class EventTable {
  public:
   static constexpr double kSilence_s = 10.0;
-  /// Who listens for so long has heard every message that is repeated. What is then the newest event
-  /// happened before; later ones that are not heard are lost.
+  /// Who listens for so long has heard every message that is repeated. What is then the newest
+  /// event happened before; later ones that are not heard are lost.
   static constexpr double kJoining_s = 1.5;
   /// Further ones are ignored, so that a hostile sender cannot fill the memory.
   static constexpr std::size_t kMaxEntries = 65'536;
@@ -73,10 +74,10 @@ class EventTable {
   bool note_event(std::int64_t event_number, double now_s);
 
   Sessions sessions_{0, 0};
-  double dropped_s_ = 0.0;       // when drop_silent() last looked at all entries
-  double started_s_ = 0.0;       // when its first message was heard
-  std::int64_t newest_ = 0;      // event number
-  std::int64_t joined_ = 0;      // the newest event number when the caller joined
+  double dropped_s_ = 0.0;   // when drop_silent() last looked at all entries
+  double started_s_ = 0.0;   // when its first message was heard
+  std::int64_t newest_ = 0;  // event number
+  std::int64_t joined_ = 0;  // the newest event number when the caller joined
   std::int32_t num_numbered_ = 0;
   SequenceSet heard_;  // event numbers
   std::map<std::int32_t, Entry> entries_;

@@ -28,7 +28,7 @@ cv::Mat3b Painter::draw_figure(MapSession& session, RunFigure::Map map_wanted) {
   highlight.insert(session.answered().begin(), session.answered().end());
   cv::Mat3b figure = run_figure_.draw(
       {map, part, map.received_track(part), session.depth_camera(part), config_.viewpoint,
-       std::move(highlight)},
+       std::move(highlight), session.objects()},
       session.view(), caption(map, part), map_is_due(session) ? RunFigure::Map::kNew : map_wanted);
   const double elapsed_ms = stopwatch.elapsed_ms();
   if (!run_figure_.has_drawn_map()) {

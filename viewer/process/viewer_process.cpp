@@ -50,6 +50,9 @@ void ViewerProcess::add(Message message, double now_s) {
     } else if constexpr (std::is_same_v<Type, CameraView>) {
       MapSession* const session = find_or_create_session(m.session, now_s);
       if (session != nullptr) session->use(std::forward<M>(m));
+    } else if constexpr (std::is_same_v<Type, ObjectDetection> ||
+                         std::is_same_v<Type, DetectorStatus>) {
+      if (MapSession* const session = sessions_.find(m.map_session)) session->use(m, now_s);
     } else {  // a status or an answer of the segmenter
       if (MapSession* const session = sessions_.find(m.map_session)) session->use(m);
     }

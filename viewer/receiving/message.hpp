@@ -9,8 +9,8 @@
 namespace kintsugi::viewer {
 
 /// A message that the viewer uses, from the bus or a log.
-using Message =
-    std::variant<CloudSlice, SegmentUpdate, CameraPose, CameraView, SegmenterStatus, SegmentAnswer>;
+using Message = std::variant<CloudSlice, SegmentUpdate, CameraPose, CameraView, SegmenterStatus,
+                             SegmentAnswer, ObjectDetection, DetectorStatus>;
 
 /// Memory that a message takes.
 inline std::size_t bytes_of(const Message& message) {
@@ -32,16 +32,18 @@ inline std::size_t bytes_of(const Message& message) {
       return m.segments.size() * sizeof(DescribedSegment) +
              m.contacts.size() * sizeof(SegmentContact);
     }
+    std::size_t operator()(const ObjectDetection& m) const {
+      return m.segment_ids.size() * sizeof(std::uint32_t);
+    }
+    std::size_t operator()(const DetectorStatus& /*small*/) const { return 0; }
   };
   return sizeof(Message) + std::visit(Bulk{}, message);
 }
 
 /// The message belongs to no resent stream: it may be lost anyway, so it may be dropped.
 inline bool is_droppable(const Message& message) {
-  return std::holds_alternative<CameraPose>(message) ||
-         std::holds_alternative<CameraView>(message) ||
-         std::holds_alternative<SegmenterStatus>(message) ||
-         std::holds_alternative<SegmentAnswer>(message);
+  return !std::holds_alternative<CloudSlice>(message) &&
+         !std::holds_alternative<SegmentUpdate>(message);
 }
 
 }  // namespace kintsugi::viewer

@@ -76,6 +76,10 @@ void Receiver::subscribe(Bus& bus) {
   bus.subscribe(channels::kCameraPose, [this](ByteView data) { handle_small<CameraPose>(data); });
   bus.subscribe(channels::kSegmenterStatus,
                 [this](ByteView data) { handle_small<SegmenterStatus>(data); });
+  bus.subscribe(channels::kObjectDetection,
+                [this](ByteView data) { handle_small<ObjectDetection>(data); });
+  bus.subscribe(channels::kDetectorStatus,
+                [this](ByteView data) { handle_small<DetectorStatus>(data); });
 }
 
 void Receiver::request_missing(Bus& bus, double now_s) {
@@ -90,6 +94,8 @@ void Receiver::handle(const std::string& channel, ByteView data) {
   answers_.handle(channel, data);
   if (channel == channels::kCameraPose) handle_small<CameraPose>(data);
   if (channel == channels::kSegmenterStatus) handle_small<SegmenterStatus>(data);
+  if (channel == channels::kObjectDetection) handle_small<ObjectDetection>(data);
+  if (channel == channels::kDetectorStatus) handle_small<DetectorStatus>(data);
 }
 
 template <SmallMessage Small>

@@ -67,6 +67,18 @@ void MapSession::use(const SegmentAnswer& answer) {
   is_answer_new_ = true;
 }
 
+std::vector<DrawnObject> MapSession::objects() const {
+  std::vector<DrawnObject> drawn;
+  for (const ObjectDetection& detection : objects_.present()) {
+    drawn.push_back({.name = detection.name,
+                     .X_WO = detection.X_WO,
+                     .box_min_O = Eigen::Map<const Eigen::Vector3f>(detection.box_min_O),
+                     .box_max_O = Eigen::Map<const Eigen::Vector3f>(detection.box_max_O),
+                     .is_confirmed = detection.event != DetectionEvent::kFound});
+  }
+  return drawn;
+}
+
 void MapSession::use(CameraView view) {
   if (view_ && view.utime <= view_->utime) return;
   CameraPose pose;  // replaces one that was not received

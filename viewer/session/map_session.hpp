@@ -4,9 +4,12 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "lcmtypes/client/event_table.hpp"
 #include "lcmtypes/messages.hpp"
 #include "viewer/core/camera/smoothed_camera.hpp"
+#include "viewer/core/figure/object_boxes.hpp"
 #include "viewer/core/map/received_map.hpp"
 #include "viewer/core/map/update_log.hpp"
 #include "viewer/core/rendering/highlight.hpp"
@@ -29,6 +32,10 @@ class MapSession {
   void use(const SegmenterStatus& status) { history_.add_slice_time(status); }
   /// Highlights the segments of the answer, if it is the newest by its time and has no problem.
   void use(const SegmentAnswer& answer);
+  void use(const ObjectDetection& detection, double now_s) { objects_.apply(detection, now_s); }
+  void use(const DetectorStatus& status, double now_s) {
+    objects_.hear_sender(status.map_session, status.session, now_s);
+  }
 
   const ReceivedMap& map() const { return map_; }
   /// In a part of the map; without a pose if it has not been there.
@@ -37,6 +44,8 @@ class MapSession {
   const CameraView* view() const { return view_ ? &*view_ : nullptr; }
   RunHistory& history() { return history_; }
   const UpdateLog& updates() const { return updates_; }
+  /// The known objects that are in the map, as the detector says.
+  std::vector<DrawnObject> objects() const;
   bool is_empty() const { return map_.counts().slices == 0; }
 
   /// The segmenter has completed its map, and all of it has arrived.
@@ -94,6 +103,7 @@ class MapSession {
   std::int64_t slice_utime_ = 0;      // of the newest slice
   std::int64_t labelled_utime_ = 0;   // of the newest slice with labels
   std::optional<Snapshot> snapshot_;  // the last one
+  ObjectTable objects_;
   Highlight answered_;
   std::int64_t answer_utime_ = 0;
   bool is_answer_new_ = false;

@@ -68,7 +68,8 @@ FoundObjects ask_detector(const std::string& lcm_url, const std::string& map_nam
   }
   if (!was_heard && !is_heard(listener)) {
     throw std::runtime_error(fmt::format(
-        "no detector of objects was heard within {} s on {}{}; is 'kintsugi-objects detect' running?",
+        "no detector of objects was heard within {} s on {}{}; is 'kintsugi-objects detect' "
+        "running?",
         timeout.count(), bus.url(), map_name.empty() ? "" : " for map '" + map_name + "'"));
   }
   return found_by(listener);

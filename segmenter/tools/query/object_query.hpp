@@ -12,9 +12,9 @@ namespace kintsugi::segmenter {
 
 struct FoundObjects {
   std::string map_name;
-  std::int64_t map_session = 0;      ///< of the mapper; 0: the detector has no map yet
-  std::int64_t session = 0;          ///< of the detector
-  std::int64_t newest_utime = 0;     ///< device time of the newest slice that it has looked at
+  std::int64_t map_session = 0;   ///< of the mapper; 0: the detector has no map yet
+  std::int64_t session = 0;       ///< of the detector
+  std::int64_t newest_utime = 0;  ///< device time of the newest slice that it has looked at
   std::vector<ObjectDetection> detections;  ///< also those that are gone; by ascending number
 };
 

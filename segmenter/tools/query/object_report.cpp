@@ -27,12 +27,12 @@ std::string segments_text(const ObjectDetection& detection) {
 std::string row(const FoundObjects& found, const ObjectDetection& detection) {
   const Eigen::Vector3d t = detection.X_WO.translation();
   const Eigen::Quaterniond q(detection.X_WO.linear());
-  return fmt::format(
-      kRow, detection.name, detection.detection, to_string(detection.event),
-      fmt::format("{:.2f}", detection.score),
-      fmt::format("{:.3f} {:.3f} {:.3f}", t.x(), t.y(), t.z()),
-      fmt::format("{:.4f} {:.4f} {:.4f} {:.4f}", q.x(), q.y(), q.z(), q.w()), detection.points,
-      fmt::format("{:.1f}", age_s(found, detection)), segments_text(detection));
+  return fmt::format(kRow, detection.name, detection.detection, to_string(detection.event),
+                     fmt::format("{:.2f}", detection.score),
+                     fmt::format("{:.3f} {:.3f} {:.3f}", t.x(), t.y(), t.z()),
+                     fmt::format("{:.4f} {:.4f} {:.4f} {:.4f}", q.x(), q.y(), q.z(), q.w()),
+                     detection.points, fmt::format("{:.1f}", age_s(found, detection)),
+                     segments_text(detection));
 }
 
 Json object_json(const FoundObjects& found, const ObjectDetection& detection) {
@@ -69,11 +69,10 @@ std::string objects_json(const FoundObjects& found) {
   for (const ObjectDetection& detection : found.detections) {
     objects.push_back(object_json(found, detection));
   }
-  const Json root{{"map",
-                   {{"name", found.map_name},
-                    {"map_session", found.map_session},
-                    {"session", found.session}}},
-                  {"objects", std::move(objects)}};
+  const Json root{
+      {"map",
+       {{"name", found.map_name}, {"map_session", found.map_session}, {"session", found.session}}},
+      {"objects", std::move(objects)}};
   return root.dump(1) + "\n";
 }
 

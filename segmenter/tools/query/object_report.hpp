@@ -12,8 +12,8 @@ namespace kintsugi::segmenter {
 std::string objects_table(const FoundObjects& found);
 
 /// One JSON object: `map` (name, map_session, session of the detector) and `objects`, each with
-/// name, detection, state, score, pose of O in W (translation in metres, quaternion x y z w), box in
-/// O, points, segments, utime and age_s: how long before the newest slice it was looked at.
+/// name, detection, state, score, pose of O in W (translation in metres, quaternion x y z w), box
+/// in O, points, segments, utime and age_s: how long before the newest slice it was looked at.
 std::string objects_json(const FoundObjects& found);
 
 }  // namespace kintsugi::segmenter

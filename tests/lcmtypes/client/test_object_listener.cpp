@@ -87,9 +87,10 @@ TEST(ObjectText, TellsHowFarTheMiddleOfAMovedObjectWent) {
   change.motion_W = Pose::Identity();
   change.motion_W.translation().x() = 0.5;
   change.segment_ids = {3};
-  EXPECT_EQ(change_text(change),
-            "change 2 moved by 0.50 m and 0 degrees: score 0.50, 1234 points in -0.50 -1.50 -2.50 to "
-            "0.00 0.25 0.50 m, segment 3, against map 'office yesterday'\n");
+  EXPECT_EQ(
+      change_text(change),
+      "change 2 moved by 0.50 m and 0 degrees: score 0.50, 1234 points in -0.50 -1.50 -2.50 to "
+      "0.00 0.25 0.50 m, segment 3, against map 'office yesterday'\n");
   change.kind = ChangeKind::kGone;
   EXPECT_THAT(change_text(change), HasSubstr("change 2 gone: score"));
 }

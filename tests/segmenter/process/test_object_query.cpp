@@ -70,19 +70,19 @@ class ObjectQuery : public ::testing::Test {
 
 TEST_F(ObjectQuery, HasAllDetectionsOfTheName) {
   const std::string url = kintsugi::testing::kPrivateBusUrl;
-  const Repeater repeater(url,
-                          {detected(1, "mug", DetectionEvent::kConfirmed),
-                           detected(2, "chair", DetectionEvent::kFound),
-                           detected(3, "mug", DetectionEvent::kGone)},
-                          {});
+  const Repeater repeater(
+      url,
+      {detected(1, "mug", DetectionEvent::kConfirmed), detected(2, "chair", DetectionEvent::kFound),
+       detected(3, "mug", DetectionEvent::kGone)},
+      {});
   FoundObjects found = ask_detector(url, "", kTimeout);
   EXPECT_EQ(found.detections.size(), 3U);
   keep_named("mug", found);
   ASSERT_EQ(found.detections.size(), 2U);
   EXPECT_TRUE(any_present(found));
-  EXPECT_THAT(objects_table(found), AllOf(HasSubstr("map 'office' of session 42: 2 detections"),
-                                          HasSubstr("confirmed"), HasSubstr("gone"),
-                                          HasSubstr("1.250 -2.500 0.125")));
+  EXPECT_THAT(objects_table(found),
+              AllOf(HasSubstr("map 'office' of session 42: 2 detections"), HasSubstr("confirmed"),
+                    HasSubstr("gone"), HasSubstr("1.250 -2.500 0.125")));
   keep_named("spoon", found);
   EXPECT_FALSE(any_present(found));
   EXPECT_THAT(objects_table(found), HasSubstr("no such object found"));

@@ -131,7 +131,7 @@ TEST(CameraPanel, TintsSegmentsOutlinesThemAndLeavesTheRestAsItIs) {
   CameraView view = view_at(2.0);
   const cv::Mat3b grey(240, 320, cv::Vec3b::all(100));
   cv::imencode(".jpg", grey, view.color_jpeg);
-  const cv::Mat3b panel = draw_camera_panel(map.chunks(0), view, {640, 480}, {}, {});
+  const cv::Mat3b panel = draw_camera_panel(map.chunks(0), view, {640, 480}, {}, {}, {});
   ASSERT_EQ(cv::Size(640, 480), panel.size());
   EXPECT_LT(cv::norm(panel(300, 500) - cv::Vec3b::all(100)), 4.0);
   const cv::Vec3b color = segment_color(3);
@@ -147,7 +147,7 @@ TEST(CameraPanel, TintsSegmentsOutlinesThemAndLeavesTheRestAsItIs) {
   }
   EXPECT_LT(nearest, 12.0);
 
-  const cv::Mat3b dark = draw_camera_panel(map.chunks(0), view, {640, 480}, {99}, {});
+  const cv::Mat3b dark = draw_camera_panel(map.chunks(0), view, {640, 480}, {99}, {}, {});
   EXPECT_LT(cv::mean(dark.rowRange(60, 480))[0], 50.0);  // another segment is highlighted
 }
 
@@ -157,7 +157,7 @@ TEST(CameraPanel, ShowsTheDepthWhenThereIsNoColorThatCanBeRead) {
   std::fill_n(view.depth_mm.begin(), 160 * 60, std::uint16_t{0});
   for (const bool has_garbage : {false, true}) {
     if (has_garbage) view.color_jpeg.assign(500, 0xab);
-    const cv::Mat3b panel = draw_camera_panel(map.chunks(0), view, {160, 120}, {}, {});
+    const cv::Mat3b panel = draw_camera_panel(map.chunks(0), view, {160, 120}, {}, {}, {});
     EXPECT_EQ(cv::Vec3b::all(0), panel(50, 80));
     EXPECT_NEAR(127.0, panel(90, 80)[0], 2.0);  // half as bright at 2 m
     EXPECT_EQ(panel(90, 80)[0], panel(90, 80)[2]);

@@ -108,5 +108,25 @@ TEST_F(RunFigureTest, FillsAnyReasonableSize) {
   }
 }
 
+TEST_F(RunFigureTest, ObjectsAreDrawnOverAnOldMapToo) {
+  RunFigure figure(renderer_);
+  Subject seen = subject(OverviewViewpoint{});
+  const cv::Mat3b without = figure.draw(seen, &view(), "a", RunFigure::Map::kMayBeOld);
+  DrawnObject object;
+  object.name = "desk";
+  object.X_WO = view().X_WC;
+  object.X_WO.translation() += 1.5 * object.X_WO.linear().col(2);
+  object.box_min_O.setConstant(-0.3F);
+  object.box_max_O.setConstant(0.3F);
+  object.is_confirmed = true;
+  seen.objects = {object};
+  const cv::Mat3b with = figure.draw(seen, &view(), "a", RunFigure::Map::kMayBeOld);
+  EXPECT_FALSE(figure.has_drawn_map());
+  EXPECT_GT(difference(without.colRange(0, 240), with.colRange(0, 240)), 0.0) << "camera";
+  EXPECT_GT(difference(without.colRange(320, 480), with.colRange(320, 480)), 0.0) << "map";
+  seen.objects.clear();
+  EXPECT_EQ(0.0, difference(without, figure.draw(seen, &view(), "a", RunFigure::Map::kMayBeOld)));
+}
+
 }  // namespace
 }  // namespace kintsugi::viewer

@@ -83,5 +83,29 @@ TEST(MapSession, AViewStandsForAPoseOfItsPart) {
   expect_paths_apart(session);
 }
 
+TEST(MapSession, HasTheObjectsThatAreNotGone) {
+  MapSession session(kSession, 0.0);
+  ObjectDetection detection;
+  detection.session = 5;
+  detection.map_session = kSession;
+  detection.detection = 1;
+  detection.event_number = 1;
+  detection.name = "mug";
+  detection.box_max_O[1] = 0.25F;
+  session.use(detection, 0.0);
+  ASSERT_EQ(session.objects().size(), 1U);
+  EXPECT_EQ(session.objects()[0].name, "mug");
+  EXPECT_EQ(session.objects()[0].box_max_O.y(), 0.25F);
+  EXPECT_FALSE(session.objects()[0].is_confirmed);
+  detection.event_number = 2;
+  detection.event = DetectionEvent::kConfirmed;
+  session.use(detection, 1.0);
+  EXPECT_TRUE(session.objects()[0].is_confirmed);
+  detection.event_number = 3;
+  detection.event = DetectionEvent::kGone;
+  session.use(detection, 2.0);
+  EXPECT_TRUE(session.objects().empty());
+}
+
 }  // namespace
 }  // namespace kintsugi::viewer

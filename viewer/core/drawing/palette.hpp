@@ -30,6 +30,7 @@ inline constexpr Rgb kBackground{24, 28, 34};  ///< pixels in which there is no 
 inline constexpr Rgb kCameraPath{255, 190, 40};
 inline constexpr Rgb kLoop{255, 70, 200};
 inline constexpr Rgb kCameraFrustum{120, 255, 80};
+inline constexpr Rgb kObject{90, 225, 255};  ///< boxes of known objects, and their names
 inline constexpr Rgb kUnlabelledPoint{120, 120, 120};
 inline constexpr Rgb kColorlessPoint{190, 190, 190};  ///< in true colour, where none was seen
 inline constexpr Rgb kHighlightOutline{255, 255, 255};

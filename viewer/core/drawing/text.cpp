@@ -23,10 +23,11 @@ void draw_text(cv::Mat3b& image, const std::string& text, cv::Point at, double s
   cv::putText(image, text, at, kFont, scale, color, stroke_width(scale), cv::LINE_AA);
 }
 
-void draw_outlined_text(cv::Mat3b& image, const std::string& text, cv::Point at, double scale) {
+void draw_outlined_text(cv::Mat3b& image, const std::string& text, cv::Point at, double scale,
+                        const Rgb& color) {
   cv::putText(image, text, at, kFont, scale, palette::kPictureTextEdge, stroke_width(scale) + 3,
               cv::LINE_AA);
-  draw_text(image, text, at, scale, palette::kPictureText);
+  draw_text(image, text, at, scale, color);
 }
 
 std::string with_thousands(std::int64_t number) {

@@ -18,7 +18,8 @@ void draw_text(cv::Mat3b& image, const std::string& text, cv::Point at, double s
                const Rgb& color);
 
 /// Writes light text with a dark outline, legible on any background.
-void draw_outlined_text(cv::Mat3b& image, const std::string& text, cv::Point at, double scale);
+void draw_outlined_text(cv::Mat3b& image, const std::string& text, cv::Point at, double scale,
+                        const Rgb& color = palette::kPictureText);
 
 /// The number with spaces between groups of three digits: "1 234 567".
 std::string with_thousands(std::int64_t number);

@@ -117,6 +117,20 @@ void draw_ids(cv::Mat3b& image, const SegmentImage& segments, const Highlight& h
   draw_labels(image, place_labels(ids, highlight, reserved));
 }
 
+/// The camera of the view, with an image of this size.
+VirtualCamera camera_of(const CameraView& view, cv::Size size) {
+  Intrinsics k = view.intrinsics;
+  const double scale_u = static_cast<double>(size.width) / k.width;
+  const double scale_v = static_cast<double>(size.height) / k.height;
+  k.fx *= scale_u;
+  k.fy *= scale_v;
+  k.cx = scale_u * (k.cx + 0.5) - 0.5;
+  k.cy = scale_v * (k.cy + 0.5) - 0.5;
+  k.width = size.width;
+  k.height = size.height;
+  return {k, view.X_WC};
+}
+
 std::string title_of(const CameraView& view) {
   return is_located(view.state) ? "camera" : "camera: " + std::string(to_string(view.state));
 }
@@ -134,7 +148,7 @@ cv::Size camera_panel_size(const CameraView& view, cv::Size box) {
 
 cv::Mat3b draw_camera_panel(std::span<const PointChunk> chunks, const CameraView& view,
                             cv::Size size, const Highlight& highlight,
-                            const CameraPanelConfig& config) {
+                            std::span<const DrawnObject> objects, const CameraPanelConfig& config) {
   const cv::Size detail(std::max(1, kPixelsPerDepth * view.depth_width()),
                         std::max(1, kPixelsPerDepth * view.depth_height()));
   SplatConfig splat = config.splat;
@@ -147,6 +161,10 @@ cv::Mat3b draw_camera_panel(std::span<const PointChunk> chunks, const CameraView
   draw_tints(image, segments, highlight);
   const std::string title = title_of(view);
   if (config.label_ids || !highlight.empty()) draw_ids(image, segments, highlight, title);
+  if (is_located(view.state)) {
+    const std::array reserved{title_box(image, title)};
+    draw_objects(image, camera_of(view, size), objects, reserved);
+  }
   draw_title(image, title);
   return image;
 }

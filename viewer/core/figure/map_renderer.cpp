@@ -69,13 +69,13 @@ cv::Mat3b MapRenderer::draw_figure(const Subject& subject, const std::string& ca
   cv::Mat3b figure(config_.height_px, config_.width_px, palette::kPanelGap);
   const std::vector<MapPicture> maps = map_pictures(subject, layout.map[0].size(), kBoth);
   for (std::size_t i = 0; i < maps.size(); ++i) {
-    finish(maps[i], subject.track).copyTo(figure(layout.map[i]));
+    finish(maps[i], subject).copyTo(figure(layout.map[i]));
   }
   if (has_close_up) {
     const std::vector<MapPicture> details =
         close_ups(subject, maps.front().camera.X_WV.linear(), layout.close_up[0].size(), kBoth);
     for (std::size_t i = 0; i < details.size(); ++i) {
-      finish(details[i], subject.track).copyTo(figure(layout.close_up[i]));
+      finish(details[i], subject).copyTo(figure(layout.close_up[i]));
     }
   }
   draw_caption(figure, layout.caption, caption);
@@ -86,7 +86,7 @@ cv::Mat3b MapRenderer::draw_map(const Subject& subject, Coloring coloring) const
   std::vector<MapPicture> maps =
       map_pictures(subject, {config_.width_px, config_.height_px}, {coloring});
   maps.front().title.clear();
-  return finish(maps.front(), subject.track);
+  return finish(maps.front(), subject);
 }
 
 std::optional<Frustum> MapRenderer::frustum(const CameraTrack& track) const {
@@ -142,7 +142,8 @@ std::vector<MapPicture> MapRenderer::pictures(const Subject& subject, const Virt
   return drawn;
 }
 
-cv::Mat3b MapRenderer::finish(const MapPicture& picture, const CameraTrack& track) const {
+cv::Mat3b MapRenderer::finish(const MapPicture& picture, const Subject& subject) const {
+  const CameraTrack& track = subject.track;
   cv::Mat3b image = picture.image.clone();
   if (picture.has_camera) {
     draw_path(image, picture.camera, track.path_W);
@@ -152,6 +153,9 @@ cv::Mat3b MapRenderer::finish(const MapPicture& picture, const CameraTrack& trac
     }
   }
   draw_labels(image, picture.labels);
+  std::vector<cv::Rect> reserved{title_box(image, picture.title)};
+  for (const SegmentLabel& label : picture.labels) reserved.push_back(label.box);
+  draw_objects(image, picture.camera, subject.objects, reserved);
   draw_title(image, picture.title);
   return image;
 }

@@ -9,6 +9,7 @@
 
 #include "viewer/core/camera/frustum.hpp"
 #include "viewer/core/camera/viewpoint.hpp"
+#include "viewer/core/figure/object_boxes.hpp"
 #include "viewer/core/figure/panel.hpp"
 #include "viewer/core/figure/segment_labels.hpp"
 #include "viewer/core/map/camera_track.hpp"
@@ -27,6 +28,7 @@ struct Subject {
   const SmoothedCamera& depth_camera;
   Viewpoint viewpoint;
   Highlight highlight = {};
+  std::vector<DrawnObject> objects = {};
 };
 
 /// A picture of points, on which nothing is written yet.
@@ -75,8 +77,8 @@ class MapRenderer {
   std::vector<MapPicture> close_ups(const Subject& subject, const Eigen::Matrix3d& R_WV,
                                     cv::Size size, const std::vector<Coloring>& colorings) const;
 
-  /// Draws the camera over the picture, and writes ids and title.
-  cv::Mat3b finish(const MapPicture& picture, const CameraTrack& track) const;
+  /// Draws the subject's camera and objects over the picture, and writes ids and title.
+  cv::Mat3b finish(const MapPicture& picture, const Subject& subject) const;
 
   /// What is drawn for the camera; nothing: its pose is not known.
   std::optional<Frustum> frustum(const CameraTrack& track) const;

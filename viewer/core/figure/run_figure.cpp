@@ -61,12 +61,12 @@ cv::Mat3b RunFigure::draw(const Subject& subject, const CameraView* view,
   cv::Mat3b figure(config.height_px, config.width_px, palette::kPanelGap);
   figure.colRange(0, layout.legend.br().x).setTo(cv::Scalar(palette::kCaptionBar));
   draw_camera_panel(subject.map.chunks(subject.part), *view, layout.camera.size(),
-                    subject.highlight, {config.label_ids, config.splat})
+                    subject.highlight, subject.objects, {config.label_ids, config.splat})
       .copyTo(figure(layout.camera));
   draw_caption(figure, layout.caption, caption);
   draw_caption(figure, layout.legend, kLegend);
   for (std::size_t i = 0; i < maps_.size(); ++i) {
-    renderer_.finish(maps_[i], subject.track).copyTo(figure(layout.maps[i]));
+    renderer_.finish(maps_[i], subject).copyTo(figure(layout.maps[i]));
   }
   return figure;
 }

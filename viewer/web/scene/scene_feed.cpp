@@ -163,7 +163,8 @@ void SceneFeed::publish_image(const MapSession& session) {
   view_utime_ = view->utime;
   const cv::Size size = camera_panel_size(*view, {640, 480});
   const auto chunks = session.map().chunks(view->part);
-  const cv::Mat3b image = draw_camera_panel(chunks, *view, size, {}, {false, splat_});
+  const cv::Mat3b image =
+      draw_camera_panel(chunks, *view, size, {}, session.objects(), {false, splat_});
   scene_.set_image(encode_jpeg(image, kJpegQuality));
 }
 
