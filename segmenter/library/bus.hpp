@@ -76,6 +76,8 @@ class [[gnu::visibility("default")]] MapClient {
   /// Names, sessions and counts of the map: the newest update without labels, runs, events and
   /// statistics; nullptr: none was received.
   [[nodiscard]] const SegmentUpdate* newest_update() const;
+  /// Voxel size of the map, metres; 0: no slice of it has come.
+  [[nodiscard]] float resolution_m() const;
   /// Every segment, by ascending id.
   [[nodiscard]] std::vector<SegmentStatistics> segments() const;
   /// Nothing: no such segment was ever heard of, or it came before this client.

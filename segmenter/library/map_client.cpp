@@ -133,6 +133,7 @@ bool MapClient::is_complete() const {
 const SegmentUpdate* MapClient::newest_update() const {
   return implementation_->follower().segments().table().newest();
 }
+float MapClient::resolution_m() const { return implementation_->follower().resolution_m(); }
 std::vector<SegmentStatistics> MapClient::segments() const {
   std::vector<SegmentStatistics> segments;
   for (const auto& [id, segment] : implementation_->follower().segments().table().segments()) {

@@ -66,6 +66,7 @@ void MapFollower::use(CloudSlice slice) {
   const std::int64_t id = slice.session;
   Session& session = sessions_[id];
   session.map_name = slice.map_name;
+  session.resolution_m = slice.resolution_m;
   std::set<std::int32_t> changed;
   session.pieces.add(std::move(slice), changed);
   if (id == current_session()) changed_pieces_.merge(changed);
@@ -110,6 +111,11 @@ const FollowedPieces& MapFollower::pieces() const {
   static const FollowedPieces kNone;
   const auto found = sessions_.find(current_session());
   return found != sessions_.end() ? found->second.pieces : kNone;
+}
+
+float MapFollower::resolution_m() const {
+  const auto found = sessions_.find(current_session());
+  return found != sessions_.end() ? found->second.resolution_m : 0.0F;
 }
 
 bool MapFollower::has_slices() const {

@@ -34,6 +34,8 @@ class MapFollower {
   [[nodiscard]] const SegmentListener& segments() const { return listener_; }
   /// Points and labels of the map that is followed.
   [[nodiscard]] const FollowedPieces& pieces() const;
+  /// Of the map that is followed; 0: no slice of it has come.
+  [[nodiscard]] float resolution_m() const;
   [[nodiscard]] const std::optional<CameraPose>& camera() const { return camera_; }
   /// No slice that is known of is missing, or it is not sent any more.
   [[nodiscard]] bool has_slices() const;
@@ -42,6 +44,7 @@ class MapFollower {
  private:
   struct Session {
     std::string map_name;
+    float resolution_m = 0.0F;
     FollowedPieces pieces;
   };
 

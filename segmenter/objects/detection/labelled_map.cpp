@@ -100,6 +100,17 @@ std::int64_t LabelledMap::num_points(std::uint32_t id) const {
   return count;
 }
 
+std::vector<std::uint32_t> LabelledMap::segments() const {
+  std::vector<std::pair<std::int64_t, std::uint32_t>> by_size;
+  by_size.reserve(pieces_of_.size());
+  for (const auto& [id, pieces] : pieces_of_) by_size.emplace_back(-num_points(id), id);
+  std::sort(by_size.begin(), by_size.end());
+  std::vector<std::uint32_t> ids;
+  ids.reserve(by_size.size());
+  for (const auto& [size, id] : by_size) ids.push_back(id);
+  return ids;
+}
+
 Eigen::AlignedBox3f LabelledMap::box_of(std::uint32_t id) const {
   Eigen::AlignedBox3f box;
   const auto of = pieces_of_.find(id);

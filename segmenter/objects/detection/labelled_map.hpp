@@ -1,6 +1,7 @@
 #pragma once
 // The points of a growing map by segment and by place.
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -35,6 +36,9 @@ class LabelledMap {
   /// Of a segment; 0 if there is none of this id.
   [[nodiscard]] std::int64_t num_points(std::uint32_t id) const;
   [[nodiscard]] std::int64_t num_points() const { return num_points_; }
+  [[nodiscard]] std::size_t num_segments() const { return pieces_of_.size(); }
+  /// The ids of all segments, the one with most points first.
+  [[nodiscard]] std::vector<std::uint32_t> segments() const;
   /// The box of a segment; empty if there is none of this id.
   [[nodiscard]] Eigen::AlignedBox3f box_of(std::uint32_t id) const;
   /// The direction that is up in W.

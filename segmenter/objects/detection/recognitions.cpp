@@ -21,9 +21,9 @@ bool share_segments(const Recognition& a, const Recognition& b) {
 
 }  // namespace
 
-void Recognitions::examine(std::uint32_t segment) {
-  by_segment_.erase(segment);
-  if (map_.num_points(segment) == 0) return;
+bool Recognitions::examine(std::uint32_t segment) {
+  const bool was_there = by_segment_.erase(segment) > 0;
+  if (map_.num_points(segment) == 0) return was_there;
   std::optional<Recognition> best;
   const std::vector<Candidate> candidates =
       candidates_of(segment, map_, [this](std::uint32_t id) -> const std::vector<SegmentNeighbour>& {
@@ -34,6 +34,19 @@ void Recognitions::examine(std::uint32_t segment) {
     if (found && (!best || found->placement.score() > best->placement.score())) best = found;
   }
   if (best) by_segment_[segment] = std::move(*best);
+  return was_there || best;
+}
+
+std::set<std::uint32_t> Recognitions::seeds_of(const std::set<std::uint32_t>& parts) const {
+  std::set<std::uint32_t> seeds;
+  for (const auto& [seed, recognition] : by_segment_) {
+    const std::vector<std::uint32_t>& ids = recognition.placement.segment_ids;
+    if (std::any_of(ids.begin(), ids.end(),
+                    [&parts](std::uint32_t id) { return parts.contains(id); })) {
+      seeds.insert(seed);
+    }
+  }
+  return seeds;
 }
 
 void Recognitions::forget(const std::set<std::uint32_t>& changed) {

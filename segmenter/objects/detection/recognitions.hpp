@@ -23,8 +23,11 @@ class Recognitions {
       : recognizer_(recognizer), map_(map), access_(access) {}
 
   /// Examines the segment and its unions with neighbours again. One that does not exist any more is
-  /// forgotten.
-  void examine(std::uint32_t segment);
+  /// forgotten. @return whether something may be recognised there now, or was before
+  bool examine(std::uint32_t segment);
+
+  /// The segments at which something was recognised that has one of these as part.
+  [[nodiscard]] std::set<std::uint32_t> seeds_of(const std::set<std::uint32_t>& parts) const;
 
   /// Recognitions that do not contradict each other: where two explain the same surface, the one
   /// of the higher score counts. The highest score first.

@@ -31,6 +31,7 @@ class ObjectRecognizer {
   [[nodiscard]] const std::vector<ObjectModel>& models() const { return models_; }
   /// Half the diagonal of the largest object; 0 without objects.
   [[nodiscard]] float largest_radius_m() const { return largest_radius_m_; }
+  [[nodiscard]] float radius_m(std::size_t model) const { return prepared(model).radius_m; }
 
   /// The object that the candidate, some touching segments of the map, is surface of; nothing if
   /// there is none that could be told.

@@ -23,5 +23,6 @@ void add_list_command(CLI::App& app, ObjectsAction& action);
 void add_show_command(CLI::App& app, ObjectsAction& action);
 void add_forget_command(CLI::App& app, ObjectsAction& action);
 void add_merge_command(CLI::App& app, ObjectsAction& action);
+void add_detect_command(CLI::App& app, ObjectsAction& action);
 
 }  // namespace kintsugi::segmenter

@@ -1,4 +1,4 @@
-// kintsugi-objects: teaches objects, and looks after the library of them.
+// kintsugi-objects: teaches objects, looks after the library of them, and finds them in maps.
 
 #include <CLI/CLI.hpp>
 #include <spdlog/sinks/stdout_color_sinks.h>
@@ -13,7 +13,7 @@ int main(int argc, char** argv) {
   return kintsugi::run_main(argv, [&] {
     spdlog::set_default_logger(spdlog::stderr_color_mt("kintsugi-objects"));
     spdlog::set_pattern("%^%l%$: %v");
-    CLI::App app{"Teaches objects from segmented maps, and looks after the library of them."};
+    CLI::App app{"Teaches objects from segmented maps, looks after the library of them, and finds them in maps."};
     app.require_subcommand(1);
     app.set_help_all_flag("--help-all", "Print the help of all subcommands and exit");
     kintsugi::add_version_flag(app);
@@ -23,6 +23,7 @@ int main(int argc, char** argv) {
     add_show_command(app, action);
     add_forget_command(app, action);
     add_merge_command(app, action);
+    add_detect_command(app, action);
     CLI11_PARSE(app, argc, argv);
     return action();
   });

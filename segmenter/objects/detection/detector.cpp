@@ -1,0 +1,155 @@
+#include "segmenter/objects/detection/detector.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace kintsugi::segmenter {
+
+namespace {
+
+// A detection that still holds so long after it was found is confirmed. The camera, at walking pace,
+// has seen the rest of an object by then.
+constexpr std::int64_t kConfirmed_us = 1'000'000;
+
+bool is_active(const Detection& detection) { return detection.event != DetectionEvent::kGone; }
+
+bool share_segments(const Recognition& a, const Recognition& b) {
+  const std::vector<std::uint32_t>& ids = b.placement.segment_ids;
+  return std::any_of(
+      a.placement.segment_ids.begin(), a.placement.segment_ids.end(),
+      [&ids](std::uint32_t id) { return std::binary_search(ids.begin(), ids.end(), id); });
+}
+
+}  // namespace
+
+Detector::Detector(std::vector<ObjectModel> models, float resolution_m)
+    : recognizer_(std::move(models), resolution_m), recognitions_(recognizer_, map_, access_) {
+  access_.resolution_m = resolution_m;
+  access_.points_in = [this](const Eigen::AlignedBox3f& box_W) { return map_.points_in(box_W); };
+  access_.points_of = [this](const std::vector<std::uint32_t>& ids) { return map_.points_of(ids); };
+  access_.num_points = [this](std::uint32_t id) { return map_.num_points(id); };
+}
+
+void Detector::set_piece(std::int32_t id, LabelledMap::Points points_W,
+                         std::vector<std::uint32_t> segment_ids, std::int64_t utime) {
+  utime_ = std::max(utime_, utime);
+  const std::set<std::uint32_t> changed =
+      map_.set_piece(id, std::move(points_W), std::move(segment_ids));
+  changed_.insert(changed.begin(), changed.end());
+  for (const std::uint32_t segment : changed) wait_for(segment);
+  for (const std::uint32_t seed : recognitions_.seeds_of(changed)) wait_for(seed);
+}
+
+void Detector::examine_all() {
+  waiting_.clear();
+  is_waiting_.clear();
+  for (const std::uint32_t segment : map_.segments()) {
+    changed_.insert(segment);
+    wait_for(segment);
+  }
+}
+
+std::optional<std::int64_t> Detector::waiting_since_us() const {
+  if (waiting_.empty()) return std::nullopt;
+  return waiting_.front().since_us;
+}
+
+void Detector::wait_for(std::uint32_t segment) {
+  if (is_waiting_.insert(segment).second) waiting_.push_back({segment, utime_});
+}
+
+void Detector::examine_next() {
+  if (waiting_.empty()) return;
+  if (!changed_.empty()) {
+    recognitions_.forget(changed_);
+    changed_.clear();
+    access_.up_W = map_.up_W();
+  }
+  const std::uint32_t segment = waiting_.front().segment;
+  waiting_.pop_front();
+  is_waiting_.erase(segment);
+  if (recognitions_.examine(segment)) update_detections();
+  confirm_old_ones();
+}
+
+void Detector::update_detections() {
+  std::set<std::int32_t> kept;  // numbers of detections that hold
+  std::vector<Recognition> others;
+  for (Recognition& recognition : recognitions_.best()) {
+    Detection* const detection = same_place(recognition, kept);
+    if (detection == nullptr) {
+      others.push_back(std::move(recognition));
+      continue;
+    }
+    detection->recognition = std::move(recognition);
+    kept.insert(detection->number);
+  }
+  for (Recognition& recognition : others) {
+    Detection* detection = vanished(recognition.model, kept);
+    const bool has_moved = detection != nullptr;
+    if (!has_moved) {
+      detection = &detections_.emplace_back();
+      detection->number = static_cast<std::int32_t>(detections_.size());
+    }
+    detection->recognition = std::move(recognition);
+    detection->found_utime = utime_;
+    kept.insert(detection->number);
+    tell(*detection, has_moved ? DetectionEvent::kMoved : DetectionEvent::kFound);
+  }
+  for (Detection& detection : detections_) {
+    if (!is_active(detection) || kept.contains(detection.number) || is_undecided(detection)) {
+      continue;
+    }
+    tell(detection, DetectionEvent::kGone);
+  }
+}
+
+void Detector::confirm_old_ones() {
+  for (Detection& detection : detections_) {
+    if (detection.event != DetectionEvent::kFound || is_undecided(detection)) continue;
+    // At rest, nothing more is known that could speak against it.
+    const bool is_old = utime_ - detection.found_utime >= kConfirmed_us;
+    if (is_old || waiting_.empty()) tell(detection, DetectionEvent::kConfirmed);
+  }
+}
+
+/// The active detection of the same object that has surface in common with the recognition.
+Detection* Detector::same_place(const Recognition& recognition,
+                                const std::set<std::int32_t>& taken) {
+  for (Detection& detection : detections_) {
+    if (!is_active(detection) || taken.contains(detection.number)) continue;
+    if (detection.recognition.model != recognition.model) continue;
+    const double apart_m = (detection.recognition.placement.X_WO.translation() -
+                            recognition.placement.X_WO.translation())
+                               .norm();
+    // Its middle is still inside the object: other segments, but the same place.
+    const bool is_near = apart_m < recognizer_.radius_m(recognition.model) / 2;
+    if (is_near || share_segments(detection.recognition, recognition)) return &detection;
+  }
+  return nullptr;
+}
+
+/// A detection of this object that does not hold any more: the object may have been moved.
+Detection* Detector::vanished(std::size_t model, const std::set<std::int32_t>& kept) {
+  for (Detection& detection : detections_) {
+    if (detection.recognition.model != model || kept.contains(detection.number)) continue;
+    if (is_active(detection) && is_undecided(detection)) continue;
+    return &detection;
+  }
+  return nullptr;
+}
+
+/// Some of its segments wait to be examined.
+bool Detector::is_undecided(const Detection& detection) const {
+  const std::vector<std::uint32_t>& ids = detection.recognition.placement.segment_ids;
+  return std::any_of(ids.begin(), ids.end(),
+                     [this](std::uint32_t id) { return is_waiting_.contains(id); });
+}
+
+void Detector::tell(Detection& detection, DetectionEvent event) {
+  detection.event = event;
+  detection.event_number = ++num_events_;
+  detection.event_utime = utime_;
+}
+
+}  // namespace kintsugi::segmenter

@@ -1,0 +1,85 @@
+#pragma once
+// Finds the objects of a library in a map while it grows, and tells what becomes of them.
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "lcmtypes/object_messages.hpp"
+#include "segmenter/objects/detection/labelled_map.hpp"
+#include "segmenter/objects/detection/recognitions.hpp"
+#include "segmenter/objects/recognition/object_recognizer.hpp"
+
+namespace kintsugi::segmenter {
+
+/// One object in the map. Of two robots' worth of the same thing there are two detections.
+struct Detection {
+  std::int32_t number = 0;  ///< from 1
+  Recognition recognition;  ///< when gone, the last one
+  DetectionEvent event = DetectionEvent::kFound;  ///< the last one
+  std::int64_t event_number = 0;  ///< ascending over all detections, from 1
+  std::int64_t event_utime = 0;   ///< device time of the map at the event, microseconds
+  std::int64_t found_utime = 0;   ///< the same when it was found where it is
+};
+
+/// Pieces of the map come with set_piece(); segments that changed wait until examine_next() has
+/// looked at them, the one that has waited longest first. When none waits, the detections that are
+/// not gone are a function of the map and the library alone if examine_all() was called after the
+/// last change.
+class Detector {
+ public:
+  /// @param resolution_m voxel size of the map, > 0
+  Detector(std::vector<ObjectModel> models, float resolution_m);
+  Detector(const Detector&) = delete;  // its parts refer to each other
+  Detector& operator=(const Detector&) = delete;
+
+  /// Adds or replaces a piece of the map (LabelledMap::set_piece()).
+  /// @param utime device time of the map then, microseconds
+  void set_piece(std::int32_t id, LabelledMap::Points points_W,
+                 std::vector<std::uint32_t> segment_ids, std::int64_t utime);
+  /// Lets all segments wait: what depends on the whole map may have changed.
+  void examine_all();
+
+  /// Examines one segment, if one waits, and updates the detections.
+  void examine_next();
+  [[nodiscard]] std::size_t num_waiting() const { return waiting_.size(); }
+  /// Device time at which the segment that has waited longest changed; nothing: none waits.
+  [[nodiscard]] std::optional<std::int64_t> waiting_since_us() const;
+
+  /// All detections, by number, gone ones included.
+  [[nodiscard]] const std::vector<Detection>& detections() const { return detections_; }
+  [[nodiscard]] const std::vector<ObjectModel>& models() const { return recognizer_.models(); }
+  [[nodiscard]] std::int64_t num_events() const { return num_events_; }
+  [[nodiscard]] std::int64_t num_candidates() const { return recognitions_.num_candidates(); }
+  [[nodiscard]] const LabelledMap& map() const { return map_; }
+
+ private:
+  void wait_for(std::uint32_t segment);
+  void update_detections();
+  void confirm_old_ones();
+  [[nodiscard]] Detection* same_place(const Recognition& recognition,
+                                      const std::set<std::int32_t>& taken);
+  [[nodiscard]] Detection* vanished(std::size_t model, const std::set<std::int32_t>& kept);
+  [[nodiscard]] bool is_undecided(const Detection& detection) const;
+  void tell(Detection& detection, DetectionEvent event);
+
+  ObjectRecognizer recognizer_;
+  LabelledMap map_;
+  MapAccess access_;
+  Recognitions recognitions_;
+  struct Waiting {
+    std::uint32_t segment;
+    std::int64_t since_us;
+  };
+  std::deque<Waiting> waiting_;
+  std::set<std::uint32_t> is_waiting_;
+  std::set<std::uint32_t> changed_;  // since the segment examined last
+  std::vector<Detection> detections_;
+  std::int64_t num_events_ = 0;
+  std::int64_t utime_ = 0;
+};
+
+}  // namespace kintsugi::segmenter

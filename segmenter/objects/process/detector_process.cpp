@@ -1,0 +1,284 @@
+#include "segmenter/objects/process/detector_process.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <optional>
+#include <set>
+#include <vector>
+
+#include <spdlog/spdlog.h>
+
+#include "lcmtypes/base/atomic_file.hpp"
+#include "lcmtypes/base/process_memory.hpp"
+#include "lcmtypes/base/service_notice.hpp"
+#include "lcmtypes/base/stop_signal.hpp"
+#include "lcmtypes/base/thread_priority.hpp"
+#include "lcmtypes/bus/bus.hpp"
+#include "lcmtypes/channels.hpp"
+#include "segmenter/library/bus.hpp"
+#include "segmenter/objects/library/object_library.hpp"
+#include "segmenter/objects/process/cpu_budget.hpp"
+#include "segmenter/objects/process/detection_messages.hpp"
+#include "segmenter/objects/process/map_detection.hpp"
+
+namespace kintsugi::segmenter {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using std::chrono::milliseconds;
+
+constexpr milliseconds kWait(20);
+constexpr milliseconds kStatusPeriod(500);
+constexpr milliseconds kRepeatPeriod(1000);  // of all detections, for those who come late
+constexpr std::size_t kLags = 1000;          // the newest, of which the status tells the median
+
+/// Names what is refused, once.
+ObjectLibrary read_library(const std::filesystem::path& folder) {
+  ObjectLibrary library = ObjectLibrary::read(folder);
+  for (const RefusedObject& refused : library.refusals()) {
+    spdlog::warn("{} is not used: {}", refused.name, refused.reason);
+  }
+  spdlog::info("{}: {} objects", folder.string(), library.objects().size());
+  return library;
+}
+
+class DetectorProcess {
+ public:
+  explicit DetectorProcess(const DetectorOptions& options)
+      : options_(options),
+        bus_(options.lcm_url),
+        client_(MapClient::connect({.url = options.lcm_url, .map_name = options.map_name})),
+        library_(read_library(options.library)),
+        budget_(options.cpu_share) {}
+
+  int run() {
+    spdlog::info("follows {}, at most {:.0f} % of a core",
+                 options_.map_name.empty() ? "the first map it hears of"
+                                           : "map " + options_.map_name,
+                 100 * options_.cpu_share);
+    while (!stop_requested() && !(options_.exit_on_final && is_finished_)) {
+      receive();
+      examine();
+      publish();
+      tell_service_manager();
+    }
+    publish_all();
+    publish_status();
+    if (!options_.json.empty()) write_json();
+    return 0;
+  }
+
+ private:
+  void receive() {
+    const bool can_work = detector_ && detector_->num_waiting() > 0 && may_work();
+    const MapChanges changes = client_.wait(can_work ? milliseconds(0) : kWait);
+    if (const SegmentUpdate* newest = client_.newest_update()) {
+      if (newest->map_session != source_.map_session) begin_map(*newest);
+      updates_ += static_cast<std::int64_t>(changes.updates.size());
+      for (const SegmentUpdate& update : changes.updates) {
+        source_.utime = std::max(source_.utime, update.utime);
+      }
+    }
+    for (const std::int32_t piece : changes.pieces) dirty_.insert(piece);
+    if (!dirty_.empty() && !detector_) make_detector();
+    if (!detector_) return;
+    for (const std::int32_t piece : dirty_) add_piece(piece);
+    if (!dirty_.empty()) is_complete_pass_ = false;
+    dirty_.clear();
+  }
+
+  void begin_map(const SegmentUpdate& newest) {
+    source_ = {.map = newest.map_name, .map_session = newest.map_session};
+    detector_.reset();
+    dirty_.clear();
+    for (const std::int32_t piece : client_.pieces()) dirty_.insert(piece);
+  }
+
+  /// Of a new map, or with a new library: a new session, since the numbers of detections begin
+  /// again.
+  void make_detector() {
+    if (client_.resolution_m() <= 0.0F) return;
+    source_.session = std::max(new_session(), source_.session + 1);
+    detector_ = std::make_unique<Detector>(models_of(library_), client_.resolution_m());
+    published_ = 0;
+    is_complete_pass_ = false;
+    is_finished_ = false;
+    budget_.begin();  // preparing the models is not work on the map
+  }
+
+  void add_piece(std::int32_t piece) {
+    detector_->set_piece(piece, client_.points_W(piece), client_.labels(piece), source_.utime);
+  }
+
+  /// When the map is closed nothing comes any more that the processor would be needed for.
+  bool may_work() { return client_.is_complete() || budget_.has_some(); }
+
+  void examine() {
+    if (!detector_) return;
+    if (detector_->num_waiting() == 0) {
+      finish();
+      return;
+    }
+    const Clock::time_point begin = Clock::now();
+    while (detector_->num_waiting() > 0 && Clock::now() - begin < kWait && may_work()) {
+      const std::int64_t since_us = *detector_->waiting_since_us();
+      const double cpu_s = CpuBudget::cpu_s();
+      detector_->examine_next();
+      worst_burst_s_ = std::max(worst_burst_s_, CpuBudget::cpu_s() - cpu_s);
+      lags_ms_.push_back(1e-3 * static_cast<double>(source_.utime - since_us));
+      if (lags_ms_.size() > kLags) lags_ms_.pop_front();
+    }
+  }
+
+  /// Once more all of a closed map: then the detections depend on the map and the library alone.
+  void finish() {
+    if (!client_.is_complete() || !client_.has_ended()) return;
+    if (!is_complete_pass_) {
+      is_complete_pass_ = true;
+      detector_->examine_all();
+      return;
+    }
+    if (!is_finished_) spdlog::info("the map is complete and examined");
+    is_finished_ = true;
+  }
+
+  void publish() {
+    const Clock::time_point now = Clock::now();
+    if (detector_ && detector_->num_events() > published_) publish_events();
+    if (now - last_repeat_ >= kRepeatPeriod) {
+      last_repeat_ = now;
+      publish_all();
+      reload_library();
+    }
+    if (now - last_status_ >= kStatusPeriod) {
+      last_status_ = now;
+      publish_status();
+    }
+  }
+
+  void publish_events() {
+    std::vector<const Detection*> events;
+    for (const Detection& detection : detector_->detections()) {
+      if (detection.event_number > published_) events.push_back(&detection);
+    }
+    std::sort(events.begin(), events.end(), [](const Detection* a, const Detection* b) {
+      return a->event_number < b->event_number;
+    });
+    for (const Detection* detection : events) {
+      bus_.publish(channels::kObjectDetection, message_of(*detection, *detector_, source_));
+    }
+    published_ = detector_->num_events();
+  }
+
+  void publish_all() {
+    if (!detector_) return;
+    for (const Detection& detection : detector_->detections()) {
+      bus_.publish(channels::kObjectDetection, message_of(detection, *detector_, source_));
+    }
+  }
+
+  /// Objects that were taught meanwhile are looked for, too.
+  void reload_library() {
+    try {
+      if (!library_.has_changed()) return;
+      library_ = read_library(options_.library);
+      problem_.clear();
+    } catch (const std::exception& error) {
+      if (problem_ != error.what()) spdlog::error("{}", error.what());
+      problem_ = error.what();
+      return;
+    }
+    detector_.reset();
+    for (const std::int32_t piece : client_.pieces()) dirty_.insert(piece);
+  }
+
+  void publish_status() {
+    DetectorStatus status;
+    status.utime = wall_clock_us();
+    status.session = std::max<std::int64_t>(source_.session, 1);
+    status.map_session = source_.map_session;
+    status.finished = is_finished_;
+    status.library_objects = static_cast<std::int64_t>(library_.objects().size());
+    status.library_refused = static_cast<std::int64_t>(library_.refusals().size());
+    status.updates_applied = updates_;
+    if (detector_) count(status);
+    status.memory_bytes = process_memory().resident_bytes;
+    if (!lags_ms_.empty()) {
+      std::vector<double> lags(lags_ms_.begin(), lags_ms_.end());
+      const auto middle = lags.begin() + static_cast<std::ptrdiff_t>(lags.size() / 2);
+      std::nth_element(lags.begin(), middle, lags.end());
+      status.lag_p50_ms = *middle;
+      status.lag_max_ms = *std::max_element(lags.begin(), lags.end());
+    }
+    status.cpu_share = share_.now();
+    status.worst_burst_ms = 1e3 * worst_burst_s_;
+    status.map_name = source_.map;
+    status.library = options_.library.string();
+    status.problem = problem_.empty() ? client_.problem() : problem_;
+    bus_.publish(channels::kDetectorStatus, status);
+  }
+
+  void count(DetectorStatus& status) const {
+    status.points = detector_->map().num_points();
+    status.segments = static_cast<std::int64_t>(detector_->map().num_segments());
+    status.candidates_waiting = static_cast<std::int64_t>(detector_->num_waiting());
+    status.candidates_examined = detector_->num_candidates();
+    status.events = detector_->num_events();
+    for (const Detection& detection : detector_->detections()) {
+      switch (detection.event) {
+        case DetectionEvent::kFound:
+          ++status.detections_found;
+          break;
+        case DetectionEvent::kConfirmed:
+        case DetectionEvent::kMoved:
+          ++status.detections_confirmed;
+          break;
+        case DetectionEvent::kGone:
+          ++status.detections_gone;
+          break;
+      }
+    }
+  }
+
+  void write_json() const {
+    AtomicFile file(options_.json);
+    if (detector_) {
+      file.stream() << detections_json(*detector_, source_);
+    } else {
+      file.stream() << "{\"map\": \"\", \"detections\": []}\n";
+    }
+    file.commit();
+  }
+
+  const DetectorOptions options_;
+  Bus bus_;  // for what is published
+  MapClient client_;
+  ObjectLibrary library_;
+  CpuBudget budget_;
+  CpuShare share_;
+  std::unique_ptr<Detector> detector_;  // null: no map is known yet
+  DetectionSource source_;
+  std::set<std::int32_t> dirty_;  // pieces that the detector has not, or not as they are
+  bool is_complete_pass_ = false;
+  bool is_finished_ = false;
+  std::int64_t published_ = 0;  // the newest event
+  std::int64_t updates_ = 0;
+  std::deque<double> lags_ms_;
+  double worst_burst_s_ = 0.0;
+  std::string problem_;
+  Clock::time_point last_repeat_{};
+  Clock::time_point last_status_{};
+};
+
+}  // namespace
+
+int run_detector(const DetectorOptions& options) {
+  lower_priority_of_thread();
+  return DetectorProcess(options).run();
+}
+
+}  // namespace kintsugi::segmenter
