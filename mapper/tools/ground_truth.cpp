@@ -83,9 +83,10 @@ void add_options(CLI::App& app, Options& options) {
       "--changes", options.changes,
       "CLOUD is the same room later, synthetic://NAME?...: OUT is a JSON file of what is new, gone "
       "and moved, with poses and symmetry, for kintsugi-evaluate");
-  app.add_flag("--objects", options.objects,
-               "CLOUD is another room, synthetic://NAME?...: OUT is a JSON file of the objects that "
-               "are in both")
+  app.add_flag(
+         "--objects", options.objects,
+         "CLOUD is another room, synthetic://NAME?...: OUT is a JSON file of the objects that "
+         "are in both")
       ->excludes(changes);
 }
 

@@ -40,9 +40,8 @@ SceneOfMap read_scene(const std::string& address, bool in_scene_frame) {
 
 MapOfScene read_map_of_scene(const MapOfSceneOptions& options) {
   SceneOfMap mapped = read_scene(options.scene, options.in_scene_frame);
-  return {.points_W = read_cloud(options.cloud),
-          .scene = std::move(mapped.scene),
-          .X_SW = mapped.X_SW};
+  return {
+      .points_W = read_cloud(options.cloud), .scene = std::move(mapped.scene), .X_SW = mapped.X_SW};
 }
 
 }  // namespace kintsugi::mapper

@@ -89,7 +89,8 @@ class Scorer {
   /// those as they are.
   double covered_share(const ToldChange& change, const TrueObject& object) const {
     double share = 0.0;
-    const auto cover = [&](const Truth& truth, std::optional<std::uint32_t> id, const Points& told) {
+    const auto cover = [&](const Truth& truth, std::optional<std::uint32_t> id,
+                           const Points& told) {
       if (!id) return;
       const Points own = points_of(truth, *id);
       if (own.empty()) return;

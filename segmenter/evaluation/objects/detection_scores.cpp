@@ -101,8 +101,7 @@ std::vector<Match> matches(const std::vector<ToldDetection>& told,
 /// Mean distance of the true points from the model at the detected pose.
 double surface_distance_m(const ToldDetection& detection, const std::vector<CloudPoint>& points_W,
                           const std::filesystem::path& library) {
-  std::vector<CloudPoint> model_W =
-      read_ply(library / detection.name / "model.ply").points_W;
+  std::vector<CloudPoint> model_W = read_ply(library / detection.name / "model.ply").points_W;
   const Eigen::Isometry3f X_WO = detection.X_WO.cast<float>();
   for (CloudPoint& p : model_W) {
     const Eigen::Vector3f q = X_WO * Eigen::Vector3f(p.x, p.y, p.z);

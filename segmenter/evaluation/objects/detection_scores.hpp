@@ -1,13 +1,12 @@
 #pragma once
 // Which of the objects of a library were found in a map, and which detections are true.
 
+#include <Eigen/Geometry>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
-
-#include <Eigen/Geometry>
 
 #include "segmenter/evaluation/objects/object_scores.hpp"
 #include "segmenter/evaluation/objects/true_objects.hpp"
@@ -25,8 +24,8 @@ struct ToldDetection {
   std::optional<std::int64_t> found_utime{};  ///< when it was first told
 };
 
-/// Of a file of kintsugi-objects detect: the last entry of each detection; those whose last event is
-/// "gone" are left out.
+/// Of a file of kintsugi-objects detect: the last entry of each detection; those whose last event
+/// is "gone" are left out.
 /// @throws std::runtime_error naming the file and what is missing or of another type
 std::vector<ToldDetection> read_told_detections(const std::filesystem::path& path);
 
@@ -35,8 +34,8 @@ std::string library_name(std::string key);
 
 /// Expected are the objects that are in the scene after, are of the same model as a taught one, and
 /// have 50 points and more in `truth`. A detection is right if its name is that of such an object,
-/// the middle of its box lies within half the object's largest extent of the object's middle, and no
-/// nearer detection claims the same object.
+/// the middle of its box lies within half the object's largest extent of the object's middle, and
+/// no nearer detection claims the same object.
 /// @param truth in the W of the map in which was detected
 /// @param taught names in the library; empty: all names that `told` has
 /// @param library folder of objects/NAME/model.ply, for the distance of the surfaces; empty: none

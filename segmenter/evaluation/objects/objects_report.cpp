@@ -44,7 +44,8 @@ std::string text_of(const Table& table) {
   };
   const auto line = [&](const std::vector<std::string>& row) {
     std::string text;
-    for (std::size_t i = 0; i < row.size(); ++i) text += fmt::format("{:<{}}", row[i], widths[i] + 2);
+    for (std::size_t i = 0; i < row.size(); ++i)
+      text += fmt::format("{:<{}}", row[i], widths[i] + 2);
     text.erase(text.find_last_not_of(' ') + 1);
     return text + "\n";
   };
@@ -149,7 +150,8 @@ std::string to_text(const ObjectScores& scores) {
   std::string text = text_of(summary_table(scores));
   if (moved.num_true > 0) {
     text += fmt::format(
-        "\nmoved objects of {} points and more told as moved, within 2 cm and 5 degrees: {} of {}\n",
+        "\nmoved objects of {} points and more told as moved, within 2 cm and 5 degrees: {} of "
+        "{}\n",
         kLarge, moved.num_right, moved.num_true);
   }
   text += fmt::format("false, of 200 points and more: {}\n\n", num_large_false_claims(scores));
@@ -173,10 +175,10 @@ std::string to_json(const ObjectScores& scores) {
   for (const SizeClass& size : kSizeClasses) {
     for (const std::string& kind : kinds_of(scores)) {
       const Tally t = tally(scores, size, kind);
-      Json entry = {{"points", size.name},     {"kind", kind.empty() ? "all" : kind},
-                    {"true", t.num_true},      {"found", t.num_found},
-                    {"told", t.num_told},      {"right", t.num_right},
-                    {"precision", nullptr},    {"recall", nullptr}};
+      Json entry = {{"points", size.name},  {"kind", kind.empty() ? "all" : kind},
+                    {"true", t.num_true},   {"found", t.num_found},
+                    {"told", t.num_told},   {"right", t.num_right},
+                    {"precision", nullptr}, {"recall", nullptr}};
       if (t.precision()) entry["precision"] = *t.precision();
       if (t.recall()) entry["recall"] = *t.recall();
       summary.push_back(entry);

@@ -50,8 +50,7 @@ double angle_deg(const Eigen::Matrix3d& R, const SymmetryAxis* free_axis) {
 
 PoseError pose_error(const Pose& X_WG_estimate, const Pose& X_WG_true, const Symmetry& symmetry) {
   PoseError error;
-  error.translation_m =
-      (X_WG_estimate * symmetry.centre_G - X_WG_true * symmetry.centre_G).norm();
+  error.translation_m = (X_WG_estimate * symmetry.centre_G - X_WG_true * symmetry.centre_G).norm();
   const auto is_free = [](const SymmetryAxis& axis) { return axis.order == 0; };
   if (std::ranges::count_if(symmetry.axes, is_free) > 1) return error;  // a ball
   const auto free = std::ranges::find_if(symmetry.axes, is_free);

@@ -11,11 +11,12 @@
 
 namespace kintsugi::segmenter {
 
-/// One object that changed, or that is in both scenes. S: the frame of the scenes; G: of the object.
+/// One object that changed, or that is in both scenes. S: the frame of the scenes; G: of the
+/// object.
 struct TrueObject {
-  std::string key;        ///< in the scene before; of what is new: after
-  std::string model;      ///< the same for things of one make
-  std::string kind;       ///< "new", "gone", "moved", "same object"
+  std::string key;                         ///< in the scene before; of what is new: after
+  std::string model;                       ///< the same for things of one make
+  std::string kind;                        ///< "new", "gone", "moved", "same object"
   std::optional<std::uint32_t> id_before;  ///< of the instance, in the true cloud
   std::optional<std::uint32_t> id_after;
   Pose X_SG_before = Pose::Identity();  ///< where there is an id

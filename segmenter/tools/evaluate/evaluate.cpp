@@ -62,7 +62,8 @@ void require_task(const EvaluateOptions& options) {
   if (!options.trajectory.json_file.empty()) {
     throw CLI::RequiresError("--json", "--trajectory or --live");
   }
-  if (options.input.empty()) throw CLI::RequiredError("IN, --trajectory, --live, --changes or --objects");
+  if (options.input.empty())
+    throw CLI::RequiredError("IN, --trajectory, --live, --changes or --objects");
   if (options.folder.empty()) throw CLI::RequiredError("--out");
 }
 
@@ -154,7 +155,8 @@ int main(int argc, char** argv) {
     CLI::App app{
         "Segments a recorded map slice by slice and writes the paper's tables and figures; or, "
         "with --ground-truth, scores its segments; or, with --trajectory, computes the errors of a "
-        "camera path; or, with --live, measures a live run; or, with --changes or --objects, scores "
+        "camera path; or, with --live, measures a live run; or, with --changes or --objects, "
+        "scores "
         "what was told of objects."};
     EvaluateOptions options;
     add_options(app, options);

@@ -24,9 +24,10 @@ void add_objects_options(CLI::App& app, ObjectsOptions& options) {
                             ->excludes(changes);
   auto* const truth = app.add_option("--truth-objects", options.objects_truth_file,
                                      "the file of kintsugi-ground-truth --changes or --objects");
-  auto* const before = app.add_option("--before-truth", options.before_truth_file,
-                                      "of --changes: PLY of kintsugi-ground-truth of the map BEFORE")
-                           ->needs(changes);
+  auto* const before =
+      app.add_option("--before-truth", options.before_truth_file,
+                     "of --changes: PLY of kintsugi-ground-truth of the map BEFORE")
+          ->needs(changes);
   auto* const after = app.add_option("--after-truth", options.after_truth_file,
                                      "PLY of kintsugi-ground-truth of the map AFTER, or of the map "
                                      "in which objects were detected")
