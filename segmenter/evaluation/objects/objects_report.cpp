@@ -76,6 +76,10 @@ Figure sizes_figure(const ObjectScores& scores) {
     found.points.emplace_back(x,
                               static_cast<double>(std::ranges::count_if(scores.truth, is_found)));
   }
+  if (!sizes.empty()) {  // wider than a single size
+    figure.plot.x_range = {{0.9 * static_cast<double>(sizes.front()) + 1.0,
+                            1.1 * static_cast<double>(sizes.back()) + 2.0}};
+  }
   figure.plot.series = {all, found};
   return figure;
 }

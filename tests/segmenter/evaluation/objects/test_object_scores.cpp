@@ -168,21 +168,18 @@ TEST_F(ChangeScores, UncoveredSurfaceIsNoTrueChange) {
   EXPECT_FALSE(scores.claims[0].is_right);
   EXPECT_FALSE(scores.claims[1].is_right);
   EXPECT_EQ(num_large_false_claims(scores), 2);
-  EXPECT_EQ(tally(scores, kSizeClasses[1]).num_told, 0);
-  EXPECT_EQ(tally(scores, kSizeClasses[2]).num_told, 0 + 0);
+  EXPECT_EQ(tally(scores, kSizeClasses[1]).precision(), 0.0);  // 400 points each
+  EXPECT_EQ(tally(scores, kSizeClasses[2]).precision(), std::nullopt);
   EXPECT_EQ(tally(scores, kSizeClasses[2]).recall(), 0.0);
 }
 
-TEST_F(ChangeScores, TheWrongKindAndTooSmallAPartAreNotRight) {
+TEST_F(ChangeScores, TheWrongKindIsNotRightAndTwoThirdsOfAThingAre) {
   tell("gone", {}, patch(5, 0, kSide));
-  tell("new", {},
-       patch(5, 0, 15));  // 18 x 18 of 25 x 25 are within 3 cm of it, and less in corners
   tell("new", {}, patch(5, 0, 20));
   const ObjectScores scores = score();
   EXPECT_THAT(scores.claims[0].reason, HasSubstr("is new"));
   EXPECT_FALSE(scores.claims[0].is_right);
-  EXPECT_FALSE(tally(scores, kSizeClasses[2]).recall() == 0.0);
-  EXPECT_TRUE(scores.claims[2].is_right);
+  EXPECT_TRUE(scores.claims[1].is_right);
 }
 
 TEST_F(ChangeScores, ATenthOfAThingIsNotTheThing) {
@@ -190,6 +187,47 @@ TEST_F(ChangeScores, ATenthOfAThingIsNotTheThing) {
   const ObjectScores scores = score();
   EXPECT_THAT(scores.claims[0].reason, HasSubstr("less than half"));
   EXPECT_FALSE(scores.truth[2].is_found);
+}
+
+TEST_F(ChangeScores, TheReportHasAllOfIt) {
+  tell("new", {}, patch(0, 0, 20));
+  const auto folder = std::filesystem::path(::testing::TempDir()) / "objects_report";
+  write_objects_report(score(), folder);
+  for (const char* name : {"scores.json", "summary.csv", "objects.csv", "claims.csv", "sizes.gp"}) {
+    EXPECT_TRUE(std::filesystem::exists(folder / name)) << name;
+  }
+  const std::string text = to_text(score());
+  EXPECT_THAT(text, HasSubstr("false, of 200 points and more: 1"));
+  EXPECT_THAT(text, HasSubstr("told as moved, within 2 cm and 5 degrees: 0 of 1"));
+  EXPECT_THAT(to_json(score()), HasSubstr("\"false_of_200_points\": 1"));
+}
+
+TEST(ToldChanges, PointsAreOfBeforeOrOfNow) {
+  const auto folder = std::filesystem::path(::testing::TempDir()) / "told_changes";
+  std::filesystem::create_directories(folder);
+  const auto write = [&](const std::string& properties) {
+    std::ofstream(folder / "changes.json")
+        << R"({"X_AB":[1,0,0,2,0,1,0,0,0,0,1,0],"changes":[{"id":7,"kind":"new"}]})";
+    std::ofstream(folder / "change_7.ply")
+        << "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\n"
+        << "property float z\n"
+        << properties << "end_header\n1 2 3 1\n4 5 6 0\n";
+  };
+  write("property uchar was\n");
+  const ToldChanges told = read_told_changes(folder);
+  EXPECT_EQ(told.X_AB.translation().x(), 2.0);
+  ASSERT_EQ(told.changes.size(), 1U);
+  ASSERT_EQ(told.changes[0].was_W.size(), 1U);
+  EXPECT_EQ(told.changes[0].was_W[0].x, 1.0F);
+  ASSERT_EQ(told.changes[0].is_W.size(), 1U);
+  EXPECT_EQ(told.changes[0].is_W[0].x, 4.0F);
+  write("property uchar wax\n");
+  try {
+    read_told_changes(folder);
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_THAT(error.what(), ::testing::AllOf(HasSubstr("change_7.ply"), HasSubstr("'was'")));
+  }
 }
 
 ToldDetection detection(std::int64_t id, const std::string& name, const Pose& X_WO) {
