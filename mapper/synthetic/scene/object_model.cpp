@@ -4,9 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstddef>
+#include <iterator>
 #include <numbers>
-#include <utility>
 
 #include "mapper/synthetic/scene/material.hpp"
 #include "mapper/synthetic/scene/shape.hpp"

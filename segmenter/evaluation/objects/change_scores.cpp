@@ -1,10 +1,13 @@
 #include "segmenter/evaluation/objects/change_scores.hpp"
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <map>
-#include <span>
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include "segmenter/preprocess/nearest_neighbours.hpp"
 

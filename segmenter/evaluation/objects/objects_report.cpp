@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
+#include <optional>
 #include <set>
 
 #include <nlohmann/json.hpp>
@@ -76,9 +78,10 @@ Figure sizes_figure(const ObjectScores& scores) {
     found.points.emplace_back(x,
                               static_cast<double>(std::ranges::count_if(scores.truth, is_found)));
   }
-  if (!sizes.empty()) {  // wider than a single size
+  if (!sizes.empty()) {  // with room for a single size
     figure.plot.x_range = {{0.9 * static_cast<double>(sizes.front()) + 1.0,
                             1.1 * static_cast<double>(sizes.back()) + 2.0}};
+    figure.plot.y_range = {{0.0, 1.05 * static_cast<double>(sizes.size())}};
   }
   figure.plot.series = {all, found};
   return figure;
