@@ -1,4 +1,5 @@
-// kintsugi-ground-truth: the true instance of every point of a map of a synthetic scene.
+// kintsugi-ground-truth: the true instance of every point of a map of a synthetic scene; or what
+// changed between two scenes.
 
 #include <algorithm>
 #include <iostream>
@@ -7,9 +8,11 @@
 
 #include <CLI/CLI.hpp>
 
+#include "lcmtypes/base/atomic_file.hpp"
 #include "lcmtypes/base/command_line.hpp"
 #include "lcmtypes/base/run_main.hpp"
 #include "mapper/evaluation/instance_labels.hpp"
+#include "mapper/evaluation/scene_pairs.hpp"
 #include "mapper/tools/map_of_scene.hpp"
 
 namespace {
@@ -22,6 +25,8 @@ struct Options {
   std::string out;
   double max_distance_m = 0.03;
   std::int64_t min_points = 100;
+  bool changes = false;
+  bool objects = false;
 };
 
 struct Found {
@@ -52,6 +57,16 @@ void label(const Options& options) {
             << "  objects " << found.objects << "  structure " << found.structure << '\n';
 }
 
+/// The file of --changes and --objects; CLOUD is the second scene.
+void compare_scenes(const Options& options) {
+  const SceneOfMap before = read_scene(options.map.scene, options.map.in_scene_frame);
+  const SceneOfMap after = read_scene(options.map.cloud, options.map.in_scene_frame);
+  AtomicFile file(options.out);
+  file.stream() << scene_pairs_json({options.map.scene, before.scene, before.X_SW},
+                                    {options.map.cloud, after.scene, after.X_SW}, options.changes);
+  file.commit();
+}
+
 void add_options(CLI::App& app, Options& options) {
   add_scene(app, options.map);
   add_cloud(app, options.map);
@@ -64,6 +79,15 @@ void add_options(CLI::App& app, Options& options) {
   app.add_option("--min-points", options.min_points,
                  "the printed counts include instances with at least this many points")
       ->capture_default_str();
+  auto* const changes = app.add_flag(
+      "--changes", options.changes,
+      "CLOUD is the same room later, synthetic://NAME?...: OUT is a JSON file of what is new, gone "
+      "and moved, with poses and symmetry, for kintsugi-evaluate");
+  app.add_flag(
+         "--objects", options.objects,
+         "CLOUD is another room, synthetic://NAME?...: OUT is a JSON file of the objects that "
+         "are in both")
+      ->excludes(changes);
 }
 
 }  // namespace
@@ -77,7 +101,7 @@ int main(int argc, char** argv) {
     add_options(app, options);
     kintsugi::add_version_flag(app);
     CLI11_PARSE(app, argc, argv);
-    label(options);
+    options.changes || options.objects ? compare_scenes(options) : label(options);
     return 0;
   });
 }

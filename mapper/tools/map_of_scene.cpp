@@ -1,6 +1,7 @@
 #include "mapper/tools/map_of_scene.hpp"
 
 #include <stdexcept>
+#include <utility>
 
 #include <CLI/CLI.hpp>
 
@@ -26,16 +27,21 @@ void add_scene_frame(CLI::App& app, MapOfSceneOptions& options) {
                "at its first frame");
 }
 
-MapOfScene read_map_of_scene(const MapOfSceneOptions& options) {
-  const auto uri = parse_recording_uri(options.scene);
+SceneOfMap read_scene(const std::string& address, bool in_scene_frame) {
+  const auto uri = parse_recording_uri(address);
   if (!uri || uri->scheme != RecordingUri::Scheme::kSynthetic) {
-    throw std::invalid_argument("'" + options.scene + "': expected synthetic://NAME?key=value&...");
+    throw std::invalid_argument("'" + address + "': expected synthetic://NAME?key=value&...");
   }
   const auto config = synthetic::Sequence::Config::parse(uri->path, uri->options);
   const Pose X_SC = synthetic::Sequence(config).X_WC(0);
-  return {.points_W = read_cloud(options.cloud),
-          .scene = synthetic::make_scene(config.scene),
-          .X_SW = options.in_scene_frame ? Pose::Identity() : X_SC};
+  return {.scene = synthetic::make_scene(config.scene),
+          .X_SW = in_scene_frame ? Pose::Identity() : X_SC};
+}
+
+MapOfScene read_map_of_scene(const MapOfSceneOptions& options) {
+  SceneOfMap mapped = read_scene(options.scene, options.in_scene_frame);
+  return {
+      .points_W = read_cloud(options.cloud), .scene = std::move(mapped.scene), .X_SW = mapped.X_SW};
 }
 
 }  // namespace kintsugi::mapper

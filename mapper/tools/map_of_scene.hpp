@@ -25,6 +25,15 @@ void add_cloud(CLI::App& app, MapOfSceneOptions& options);
 void add_scene(CLI::App& app, MapOfSceneOptions& options);
 void add_scene_frame(CLI::App& app, MapOfSceneOptions& options);
 
+/// A synthetic scene as a mapper saw it.
+struct SceneOfMap {
+  synthetic::Scene scene;
+  Pose X_SW = Pose::Identity();  ///< of the map frame in the scene frame
+};
+
+/// @throws std::invalid_argument when the address is not that of a synthetic scene
+SceneOfMap read_scene(const std::string& address, bool in_scene_frame);
+
 /// A map and the scene that was mapped.
 struct MapOfScene {
   std::vector<CloudPoint> points_W;

@@ -1,6 +1,7 @@
 // kintsugi-evaluate: segments a recorded map slice by slice and writes the tables and figures of
 // the paper; or scores its segments against true instances; or compares a camera path with the true
-// one; or measures how much of what the camera saw in a live run was in the segment map.
+// one; or measures how much of what the camera saw in a live run was in the segment map; or scores
+// changes and detected objects.
 
 #include <filesystem>
 #include <stdexcept>
@@ -22,6 +23,7 @@
 #include "segmenter/process/options.hpp"
 #include "segmenter/tools/cloud_options.hpp"
 #include "segmenter/tools/evaluate/live_task.hpp"
+#include "segmenter/tools/evaluate/objects_task.hpp"
 #include "segmenter/tools/evaluate/paper_task.hpp"
 #include "segmenter/tools/evaluate/quality_task.hpp"
 #include "segmenter/tools/evaluate/trajectory_task.hpp"
@@ -39,20 +41,29 @@ struct EvaluateOptions {
   QualityOptions quality;
   TrajectoryOptions trajectory;
   std::filesystem::path live_log;
+  ObjectsOptions objects;
+
+  bool has_objects() const {
+    return !objects.changes_folder.empty() || !objects.detections_file.empty();
+  }
 };
 
-/// The input is a map, a camera path or a live run, and only one of them.
+/// The input is a map, a camera path, a live run or what was told of objects, and only one of them.
 void require_task(const EvaluateOptions& options) {
   const bool has_path = !options.trajectory.estimate_file.empty();
   const bool has_live = !options.live_log.empty();
   if (has_path && !options.input.empty()) throw CLI::ExcludesError("--trajectory", "IN");
   if (has_live && !options.input.empty()) throw CLI::ExcludesError("--live", "IN");
   if (has_live && has_path) throw CLI::ExcludesError("--live", "--trajectory");
-  if (has_path || has_live) return;
+  if (options.has_objects() && (!options.input.empty() || has_live || has_path)) {
+    throw CLI::ExcludesError("--changes or --objects", "IN, --live or --trajectory");
+  }
+  if (has_path || has_live || options.has_objects()) return;
   if (!options.trajectory.json_file.empty()) {
     throw CLI::RequiresError("--json", "--trajectory or --live");
   }
-  if (options.input.empty()) throw CLI::RequiredError("IN, --trajectory or --live");
+  if (options.input.empty())
+    throw CLI::RequiredError("IN, --trajectory, --live, --changes or --objects");
   if (options.folder.empty()) throw CLI::RequiredError("--out");
 }
 
@@ -91,6 +102,7 @@ void add_options(CLI::App& app, EvaluateOptions& options) {
           "instead of IN: the log of everything that was on the bus of a live run (run.lcm of "
           "scripts/trio); prints how much of what the camera saw was in the segment map, and how "
           "soon");
+  add_objects_options(*app.add_option_group("Changes and objects"), options.objects);
   app.callback([&options] { require_task(options); });
 }
 
@@ -143,7 +155,9 @@ int main(int argc, char** argv) {
     CLI::App app{
         "Segments a recorded map slice by slice and writes the paper's tables and figures; or, "
         "with --ground-truth, scores its segments; or, with --trajectory, computes the errors of a "
-        "camera path; or, with --live, measures a live run."};
+        "camera path; or, with --live, measures a live run; or, with --changes or --objects, "
+        "scores "
+        "what was told of objects."};
     EvaluateOptions options;
     add_options(app, options);
     kintsugi::add_version_flag(app);
@@ -155,6 +169,10 @@ int main(int argc, char** argv) {
     }
     if (!options.live_log.empty()) {
       return evaluate_live(options.live_log, options.trajectory.json_file);
+    }
+    if (options.has_objects()) {
+      evaluate_objects(options.objects, options.folder);
+      return 0;
     }
     std::string command_line;
     for (int i = 0; i < argc; ++i) command_line.append(i == 0 ? "" : " ").append(argv[i]);
