@@ -92,6 +92,8 @@ class SegmentMap {
   [[nodiscard]] std::int64_t version() const { return version_; }
   /// The chunks of the slice stream that are in the map, or older than what is in it.
   [[nodiscard]] const SequenceSet& chunks() const { return chunks_; }
+  /// What corrections have told, also of patches that are not in the map.
+  [[nodiscard]] const PatchMotions& motions() const { return motions_; }
 
  private:
   void check(const CloudSlice& slice) const;

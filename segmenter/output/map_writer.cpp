@@ -7,6 +7,7 @@
 
 #include "segmenter/io/map_files.hpp"
 #include "segmenter/io/saved_map.hpp"
+#include "segmenter/io/views_file.hpp"
 #include "segmenter/map/map_parts.hpp"
 
 namespace kintsugi::segmenter {
@@ -14,12 +15,15 @@ namespace {
 
 constexpr char kSaved[] = "";  // the action that writes the saved map; no stem is empty
 
-void save_state(const SegmentMapState& state, const std::filesystem::path& file) {
+void save_state(const SegmentMapState& state, const MapWriter::Views& views,
+                const std::filesystem::path& file) {
   if (file.has_parent_path()) {
     std::filesystem::create_directories(file.parent_path());
   }
+  if (views) write_views(*views, views_file_of(file));
   write_map_state(state, file);
-  spdlog::info("saved {}: {} slices", file.string(), state.slices.size());
+  spdlog::info("saved {}: {} slices, {} views", file.string(), state.slices.size(),
+               views ? views->views.size() : 0);
 }
 
 }  // namespace
@@ -28,16 +32,16 @@ void MapWriter::write(const SegmentMap& map, const std::string& stem) {
   put_files(copy(map), stem);
 }
 
-void MapWriter::save(const SegmentMap& map) {
+void MapWriter::save(const SegmentMap& map, const Views& views) {
   if (!config_.save_file.empty()) {
-    put_saved(copy(map));
+    put_saved(copy(map), views);
   }
 }
 
-void MapWriter::write_and_save(const SegmentMap& map, const std::string& stem) {
+void MapWriter::write_and_save(const SegmentMap& map, const std::string& stem, const Views& views) {
   const Snapshot snapshot = copy(map);
   put_files(snapshot, stem);
-  put_saved(snapshot);
+  put_saved(snapshot, views);
 }
 
 // The last owner of the snapshot returns its memory to spare_.
@@ -62,9 +66,9 @@ void MapWriter::put_files(const Snapshot& map, const std::string& stem) {
   put(stem, [this, map, stem] { write_files(*map, stem); });
 }
 
-void MapWriter::put_saved(const Snapshot& map) {
+void MapWriter::put_saved(const Snapshot& map, const Views& views) {
   if (!config_.save_file.empty()) {
-    put(kSaved, [this, map] { save_state(map->state, config_.save_file); });
+    put(kSaved, [this, map, views] { save_state(map->state, views, config_.save_file); });
   }
 }
 

@@ -13,6 +13,7 @@
 
 #include "segmenter/map/map_snapshot.hpp"
 #include "segmenter/output/background_writer.hpp"
+#include "segmenter/views/kept_view.hpp"
 
 namespace kintsugi::segmenter {
 
@@ -26,16 +27,19 @@ class MapWriter {
     std::filesystem::path save_file;     ///< of save(); empty: saves nothing
   };
 
+  /// What the camera saw, to be saved beside the map; null: nothing is known of it.
+  using Views = std::shared_ptr<const ViewSet>;
+
   explicit MapWriter(Config config) : config_(std::move(config)) {}
 
   /// Writes the map files in Config::folder: STEM.ply, STEM.json and STEM.csv, and the like of each
   /// further part (write_map_files()). What was written of a part that has been joined to another
   /// since is removed.
   void write(const SegmentMap& map, const std::string& stem);
-  /// Writes the saved map, for --resume: Config::save_file.
-  void save(const SegmentMap& map);
+  /// Writes the saved map, for --resume: Config::save_file, and views_file_of() that.
+  void save(const SegmentMap& map, const Views& views = nullptr);
   /// Writes both from one copy.
-  void write_and_save(const SegmentMap& map, const std::string& stem);
+  void write_and_save(const SegmentMap& map, const std::string& stem, const Views& views = nullptr);
 
   /// Tries again to write what could not be written.
   void try_again();
@@ -56,7 +60,7 @@ class MapWriter {
 
   Snapshot copy(const SegmentMap& map);
   void put_files(const Snapshot& map, const std::string& stem);
-  void put_saved(const Snapshot& map);
+  void put_saved(const Snapshot& map, const Views& views);
   void write_files(const MapSnapshot& map, const std::string& stem);
   void put(const std::string& name, Action action);
   void attempt(const std::string& name, std::int64_t number, const Action& action);

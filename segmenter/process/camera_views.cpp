@@ -18,9 +18,13 @@ StreamSubscriber<CameraView>::Config stream_config() {
 
 }  // namespace
 
-CameraViews::CameraViews()
+CameraViews::CameraViews(std::function<void(const CameraView&)> on_view)
     : stream_(
-          channels::kCameraView, [this](CameraView view) { add(std::move(view), Clock::now()); },
+          channels::kCameraView,
+          [this, on_view = std::move(on_view)](CameraView view) {
+            if (on_view) on_view(view);
+            add(std::move(view), Clock::now());
+          },
           {}, stream_config()) {}
 
 void CameraViews::add(CameraView view, Clock::time_point now) {

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -19,7 +20,8 @@ class CameraViews {
   using Clock = std::chrono::steady_clock;
   static constexpr std::chrono::seconds kMaxAge{2};
 
-  CameraViews();
+  /// @param on_view called with each view that is received, before add(); may be empty
+  explicit CameraViews(std::function<void(const CameraView&)> on_view = {});
 
   /// From now on bus.handle() receives views; this must outlive that.
   void subscribe(Bus& bus) { stream_.subscribe(bus); }

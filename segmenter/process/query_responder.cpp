@@ -50,8 +50,13 @@ SegmentAnswer refusal(const SegmentQuery& query, const std::string& problem) {
 
 }  // namespace
 
-QueryResponder::QueryResponder(Bus* bus, std::int64_t session, std::function<void()> on_work)
-    : bus_(bus), session_(session), on_work_(std::move(on_work)), thread_([this] { run(); }) {}
+QueryResponder::QueryResponder(Bus* bus, std::int64_t session, std::function<void()> on_work,
+                               std::function<void(const CameraView&)> on_view)
+    : bus_(bus),
+      session_(session),
+      on_work_(std::move(on_work)),
+      views_(std::move(on_view)),
+      thread_([this] { run(); }) {}
 
 QueryResponder::~QueryResponder() {
   {

@@ -39,7 +39,9 @@ class QueryResponder {
   /// @param bus must outlive this; null: answers nothing
   /// @param session of this segmenter
   /// @param on_work called from any thread when serve() should be called soon
-  QueryResponder(Bus* bus, std::int64_t session, std::function<void()> on_work);
+  /// @param on_view called with each view that is received; may be empty
+  QueryResponder(Bus* bus, std::int64_t session, std::function<void()> on_work,
+                 std::function<void(const CameraView&)> on_view = {});
   /// Waits until the current answer is sent.
   ~QueryResponder();
   QueryResponder(const QueryResponder&) = delete;

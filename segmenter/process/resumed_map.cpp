@@ -2,11 +2,13 @@
 
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include "segmenter/io/saved_map.hpp"
+#include "segmenter/io/views_file.hpp"
 
 namespace kintsugi::segmenter {
 namespace {
@@ -41,6 +43,24 @@ std::unique_ptr<SegmentMap> resume_map(const std::filesystem::path& file,
   spdlog::info("resumed {}: {} slices, {} points of session {}", file.string(), state.slices.size(),
                state.points_W.size(), state.map_session);
   return map;
+}
+
+void resume_views(const std::filesystem::path& file, const SegmentMap& map,
+                  ViewRecorder& recorder) {
+  const std::filesystem::path path = views_file_of(file);
+  ViewSet views;
+  views.map_session = map.map_session();
+  views.map_name = map.map_name();
+  if (!std::filesystem::exists(path)) {
+    spdlog::info("there is no {}: what the camera saw so far is not known", path.string());
+  } else if (ViewSet saved = read_views(path); saved.map_session != views.map_session) {
+    spdlog::warn("{} has the views of session {}, not of {}: they are replaced", path.string(),
+                 saved.map_session, views.map_session);
+  } else {
+    views = std::move(saved);
+    spdlog::info("resumed {}: {} views", path.string(), views.views.size());
+  }
+  recorder.resume(std::move(views), map);
 }
 
 }  // namespace kintsugi::segmenter

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "segmenter/map/segment_map.hpp"
+#include "segmenter/process/view_recorder.hpp"
 
 namespace kintsugi::segmenter {
 
@@ -14,5 +15,11 @@ namespace kintsugi::segmenter {
 ///   mode or another of kMapParameters
 std::unique_ptr<SegmentMap> resume_map(const std::filesystem::path& file,
                                        const SegmentMapConfig& config, std::int64_t session);
+
+/// Goes on with the views beside the saved map `file`, of which `map` was made. Without them, or
+/// where they are of another session, which a kill between two files can leave, new ones are kept;
+/// that is told.
+/// @throws std::runtime_error naming the file of views when it is damaged or no such file
+void resume_views(const std::filesystem::path& file, const SegmentMap& map, ViewRecorder& recorder);
 
 }  // namespace kintsugi::segmenter

@@ -55,6 +55,7 @@ void SegmentationLoop::run() {
 void SegmentationLoop::resume() {
   if (!config_.resume_file.empty()) {
     auto map = resume_map(config_.resume_file, config_.maps.map, session_);
+    if (with_.views != nullptr) resume_views(config_.resume_file, *map, *with_.views);
     with_.receiver.restore(*map);
     maps_.resume(std::move(map));
     with_.updates.publish_state(maps_.describe(), with_.clock.now_s());
@@ -142,14 +143,18 @@ void SegmentationLoop::write(const SaveRequest& request) {
   const bool is_main = stem == map_stem("", "");
   switch (request.kind) {
     case SaveKind::kCurrent:
-      return is_main ? writer_.write_and_save(map, stem) : writer_.write(map, stem);
+      return is_main ? writer_.write_and_save(map, stem, views_of(map)) : writer_.write(map, stem);
     case SaveKind::kForResume:
-      return is_main ? writer_.save(map) : void();
+      return is_main ? writer_.save(map, views_of(map)) : void();
     case SaveKind::kBroken:
       return writer_.write(map, stem);
     case SaveKind::kSessionEnded:
       return writer_.write(map, session_stem(stem, map.map_session()));
   }
+}
+
+MapWriter::Views SegmentationLoop::views_of(const SegmentMap& map) const {
+  return with_.views == nullptr ? nullptr : with_.views->views(map.map_session());
 }
 
 void SegmentationLoop::update_counts() {

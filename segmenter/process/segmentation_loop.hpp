@@ -16,6 +16,7 @@
 #include "segmenter/process/slice_queue.hpp"
 #include "segmenter/process/slice_receiver.hpp"
 #include "segmenter/process/update_publisher.hpp"
+#include "segmenter/process/view_recorder.hpp"
 #include "segmenter/session/session_maps.hpp"
 
 namespace kintsugi::segmenter {
@@ -41,6 +42,7 @@ class SegmentationLoop {
     UpdatePublisher& updates;
     QueryResponder& queries;
     PatientClock& clock;
+    ViewRecorder* views = nullptr;  ///< what is saved beside the map; null: nothing
   };
 
   /// @param session of this segmenter
@@ -70,6 +72,7 @@ class SegmentationLoop {
   using Clock = SessionMaps::Clock;
 
   void resume();
+  MapWriter::Views views_of(const SegmentMap& map) const;
   void segment_until_end();
   void segment_rest();
   void add(std::vector<CloudSlice> slices);

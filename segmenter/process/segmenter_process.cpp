@@ -31,11 +31,23 @@ SegmenterProcess::SegmenterProcess(const Config& config)
       bus_(config.log.empty() || config.publish ? std::make_unique<Bus>(config.lcm_url) : nullptr),
       updates_(config.publish ? bus_.get() : nullptr, session_, config.updates),
       queue_(config.max_queue_bytes),
-      queries_(config.publish ? bus_.get() : nullptr, session_, [this] { queue_.wake(); }),
-      receiver_({session_, config.segmentation.maps.map_name, config.max_queue_bytes}, queue_),
-      loop_(config.segmentation, session_, {queue_, receiver_, updates_, queries_, clock_}) {}
+      views_(config.segmentation.files.save_file.empty()
+                 ? nullptr
+                 : std::make_unique<ViewRecorder>(config.segmentation.maps.map_name)),
+      queries_(
+          config.publish ? bus_.get() : nullptr, session_, [this] { queue_.wake(); },
+          [this](const CameraView& view) { keep(view); }),
+      receiver_({session_, config.segmentation.maps.map_name, config.max_queue_bytes}, queue_,
+                views_.get()),
+      loop_(config.segmentation, session_,
+            {queue_, receiver_, updates_, queries_, clock_, views_.get()}) {}
 
 SegmenterProcess::~SegmenterProcess() = default;
+
+// Beside a log only the views in it count.
+void SegmenterProcess::keep(const CameraView& view) {
+  if (views_ && config_.log.empty()) views_->add(view);
+}
 
 int SegmenterProcess::run() {
   receive();

@@ -18,6 +18,7 @@
 #include "segmenter/process/slice_queue.hpp"
 #include "segmenter/process/slice_receiver.hpp"
 #include "segmenter/process/update_publisher.hpp"
+#include "segmenter/process/view_recorder.hpp"
 
 namespace kintsugi::segmenter {
 
@@ -64,6 +65,7 @@ class SegmenterProcess {
   int run();
 
  private:
+  void keep(const CameraView& view);
   void receive();
   void segment();
   void watch();
@@ -81,6 +83,7 @@ class SegmenterProcess {
   std::unique_ptr<Bus> bus_;  // null: nothing is received from it or published
   UpdatePublisher updates_;
   SliceQueue queue_;
+  std::unique_ptr<ViewRecorder> views_;  // null: no map is saved
   QueryResponder queries_;
   SliceReceiver receiver_;
   SegmentationLoop loop_;

@@ -14,11 +14,13 @@
 
 namespace kintsugi::segmenter {
 
-SliceReceiver::SliceReceiver(const Config& config, SliceQueue& queue)
+SliceReceiver::SliceReceiver(const Config& config, SliceQueue& queue, ViewRecorder* views)
     : queue_(queue),
+      views_(views),
       subscriber_(
           channels::kCloudSlice,
           [this](CloudSlice slice) {
+            if (views_ != nullptr) views_->add(slice);
             if (!slice.superseded) queue_.push(std::move(slice));
           },
           [this](const DecodeError& reason) { count_bad(reason); },
@@ -50,6 +52,7 @@ void SliceReceiver::read(const std::filesystem::path& log) {
         if (!queue_.wait_for_room(std::chrono::milliseconds(50))) continue;
         const auto event = reader->next();
         if (!event) break;
+        if (views_ != nullptr && views_->handle(event->channel, event->data)) continue;
         subscriber_.handle(event->channel, event->data);
       }
       problem_ = reader->damage();

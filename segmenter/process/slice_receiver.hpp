@@ -14,6 +14,7 @@
 #include "lcmtypes/stream/stream_subscriber.hpp"
 #include "segmenter/map/segment_map.hpp"
 #include "segmenter/process/slice_queue.hpp"
+#include "segmenter/process/view_recorder.hpp"
 
 namespace kintsugi::segmenter {
 
@@ -27,8 +28,9 @@ class SliceReceiver {
     std::size_t max_pending_bytes = std::size_t{1} << 30U;  ///< of incomplete slices
   };
 
-  /// `queue` must outlive this.
-  SliceReceiver(const Config& config, SliceQueue& queue);
+  /// `queue` must outlive this, and so must `views`, which gets every slice, and the views of a
+  /// log; null: nobody keeps views.
+  SliceReceiver(const Config& config, SliceQueue& queue, ViewRecorder* views = nullptr);
   /// Stops reading.
   ~SliceReceiver();
   SliceReceiver(const SliceReceiver&) = delete;
@@ -65,6 +67,7 @@ class SliceReceiver {
   void count_bad(const DecodeError& reason);
 
   SliceQueue& queue_;
+  ViewRecorder* views_;
   std::atomic<bool> stopping_{false};
   std::atomic<bool> reads_log_{false};
   std::int64_t num_bad_ = 0;            // of the thread that receives

@@ -3,6 +3,8 @@
 // looked.
 
 #include <Eigen/Core>
+#include <cstddef>
+#include <span>
 #include <vector>
 
 #include "segmenter/views/map_view.hpp"
@@ -15,6 +17,8 @@ struct Sights {
   int through = 0;   ///< views that measured something behind it: it was free
   int measured = 0;  ///< views that measured surface there, within their noise
   int hidden = 0;    ///< views that measured something in front of it
+
+  bool operator==(const Sights&) const = default;
 };
 
 class ObservedSpace {
@@ -22,18 +26,37 @@ class ObservedSpace {
   /// @param resolution_m voxel size of the map, > 0
   explicit ObservedSpace(double resolution_m) : resolution_m_(resolution_m) {}
 
+  /// @throws std::invalid_argument when the depth image has not the size that its intrinsics tell
   void add(MapView view);
-  void clear() { views_.clear(); }
+  void clear();
   [[nodiscard]] bool empty() const { return views_.empty(); }
   [[nodiscard]] const std::vector<MapView>& views() const { return views_; }
 
   /// What the views tell about a place. Conservative: it counts as seen through only where the
-  /// measurements around it are all behind it by more than the camera's noise.
+  /// measurements around it, as far as a voxel and at least a pixel to each side, are all behind it
+  /// by more than a voxel and three standard deviations of the camera's depth there.
   [[nodiscard]] Sights sights(const Eigen::Vector3f& p_W) const;
 
+  /// The same of many places, on all cores: places that are near each other share the search for
+  /// the views that may show them.
+  [[nodiscard]] std::vector<Sights> sights(std::span<const Eigen::Vector3f> points_W) const;
+
  private:
+  struct Cone {  // a view sees nothing outside of it
+    Eigen::Vector3f apex_W;
+    Eigen::Vector3f axis_W;
+    float cosine = 0.0F;  // of its half angle
+    float sine = 0.0F;
+
+    [[nodiscard]] bool may_show(const Eigen::Vector3f& center_W, float radius_m) const;
+  };
+
+  void look(std::size_t view, const Eigen::Vector3f& p_W, Sights& sights) const;
+
   double resolution_m_;
   std::vector<MapView> views_;
+  std::vector<Eigen::Matrix<float, 3, 4>> X_CW_;  // of each view
+  std::vector<Cone> cones_;                       // of each view
 };
 
 }  // namespace kintsugi::segmenter

@@ -13,7 +13,7 @@ LOCK_TIMEOUT_S = 3.0  # the processes of a supervisor that was killed end soon
 
 # All that a run writes. Other files in the folder belong to the user.
 RUN_FILES = (
-    "mapper.lcm", "mapper.*.lcm", "segmenter.map", "run.lcm", "run.lcm.partial", "segments*.ply", "segments*.json",
+    "mapper.lcm", "mapper.*.lcm", "segmenter.map", "segmenter.map.views", "run.lcm", "run.lcm.partial", "segments*.ply", "segments*.json",
     "segments*.csv", "final.png", "final.part*.png", "final_*.png", "map_final*.png", "segments_final*.png",
     "snapshot_*.png", "run.mp4", "trajectory.txt", "trajectory.part*.txt", "status.csv", "mapper.log",
     "segmenter.log", "viewer.log", "logger.log", "trio.options")

@@ -154,9 +154,11 @@ void add_teach_command(CLI::App& app, ObjectsAction& action) {
   const auto options = std::make_shared<TeachOptions>();
   CLI::App& command = *app.add_subcommand(
       "teach", "adds an object to the library, or refines the one of that name");
-  CLI::Option* const map = command.add_option(
-      "--map", options->map,
-      "the map in which it is: a saved map (kintsugi-segmenter --save) or a labelled PLY file");
+  CLI::Option* const map =
+      command.add_option("--map", options->map,
+                         "the map in which it is: a saved map (kintsugi-segmenter --save) or an "
+                         "LCM log, with what the "
+                         "camera saw, or a labelled PLY file");
   command.add_option("--ids", options->ids, "ID,...: the segments of that map that are the object")
       ->delimiter(',')
       ->needs(map);

@@ -9,9 +9,11 @@
 #include "lcmtypes/channels.hpp"
 #include "segmenter/core/parameters/presets.hpp"
 #include "segmenter/io/ply/ply_reader.hpp"
+#include "segmenter/io/views_file.hpp"
 #include "segmenter/process/process_status.hpp"
 #include "segmenter/process/segmenter_process.hpp"
 #include "tests/segmenter/evaluation/session/log_of_slices.hpp"
+#include "tests/segmenter/evaluation/session/log_of_views.hpp"
 #include "tests/segmenter/process/listener.hpp"
 #include "tests/segmenter/process/room_session.hpp"
 #include "tests/segmenter/process/slice_session.hpp"
@@ -278,6 +280,45 @@ TEST_F(SegmenterProgram, RefusesToGoOnWithWhatIsNoMapOfItsOwn) {
   EXPECT_THAT(refusal("--resume " + path("map.kseg")), HasSubstr("cut off or damaged"));
 }
 
+TEST_F(SegmenterProgram, SavesTheViewsOfTheCameraBesideTheMap) {
+  const auto slices = wavy_session(3, 100);
+  const auto write_session = [&](std::int64_t num_views) {
+    testing::LogMessages messages = messages_of(slices);
+    std::vector<CameraView> views;
+    for (std::int64_t i = 0; i < num_views; ++i) {
+      views.push_back(testing::view_at(static_cast<double>(i), 1000 + i));
+    }
+    testing::append_views(views, messages);
+    write_log(path("slices.lcm"), messages);
+  };
+  const std::string map = path("map.kseg");
+  const std::string views = map + ".views";
+  const std::string log =
+      "--log " + path("slices.lcm") + " --out " + path("out") + " --save " + map;
+  write_session(3);
+  ASSERT_EQ(run(log).exit_code, 0);
+  EXPECT_EQ(read_views_of(views, slices[0].session, "map").views.size(), 3U);
+  write_session(5);  // of which the first three are known
+  const auto resumed = run(log + " --resume " + map);
+  EXPECT_EQ(resumed.exit_code, 0) << resumed.output;
+  EXPECT_THAT(resumed.output, HasSubstr("resumed " + views + ": 3 views"));
+  EXPECT_EQ(read_views(views).views.size(), 5U);
+  std::filesystem::remove(views);
+  const auto without = run(log + " --resume " + map);
+  EXPECT_EQ(without.exit_code, 0) << without.output;
+  EXPECT_THAT(without.output, HasSubstr("there is no " + views));
+  ViewSet foreign;
+  foreign.map_session = 77;
+  write_views(foreign, views);
+  const auto replaced = run(log + " --resume " + map);
+  EXPECT_EQ(replaced.exit_code, 0) << replaced.output;
+  EXPECT_THAT(replaced.output, HasSubstr("has the views of session 77"));
+  std::ofstream(views) << "KVIEWS damaged";
+  const auto damaged = run(log + " --resume " + map);
+  EXPECT_EQ(damaged.exit_code, 1);
+  EXPECT_THAT(damaged.output, HasSubstr("'" + views + "'"));
+}
+
 class SegmenterOnTheBus : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -303,6 +344,22 @@ TEST_F(SegmenterOnTheBus, PublishesUpdatesAndStatusUntilTheFinalSlice) {
   EXPECT_EQ(status->segments, listener.mirror().num_segments());
   EXPECT_GT(status->memory_bytes, 0);
   EXPECT_EQ(labels_in(folder / "segments.ply"), listener.mirror().labels());
+}
+
+TEST_F(SegmenterOnTheBus, SavesTheViewsThatItHears) {
+  const TemporaryFolder folder;
+  const auto slices = wavy_session(2, 300);
+  SegmenterProcess::Config config = on_the_bus(folder, "exact");
+  config.segmentation.files.save_file = folder / "map.kseg";
+  Listener listener(config);
+  StreamPublisher views(listener.bus(), channels::kCameraView, slices[0].session, {});
+  views.publish(testing::view_at(0.0, 900));
+  views.publish(testing::view_at(1.0, 901));
+  views.flush();
+  StreamPublisher publisher(listener.bus(), channels::kCloudSlice, slices[0].session, {});
+  for (const CloudSlice& slice : slices) publisher.publish(slice);
+  EXPECT_EQ(listener.hear_the_end(), 0);
+  EXPECT_EQ(read_views_of(folder / "map.kseg.views", slices[0].session, "map").views.size(), 2U);
 }
 
 TEST_F(SegmenterOnTheBus, SegmentsEverySliceOfABurstHoweverSlowEngineAndFilesAre) {

@@ -1,0 +1,138 @@
+// What views tell about places.
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <random>
+#include <stdexcept>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "segmenter/views/observed_space.hpp"
+
+namespace kintsugi::segmenter {
+namespace {
+
+constexpr double kVoxel_m = 0.01;
+
+/// A camera at the origin that measures the same depth everywhere.
+MapView wall(double depth_m) {
+  MapView view;
+  view.intrinsics = {.fx = 130, .fy = 130, .cx = 79.5, .cy = 59.5, .width = 160, .height = 120};
+  view.depth_mm.assign(160 * 120, static_cast<std::uint16_t>(1e3 * depth_m));
+  return view;
+}
+
+std::uint16_t& depth_at(MapView& view, int i, int j) {
+  return view.depth_mm.at(static_cast<std::size_t>(j * view.intrinsics.width + i));
+}
+
+Sights sights_of(const MapView& view, const Eigen::Vector3f& p_W) {
+  ObservedSpace space(kVoxel_m);
+  space.add(view);
+  return space.sights(p_W);
+}
+
+constexpr Sights kNothing{};
+constexpr Sights kThrough{.through = 1};
+constexpr Sights kMeasured{.measured = 1};
+constexpr Sights kHidden{.hidden = 1};
+
+TEST(ObservedSpace, TellsWhatIsBeforeOnAndBehindASurface) {
+  const MapView view = wall(2.0);
+  EXPECT_EQ(sights_of(view, {0, 0, 1.5F}), kThrough);
+  EXPECT_EQ(sights_of(view, {0.3F, 0.2F, 2.0F}), kMeasured);
+  EXPECT_EQ(sights_of(view, {0, 0, 2.5F}), kHidden);
+}
+
+TEST(ObservedSpace, TellsNothingOutsideOfTheViews) {
+  const MapView view = wall(2.0);
+  EXPECT_EQ(sights_of(view, {0, 0, -1.0F}), kNothing);
+  EXPECT_EQ(sights_of(view, {0, 0, 0}), kNothing);
+  EXPECT_EQ(sights_of(view, {3, 0, 1}), kNothing);
+  EXPECT_EQ(sights_of(view, {0, -3, 1}), kNothing);
+  EXPECT_EQ(sights_of(view, {NAN, 0, 1}), kNothing);
+}
+
+TEST(ObservedSpace, MarginGrowsWithTheNoiseOfTheCamera) {
+  // Three standard deviations at 1 m are 6 mm, less than the voxel; at 4 m they are 8 cm.
+  EXPECT_EQ(sights_of(wall(1.0), {0, 0, 0.985F}), kThrough);
+  EXPECT_EQ(sights_of(wall(1.0), {0, 0, 0.995F}), kMeasured);
+  EXPECT_EQ(sights_of(wall(4.0), {0, 0, 3.94F}), kMeasured);
+  EXPECT_EQ(sights_of(wall(4.0), {0, 0, 3.85F}), kThrough);
+}
+
+TEST(ObservedSpace, SaysNothingWhereNothingIsMeasured) {
+  MapView view = wall(2.0);
+  depth_at(view, 80, 60) = 0;
+  for (const float x : {-0.003F, 0.003F, 0.012F}) {
+    EXPECT_EQ(sights_of(view, {x, x, 1.5F}), kNothing) << x;
+  }
+  EXPECT_EQ(sights_of(view, {0.1F, 0.1F, 1.5F}), kThrough);
+}
+
+TEST(ObservedSpace, SaysNothingBesideWhatIsInFront) {
+  // A thin thing at 1 m in column 80: what is next to it may be hidden by it, or be part of it.
+  MapView view = wall(2.0);
+  for (int j = 0; j < 120; ++j) depth_at(view, 80, j) = 1000;
+  const auto x_of = [](double u_px, double z_m) {
+    return static_cast<float>((u_px - 79.5) / 130 * z_m);
+  };
+  EXPECT_EQ(sights_of(view, {x_of(79, 1.0), 0, 1.0F}), kNothing);
+  EXPECT_EQ(sights_of(view, {x_of(80, 1.0), 0, 1.0F}), kMeasured);
+  EXPECT_EQ(sights_of(view, {x_of(80, 1.5), 0, 1.5F}), kNothing);  // the wall is seen beside it
+  EXPECT_EQ(sights_of(view, {x_of(78, 1.0), 0, 1.0F}), kNothing);  // a voxel is 1.3 pixels here
+  EXPECT_EQ(sights_of(view, {x_of(77, 1.0), 0, 1.0F}), kThrough);
+}
+
+TEST(ObservedSpace, CountsEachView) {
+  ObservedSpace space(kVoxel_m);
+  EXPECT_TRUE(space.empty());
+  MapView turned = wall(2.0);
+  turned.X_WC.linear() = Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitY()).matrix();
+  turned.X_WC.translation() << 0, 0, 3.0;
+  for (const double depth_m : {1.0, 2.0, 2.0, 3.0}) space.add(wall(depth_m));
+  space.add(turned);  // it looks at the others, and measures a surface at z = 1
+  EXPECT_EQ(space.sights(Eigen::Vector3f(0, 0, 2.0F)),
+            (Sights{.through = 2, .measured = 2, .hidden = 1}));
+  space.clear();
+  EXPECT_TRUE(space.empty());
+  EXPECT_EQ(space.sights(Eigen::Vector3f(0, 0, 2.0F)), kNothing);
+}
+
+TEST(ObservedSpace, ManyPlacesAreToldAsEachAlone) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> number(-1.0, 1.0);
+  ObservedSpace space(kVoxel_m);
+  for (int i = 0; i < 20; ++i) {
+    MapView view = wall(1.5 + number(random));
+    const Eigen::Vector3d axis(number(random), number(random), number(random));
+    view.X_WC.linear() = Eigen::AngleAxisd(3.0 * number(random), axis.normalized()).matrix();
+    view.X_WC.translation() << number(random), number(random), number(random);
+    space.add(view);
+  }
+  std::vector<Eigen::Vector3f> points_W{{NAN, 0, 0}, {1e30F, 0, 0}};
+  for (int i = 0; i < 3000; ++i) {
+    points_W.emplace_back(3 * number(random), 3 * number(random), 3 * number(random));
+  }
+  const std::vector<Sights> all = space.sights(points_W);
+  int num_seen = 0;
+  for (std::size_t i = 0; i < points_W.size(); ++i) {
+    EXPECT_EQ(all[i], space.sights(points_W[i])) << points_W[i].transpose();
+    num_seen += all[i] != kNothing;
+  }
+  EXPECT_GT(num_seen, 1000);
+}
+
+TEST(ObservedSpace, RefusesAViewThatHasNotItsDepths) {
+  ObservedSpace space(kVoxel_m);
+  MapView view = wall(1.0);
+  view.depth_mm.pop_back();
+  EXPECT_THROW(space.add(view), std::invalid_argument);
+  view.intrinsics.width = 0;
+  EXPECT_THROW(space.add(view), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace kintsugi::segmenter
