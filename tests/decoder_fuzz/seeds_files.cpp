@@ -9,8 +9,8 @@
 #include "segmenter/core/make_engine.hpp"
 #include "segmenter/io/ply/labelled_ply_writer.hpp"
 #include "segmenter/io/saved_map.hpp"
-#include "segmenter/io/views_file.hpp"
 #include "segmenter/objects/library/object_files.hpp"
+#include "segmenter/io/views_file.hpp"
 #include "segmenter/views/view_record.hpp"
 #include "tests/decoder_fuzz/input_file.hpp"
 #include "tests/decoder_fuzz/seeds.hpp"
@@ -156,81 +156,83 @@ Seeds object_seeds() {
   const auto mug = folder / "mug";
   return {{"mug", bytes_of(contents(mug / segmenter::kObjectFile) + '\0' +
                            contents(mug / segmenter::kModelFile))}};
-  Seeds views_file_seeds() {
-    segmenter::ViewRecord record(5, "map");
-    CloudSlice patch = segmenter::testing::wavy_session(1, 1)[0];
-    patch.kind = SliceKind::kPatch;
-    record.add(patch);
-    for (int i = 1; i < 4; ++i) {
-      CameraView view;
-      view.utime = 1'000'000 * i;
-      view.session = 5;
-      view.state = TrackingState::kTracking;
-      view.X_WC.translation().x() = i;
-      view.intrinsics = {.fx = 5, .fy = 5, .cx = 3, .cy = 2, .width = 6, .height = 4};
-      view.depth_mm.assign(24, static_cast<std::uint16_t>(900 + i));
-      record.add(view);
-    }
-    const auto path = input_folder() / "views";
-    segmenter::write_views(record.views(), path);
-    return {{"three_views", bytes_of(contents(path))}};
-  }
+}
 
-  Seeds oni_seeds() { return {{"whole", oni_recording(true)}, {"cut_off", oni_recording(false)}}; }
-
-  /// Two frames of 4x3 pixels, raw, in a .klg and in a .sens file.
-  Seeds recording_file_seeds() {
-    const auto put = [](std::string& bytes, auto value) {
-      bytes.append(reinterpret_cast<const char*>(&value), sizeof(value));
-    };
-    const std::string depth(24, '\x05');
-    const std::string color(36, '\x40');
-    std::string klg;
-    put(klg, std::int32_t{2});
-    std::string sens;
-    put(sens, std::uint32_t{4});
-    put(sens, std::uint64_t{1});
-    sens += 'S';
-    for (int matrix = 0; matrix < 4; ++matrix) {
-      for (int i = 0; i < 16; ++i) put(sens, i % 5 == 0 ? 1.0F : 0.0F);
-    }
-    for (const std::int32_t value : {0, 0, 4, 3, 4, 3}) put(sens, value);
-    put(sens, 1000.0F);
-    put(sens, std::uint64_t{2});
-    for (std::int64_t frame = 1; frame <= 2; ++frame) {
-      put(klg, frame * 33'333);
-      put(klg, static_cast<std::int32_t>(depth.size()));
-      put(klg, static_cast<std::int32_t>(color.size()));
-      klg += depth + color;
-      for (int i = 0; i < 16; ++i) put(sens, i % 5 == 0 ? 1.0F : 0.0F);
-      for (int camera = 0; camera < 2; ++camera) put(sens, frame * 33'333);
-      put(sens, static_cast<std::uint64_t>(color.size()));
-      put(sens, static_cast<std::uint64_t>(depth.size()));
-      sens += color + depth;
-    }
-    return {{"klg", bytes_of(klg)}, {"sens", bytes_of(sens)}};
+Seeds views_file_seeds() {
+  segmenter::ViewRecord record(5, "map");
+  CloudSlice patch = segmenter::testing::wavy_session(1, 1)[0];
+  patch.kind = SliceKind::kPatch;
+  record.add(patch);
+  for (int i = 1; i < 4; ++i) {
+    CameraView view;
+    view.utime = 1'000'000 * i;
+    view.session = 5;
+    view.state = TrackingState::kTracking;
+    view.X_WC.translation().x() = i;
+    view.intrinsics = {.fx = 5, .fy = 5, .cx = 3, .cy = 2, .width = 6, .height = 4};
+    view.depth_mm.assign(24, static_cast<std::uint16_t>(900 + i));
+    record.add(view);
   }
+  const auto path = input_folder() / "views";
+  segmenter::write_views(record.views(), path);
+  return {{"three_views", bytes_of(contents(path))}};
+}
 
-  Seeds text_seeds(const std::string& target) {
-    static const std::map<std::string, Seeds> seeds = {
-        {"calibration",
-         {{"pinhole", bytes_of("# fx fy\n525 525.5 319.5 239.5 640 480 5000\n")},
-          {"lens", bytes_of("525 525.5 319.5 239.5 640 480 1000 0.1 -0.2 1e-3 0 0.05\n")}}},
-        {"folder_recording",
-         {{"lists", three_lists("# depth\n0.1 depth/0.png\n0.2 depth/1.png\n",
-                                "0.1 rgb/0.png\n0.25 rgb/2.png\n", "")},
-          {"associations", three_lists("", "",
-                                       "0.1 depth/0.png 0.1 rgb/0.png\n"
-                                       "0.2 rgb/1.png 0.2 depth/1.png\n")}}},
-        {"trajectory",
-         {{"two_poses", bytes_of("# timestamp tx ty tz qx qy qz qw\n0.5 1 2 -3 0 0 0 1\n"
-                                 "1341836537.6556914 1e-3 0 0 0.5 -0.5 0.5 0.5 # here\n")}}},
-        {"recording_uri",
-         {{"folder", bytes_of("folder://office?camera=on&depth_modes=640x480@30,80x60@15")},
-          {"synthetic", bytes_of("synthetic://office?frames=20&start=3&noise=off&seed=7")},
-          {"imitation", bytes_of("synthetic://loop?color_gap=3-9&color_drop=0.5&mirror=stuck&"
-                                 "replug_after_ms=20&depth_units=1mm,shift")}}}};
-    return seeds.at(target);
+Seeds oni_seeds() { return {{"whole", oni_recording(true)}, {"cut_off", oni_recording(false)}}; }
+
+/// Two frames of 4x3 pixels, raw, in a .klg and in a .sens file.
+Seeds recording_file_seeds() {
+  const auto put = [](std::string& bytes, auto value) {
+    bytes.append(reinterpret_cast<const char*>(&value), sizeof(value));
+  };
+  const std::string depth(24, '\x05');
+  const std::string color(36, '\x40');
+  std::string klg;
+  put(klg, std::int32_t{2});
+  std::string sens;
+  put(sens, std::uint32_t{4});
+  put(sens, std::uint64_t{1});
+  sens += 'S';
+  for (int matrix = 0; matrix < 4; ++matrix) {
+    for (int i = 0; i < 16; ++i) put(sens, i % 5 == 0 ? 1.0F : 0.0F);
   }
+  for (const std::int32_t value : {0, 0, 4, 3, 4, 3}) put(sens, value);
+  put(sens, 1000.0F);
+  put(sens, std::uint64_t{2});
+  for (std::int64_t frame = 1; frame <= 2; ++frame) {
+    put(klg, frame * 33'333);
+    put(klg, static_cast<std::int32_t>(depth.size()));
+    put(klg, static_cast<std::int32_t>(color.size()));
+    klg += depth + color;
+    for (int i = 0; i < 16; ++i) put(sens, i % 5 == 0 ? 1.0F : 0.0F);
+    for (int camera = 0; camera < 2; ++camera) put(sens, frame * 33'333);
+    put(sens, static_cast<std::uint64_t>(color.size()));
+    put(sens, static_cast<std::uint64_t>(depth.size()));
+    sens += color + depth;
+  }
+  return {{"klg", bytes_of(klg)}, {"sens", bytes_of(sens)}};
+}
+
+Seeds text_seeds(const std::string& target) {
+  static const std::map<std::string, Seeds> seeds = {
+      {"calibration",
+       {{"pinhole", bytes_of("# fx fy\n525 525.5 319.5 239.5 640 480 5000\n")},
+        {"lens", bytes_of("525 525.5 319.5 239.5 640 480 1000 0.1 -0.2 1e-3 0 0.05\n")}}},
+      {"folder_recording",
+       {{"lists", three_lists("# depth\n0.1 depth/0.png\n0.2 depth/1.png\n",
+                              "0.1 rgb/0.png\n0.25 rgb/2.png\n", "")},
+        {"associations", three_lists("", "",
+                                     "0.1 depth/0.png 0.1 rgb/0.png\n"
+                                     "0.2 rgb/1.png 0.2 depth/1.png\n")}}},
+      {"trajectory",
+       {{"two_poses", bytes_of("# timestamp tx ty tz qx qy qz qw\n0.5 1 2 -3 0 0 0 1\n"
+                               "1341836537.6556914 1e-3 0 0 0.5 -0.5 0.5 0.5 # here\n")}}},
+      {"recording_uri",
+       {{"folder", bytes_of("folder://office?camera=on&depth_modes=640x480@30,80x60@15")},
+        {"synthetic", bytes_of("synthetic://office?frames=20&start=3&noise=off&seed=7")},
+        {"imitation", bytes_of("synthetic://loop?color_gap=3-9&color_drop=0.5&mirror=stuck&"
+                               "replug_after_ms=20&depth_units=1mm,shift")}}}};
+  return seeds.at(target);
+}
 
 }  // namespace kintsugi::fuzzing

@@ -11,12 +11,12 @@ namespace kintsugi::segmenter {
 /// Distances in multiples of the spacing of the surfaces. Two samplings of one surface lie up to
 /// half a spacing apart on each side, and the map is registered to about as much.
 inline constexpr float kSameDistance = 1.5F;
-/// Cosine of 45 degrees: normals are averages over some voxels, so that at an edge between two faces
-/// they lie anywhere between both.
+/// Cosine of 45 degrees: normals are averages over some voxels, so that at an edge between two
+/// faces they lie anywhere between both.
 inline constexpr float kSameNormal = std::numbers::sqrt2_v<float> / 2;
 /// CIELAB. Colours of one surface in two maps differ by the light of the place where it stands, by
 /// shades, and by what the sensor mixes at edges; above 2.3 a difference is just noticeable.
-inline constexpr float kSameColor = 20.0F;
+inline constexpr float kSameColor = 15.0F;
 
 /// What the light of another place adds to all colours of a thing. It is bounded: else white and
 /// grey things of one shape would be the same.

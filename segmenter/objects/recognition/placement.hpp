@@ -4,10 +4,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "segmenter/objects/recognition/map_access.hpp"
 #include "segmenter/objects/recognition/pose_search.hpp"
 #include "segmenter/objects/recognition/prepared_model.hpp"
-#include "segmenter/objects/recognition/scene_surface.hpp"
-#include "segmenter/views/observed_space.hpp"
 
 namespace kintsugi::segmenter {
 
@@ -32,9 +31,9 @@ struct Placement {
 };
 
 /// What is there of the object in the pose of the hypothesis.
-/// @param observed what the camera saw; nullptr: not known, and what is not in the map speaks
-///   against the object by half
-Placement placement_of(const PreparedModel& model, const SceneSurface& scene,
-                       const ObservedSpace* observed, const PoseHypothesis& hypothesis);
+/// Where what the camera saw is not known, what is not in the map speaks against the object by
+/// half.
+Placement placement_of(const PreparedModel& model, const MapAccess& map,
+                       const PoseHypothesis& hypothesis);
 
 }  // namespace kintsugi::segmenter

@@ -1,19 +1,18 @@
 #include "segmenter/objects/recognition/pose_refinement.hpp"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
-
-#include <Eigen/Dense>
 
 namespace kintsugi::segmenter {
 
 namespace {
 
 constexpr int kIterations = 12;
-// Of a point-to-point residual beside one to the plane: along the surface a point has no counterpart
-// of its own, only one within half a spacing.
+// Of a point-to-point residual beside one to the plane: along the surface a point has no
+// counterpart of its own, only one within half a spacing.
 constexpr double kPointWeight = 0.1;
 
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
@@ -100,18 +99,21 @@ PoseHypothesis refined_pose(const PreparedModel& model, const Surface& seen_W, c
   constexpr std::size_t kFewest = 6;  // what six unknowns take
   for (int i = 0; i < kIterations; ++i) {
     // From a few spacings down to what counts as the same.
-    const float reach_m = std::max(kSameDistance, 4.0F - static_cast<float>(i) * 0.4F) *
-                          model.spacing_m;
+    const float reach_m =
+        std::max(kSameDistance, 4.0F - static_cast<float>(i) * 0.4F) * model.spacing_m;
     std::vector<Match> matches = matches_of(model, seen_W, X_OW, reach_m);
     result.light = light_change(matches);
     keep_colors(matches, result.light);
     if (matches.size() < kFewest) break;
+    // Within the largest reach a pose that is right has nearly all points.
+    if (i == 3 && static_cast<float>(matches.size()) < 0.4F * static_cast<float>(seen_W.size())) {
+      break;
+    }
     const Vector6d step = step_O(matches);
     Pose motion = Pose::Identity();
     const double angle = step.tail<3>().norm();
     if (angle > 0.0) {
-      motion.linear() =
-          Eigen::AngleAxisd(angle, step.tail<3>() / angle).toRotationMatrix();
+      motion.linear() = Eigen::AngleAxisd(angle, step.tail<3>() / angle).toRotationMatrix();
     }
     motion.translation() = step.head<3>();
     X_OW = motion * X_OW;
@@ -124,9 +126,9 @@ PoseHypothesis refined_pose(const PreparedModel& model, const Surface& seen_W, c
   std::vector<Match> matches = matches_of(model, seen_W, X_OW, kSameDistance * model.spacing_m);
   result.light = light_change(matches);
   keep_colors(matches, result.light);
-  result.agreement =
-      seen_W.empty() ? 0.0F
-                     : static_cast<float>(matches.size()) / static_cast<float>(seen_W.size());
+  result.agreement = seen_W.empty()
+                         ? 0.0F
+                         : static_cast<float>(matches.size()) / static_cast<float>(seen_W.size());
   return result;
 }
 

@@ -1,11 +1,10 @@
 #include "segmenter/objects/recognition/pose_search.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
-
-#include <Eigen/Geometry>
 
 #include "segmenter/objects/recognition/pose_refinement.hpp"
 
@@ -16,8 +15,8 @@ namespace {
 // Enough for stable shares: the standard deviation of a share of 100 samples is at most 5 %.
 constexpr std::size_t kVotersSeen = 60;
 constexpr std::size_t kVotersOfModel = 150;
-constexpr std::size_t kRefined = 12;     // hypotheses that are refined
-constexpr std::size_t kSamples = 150;    // points by which hypotheses are compared
+constexpr std::size_t kRefined = 8;    // hypotheses that are refined
+constexpr std::size_t kSamples = 150;  // points by which hypotheses are compared
 // The rim of a model moves by one cell from one turn to the next.
 constexpr float kCellsInRadius = 8.0F;
 
@@ -62,57 +61,68 @@ struct Vote {
   int votes = 0;
 };
 
-/// A rotation that turns z to `up_W`.
-Eigen::Matrix3d upright(const Eigen::Vector3d& up_W) {
-  return Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), up_W).toRotationMatrix();
+/// A seen and a model point that may be the same: like colours, and normals that a turn about the
+/// vertical can bring together.
+struct Pair {
+  Eigen::Vector3f position_O;
+  Eigen::Vector3f normal_O;
+  Eigen::Vector3f position_U;  ///< U: W turned so that its z is up
+  Eigen::Vector3f normal_U;
+};
+
+std::vector<Pair> pairs_of(const Surface& voters_O, const Surface& voters_U) {
+  std::vector<Pair> pairs;
+  pairs.reserve(voters_O.size() * voters_U.size() / 4);
+  for (const SurfacePoint& o : voters_O) {
+    const float horizontal_O = std::hypot(o.normal.x(), o.normal.y());
+    for (const SurfacePoint& u : voters_U) {
+      const float largest_cosine =
+          o.normal.z() * u.normal.z() + horizontal_O * std::hypot(u.normal.x(), u.normal.y());
+      if (largest_cosine < kSameNormal) continue;
+      // Twice as far as colours of one thing may be: what the light changes is not known yet.
+      if (o.has_color && u.has_color &&
+          (o.lab - u.lab).squaredNorm() > 4 * kSameColor * kSameColor) {
+        continue;
+      }
+      pairs.push_back({o.position, o.normal, u.position, u.normal});
+    }
+  }
+  return pairs;
 }
 
 std::vector<Vote> votes_for_turns(const PreparedModel& model, const Surface& seen_W,
                                   const Eigen::Vector3d& up_W) {
-  const Surface voters_W = every_few(seen_W, kVotersSeen);
-  const Surface voters_O = every_few(model.surface_O, kVotersOfModel);
+  Pose X_UW = Pose::Identity();
+  X_UW.linear() =
+      Eigen::Quaterniond::FromTwoVectors(up_W, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  const Surface voters_U = transformed(every_few(seen_W, kVotersSeen), X_UW);
+  const std::vector<Pair> pairs = pairs_of(every_few(model.surface_O, kVotersOfModel), voters_U);
   const float cell_m = std::max(2 * model.spacing_m, model.radius_m / kCellsInRadius);
   const int turns = std::max(
       8, static_cast<int>(std::ceil(2 * std::numbers::pi_v<float> * model.radius_m / cell_m)));
-  Eigen::Vector3f low = voters_W.front().position;
-  Eigen::Vector3f high = low;
-  for (const SurfacePoint& point : voters_W) {
-    low = low.cwiseMin(point.position);
-    high = high.cwiseMax(point.position);
-  }
+  Eigen::AlignedBox3f box;
+  for (const SurfacePoint& point : voters_U) box.extend(point.position);
   // O's origin is inside the object, so at most its diameter away from each of its points.
-  low.array() -= 2 * model.radius_m;
-  high.array() += 2 * model.radius_m;
-  TranslationVotes accumulator(low, high, cell_m);
-  const Eigen::Matrix3d R_up = upright(up_W);
+  const Eigen::Vector3f margin = Eigen::Vector3f::Constant(2 * model.radius_m);
+  TranslationVotes accumulator(box.min() - margin, box.max() + margin, cell_m);
   std::vector<Vote> votes;
   votes.reserve(static_cast<std::size_t>(turns));
   for (int turn = 0; turn < turns; ++turn) {
-    const Eigen::Matrix3d R =
-        R_up * Eigen::AngleAxisd(2 * std::numbers::pi * turn / turns, Eigen::Vector3d::UnitZ())
-                   .toRotationMatrix();
-    const Eigen::Matrix3f R_WO = R.cast<float>();
+    const Eigen::Matrix3d R_UO =
+        Eigen::AngleAxisd(2 * std::numbers::pi * turn / turns, Eigen::Vector3d::UnitZ())
+            .toRotationMatrix();
+    const Eigen::Matrix3f R = R_UO.cast<float>();
     accumulator.clear();
-    for (const SurfacePoint& o : voters_O) {
-      const Eigen::Vector3f normal = R_WO * o.normal;
-      const Eigen::Vector3f offset = R_WO * o.position;
-      for (const SurfacePoint& w : voters_W) {
-        if (normal.dot(w.normal) < kSameNormal) continue;
-        // Twice as far as colours of one thing may be: what the light changes is not known yet.
-        if (o.has_color && w.has_color &&
-            (o.lab - w.lab).squaredNorm() > 4 * kSameColor * kSameColor) {
-          continue;
-        }
-        accumulator.add(w.position - offset);
-      }
+    for (const Pair& pair : pairs) {
+      if ((R * pair.normal_O).dot(pair.normal_U) < kSameNormal) continue;
+      accumulator.add(pair.position_U - R * pair.position_O);
     }
-    const auto [t, count] = accumulator.best();
+    const auto [t_U, count] = accumulator.best();
     if (count == 0) continue;
-    Vote& vote = votes.emplace_back();
-    vote.votes = count;
-    vote.X_WO = Pose::Identity();
-    vote.X_WO.linear() = R;
-    vote.X_WO.translation() = t.cast<double>();
+    Pose X_UO = Pose::Identity();
+    X_UO.linear() = R_UO;
+    X_UO.translation() = t_U.cast<double>();
+    votes.push_back({X_UW.inverse() * X_UO, count});
   }
   std::stable_sort(votes.begin(), votes.end(),
                    [](const Vote& a, const Vote& b) { return a.votes > b.votes; });
@@ -128,10 +138,9 @@ bool are_alike(const Pose& a, const Pose& b, const PreparedModel& model) {
 
 std::vector<PoseHypothesis> best_of(std::vector<PoseHypothesis> hypotheses,
                                     const PreparedModel& model, std::size_t count) {
-  std::stable_sort(hypotheses.begin(), hypotheses.end(),
-                   [](const PoseHypothesis& a, const PoseHypothesis& b) {
-                     return a.agreement > b.agreement;
-                   });
+  std::stable_sort(
+      hypotheses.begin(), hypotheses.end(),
+      [](const PoseHypothesis& a, const PoseHypothesis& b) { return a.agreement > b.agreement; });
   std::vector<PoseHypothesis> best;
   best.reserve(count);
   for (const PoseHypothesis& hypothesis : hypotheses) {

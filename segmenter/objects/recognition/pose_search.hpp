@@ -20,9 +20,4 @@ struct PoseHypothesis {
 std::vector<PoseHypothesis> upright_poses(const PreparedModel& model, const Surface& seen_W,
                                           const Eigen::Vector3d& up_W, std::size_t count);
 
-/// Poses in any orientation, from pairs of points whose shape features are alike. Both arguments'
-/// features are of the points of their surfaces.
-std::vector<PoseHypothesis> free_poses(const PreparedModel& model, const Surface& seen_W,
-                                       const ShapeFeatures& seen_features, std::size_t count);
-
 }  // namespace kintsugi::segmenter

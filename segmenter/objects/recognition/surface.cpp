@@ -87,7 +87,8 @@ Surface thinned(std::span<const CloudPoint> points, float spacing_m) {
     }
     first = i;
     const float length = sums.normal.norm();
-    // A mean of unit normals this short has no direction: the cube holds both sides of a thin thing.
+    // A mean of unit normals this short has no direction: the cube holds both sides of a thin
+    // thing.
     if (length < 0.1F * sums.count) continue;
     SurfacePoint& point = surface.emplace_back();
     point.position = sums.position / sums.count;

@@ -2,11 +2,10 @@
 // The surface of an object or of a part of a map, thinned to an even spacing: what recognition
 // works on.
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <span>
 #include <vector>
-
-#include <Eigen/Core>
 
 #include "lcmtypes/geometry.hpp"
 #include "lcmtypes/messages.hpp"

@@ -1,17 +1,17 @@
 #pragma once
 // The nearest point of a surface, looked up in a grid.
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <vector>
-
-#include <Eigen/Core>
 
 #include "segmenter/objects/recognition/surface.hpp"
 
 namespace kintsugi::segmenter {
 
-/// For each cell of a grid around a surface the surface point that is nearest to its middle. A look-up
-/// takes one access, so that thousands of poses of an object can be compared with what is seen.
+/// For each cell of a grid around a surface the surface point that is nearest to its middle. A
+/// look-up takes one access, so that thousands of poses of an object can be compared with what is
+/// seen.
 class SurfaceField {
  public:
   /// @param cell_m side of a cell, > 0; it is enlarged where the grid would have more than
