@@ -1,20 +1,19 @@
 #include "segmenter/objects/model/make_model.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <vector>
-
-#include <Eigen/Geometry>
 
 #include "segmenter/objects/model/merged_points.hpp"
 
 namespace kintsugi::segmenter {
 namespace {
 
-/// Points of a map lie a voxel apart, and two layers of one surface less than half of that. Where the
-/// map is finer than the model, as many points stay as the model's resolution has: discs of this
-/// radius, packed as they come, leave one point for each square of a side of 1 / 0.83 of it.
+/// Points of a map lie a voxel apart, and two layers of one surface less than half of that. Where
+/// the map is finer than the model, as many points stay as the model's resolution has: discs of
+/// this radius, packed as they come, leave one point for each square of a side of 1 / 0.83 of it.
 float merging_reach_m(float map_resolution_m, float model_resolution_m) {
   return map_resolution_m < model_resolution_m ? 0.83F * model_resolution_m
                                                : 0.5F * model_resolution_m;
@@ -41,8 +40,7 @@ Eigen::Vector3d mean_of(const std::vector<CloudPoint>& points) {
 
 CloudPoint transformed(const CloudPoint& point_A, const Pose& X_BA) {
   CloudPoint point_B = point_A;
-  const Eigen::Vector3f p =
-      (X_BA * Eigen::Vector3d(point_A.x, point_A.y, point_A.z)).cast<float>();
+  const Eigen::Vector3f p = (X_BA * Eigen::Vector3d(point_A.x, point_A.y, point_A.z)).cast<float>();
   const Eigen::Vector3f n =
       (X_BA.linear() * Eigen::Vector3d(point_A.nx, point_A.ny, point_A.nz)).cast<float>();
   point_B.x = p.x();

@@ -1,11 +1,10 @@
 #pragma once
 // The model of an object from its points in a map.
 
+#include <Eigen/Core>
 #include <optional>
 #include <span>
 #include <string>
-
-#include <Eigen/Core>
 
 #include "lcmtypes/geometry.hpp"
 #include "lcmtypes/messages.hpp"

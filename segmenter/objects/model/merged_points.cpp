@@ -1,13 +1,12 @@
 #include "segmenter/objects/model/merged_points.hpp"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <optional>
 #include <tuple>
 #include <unordered_map>
-
-#include <Eigen/Core>
 
 #include "segmenter/core/points/admission.hpp"
 
@@ -43,8 +42,7 @@ class NearestInReach {
           if (entries == cells_.end()) continue;
           for (const Entry& entry : entries->second) {
             if (normal_of(entry.point).dot(normal_of(point)) < kOneSurface) continue;
-            const float distance_m2 =
-                (position_of(entry.point) - position_of(point)).squaredNorm();
+            const float distance_m2 = (position_of(entry.point) - position_of(point)).squaredNorm();
             if (!(distance_m2 < nearest_m2)) continue;
             nearest_m2 = distance_m2;
             found = entry.index;
@@ -119,13 +117,12 @@ auto order_of(const CloudPoint& p) {
 }
 
 void sort_by_place(std::vector<CloudPoint>& points) {
-  std::sort(points.begin(), points.end(), [](const CloudPoint& a, const CloudPoint& b) {
-    return order_of(a) < order_of(b);
-  });
+  std::sort(points.begin(), points.end(),
+            [](const CloudPoint& a, const CloudPoint& b) { return order_of(a) < order_of(b); });
 }
 
-/// Moves `point` along its normal to the mean of both by weight. Along the surface it stays, so that
-/// the points stay evenly spaced.
+/// Moves `point` along its normal to the mean of both by weight. Along the surface it stays, so
+/// that the points stay evenly spaced.
 void average(CloudPoint& point, const CloudPoint& other) {
   Mean mean;
   mean.add(point);

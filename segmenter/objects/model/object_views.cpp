@@ -1,10 +1,9 @@
 #include "segmenter/objects/model/object_views.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-
-#include <Eigen/Geometry>
 
 #include "segmenter/views/depth_noise.hpp"
 
@@ -18,9 +17,8 @@ double depth_at(const MapView& view, const Eigen::Vector3d& p_C) {
   const double u = std::round(camera.fx * p_C.x() / p_C.z() + camera.cx);
   const double v = std::round(camera.fy * p_C.y() / p_C.z() + camera.cy);
   if (!(u >= 0.0 && v >= 0.0 && u < camera.width && v < camera.height)) return 0.0;
-  const std::size_t pixel =
-      static_cast<std::size_t>(v) * static_cast<std::size_t>(camera.width) +
-      static_cast<std::size_t>(u);
+  const std::size_t pixel = static_cast<std::size_t>(v) * static_cast<std::size_t>(camera.width) +
+                            static_cast<std::size_t>(u);
   return pixel < view.depth_mm.size() ? view.depth_mm[pixel] / 1000.0 : 0.0;
 }
 
@@ -53,16 +51,15 @@ void merge_directions(std::vector<Eigen::Vector3f>& directions,
                       std::span<const Eigen::Vector3f> more) {
   constexpr float kAlike = 0.985F;  // cosine of 10 degrees
   for (const Eigen::Vector3f& direction : more) {
-    const bool is_new = std::none_of(
-        directions.begin(), directions.end(),
-        [&](const Eigen::Vector3f& other) { return direction.dot(other) > kAlike; });
+    const bool is_new =
+        std::none_of(directions.begin(), directions.end(),
+                     [&](const Eigen::Vector3f& other) { return direction.dot(other) > kAlike; });
     if (is_new) directions.push_back(direction);
   }
 }
 
 std::vector<Eigen::Vector3f> directions_of_views(std::span<const CloudPoint> points_O,
-                                                 const Pose& X_WO,
-                                                 std::span<const MapView> views,
+                                                 const Pose& X_WO, std::span<const MapView> views,
                                                  float resolution_m) {
   std::vector<Eigen::Vector3f> directions_O;
   for (const MapView& view : views) {

@@ -1,10 +1,9 @@
 #pragma once
 // From where an object was seen.
 
+#include <Eigen/Core>
 #include <span>
 #include <vector>
-
-#include <Eigen/Core>
 
 #include "lcmtypes/geometry.hpp"
 #include "lcmtypes/messages.hpp"
@@ -16,8 +15,7 @@ namespace kintsugi::segmenter {
 /// object; directions less than about 10 degrees apart count once.
 /// @param resolution_m voxel size of the map, > 0
 std::vector<Eigen::Vector3f> directions_of_views(std::span<const CloudPoint> points_O,
-                                                 const Pose& X_WO,
-                                                 std::span<const MapView> views,
+                                                 const Pose& X_WO, std::span<const MapView> views,
                                                  float resolution_m);
 
 /// Adds those of `more` that are not near one of `directions`.

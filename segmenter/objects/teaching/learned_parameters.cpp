@@ -1,5 +1,7 @@
 #include "segmenter/objects/teaching/learned_parameters.hpp"
 
+#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -7,9 +9,6 @@
 #include <span>
 #include <unordered_map>
 #include <vector>
-
-#include <Eigen/Core>
-#include <Eigen/Geometry>
 
 #include "segmenter/core/make_engine.hpp"
 #include "segmenter/core/parameters/presets.hpp"
@@ -95,9 +94,8 @@ std::vector<Candidate> candidates(const EngineConfig& preset) {
       }
     }
   }
-  std::stable_sort(all.begin(), all.end(), [](const Candidate& a, const Candidate& b) {
-    return a.distance < b.distance;
-  });
+  std::stable_sort(all.begin(), all.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.distance < b.distance; });
   return all;
 }
 
@@ -113,9 +111,8 @@ LearnedParameters learned_parameters(const ObservedMap& map, const TaughtSurface
   for (const Candidate& candidate : candidates(start)) {
     const auto engine = make_engine("batch", around.cloud, candidate.parameters);
     engine->update(around.cloud.everything());
-    const LearnedParameters& learned =
-        tried.emplace_back(LearnedParameters{candidate.parameters,
-                                             wholeness(around, engine->components())});
+    const LearnedParameters& learned = tried.emplace_back(
+        LearnedParameters{candidate.parameters, wholeness(around, engine->components())});
     best.wholeness = std::max(best.wholeness, learned.wholeness);
     if (learned.wholeness >= 1.0 - kNoDifference) break;  // none can be better
   }

@@ -1,5 +1,7 @@
 #include "segmenter/objects/teaching/taught_surface.hpp"
 
+#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <iterator>
 #include <map>
@@ -33,6 +35,13 @@ void check_ids(const ObservedMap& map, const std::vector<std::uint32_t>& ids) {
                              " among its " + std::to_string(known.size()) + "; " +
                              neighbours_text(known, id));
   }
+}
+
+Eigen::AlignedBox3f box_around(std::span<const CloudPoint> points_W, float margin_m) {
+  Eigen::AlignedBox3f box_W;
+  for (const CloudPoint& p : points_W) box_W.extend(Eigen::Vector3f(p.x, p.y, p.z));
+  const Eigen::Vector3f margin = Eigen::Vector3f::Constant(margin_m);
+  return {box_W.min() - margin, box_W.max() + margin};
 }
 
 std::vector<std::uint32_t> segments_mostly_in(const ObservedMap& map,
@@ -71,8 +80,11 @@ TaughtSurface surface_at(const ObservedMap& map, std::span<const CloudPoint> poi
   if (points_W.empty()) return surface;
   std::vector<CloudPoint> queries;
   std::vector<std::uint32_t> candidates;
+  const Eigen::AlignedBox3f box_W = box_around(points_W, map.resolution_m);
   for (std::size_t i = 0; i < map.points_W.size(); ++i) {
-    if (reason_to_reject_position(map.points_W[i]).has_value()) continue;
+    const CloudPoint& p = map.points_W[i];
+    if (!box_W.contains(Eigen::Vector3f(p.x, p.y, p.z))) continue;
+    if (reason_to_reject_position(p).has_value()) continue;
     queries.push_back(map.points_W[i]);
     candidates.push_back(static_cast<std::uint32_t>(i));
   }

@@ -1,10 +1,9 @@
 #include "segmenter/objects/teaching/teach.hpp"
 
+#include <Eigen/Core>
 #include <optional>
 #include <stdexcept>
 #include <utility>
-
-#include <Eigen/Core>
 
 #include "lcmtypes/scene/up_direction.hpp"
 #include "segmenter/core/parameters/presets.hpp"

@@ -12,8 +12,8 @@
 
 namespace kintsugi::segmenter {
 
-/// The object as it is known from this map alone: its model, the parameters under which it comes out
-/// whole, and one lesson.
+/// The object as it is known from this map alone: its model, the parameters under which it comes
+/// out whole, and one lesson.
 /// @param points_W of the object, in W of the map
 /// @param surface the same in the map's own points
 /// @param time_s of the lesson

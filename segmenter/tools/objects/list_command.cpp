@@ -9,9 +9,9 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "segmenter/io/points/file_bytes.hpp"
 #include "segmenter/objects/library/object_files.hpp"
 #include "segmenter/objects/library/object_library.hpp"
-#include "segmenter/io/points/file_bytes.hpp"
 #include "segmenter/tools/objects/command.hpp"
 #include "segmenter/tools/objects/object_text.hpp"
 

@@ -26,8 +26,7 @@ std::vector<CloudPoint> read_points(const fs::path& path, bool before) {
   const std::string bytes = read_file_bytes(path);
   const std::string name = path.string();
   const PointTable table = parse_ply_table(bytes, name);
-  const std::vector<CloudPoint> all =
-      cloud_of(table, find_roles(table, name), {}, name).points_W;
+  const std::vector<CloudPoint> all = cloud_of(table, find_roles(table, name), {}, name).points_W;
   const auto was = table.find("was");
   if (!was.has_value()) {
     throw std::runtime_error(name + ": has no property 'was', as kintsugi-diff writes it");
@@ -52,8 +51,8 @@ ShownChange change_of(const Json& root, const Json& entry, const fs::path& folde
   change.id = entry.at("id").get<std::int64_t>();
   change.kind = entry.at("kind").get<std::string>();
   const bool before = change.kind == "gone";
-  change.segment_ids = entry.at(before ? "before_segments" : "after_segments")
-                           .get<std::vector<std::uint32_t>>();
+  change.segment_ids =
+      entry.at(before ? "before_segments" : "after_segments").get<std::vector<std::uint32_t>>();
   std::sort(change.segment_ids.begin(), change.segment_ids.end());
   change.map = found_map(root.at(before ? "before" : "after").get<std::string>(), folder);
   return change;

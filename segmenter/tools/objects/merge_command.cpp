@@ -43,8 +43,7 @@ int merge(const MergeOptions& options) {
   }
   write_object(refinement.object, options.library);
   remove_object(options.other, options.library);
-  std::cout << summary_text(refinement.object) << "; " << refinement.num_added
-            << " points are new\n"
+  std::cout << summary_text(refinement) << '\n'
             << options.other << ": is " << options.name << " now\n";
   return 0;
 }
@@ -53,8 +52,8 @@ int merge(const MergeOptions& options) {
 
 void add_merge_command(CLI::App& app, ObjectsAction& action) {
   const auto options = std::make_shared<MergeOptions>();
-  CLI::App& command =
-      *app.add_subcommand("merge", "makes one object of two that are the same: the first name stays");
+  CLI::App& command = *app.add_subcommand(
+      "merge", "makes one object of two that are the same: the first name stays");
   command.add_option("NAME", options->name, "of the object that stays")->required();
   command.add_option("OTHER", options->other, "of the object that becomes part of it")->required();
   add_library_option(command, options->library);

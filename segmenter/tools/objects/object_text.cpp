@@ -1,10 +1,10 @@
 #include "segmenter/tools/objects/object_text.hpp"
 
+#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <stdexcept>
 
-#include <Eigen/Core>
-#include <Eigen/Geometry>
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 
@@ -36,14 +36,19 @@ std::string summary_text(const KnownObject& object) {
                      100.0 * object.wholeness, parameters_text(object.model.parameters));
 }
 
+std::string summary_text(const Refinement& refinement) {
+  return fmt::format("{}; {} points are new, {:.0f} % of the sides that both have agree",
+                     summary_text(refinement.object), refinement.num_added,
+                     100.0 * refinement.fit.agreement);
+}
+
 std::string table_text(const ObjectLibrary& library) {
   std::size_t width = 6;
   for (const KnownObject& object : library.objects()) {
     width = std::max(width, object.model.name.size());
   }
-  std::string text =
-      fmt::format("{:<{}}  {:>7}  {:>20}  {:>6}  {:>5}  {:>6}\n", "object", width, "points",
-                  "size along x, y, z", "taught", "views", "whole");
+  std::string text = fmt::format("{:<{}}  {:>7}  {:>20}  {:>6}  {:>5}  {:>6}\n", "object", width,
+                                 "points", "size along x, y, z", "taught", "views", "whole");
   for (const KnownObject& object : library.objects()) {
     const ObjectModel& model = object.model;
     text += fmt::format("{:<{}}  {:>7}  {:>20}  {:>6}  {:>5}  {:>4.0f} %\n", model.name, width,
@@ -56,8 +61,9 @@ std::string table_text(const ObjectLibrary& library) {
 std::string details_text(const KnownObject& object) {
   const ObjectModel& model = object.model;
   std::string text = summary_text(object) + "\n";
-  text += fmt::format("resolution {:g} m, seen from {} directions, {}\n", model.resolution_m,
-                      model.views_O.size(), model.has_up ? "z is up" : "which way is up is unknown");
+  text +=
+      fmt::format("resolution {:g} m, seen from {} directions, {}\n", model.resolution_m,
+                  model.views_O.size(), model.has_up ? "z is up" : "which way is up is unknown");
   for (const Lesson& lesson : object.lessons) {
     text += fmt::format("taught from map '{}', session {}, segments {}\n", lesson.map_name,
                         lesson.map_session, ids_text(lesson.segment_ids));

@@ -5,6 +5,7 @@
 
 #include "segmenter/objects/library/known_object.hpp"
 #include "segmenter/objects/library/object_library.hpp"
+#include "segmenter/objects/teaching/refine.hpp"
 
 namespace kintsugi::segmenter {
 
@@ -13,6 +14,9 @@ std::string size_text(const ObjectModel& model);
 
 /// One line: what was learned.
 std::string summary_text(const KnownObject& object);
+
+/// The same of an object that was taught again, and how the observations fit.
+std::string summary_text(const Refinement& refinement);
 
 /// A line for each object, below a line of titles.
 std::string table_text(const ObjectLibrary& library);

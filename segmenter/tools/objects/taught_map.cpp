@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "segmenter/io/ply/ply_reader.hpp"
-#include "segmenter/io/saved_map.hpp"
+#include "segmenter/objects/maps/observed_map_file.hpp"
 #include "segmenter/preprocess/cloud_preparation.hpp"
 
 namespace kintsugi::segmenter {
@@ -40,23 +40,10 @@ ObservedMap read_labelled_ply(const std::filesystem::path& path) {
   return map;
 }
 
-ObservedMap read_saved_map(const std::filesystem::path& path) {
-  SegmentMapState state = read_map_state(path);
-  ObservedMap map;
-  map.source = path.string();
-  map.map_name = std::move(state.map_name);
-  map.map_session = state.map_session;
-  map.resolution_m = static_cast<float>(state.config.engine.resolution_m);
-  map.config = std::move(state.config);
-  map.points_W = std::move(state.points_W);
-  map.segment_ids = std::move(state.segment_ids);
-  return map;
-}
-
 }  // namespace
 
 ObservedMap read_taught_map(const std::filesystem::path& path) {
-  return is_ply(path) ? read_labelled_ply(path) : read_saved_map(path);
+  return is_ply(path) ? read_labelled_ply(path) : read_observed_map(path);
 }
 
 }  // namespace kintsugi::segmenter

@@ -1,7 +1,7 @@
 // kintsugi-objects teach
 
-#include <ctime>
 #include <cstdint>
+#include <ctime>
 #include <filesystem>
 #include <iostream>
 #include <map>
@@ -67,8 +67,7 @@ void learn(const KnownObject& lesson, const TeachOptions& options) {
   }
   const Refinement refinement = refined_with_hint(folder, lesson);
   write_object(refinement.object, options.library);
-  std::cout << summary_text(refinement.object) << "; " << refinement.num_added
-            << " points are new\n";
+  std::cout << summary_text(refinement) << '\n';
 }
 
 void teach_from_map(const TeachOptions& options) {
@@ -90,8 +89,8 @@ std::string free_name(const ShownChange& change, const fs::path& library) {
   return free;
 }
 
-/// The points of the change may lie where the maps were aligned, and not as in its own map; then the
-/// segments tell which they are.
+/// The points of the change may lie where the maps were aligned, and not as in its own map; then
+/// the segments tell which they are.
 TaughtSurface surface_of(const ShownChange& change, const ObservedMap& map) {
   TaughtSurface surface = surface_at(map, change.points_W);
   if (2 * surface.indices.size() < change.points_W.size() && !change.segment_ids.empty()) {
@@ -104,10 +103,9 @@ TaughtSurface surface_of(const ShownChange& change, const ObservedMap& map) {
 void teach_from_difference(const TeachOptions& options) {
   const std::vector<ShownChange> changes = read_changes(options.difference, options.change);
   if (!options.name.empty() && changes.size() > 1) {
-    throw std::runtime_error(options.difference.string() + ": has " +
-                             std::to_string(changes.size()) +
-                             " changes: choose one with --change to give it the name '" +
-                             options.name + "'");
+    throw std::runtime_error(
+        options.difference.string() + ": has " + std::to_string(changes.size()) +
+        " changes: choose one with --change to give it the name '" + options.name + "'");
   }
   if (changes.empty()) {
     spdlog::warn("{}: nothing is new, gone or moved", options.difference.string());
@@ -143,7 +141,8 @@ int teach(const TeachOptions& options) {
     teach_from_difference(options);
     return 0;
   }
-  if (options.ids.empty()) throw std::runtime_error("--map needs --ids: the segments of the object");
+  if (options.ids.empty())
+    throw std::runtime_error("--map needs --ids: the segments of the object");
   if (options.name.empty()) throw std::runtime_error("--map needs --name: that of the object");
   teach_from_map(options);
   return 0;
@@ -155,9 +154,11 @@ void add_teach_command(CLI::App& app, ObjectsAction& action) {
   const auto options = std::make_shared<TeachOptions>();
   CLI::App& command = *app.add_subcommand(
       "teach", "adds an object to the library, or refines the one of that name");
-  CLI::Option* const map = command.add_option(
-      "--map", options->map,
-      "the map in which it is: a saved map (kintsugi-segmenter --save) or a labelled PLY file");
+  CLI::Option* const map =
+      command.add_option("--map", options->map,
+                         "the map in which it is: a saved map (kintsugi-segmenter --save) or an "
+                         "LCM log, with what the "
+                         "camera saw, or a labelled PLY file");
   command.add_option("--ids", options->ids, "ID,...: the segments of that map that are the object")
       ->delimiter(',')
       ->needs(map);

@@ -1,14 +1,13 @@
 #pragma once
 // A small map for tests: a box and a ball on a table, as a camera above and before them sees them.
 
+#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
 #include <string>
 #include <vector>
-
-#include <Eigen/Core>
-#include <Eigen/Geometry>
 
 #include "segmenter/objects/model/make_model.hpp"
 #include "segmenter/views/observed_map.hpp"
@@ -37,8 +36,9 @@ class MapOfThings {
     const int columns = steps(a.norm());
     for (int j = 0; j < rows; ++j) {
       for (int i = 0; i < columns; ++i) {
-        const Eigen::Vector3f p = corner + a * ((static_cast<float>(i) + 0.5F) / static_cast<float>(columns)) +
-                                  b * ((static_cast<float>(j) + 0.5F) / static_cast<float>(rows));
+        const Eigen::Vector3f p =
+            corner + a * ((static_cast<float>(i) + 0.5F) / static_cast<float>(columns)) +
+            b * ((static_cast<float>(j) + 0.5F) / static_cast<float>(rows));
         add(p, normal, color, id);
       }
     }
@@ -48,7 +48,8 @@ class MapOfThings {
   /// @param size_m along x, y and z before it is turned by `turn_rad` about z
   void add_box(const Eigen::Vector3f& center, float turn_rad, const Eigen::Vector3f& size_m,
                const std::vector<std::string>& sides, std::uint32_t id) {
-    const Eigen::Matrix3f R = Eigen::AngleAxisf(turn_rad, Eigen::Vector3f::UnitZ()).toRotationMatrix();
+    const Eigen::Matrix3f R =
+        Eigen::AngleAxisf(turn_rad, Eigen::Vector3f::UnitZ()).toRotationMatrix();
     const Eigen::Vector3f x = R.col(0) * size_m.x();
     const Eigen::Vector3f y = R.col(1) * size_m.y();
     const Eigen::Vector3f z = R.col(2) * size_m.z();
@@ -66,13 +67,14 @@ class MapOfThings {
   void add_ball(const Eigen::Vector3f& center, float radius_m, std::uint32_t id) {
     const int rows = steps(radius_m * std::numbers::pi_v<float> / 2);
     for (int j = 0; j < rows; ++j) {
-      const float height = (static_cast<float>(j) + 0.5F) / static_cast<float>(rows) *
-                           std::numbers::pi_v<float> / 2;
+      const float height =
+          (static_cast<float>(j) + 0.5F) / static_cast<float>(rows) * std::numbers::pi_v<float> / 2;
       const int columns = steps(2 * std::numbers::pi_v<float> * radius_m * std::cos(height));
       for (int i = 0; i < columns; ++i) {
-        const float turn = 2 * std::numbers::pi_v<float> * static_cast<float>(i) / static_cast<float>(columns);
-        const Eigen::Vector3f n(std::cos(turn) * std::cos(height), std::sin(turn) * std::cos(height),
-                                std::sin(height));
+        const float turn =
+            2 * std::numbers::pi_v<float> * static_cast<float>(i) / static_cast<float>(columns);
+        const Eigen::Vector3f n(std::cos(turn) * std::cos(height),
+                                std::sin(turn) * std::cos(height), std::sin(height));
         add(center + radius_m * n + Eigen::Vector3f(0, 0, radius_m), n, {230, 230, 225}, id);
       }
     }
@@ -120,8 +122,7 @@ inline const Eigen::Vector3f kBoxSize_m(0.24F, 0.16F, 0.12F);
 /// @param shift of the box on the table, metres; `turn_rad` about the vertical
 inline ObservedMap box_on_table(const std::vector<std::string>& sides = {"z", "-y", "x"},
                                 const Eigen::Vector3f& shift = Eigen::Vector3f::Zero(),
-                                float turn_rad = 0.0F,
-                                const Eigen::Vector3f& size_m = kBoxSize_m) {
+                                float turn_rad = 0.0F, const Eigen::Vector3f& size_m = kBoxSize_m) {
   MapOfThings things;
   things.add_face({-0.6F, -0.5F, 0.0F}, {1.2F, 0.0F, 0.0F}, {0.0F, 1.0F, 0.0F}, {150, 140, 130},
                   kTable);

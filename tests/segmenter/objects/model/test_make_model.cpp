@@ -1,5 +1,3 @@
-#include "segmenter/objects/model/make_model.hpp"
-
 #include <algorithm>
 #include <random>
 #include <stdexcept>
@@ -7,6 +5,7 @@
 
 #include <gmock/gmock.h>
 
+#include "segmenter/objects/model/make_model.hpp"
 #include "segmenter/objects/model/merged_points.hpp"
 #include "segmenter/objects/model/object_views.hpp"
 #include "tests/segmenter/objects/box_on_table.hpp"
@@ -150,8 +149,8 @@ TEST(ObjectViews, AreThoseThatMeasuredTheObject) {
       make_model("box", points_of_box(map), map.resolution_m, Eigen::Vector3d(0.0, -1.0, 0.0));
   const Eigen::Vector3d in_front_U(0.0, -1.0, 0.5);
   const std::vector<MapView> views{view_of_box(made, in_front_U, 0.0),
-                                   view_of_box(made, {0.05, -1.0, 0.5}, 0.0),   // nearly the same
-                                   view_of_box(made, {0.9, -0.3, 0.5}, 0.3),    // looks through
+                                   view_of_box(made, {0.05, -1.0, 0.5}, 0.0),  // nearly the same
+                                   view_of_box(made, {0.9, -0.3, 0.5}, 0.3),   // looks through
                                    view_of_box(made, {0.8, -0.7, 0.4}, 0.0)};
   const auto directions_O =
       directions_of_views(made.model.points_O, made.X_WO, views, map.resolution_m);

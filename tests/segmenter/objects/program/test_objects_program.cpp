@@ -73,7 +73,10 @@ class Objects : public ::testing::Test {
         {"after", (folder_ / "room.ply").string()},
         {"changes",
          {{{"id", 1}, {"kind", "new"}, {"before_segments", json::array()}, {"after_segments", {2}}},
-          {{"id", 2}, {"kind", "gone"}, {"before_segments", {3}}, {"after_segments", json::array()}},
+          {{"id", 2},
+           {"kind", "gone"},
+           {"before_segments", {3}},
+           {"after_segments", json::array()}},
           {{"id", 3}, {"kind", "unseen"}}}}};
     write_text(diff / "changes.json", root.dump());
     write_change(diff / "change_1.ply", box_on_table({"z", "-y", "-x"}, {-0.15F, 0.1F, 0.0F}, 0.7F),
@@ -82,10 +85,10 @@ class Objects : public ::testing::Test {
   }
   static void write_change(const fs::path& path, const ObservedMap& map, std::uint32_t id,
                            std::uint8_t was) {
-    PlyWriter writer(path, {{.name = "vertex",
-                             .properties = {"float x", "float y", "float z", "float nx", "float ny",
-                                            "float nz", "uchar red", "uchar green", "uchar blue",
-                                            "uchar was"}}});
+    PlyWriter writer(
+        path, {{.name = "vertex",
+                .properties = {"float x", "float y", "float z", "float nx", "float ny", "float nz",
+                               "uchar red", "uchar green", "uchar blue", "uchar was"}}});
     for (std::size_t i = 0; i < map.points_W.size(); ++i) {
       if (map.segment_ids[i] != id) continue;
       const CloudPoint& p = map.points_W[i];

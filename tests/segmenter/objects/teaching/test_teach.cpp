@@ -1,5 +1,3 @@
-#include "segmenter/objects/teaching/teach.hpp"
-
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -11,17 +9,18 @@
 #include "segmenter/objects/teaching/learned_parameters.hpp"
 #include "segmenter/objects/teaching/refine.hpp"
 #include "segmenter/objects/teaching/taught_surface.hpp"
+#include "segmenter/objects/teaching/teach.hpp"
 #include "tests/segmenter/objects/box_on_table.hpp"
 
 namespace kintsugi::segmenter {
 namespace {
 
 using testing::box_on_table;
+using ::testing::HasSubstr;
 using testing::kBall;
 using testing::kBox;
 using testing::kBoxSize_m;
 using testing::kTable;
-using ::testing::HasSubstr;
 
 KnownObject taught(const std::string& name, const ObservedMap& map, std::uint32_t id = kBox) {
   const TaughtSurface surface = surface_of_segments(map, {id});
@@ -93,11 +92,16 @@ TEST(Teach, GivesAnObjectWithItsLesson) {
   EXPECT_TRUE(object.model.views_O.empty());  // the map has no views
   EXPECT_EQ(object.model.times_taught, 1);
   ASSERT_EQ(object.lessons.size(), 1U);
-  EXPECT_EQ(object.lessons[0],
-            (Lesson{.map_name = "hall",
-                    .map_session = 7,
-                    .segment_ids = {kBox},
-                    .time_s = 1'700'000'000}));
+  EXPECT_EQ(
+      object.lessons[0],
+      (Lesson{
+          .map_name = "hall", .map_session = 7, .segment_ids = {kBox}, .time_s = 1'700'000'000}));
+}
+
+TEST(Teach, OfAMapWithoutLevelSurfacesDoesNotKnowWhichWayIsUp) {
+  testing::MapOfThings things;
+  things.add_ball(Eigen::Vector3f::Zero(), 0.2F, kBall);
+  EXPECT_FALSE(taught("ball", things.take(), kBall).model.has_up);
 }
 
 TEST(Teach, RefusesWhatIsTooSmallToBeASegment) {
@@ -151,7 +155,8 @@ TEST(Refine, RefusesAnotherThing) {
   const ObservedMap map = box_on_table();
   const KnownObject box = taught("box", map);
   const KnownObject ball = taught("ball", map, kBall);
-  EXPECT_THAT(error_of([&] { refined(box, ball); }), HasSubstr("does not fit what is known of 'box'"));
+  EXPECT_THAT(error_of([&] { refined(box, ball); }),
+              HasSubstr("does not fit what is known of 'box'"));
   const TwoLessons larger({"z", "-y", "x"}, 0.7F, {0.36F, 0.26F, 0.12F});
   EXPECT_THAT(error_of([&] { refined(larger.known, larger.lesson); }), HasSubstr("does not fit"));
 }
@@ -180,8 +185,7 @@ TEST(Refine, WorksWhereOneMapDidNotTellWhichWayIsUp) {
   const ObservedMap map = box_on_table({"z", "-y", "x"}, {-0.15F, 0.1F, 0.0F}, 0.7F);
   const TaughtSurface surface = surface_of_segments(map, {kBox});
   KnownObject lesson = two.lesson;
-  const MadeModel made =
-      make_model("box", points_of(map, surface), map.resolution_m, std::nullopt);
+  const MadeModel made = make_model("box", points_of(map, surface), map.resolution_m, std::nullopt);
   lesson.model.points_O = made.model.points_O;
   lesson.model.has_up = false;
   const ObservationFit fit = fit_observation(two.known.model, lesson.model);
