@@ -36,7 +36,10 @@ constexpr double kSameSession = 0.6;  // score from which no other place is look
 constexpr double kSamePlace_m = 0.2;
 constexpr double kSamePlace_rad = 5.0 * std::numbers::pi / 180.0;
 constexpr double kSearchReach_m = 0.3;  // of the refinement: the error of the search
+constexpr double kRoughReach_m = 0.08;
 constexpr double kFinalReach_m = 0.04;
+// To tell which hypotheses are one place; a pose has six unknowns.
+constexpr std::size_t kRoughSamples = 2'000;
 
 struct Candidate {
   RefinedAlignment refined;
@@ -55,10 +58,19 @@ bool is_same_place(const Pose& a, const Pose& b, const Eigen::Vector3d& center_B
          Eigen::AngleAxisd(between.linear()).angle() < kSamePlace_rad;
 }
 
+/// Every n-th of the samples.
+std::vector<CloudPoint> some_of(const std::vector<CloudPoint>& samples) {
+  const std::size_t step = std::max<std::size_t>(1, samples.size() / kRoughSamples);
+  std::vector<CloudPoint> some;
+  some.reserve(samples.size() / step + 1);
+  for (std::size_t i = 0; i < samples.size(); i += step) some.push_back(samples[i]);
+  return some;
+}
+
 std::optional<Candidate> candidate_at(const ComparedMap& before, const ComparedMap& after,
-                                      const Pose& X_AB) {
+                                      const Pose& X_AB_rough) {
   const auto refined =
-      refine_alignment(after.surface, before.samples, X_AB, kSearchReach_m, kFinalReach_m);
+      refine_alignment(after.surface, before.samples, X_AB_rough, kRoughReach_m, kFinalReach_m);
   if (!refined) return std::nullopt;
   Candidate candidate{*refined, compare(before, after, refined->X_AB)};
   spdlog::debug("a place: overlap {:.2f}, agreement {:.2f}, colour {:.2f}, score {:.2f}",
@@ -104,13 +116,27 @@ AlignmentResult refused(const std::string& why) {
   return {std::nullopt, "the maps do not fit: " + why};
 }
 
-std::vector<Candidate> candidates_of(const ObservedMap& before, const ObservedMap& after,
-                                     const ComparedMap& B, const ComparedMap& A,
-                                     const Eigen::Vector3d& center_B) {
+/// The distinct places to which hypotheses lead.
+std::vector<Pose> rough_places(const std::vector<MapHypothesis>& hypotheses, const ComparedMap& B,
+                               const ComparedMap& A, const Eigen::Vector3d& center_B) {
+  const std::vector<CloudPoint> samples_B = some_of(B.samples);
+  std::vector<Pose> places;
+  for (const MapHypothesis& hypothesis : hypotheses) {
+    const auto rough =
+        refine_alignment(A.surface, samples_B, hypothesis.X_AB, kSearchReach_m, kRoughReach_m);
+    if (!rough) continue;
+    const bool is_known = std::ranges::any_of(
+        places, [&](const Pose& other) { return is_same_place(other, rough->X_AB, center_B); });
+    if (!is_known) places.push_back(rough->X_AB);
+  }
+  return places;
+}
+
+std::vector<Candidate> candidates_at(const std::vector<Pose>& places, const ComparedMap& B,
+                                     const ComparedMap& A, const Eigen::Vector3d& center_B) {
   std::vector<Candidate> candidates;
-  for (const MapHypothesis& hypothesis :
-       search_map(A.samples, up_of(after), B.samples, up_of(before), kMostHypotheses)) {
-    auto candidate = candidate_at(B, A, hypothesis.X_AB);
+  for (const Pose& place : places) {
+    auto candidate = candidate_at(B, A, place);
     if (!candidate) continue;
     const bool is_known = std::ranges::any_of(candidates, [&](const Candidate& other) {
       return is_same_place(other.refined.X_AB, candidate->refined.X_AB, center_B);
@@ -136,12 +162,17 @@ AlignmentResult align_maps(const ObservedMap& before, const ObservedMap& after) 
   if (B.samples.empty() || A.samples.empty()) return refused("one of them has no surface");
   const double least = least_overlap(B, A);
   // Maps of one session, or of sessions that began at the same place.
-  const auto here = candidate_at(B, A, Pose::Identity());
-  if (here && here->agreement.score() >= kSameSession && refusal_of(*here, least).empty()) {
-    return accepted(*here);
-  }
   const Eigen::Vector3d center_B = center_of(B.samples);
-  const std::vector<Candidate> candidates = candidates_of(before, after, B, A, center_B);
+  const std::vector<Candidate> here =
+      candidates_at(rough_places({MapHypothesis{}}, B, A, center_B), B, A, center_B);
+  if (!here.empty() && here[0].agreement.score() >= kSameSession &&
+      refusal_of(here[0], least).empty()) {
+    return accepted(here[0]);
+  }
+  const std::vector<MapHypothesis> hypotheses =
+      search_map(A.samples, up_of(after), B.samples, up_of(before), kMostHypotheses);
+  const std::vector<Candidate> candidates =
+      candidates_at(rough_places(hypotheses, B, A, center_B), B, A, center_B);
   if (candidates.empty()) return refused("no place was found where their surfaces meet");
   const Candidate& best = candidates.front();
   if (const std::string why = refusal_of(best, least); !why.empty()) return refused(why);

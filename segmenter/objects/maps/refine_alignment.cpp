@@ -7,6 +7,9 @@
 #include <cstddef>
 #include <utility>
 
+#include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/parallel_for.h>
+
 #include "segmenter/objects/maps/surface_samples.hpp"
 
 namespace kintsugi::segmenter {
@@ -80,13 +83,16 @@ ReferenceSurface::ReferenceSurface(std::vector<CloudPoint> samples_A)
 
 std::vector<ReferenceSurface::Nearest> ReferenceSurface::nearest(
     std::span<const CloudPoint> places_A) const {
-  NearestNeighbours::Result result;
-  tree_.find(places_A, 1, result);
-  std::vector<Nearest> nearest;
-  nearest.reserve(places_A.size());
-  for (std::size_t i = 0; i < places_A.size(); ++i) {
-    nearest.push_back({result.indices[i], std::sqrt(result.squared_distances[i])});
-  }
+  std::vector<Nearest> nearest(places_A.size());
+  constexpr std::size_t kGrain = 1'000;
+  oneapi::tbb::parallel_for(
+      oneapi::tbb::blocked_range<std::size_t>(0, places_A.size(), kGrain), [&](const auto& range) {
+        NearestNeighbours::Result result;
+        tree_.find(places_A.subspan(range.begin(), range.size()), 1, result);
+        for (std::size_t i = 0; i < range.size(); ++i) {
+          nearest[range.begin() + i] = {result.indices[i], std::sqrt(result.squared_distances[i])};
+        }
+      });
   return nearest;
 }
 
