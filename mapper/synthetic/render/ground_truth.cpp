@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "lcmtypes/base/atomic_file.hpp"
+#include "mapper/synthetic/render/instance_json.hpp"
 
 namespace kintsugi::synthetic {
 
@@ -53,10 +54,14 @@ void write_instances(const Scene& scene, const std::filesystem::path& path) {
         [&](const Primitive& primitive) { return primitive.instance == instance.id; });
     list.push_back({{"id", instance.id},
                     {"name", instance.name},
+                    {"model", instance.model},
+                    {"key", instance.key},
                     {"shape", instance.shape},
                     {"color", {level(0), level(1), level(2)}},
                     {"solids", solids},
-                    {"is_structure", instance.is_structure}});
+                    {"is_structure", instance.is_structure},
+                    {"X_SG", numbers_of(instance.X_WG)},
+                    {"symmetry", symmetry_json(instance, scene)}});
   }
   AtomicFile file(path);
   file.stream() << nlohmann::ordered_json{{"instances", list}}.dump(1) << '\n';

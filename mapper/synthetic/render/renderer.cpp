@@ -165,8 +165,9 @@ class TileRenderer {
     const Eigen::Vector3f p_O = candidate.camera_O + depth_m * (candidate.R_OC * direction_C(u, v));
     const Eigen::Vector3f normal_O = outward_normal<float>(candidate.shape, p_O);
     const Eigen::Vector3f normal_W = primitive.X_WO.linear().cast<float>() * normal_O;
-    const Color color =
+    const Color white_light_color =
         255.0F * irradiance(normal_W) * albedo(primitive.material, candidate.shape, p_O, normal_O);
+    const Color color = white_light_color.cwiseProduct(scene_.light());
     frame_.depth_m(v, u) = depth_m;
     frame_.color_rgb(v, u) = cv::Vec3b(cv::saturate_cast<std::uint8_t>(color.x()),
                                        cv::saturate_cast<std::uint8_t>(color.y()),

@@ -1,7 +1,9 @@
 // A kitchen of 3.8 m x 3.4 m: counters with sink and stove along the back wall, cupboards above, a
 // table with small things. What the camera sees is 1 to 3 m away.
 #include <numbers>
+#include <utility>
 
+#include "mapper/synthetic/rooms/desk_things.hpp"
 #include "mapper/synthetic/rooms/furniture.hpp"
 #include "mapper/synthetic/rooms/kitchen_things.hpp"
 #include "mapper/synthetic/rooms/room_shell.hpp"
@@ -49,12 +51,12 @@ void add_back_wall(SceneBuilder& builder) {
   add_tin(builder, on_top(-1.36, 0.10), rgb(186, 60, 50));
   add_stove(builder, place(-0.91));
   add_cooking_pot(builder, on_top(-1.05, 0.14, 0.4), rgb(196, 60, 50));
-  add_teapot(builder, on_top(-0.77, -0.12, -0.5), rgb(80, 120, 170));
+  add_teapot(builder, on_top(-0.77, -0.12, -0.5), rgb(46, 92, 178));
   add_sink_counter(builder, place(0.28), 1.74);
   add_paper_roll(builder, on_top(-0.48, 0.18));
   add_chopping_board(builder, on_top(-0.33, -0.10, 0.15));
   add_dish_rack(builder, on_top(0.82, 0.08, -0.1));
-  add_bottle(builder, on_top(0.50, 0.22), rgb(70, 150, 90));
+  add_bottle(builder, on_top(0.50, 0.22), rgb(230, 120, 40));
   add_fridge(builder, at(1.54, kHalfY_m - 0.36, 0));
 
   add_wall_cupboard(builder, at(-1.56, kHalfY_m, 1.46), 0.66);
@@ -68,10 +70,10 @@ void add_table_things(SceneBuilder& builder, CounterRandom& random) {
   add_table(builder, X_WG, 1.15, 0.80);
   add_plate(builder, X_WT * at(-0.28, -0.20, 0), rgb(238, 236, 226));
   add_plate(builder, X_WT * at(0.30, 0.18, 0), rgb(238, 236, 226));
-  add_mug(builder, X_WT * at(0.36, -0.02, 0, 0.7), rgb(206, 60, 44));
-  add_mug(builder, X_WT * at(-0.10, -0.25, 0, -0.9), rgb(50, 92, 170));
+  add_mug(builder, X_WT * at(0.36, -0.02, 0, 0.7), rgb(238, 236, 226));
+  add_mug(builder, X_WT * at(-0.10, -0.25, 0, -0.9), rgb(46, 92, 178));
   add_bowl(builder, X_WT * at(-0.02, 0.08, 0), rgb(120, 150, 140));
-  add_bottle(builder, X_WT * at(0.10, 0.27, 0), rgb(54, 100, 60));
+  add_bottle(builder, X_WT * at(0.10, 0.27, 0), rgb(60, 110, 60));
   add_jar(builder, X_WT * at(-0.36, 0.16, 0), 0.13, rgb(226, 190, 110));
   add_book(builder, X_WT * at(0.28, -0.24, 0, 0.3), {0.22, 0.15, 0.03}, rgb(126, 60, 150));
   add_vase(builder, X_WT * at(-0.24, 0.26, 0), rgb(70, 130, 140));
@@ -94,6 +96,38 @@ void add_other_walls(SceneBuilder& builder, CounterRandom& random) {
               rgb(240, 230, 200));
 }
 
+/// A side table at the entrance; its front is towards the room.
+void add_office_things_on_side_table(SceneBuilder& builder) {
+  const Pose X_WG = at(-0.55, -1.40, 0, kPi);
+  const Pose X_WT = X_WG * at(0, 0, kTableHeight_m);
+  add_table(builder, X_WG, 1.2, 0.5);
+  add_teapot(builder, X_WT * at(-0.47, 0.06, 0, 1.9), rgb(226, 190, 60));
+  add_storage_box(builder, X_WT * at(-0.26, 0.11, 0, -0.1), {0.22, 0.20, 0.16},
+                  plain(rgb(90, 130, 170)));
+  add_carton(builder, X_WT * at(-0.02, 0.13, 0, 0.2), {0.20, 0.15, 0.11});
+  add_globe(builder, X_WT * at(0.20, 0.13, 0));
+  add_desk_lamp(builder, X_WT * at(0.48, 0.10, 0, 0.3), rgb(48, 140, 84));
+  add_keyboard(builder, X_WT * at(-0.30, -0.13, 0, 0.08));
+  add_phone(builder, X_WT * at(0.08, -0.13, 0, -0.2));
+  add_binder(builder, X_WT * at(0.34, -0.10, 0, 0.3), rgb(186, 66, 58));
+}
+
+/// Things of the office, as they are there.
+void add_office_things(SceneBuilder& builder) {
+  add_office_things_on_side_table(builder);
+  const Pose X_WT = at(-1.02, -0.25, kTableHeight_m, 0.12);
+  add_mug(builder, X_WT * at(0.12, -0.14, 0, 2.0), rgb(206, 44, 44));
+  add_stapler(builder, X_WT * at(0.50, 0.02, 0, 1.4));
+  const auto on_counter = [](double x, double y, double yaw_rad = 0) {
+    return at(x, kHalfY_m - kCounterInset_m + y, kCounterHeight_m, yaw_rad);
+  };
+  add_tissue_box(builder, on_counter(-1.68, -0.17, 0.2));
+  add_table_clock(builder, on_counter(-1.40, -0.14, -0.2));
+  add_bottle(builder, on_counter(-0.07, 0.20), rgb(40, 122, 150));
+  add_toolbox(builder, on_counter(0.86, -0.20, 0.1), rgb(60, 110, 70));
+  add_carton(builder, at(-0.05, 0.80, 0, 0.4), {0.34, 0.28, 0.24});
+}
+
 }  // namespace
 
 SceneWithPath kitchen_scene(std::uint32_t seed) {
@@ -103,16 +137,19 @@ SceneWithPath kitchen_scene(std::uint32_t seed) {
   add_back_wall(builder);
   add_table_things(builder, random);
   add_other_walls(builder, random);
+  add_office_things(builder);
 
-  Walk walk({0.95, -0.95, 0}, 150, -20);
-  walk.to({0.55, -0.95, 0}, 172, -24)
+  Walk walk({0.20, -0.25, 0}, 238, -27);
+  walk.to({0.55, -0.40, 0}, 220, -25)
+      .to({0.85, -0.80, 0}, 195, -24)
+      .to({0.55, -0.95, 0}, 172, -24)
       .to({0.20, -0.80, 0}, 140, -20)
       .to({0.30, -0.35, 0}, 105, -16)
       .to({0.60, -0.10, 0}, 70, -18)
       .to({0.75, -0.45, 0}, 110, -20)
       .to({0.70, -0.75, 0}, 140, -18);
   return {std::move(builder).build(),
-          Trajectory(walk.waypoints(), {.duration_s = 10, .seed = seed})};
+          Trajectory(walk.waypoints(), {.duration_s = 14, .seed = seed})};
 }
 
 }  // namespace kintsugi::synthetic

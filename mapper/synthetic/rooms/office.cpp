@@ -1,5 +1,9 @@
 // A desk with everything on it, in a room of 4.2 m x 3.6 m. What the camera sees is crowded: things
 // touch, are stacked, lean, are thin, or have the colour of what they stand on.
+#include "mapper/synthetic/rooms/office.hpp"
+
+#include <utility>
+
 #include "mapper/synthetic/rooms/desk_things.hpp"
 #include "mapper/synthetic/rooms/furniture.hpp"
 #include "mapper/synthetic/rooms/room_shell.hpp"
@@ -14,9 +18,10 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kHalfX_m = 2.1;
-constexpr double kHalfY_m = 1.8;
+constexpr double kHalfY_m = kOfficeBackWall_m;
 
 const Color kWallColor = rgb(228, 220, 200);
+const Pose kDesk = at(0.05, 1.38, 0);
 const Material kCarpet = textured(Texture::kCarpet, rgb(84, 100, 122), rgb(108, 124, 146), 0.012);
 
 void add_room(SceneBuilder& builder) {
@@ -98,7 +103,7 @@ void add_around_the_desk(SceneBuilder& builder, const Pose& X_WD) {
 }
 
 void add_full_bookcase(SceneBuilder& builder, CounterRandom& random) {
-  const Pose X_WG = at(1.55, 1.64, 0);
+  const Pose X_WG = office_bookcase();
   add_bookcase_frame(builder, X_WG, 0.95, 1.85);
 
   const Pose X_W0 = X_WG * on_board(0);
@@ -174,13 +179,20 @@ void add_other_walls_things(SceneBuilder& builder, CounterRandom& random) {
 
 }  // namespace
 
-SceneWithPath office_scene(std::uint32_t seed) {
-  SceneBuilder builder;
+Pose office_desk_top() { return kDesk * at(0, 0, kDeskHeight_m); }
+
+Pose office_bookcase() { return at(1.55, 1.64, 0); }
+
+Color office_wall_color() { return kWallColor; }
+
+Material office_carpet() { return kCarpet; }
+
+void add_office(SceneBuilder& builder) {
   CounterRandom random(42);
   add_room(builder);
-  const Pose X_WD = at(0.05, 1.38, 0);
+  const Pose& X_WD = kDesk;
   add_desk(builder, X_WD, 1.8, 0.78);
-  const Pose X_WT = X_WD * at(0, 0, kDeskHeight_m);
+  const Pose X_WT = office_desk_top();
   add_computer_things(builder, X_WT);
   add_paper_things(builder, X_WT);
   add_other_desk_things(builder, X_WT, random);
@@ -189,6 +201,11 @@ SceneWithPath office_scene(std::uint32_t seed) {
   add_rest_of_furniture(builder);
   add_back_wall_things(builder);
   add_other_walls_things(builder, random);
+}
+
+SceneWithPath office_scene(std::uint32_t seed) {
+  SceneBuilder builder;
+  add_office(builder);
   return {std::move(builder).build(), Trajectory({{{-1.05, 0.10, 1.40}, {-0.55, 1.40, 0.78}},
                                                   {{-0.60, -0.05, 1.42}, {-0.20, 1.40, 0.80}},
                                                   {{-0.15, -0.10, 1.36}, {-0.05, 1.40, 0.80}},

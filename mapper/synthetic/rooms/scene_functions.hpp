@@ -11,6 +11,8 @@ SceneWithPath sphere_scene(std::uint32_t seed);
 SceneWithPath plane_scene(std::uint32_t seed);
 SceneWithPath box_room_scene(std::uint32_t seed);
 SceneWithPath office_scene(std::uint32_t seed);
+SceneWithPath office_again_scene(std::uint32_t seed);
+SceneWithPath office_later_scene(std::uint32_t seed);
 SceneWithPath loop_scene(std::uint32_t seed);
 SceneWithPath two_floors_scene(std::uint32_t seed);
 SceneWithPath hall_scene(std::uint32_t seed);

@@ -25,6 +25,8 @@ const std::map<std::string, Maker>& makers() {
   static const std::map<std::string, Maker> kMakers = {
       {"loop", loop_scene},
       {"office", office_scene},
+      {"office-again", office_again_scene},
+      {"office-later", office_later_scene},
       {"two-floors", two_floors_scene},
       {"hall", hall_scene},
       {"hallway", hallway_scene},

@@ -9,12 +9,15 @@
 
 namespace kintsugi::synthetic {
 
-/// "office", "loop" and "two-floors" correspond to the three datasets of the paper. In "hall" (8 m
-/// x 12 m) surfaces are mostly 3 to 6 m from the camera, in "kitchen" 1 to 3 m; "hallway" is 1.8 m
-/// wide and bare, but for its doors. "sphere" (radius 0.5 m at the origin), "plane" (z = 0, 4 m x 4
-/// m) and "box-room" are small, for tests. In "wall", "floor" and "corridor" the camera sees
-/// nothing else, so camera motion along the surface is unobservable from depth; in "wall-visit" the
-/// camera pans from some objects to the bare wall and back. The last four also exist as
+/// "office", "loop" and "two-floors" correspond to the three datasets of the paper. "office-later"
+/// is the office some time later, 10 things gone, 10 new and 10 moved, in warmer and darker light,
+/// and on another way of the camera; "office-again" has its way and light, and no change. "kitchen"
+/// has 15 things of the office. In "hall" (8 m x 12 m) surfaces are mostly 3 to 6 m from the
+/// camera, in "kitchen" 1 to 3 m; "hallway" is 1.8 m wide and bare, but for its doors. "sphere"
+/// (radius 0.5 m at the origin), "plane" (z = 0, 4 m x 4 m) and "box-room" are small, for tests. In
+/// "wall", "floor" and "corridor" the camera sees nothing else, so camera motion along the surface
+/// is unobservable from depth; in "wall-visit" the camera pans from some objects to the bare wall
+/// and back. The last four also exist as
 /// "...-plain", without texture.
 const std::vector<std::string>& scene_names();
 

@@ -21,8 +21,8 @@ Eigen::AlignedBox3d bounding_box_W(const Primitive& primitive) {
 
 }  // namespace
 
-Scene::Scene(std::vector<Primitive> primitives, std::vector<Instance> instances)
-    : primitives_(std::move(primitives)), instances_(std::move(instances)) {
+Scene::Scene(std::vector<Primitive> primitives, std::vector<Instance> instances, const Color& light)
+    : primitives_(std::move(primitives)), instances_(std::move(instances)), light_(light) {
   for (const Primitive& primitive : primitives_) {
     if (primitive.instance < 1 || primitive.instance > static_cast<int>(instances_.size())) {
       throw std::invalid_argument("Scene: a primitive has instance " +

@@ -31,7 +31,14 @@ struct Primitive {
 struct Instance {
   int id = kNoInstance;  ///< index in Scene::instances() + 1
   std::string name;      ///< "mug"; not unique
-  std::string shape;     ///< of its first solid: "cylinder", ...
+  /// Name, colour and size: "mug red 128x90x105". Things of the same make have the same model, in
+  /// any scene; see model_of().
+  std::string model;
+  /// Its own in a scene, and the same in scenes of the same room at other times: the model, with a
+  /// number from the second of its make on ("globe blue 220x220x300 2").
+  std::string key;
+  Pose X_WG = Pose::Identity();  ///< of its own frame G, in which things of one model are alike
+  std::string shape;             ///< of its first solid: "cylinder", ...
   Color color = Color::Zero();
   /// Part of the building: floor, wall, ceiling, stairs, door, window. Otherwise it is an object
   /// that could be moved.
@@ -59,14 +66,17 @@ struct SurfaceDistance {
 /// Immutable; every method is const and may be called from several threads.
 class Scene {
  public:
+  /// @param light factor of all colours: brightness and tint of the light in the room
   /// @throws std::invalid_argument if a primitive's instance does not exist.
-  Scene(std::vector<Primitive> primitives, std::vector<Instance> instances);
+  Scene(std::vector<Primitive> primitives, std::vector<Instance> instances,
+        const Color& light = Color::Ones());
   ~Scene();
   Scene(Scene&&) noexcept;
   Scene& operator=(Scene&&) noexcept;
 
   const std::vector<Primitive>& primitives() const { return primitives_; }
   const std::vector<Instance>& instances() const { return instances_; }
+  const Color& light() const { return light_; }
 
   /// The first surface that the ray enters from outside, or nothing. The direction need not be a
   /// unit vector. Solids that contain the origin are not seen.
@@ -85,6 +95,7 @@ class Scene {
  private:
   std::vector<Primitive> primitives_;
   std::vector<Instance> instances_;
+  Color light_;
   std::unique_ptr<Bvh> bvh_;
 };
 

@@ -1,7 +1,11 @@
 #include "mapper/synthetic/scene/scene_builder.hpp"
 
+#include <algorithm>
 #include <numbers>
+#include <stdexcept>
 #include <utility>
+
+#include "mapper/synthetic/scene/object_model.hpp"
 
 namespace kintsugi::synthetic {
 
@@ -32,9 +36,11 @@ Material textured(Texture texture, const Color& color, const Color& second_color
 }
 
 void SceneBuilder::begin(const std::string& name, const Pose& X_WG, bool is_structure) {
-  X_WG_ = X_WG;
-  instances_.push_back({.id = static_cast<int>(instances_.size()) + 1,
+  instances_.push_back({.id = ++last_id_,
                         .name = name,
+                        .model = "",
+                        .key = "",
+                        .X_WG = X_WG,
                         .shape = "",
                         .is_structure = is_structure});
 }
@@ -53,7 +59,7 @@ void SceneBuilder::add(const Shape& shape, const Pose& X_GO, const Material& mat
     instance.shape = shape_name(shape.kind);
     instance.color = material.color;
   }
-  primitives_.push_back({shape, X_WG_ * X_GO, material, instance.id});
+  primitives_.push_back({shape, instance.X_WG * X_GO, material, instance.id});
 }
 
 void SceneBuilder::add_object(const std::string& name, const Pose& X_WG, const Shape& shape,
@@ -68,6 +74,49 @@ void SceneBuilder::add_structure(const std::string& name, const Pose& X_WG, cons
   add(shape, Pose::Identity(), material);
 }
 
-Scene SceneBuilder::build() && { return {std::move(primitives_), std::move(instances_)}; }
+void SceneBuilder::assign_keys() {
+  for (Instance& instance : instances_) {
+    if (!instance.key.empty()) continue;
+    instance.model = model_of(instance, primitives_);
+    const int number = ++num_of_model_[instance.model];
+    instance.key = number == 1 ? instance.model : instance.model + " " + std::to_string(number);
+  }
+}
+
+std::vector<Instance>::iterator SceneBuilder::find(const std::string& key) {
+  assign_keys();
+  const auto found = std::ranges::find(instances_, key, &Instance::key);
+  if (found == instances_.end()) {
+    throw std::invalid_argument("SceneBuilder: no object has the key \"" + key + "\"");
+  }
+  return found;
+}
+
+void SceneBuilder::take_away(const std::string& key) {
+  const auto instance = find(key);
+  std::erase_if(primitives_, [&](const Primitive& p) { return p.instance == instance->id; });
+  instances_.erase(instance);
+}
+
+void SceneBuilder::move(const std::string& key, const Pose& X_WG) {
+  const auto instance = find(key);
+  const Pose X_after_before = X_WG * instance->X_WG.inverse();
+  for (Primitive& primitive : primitives_) {
+    if (primitive.instance == instance->id) primitive.X_WO = X_after_before * primitive.X_WO;
+  }
+  instance->X_WG = X_WG;
+}
+
+Scene SceneBuilder::build(const Color& light) && {
+  assign_keys();
+  std::map<int, int> new_ids;
+  for (Instance& instance : instances_) {
+    const int new_id = static_cast<int>(new_ids.size()) + 1;
+    new_ids[instance.id] = new_id;
+    instance.id = new_id;
+  }
+  for (Primitive& primitive : primitives_) primitive.instance = new_ids.at(primitive.instance);
+  return {std::move(primitives_), std::move(instances_), light};
+}
 
 }  // namespace kintsugi::synthetic

@@ -1,6 +1,7 @@
 #pragma once
 // Builds scenes from objects, and objects from solids.
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -37,14 +38,23 @@ class SceneBuilder {
   void add_structure(const std::string& name, const Pose& X_WG, const Shape& shape,
                      const Material& material);
 
-  Scene build() &&;
+  // Of the objects that were added so far, by Instance::key. Those of the others stay as they are.
+  // @throws std::invalid_argument if no object has this key
+  void take_away(const std::string& key);
+  void move(const std::string& key, const Pose& X_WG);
+
+  /// @param light as for Scene
+  Scene build(const Color& light = Color::Ones()) &&;
 
  private:
   void begin(const std::string& name, const Pose& X_WG, bool is_structure);
+  void assign_keys();
+  std::vector<Instance>::iterator find(const std::string& key);
 
-  Pose X_WG_ = Pose::Identity();
   std::vector<Primitive> primitives_;
-  std::vector<Instance> instances_;
+  std::vector<Instance> instances_;  // not always numbered without gaps
+  int last_id_ = kNoInstance;
+  std::map<std::string, int> num_of_model_;  // that were ever added and have keys
 };
 
 }  // namespace kintsugi::synthetic

@@ -40,6 +40,7 @@ constexpr double kRoughReach_m = 0.08;
 constexpr double kFinalReach_m = 0.04;
 // To tell which hypotheses are one place; a pose has six unknowns.
 constexpr std::size_t kRoughSamples = 2'000;
+constexpr std::size_t kFineSamples = 6'000;
 
 struct Candidate {
   RefinedAlignment refined;
@@ -59,8 +60,8 @@ bool is_same_place(const Pose& a, const Pose& b, const Eigen::Vector3d& center_B
 }
 
 /// Every n-th of the samples.
-std::vector<CloudPoint> some_of(const std::vector<CloudPoint>& samples) {
-  const std::size_t step = std::max<std::size_t>(1, samples.size() / kRoughSamples);
+std::vector<CloudPoint> some_of(const std::vector<CloudPoint>& samples, std::size_t number) {
+  const std::size_t step = std::max<std::size_t>(1, samples.size() / number);
   std::vector<CloudPoint> some;
   some.reserve(samples.size() / step + 1);
   for (std::size_t i = 0; i < samples.size(); i += step) some.push_back(samples[i]);
@@ -69,8 +70,8 @@ std::vector<CloudPoint> some_of(const std::vector<CloudPoint>& samples) {
 
 std::optional<Candidate> candidate_at(const ComparedMap& before, const ComparedMap& after,
                                       const Pose& X_AB_rough) {
-  const auto refined =
-      refine_alignment(after.surface, before.samples, X_AB_rough, kRoughReach_m, kFinalReach_m);
+  const auto refined = refine_alignment(after.surface, some_of(before.samples, kFineSamples),
+                                        X_AB_rough, kRoughReach_m, kFinalReach_m);
   if (!refined) return std::nullopt;
   Candidate candidate{*refined, compare(before, after, refined->X_AB)};
   spdlog::debug("a place: overlap {:.2f}, agreement {:.2f}, colour {:.2f}, score {:.2f}",
@@ -119,7 +120,7 @@ AlignmentResult refused(const std::string& why) {
 /// The distinct places to which hypotheses lead.
 std::vector<Pose> rough_places(const std::vector<MapHypothesis>& hypotheses, const ComparedMap& B,
                                const ComparedMap& A, const Eigen::Vector3d& center_B) {
-  const std::vector<CloudPoint> samples_B = some_of(B.samples);
+  const std::vector<CloudPoint> samples_B = some_of(B.samples, kRoughSamples);
   std::vector<Pose> places;
   for (const MapHypothesis& hypothesis : hypotheses) {
     const auto rough =

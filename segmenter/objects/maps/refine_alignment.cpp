@@ -19,8 +19,9 @@ using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
 constexpr int kIterations = 40;
-constexpr double kShrink = 0.85;  // of the distance, in each iteration
-constexpr double kAlike = 0.7;    // cosine between normals: 45 degrees
+constexpr double kShrink = 0.85;   // of the distance, in each iteration
+constexpr double kAlike = 0.7;     // cosine between normals: 45 degrees
+constexpr double kSettled = 1e-4;  // a step of 0.1 mm, a hundredth of a voxel
 constexpr int kLeastMatches = 30;
 // Residuals of samples less than this apart are alike, as the errors of depth and map are.
 constexpr double kAlikeWithin_m = 0.25;
@@ -119,7 +120,7 @@ std::optional<RefinedAlignment> refine_alignment(const ReferenceSurface& surface
     const Vector6 x = system.A.ldlt().solve(system.b);
     result.X_AB = motion_of(x, center) * result.X_AB;
     const bool is_final_reach = reach_m <= end_m;
-    if (is_final_reach && x.norm() < 1e-5) break;
+    if (is_final_reach && x.norm() < kSettled) break;
     reach_m = std::max(end_m, kShrink * reach_m);
   }
   result.X_AB.linear() = Eigen::Quaterniond(result.X_AB.linear()).normalized().toRotationMatrix();

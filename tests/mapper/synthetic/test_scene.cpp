@@ -173,7 +173,7 @@ TEST(Scene, PrimitiveOfNoInstanceIsRefused) {
   const std::vector<Primitive> stray = {
       {.shape = sphere(1), .X_WO = Pose::Identity(), .material = {}, .instance = 2}};
   EXPECT_THROW(
-      Scene(stray, {Instance{.id = 1, .name = "a", .shape = "sphere", .color = Color::Zero()}}),
+      Scene(stray, {Instance{.id = 1, .name = "a", .model = "", .key = "", .shape = "sphere"}}),
       std::invalid_argument);
 }
 
