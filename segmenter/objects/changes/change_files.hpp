@@ -17,7 +17,7 @@ struct MapDifference {
   MapChanges changes;
 };
 
-/// changes.json: metres, in AFTER's W; the keys are described in tools/diff/README.md.
+/// changes.json: metres, in AFTER's W; the keys are described in segmenter/README.md.
 std::string changes_json(const MapDifference& difference);
 
 /// Writes changes.json, change_ID.ply for each change and changes.png into the folder, which is
