@@ -12,9 +12,12 @@ inline constexpr char kSegmentUpdate[] = "SEGMENT_UPDATE";
 inline constexpr char kSegmentQuery[] = "SEGMENT_QUERY";
 inline constexpr char kSegmentAnswer[] = "SEGMENT_ANSWER";
 inline constexpr char kSnapshot[] = "SNAPSHOT";
+inline constexpr char kObjectDetection[] = "OBJECT_DETECTION";
+inline constexpr char kChangeReport[] = "CHANGE_REPORT";
 inline constexpr char kMapperStatus[] = "MAPPER_STATUS";
 inline constexpr char kSegmenterStatus[] = "SEGMENTER_STATUS";
 inline constexpr char kViewerStatus[] = "VIEWER_STATUS";
+inline constexpr char kDetectorStatus[] = "DETECTOR_STATUS";
 inline constexpr char kHeartbeat[] = "HEARTBEAT";
 inline constexpr char kResendRequest[] = "RESEND_REQUEST";
 

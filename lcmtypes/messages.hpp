@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "lcmtypes/geometry.hpp"
+#include "lcmtypes/object_messages.hpp"
 #include "lcmtypes/patch_pose.hpp"
 #include "lcmtypes/segment_messages.hpp"
 #include "lcmtypes/statuses.hpp"

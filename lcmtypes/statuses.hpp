@@ -1,7 +1,7 @@
 #pragma once
 // What each process reports of itself once to several times a second. The meaning of each field is
-// in kintsugi_mapper_status_t.lcm, kintsugi_segmenter_status_t.lcm and
-// kintsugi_viewer_status_t.lcm; its unit is the end of its name, counts have none.
+// in kintsugi_mapper_status_t.lcm, kintsugi_segmenter_status_t.lcm, kintsugi_viewer_status_t.lcm
+// and kintsugi_detector_status_t.lcm; its unit is the end of its name, counts have none.
 //
 // visit_fields() is the only list of the fields in C++: the codec, its checks, StatusLog and the
 // examples of the tests use it. A field that is missing from the struct, from the list or from the
@@ -287,6 +287,80 @@ struct ViewerStatus {
     visit("memory_bytes", s.memory_bytes...);
     visit("render_ms", s.render_ms...);
     visit("map_name", s.map_name...);
+    visit("problem", s.problem...);
+  }
+};
+
+/// What the detector of objects reports.
+struct DetectorStatus {
+  static constexpr char kProcess[] = "detector";
+
+  std::int64_t utime = 0;
+  std::int64_t session = 0;
+  std::int64_t map_session = 0;
+  bool finished = false;
+  std::int64_t library_objects = 0;
+  std::int64_t library_refused = 0;
+  std::int64_t updates_applied = 0;
+  std::int64_t lag_slices = 0;
+  std::int64_t queue_bytes = 0;
+  std::int64_t points = 0;
+  std::int64_t segments = 0;
+  std::int64_t candidates_waiting = 0;
+  std::int64_t candidates_examined = 0;
+  std::int64_t detections_found = 0;
+  std::int64_t detections_confirmed = 0;
+  std::int64_t detections_gone = 0;
+  std::int64_t events = 0;
+  std::int64_t chunks_missing = 0;
+  std::int64_t chunks_refused = 0;
+  std::int64_t chunks_given_up = 0;
+  std::int64_t requests_sent = 0;
+  std::int64_t messages_bad = 0;
+  std::int64_t memory_bytes = 0;
+  double lag_p50_ms = 0.0;
+  double lag_max_ms = 0.0;
+  double cpu_share = 0.0;
+  double worst_burst_ms = 0.0;
+  std::string map_name;
+  std::string library;
+  std::string problem;
+
+  bool operator==(const DetectorStatus&) const = default;
+
+  /// Calls visit(StatusField, the field of each of `s`...) for every field, in the order of the
+  /// .lcm file. Each of `s` is a status of this type, or its LCM type.
+  template <class Visit, class... Statuses>
+  static constexpr void visit_fields(const Visit& visit, Statuses&... s) {
+    visit("utime", s.utime...);
+    visit({"session", 1}, s.session...);
+    visit("map_session", s.map_session...);
+    visit("finished", s.finished...);
+    visit("library_objects", s.library_objects...);
+    visit("library_refused", s.library_refused...);
+    visit("updates_applied", s.updates_applied...);
+    visit("lag_slices", s.lag_slices...);
+    visit("queue_bytes", s.queue_bytes...);
+    visit("points", s.points...);
+    visit("segments", s.segments...);
+    visit("candidates_waiting", s.candidates_waiting...);
+    visit("candidates_examined", s.candidates_examined...);
+    visit("detections_found", s.detections_found...);
+    visit("detections_confirmed", s.detections_confirmed...);
+    visit("detections_gone", s.detections_gone...);
+    visit("events", s.events...);
+    visit("chunks_missing", s.chunks_missing...);
+    visit("chunks_refused", s.chunks_refused...);
+    visit("chunks_given_up", s.chunks_given_up...);
+    visit("requests_sent", s.requests_sent...);
+    visit("messages_bad", s.messages_bad...);
+    visit("memory_bytes", s.memory_bytes...);
+    visit("lag_p50_ms", s.lag_p50_ms...);
+    visit("lag_max_ms", s.lag_max_ms...);
+    visit("cpu_share", s.cpu_share...);
+    visit("worst_burst_ms", s.worst_burst_ms...);
+    visit("map_name", s.map_name...);
+    visit("library", s.library...);
     visit("problem", s.problem...);
   }
 };

@@ -3,6 +3,7 @@
 #include <string>
 #include <type_traits>
 
+#include <kintsugi/detector_status_t.hpp>
 #include <kintsugi/mapper_status_t.hpp>
 #include <kintsugi/segmenter_status_t.hpp>
 #include <kintsugi/viewer_status_t.hpp>
@@ -92,6 +93,8 @@ template <>
 struct Small<SegmenterStatus> : SmallStatus<SegmenterStatus, segmenter_status_t> {};
 template <>
 struct Small<ViewerStatus> : SmallStatus<ViewerStatus, viewer_status_t> {};
+template <>
+struct Small<DetectorStatus> : SmallStatus<DetectorStatus, detector_status_t> {};
 
 }  // namespace codec
 
@@ -101,5 +104,7 @@ template Bytes encode(const SegmenterStatus&);
 template SegmenterStatus decode(ByteView);
 template Bytes encode(const ViewerStatus&);
 template ViewerStatus decode(ByteView);
+template Bytes encode(const DetectorStatus&);
+template DetectorStatus decode(ByteView);
 
 }  // namespace kintsugi

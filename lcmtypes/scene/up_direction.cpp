@@ -10,6 +10,9 @@ namespace {
 /// double precision: independent of the order of slices, and exactly undone by remove().
 constexpr double kStepsPerUnit = 1 << 20;
 
+/// Up, where the camera was held level at first.
+const Eigen::Vector3d kLevel_W = -Eigen::Vector3d::UnitY();
+
 /// Bin of a unit vector with y <= 0 in the octahedral map of the sphere (Meyer et al. 2010): the
 /// half with y <= 0 is the whole of the square |a| + |b| <= 1 turned by 45 degrees.
 int bin_of(const Eigen::Vector3d& n, int side) {
@@ -46,7 +49,7 @@ void UpDirection::add(std::span<const CloudPoint> points_W) { count(points_W, 1.
 void UpDirection::remove(std::span<const CloudPoint> points_W) { count(points_W, -1.0); }
 
 void UpDirection::count(std::span<const CloudPoint> points_W, double sign) {
-  if (!points_W.empty()) up_W_.reset();
+  if (!points_W.empty()) is_estimated_ = false;
   for (const CloudPoint& p : points_W) {
     Eigen::Vector3d normal(p.nx, p.ny, p.nz);
     if (!(std::abs(normal.squaredNorm() - 1.0) < 0.1)) continue;
@@ -59,29 +62,31 @@ void UpDirection::count(std::span<const CloudPoint> points_W, double sign) {
   }
 }
 
-Eigen::Vector3d UpDirection::up_W() const {
-  if (!up_W_) up_W_ = estimate_W();
-  return *up_W_;
+bool UpDirection::is_supported() const {
+  if (!is_estimated_) up_W_ = estimate_W();
+  is_estimated_ = true;
+  return up_W_.has_value();
 }
 
-Eigen::Vector3d UpDirection::estimate_W() const {
-  Eigen::Vector3d level = -Eigen::Vector3d::UnitY();
+Eigen::Vector3d UpDirection::up_W() const { return is_supported() ? *up_W_ : kLevel_W; }
+
+std::optional<Eigen::Vector3d> UpDirection::estimate_W() const {
   const double cos_tilt = std::cos(kMaxTilt_rad);
   const double cos_window = std::cos(0.2);
 
-  Eigen::Vector3d up = level;
+  Eigen::Vector3d up = kLevel_W;
   double best = 0.0;
   for (const Eigen::Vector4d& bin : bins_) {
     if (bin.w() == 0.0) continue;
     const Eigen::Vector3d candidate = bin.head<3>().normalized();
-    if (candidate.dot(level) < cos_tilt) continue;
+    if (candidate.dot(kLevel_W) < cos_tilt) continue;
     const double support = sum_in_cone(bins_, candidate, cos_window).w();
     if (support > best) {
       best = support;
       up = candidate;
     }
   }
-  if (best == 0.0 || best < kMinShare * total_) return level;
+  if (best == 0.0 || best < kMinShare * total_) return std::nullopt;
   for (int i = 0; i < 5; ++i) up = sum_in_cone(bins_, up, cos_window).head<3>().normalized();
   return up;
 }

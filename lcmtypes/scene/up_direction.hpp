@@ -32,9 +32,12 @@ class UpDirection {
   /// none were since the last call.
   Eigen::Vector3d up_W() const;
 
+  /// Whether enough of the normals support up_W(); else that is -y, whatever the points.
+  bool is_supported() const;
+
  private:
   void count(std::span<const CloudPoint> points_W, double sign);
-  Eigen::Vector3d estimate_W() const;
+  std::optional<Eigen::Vector3d> estimate_W() const;
 
   static constexpr int kSide = 32;  ///< bins along one side of the unfolded octahedron
   static constexpr double kMaxTilt_rad =
@@ -43,7 +46,8 @@ class UpDirection {
 
   std::vector<Eigen::Vector4d> bins_;  ///< sum of normals, and their number
   double total_ = 0.0;
-  mutable std::optional<Eigen::Vector3d> up_W_;  ///< of these bins; nothing: not estimated yet
+  mutable bool is_estimated_ = false;            ///< of these bins
+  mutable std::optional<Eigen::Vector3d> up_W_;  ///< if it is; nothing: without support
 };
 
 }  // namespace kintsugi

@@ -1,6 +1,7 @@
-// kintsugi-segment-events: prints how the segments of a map change over time, from the bus or a
-// log. An example of a client of the segmenter.
+// kintsugi-segment-events: prints how the segments of a map and the known objects in it change over
+// time, from the bus or a log. An example of a client of the segmenter.
 
+#include <algorithm>
 #include <chrono>
 #include <cstddef>
 #include <exception>
@@ -14,6 +15,8 @@
 #include "lcmtypes/base/patient_clock.hpp"
 #include "lcmtypes/base/stop_signal.hpp"
 #include "lcmtypes/bus/bus.hpp"
+#include "lcmtypes/client/object_listener.hpp"
+#include "lcmtypes/client/object_text.hpp"
 #include "lcmtypes/client/segment_listener.hpp"
 #include "lcmtypes/client/segment_table_text.hpp"
 #include "lcmtypes/log/log_reader.hpp"
@@ -38,12 +41,13 @@ void say(const std::string& text) {
 }
 
 /// Receives until a stop signal, or the end of the map.
-void listen(SegmentListener& listener, const Options& options) {
+void listen(SegmentListener& listener, ObjectListener& objects, const Options& options) {
   constexpr std::chrono::milliseconds kTickPeriod(20);
   Bus bus(options.url);
-  listener.subscribe(bus);
-  say("listening on " + bus.url());
   PatientClock clock;
+  listener.subscribe(bus);
+  objects.subscribe(bus, [&clock] { return clock.now_s(); });
+  say("listening on " + bus.url());
   double next_tick_s = 0.0;
   while (!stop_requested()) {
     bus.handle(kTickPeriod);
@@ -56,25 +60,39 @@ void listen(SegmentListener& listener, const Options& options) {
 }
 
 /// Reads the log up to its end or first damage, which it reports. False: it is damaged.
-bool read_log(SegmentListener& listener, const std::string& path) {
+bool read_log(SegmentListener& listener, ObjectListener& objects, const std::string& path) {
   LogReader log(path);
+  double now_s = 0.0;  // may not go back, as the clock of a computer may
   while (const auto event = log.next()) {
     if (stop_requested()) return true;
     listener.handle(event->channel, event->data);
+    now_s = std::max(now_s, 1e-6 * static_cast<double>(event->utime));
+    objects.handle(event->channel, event->data, now_s);
   }
   say(log.damage().value_or(""));
   return !log.damage();
+}
+
+/// Prints each event of the objects.
+ObjectListener::Handlers printers(const Options& options) {
+  if (options.quiet) return {};
+  return {
+      .on_detection =
+          [](const ObjectDetection& event) { std::cout << detection_text(event) << std::flush; },
+      .on_change =
+          [](const ChangeReport& event) { std::cout << change_text(event) << std::flush; }};
 }
 
 int run(const Options& options) {
   SegmentListener listener(options.map_name, [&options](const SegmentUpdate& update) {
     if (!options.quiet) std::cout << update_text(update, options.grown) << std::flush;
   });
+  ObjectListener objects(options.map_name, printers(options));
   bool is_read = true;
   if (options.log.empty()) {
-    listen(listener, options);
+    listen(listener, objects, options);
   } else {
-    is_read = read_log(listener, options.log);
+    is_read = read_log(listener, objects, options.log);
   }
   std::cout << table_text(listener.table(), options.num_listed) << std::flush;
   if (!options.json_file.empty()) {
@@ -84,6 +102,8 @@ int run(const Options& options) {
   }
   say(listener.dropped());
   say(listener.problem());
+  say(objects.dropped());
+  say(objects.losses());
   return is_read && listener.is_whole() ? 0 : 1;
 }
 
@@ -93,8 +113,9 @@ int run(const Options& options) {
 int main(int argc, char** argv) {
   kintsugi::Options options;
   CLI::App app(
-      "Prints which segments of a map are created, merged, split and retired, and at the end the "
-      "table of all segments. Exit status 1: updates are missing, or the log is damaged.");
+      "Prints which segments of a map are created, merged, split and retired, which known objects "
+      "are found, confirmed, moved and gone, what kintsugi-diff reports, and at the end the table "
+      "of all segments. Exit status 1: updates are missing, or the log is damaged.");
   auto* url = app.add_option("--lcm-url", options.url,
                              "URL of the bus; default: LCM_DEFAULT_URL, or multicast on this host");
   app.add_option("--log", options.log, "Read this LCM log instead of the bus")->excludes(url);

@@ -31,14 +31,14 @@ struct Options {
   std::string map_name;
   bool once = false;
   bool until_finished = false;
-  bool viewer = false;
+  OptionalProcesses waited;
   std::vector<std::string> until_ready;
   bool lingering = false;
   std::string log_file;
   double timeout_s = 60.0;
 };
 
-/// A segmenter or viewer that has not received any map yet has no map name.
+/// A process that has not received any map yet has no map name.
 bool is_of(const std::string& map_name, const std::string& name_in_status) {
   return map_name.empty() || name_in_status.empty() || name_in_status == map_name;
 }
@@ -52,6 +52,7 @@ void subscribe_statuses(Bus& bus, const std::string& map_name, Progress& progres
   subscribe<MapperStatus>(bus, channels::kMapperStatus, keep);
   subscribe<SegmenterStatus>(bus, channels::kSegmenterStatus, keep);
   subscribe<ViewerStatus>(bus, channels::kViewerStatus, keep);
+  subscribe<DetectorStatus>(bus, channels::kDetectorStatus, keep);
 }
 
 /// Prints lines: in a terminal each line replaces the one before, elsewhere they follow each other.
@@ -106,7 +107,7 @@ int watch(const Options& options) {
   const bool has_timeout = options.timeout_s > 0.0 && (options.once || options.until_finished);
   while (!stop_requested()) {
     bus.handle(std::chrono::milliseconds(100));
-    const bool finished = options.until_finished && progress.finished(options.viewer);
+    const bool finished = options.until_finished && progress.finished(options.waited);
     const std::int64_t now_us = wall_clock_us();
     if (finished || now_us >= next_line_us) {
       if (!options.once || progress.heard_anything()) printer.print(progress.line(now_us));
@@ -116,7 +117,7 @@ int watch(const Options& options) {
     if (has_timeout && idle_s(progress, start_us) >= options.timeout_s) {
       printer.end_line();
       std::cerr << "kintsugi-status: no progress for " << options.timeout_s
-                << " s: " << progress.unfinished(options.viewer) << std::endl;
+                << " s: " << progress.unfinished(options.waited) << std::endl;
       return kNoProgress;
     }
   }
@@ -142,6 +143,7 @@ int wait_until_ready(const Options& options) {
   subscribe<MapperStatus>(bus, channels::kMapperStatus, heard(MapperStatus::kProcess));
   subscribe<SegmenterStatus>(bus, channels::kSegmenterStatus, heard(SegmenterStatus::kProcess));
   subscribe<ViewerStatus>(bus, channels::kViewerStatus, heard(ViewerStatus::kProcess));
+  subscribe<DetectorStatus>(bus, channels::kDetectorStatus, heard(DetectorStatus::kProcess));
   const std::int64_t start_us = wall_clock_us();
   while (!stop_requested()) {
     if (silent.empty()) return 0;
@@ -160,7 +162,7 @@ int wait_until_ready(const Options& options) {
 
 int main(int argc, char** argv) {
   kintsugi::Options options;
-  CLI::App app("Shows the progress of mapper, segmenter and viewer, one line a second.");
+  CLI::App app("Shows the progress of mapper, segmenter, viewer and detector, one line a second.");
   app.add_option("--lcm-url", options.url,
                  "URL of the bus; default: LCM_DEFAULT_URL, or multicast on this host");
   app.add_option("--map-name", options.map_name,
@@ -169,11 +171,12 @@ int main(int argc, char** argv) {
   app.add_flag("--until-finished", options.until_finished,
                "Exit 0 when mapper and segmenter have finished, 2 without progress")
       ->excludes(once);
-  app.add_flag("--viewer", options.viewer, "Wait for the viewer too");
+  app.add_flag("--viewer", options.waited.viewer, "Wait for the viewer too");
+  app.add_flag("--detector", options.waited.detector, "Wait for the detector of objects too");
   app.add_option("--until-ready", options.until_ready,
-                 "Exit 0 when each of these has sent a status: mapper, segmenter, viewer")
+                 "Exit 0 when each of these has sent a status: mapper, segmenter, viewer, detector")
       ->delimiter(',')
-      ->check(CLI::IsMember({"mapper", "segmenter", "viewer"}));
+      ->check(CLI::IsMember({"mapper", "segmenter", "viewer", "detector"}));
   app.add_option("--log", options.log_file, "Append every field of every status to this CSV file");
   app.add_flag("--lingering", options.lingering,
                "With --until-ready: and has published everything");

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 #include "lcmtypes/base/text_format.hpp"
 #include "lcmtypes/tools/status_text.hpp"
@@ -62,9 +63,18 @@ void Progress::update(const ViewerStatus& status, std::int64_t now_us) {
   note_progress(now_us);
 }
 
-bool Progress::finished(bool with_viewer) const { return unfinished(with_viewer).empty(); }
+void Progress::update(const DetectorStatus& status, std::int64_t now_us) {
+  if (is_of_other_map(status.map_name)) return;
+  if (is_later_run(detector_, status)) ++detector_restarts_;
+  detector_ = status;
+  note_progress(now_us);
+}
 
-std::string Progress::unfinished(bool with_viewer) const {
+bool Progress::finished(const OptionalProcesses& waited) const {
+  return unfinished(waited).empty();
+}
+
+std::string Progress::unfinished(const OptionalProcesses& waited) const {
   std::string names;
   const auto add = [&names](const char* process, const char* why) {
     names += std::string(names.empty() ? "" : ", ") + process + " " + why;
@@ -74,20 +84,19 @@ std::string Progress::unfinished(bool with_viewer) const {
   } else if (!mapper_->finished) {
     add("mapper", "not finished");
   }
-  if (!segmenter_) {
-    add("segmenter", "sends no status");
-  } else if (!segmenter_->finished) {
-    add("segmenter", "not finished");
-  } else if (mapper_ && segmenter_->map_session != mapper_->session) {
-    add("segmenter", "finished another map");
-  }
-  if (with_viewer && !viewer_) {
-    add("viewer", "sends no status");
-  } else if (with_viewer && !viewer_->finished) {
-    add("viewer", "not finished");
-  } else if (with_viewer && mapper_ && viewer_->map_session != mapper_->session) {
-    add("viewer", "finished another map");
-  }
+  const auto add_follower = [this, &add](const auto& status) {
+    const char* process = std::remove_cvref_t<decltype(*status)>::kProcess;
+    if (!status) {
+      add(process, "sends no status");
+    } else if (!status->finished) {
+      add(process, "not finished");
+    } else if (mapper_ && status->map_session != mapper_->session) {
+      add(process, "finished another map");
+    }
+  };
+  add_follower(segmenter_);
+  if (waited.viewer) add_follower(viewer_);
+  if (waited.detector) add_follower(detector_);
   return names;
 }
 
@@ -101,6 +110,10 @@ std::int64_t Progress::work_done() const {
   }
   if (viewer_) {
     sum += viewer_->updates_applied + viewer_->snapshots_written + (viewer_->finished ? 1 : 0);
+  }
+  if (detector_) {
+    sum += detector_->updates_applied + detector_->candidates_examined + detector_->events +
+           (detector_->finished ? 1 : 0);
   }
   return sum;
 }
@@ -134,12 +147,14 @@ std::string Progress::line(std::int64_t now_us) const {
   std::string text = (mapper_ ? text_of(*mapper_) : "no mapper") + " | " +
                      (segmenter_ ? text_of(*segmenter_) : "no segmenter");
   if (viewer_) text += " | " + text_of(*viewer_);
+  if (detector_) text += " | " + text_of(*detector_);
   text += restarts_text("mapper", mapper_restarts_) +
           restarts_text("segmenter", segmenter_restarts_) +
-          restarts_text("viewer", viewer_restarts_) + problems_text();
+          restarts_text("viewer", viewer_restarts_) +
+          restarts_text("detector", detector_restarts_) + problems_text();
   const double silence_s = static_cast<double>(now_us - last_heard_us_) / 1e6;
   if (silence_s > kSilence_s) return text + format(" | silent for %.0f s", silence_s);
-  if (finished(viewer_.has_value())) return text + " | finished";
+  if (finished({viewer_.has_value(), detector_.has_value()})) return text + " | finished";
   if (const auto left_s = time_left_s()) {
     const auto seconds = static_cast<long>(std::ceil(*left_s));
     text += format(" | %ld:%02ld left", seconds / 60, seconds % 60);
@@ -156,6 +171,7 @@ std::string Progress::problems_text() const {
   if (mapper_) text += problem_text("mapper", mapper_->store_problem);
   if (segmenter_) text += problem_text("segmenter", segmenter_->problem);
   if (viewer_) text += problem_text("viewer", viewer_->problem);
+  if (detector_) text += problem_text("detector", detector_->problem);
   return text;
 }
 

@@ -10,6 +10,12 @@
 
 namespace kintsugi {
 
+/// The processes that a run need not have, and that are waited for only where it is said.
+struct OptionalProcesses {
+  bool viewer = false;
+  bool detector = false;
+};
+
 /// The newest status of each process that works on one map. `now_us` is the caller's clock in
 /// microseconds.
 class Progress {
@@ -22,15 +28,16 @@ class Progress {
   void update(const MapperStatus& status, std::int64_t now_us);
   void update(const SegmenterStatus& status, std::int64_t now_us);
   void update(const ViewerStatus& status, std::int64_t now_us);
+  void update(const DetectorStatus& status, std::int64_t now_us);
 
   /// A status of any process was received.
-  bool heard_anything() const { return mapper_ || segmenter_ || viewer_; }
+  bool heard_anything() const { return mapper_ || segmenter_ || viewer_ || detector_; }
 
-  /// Mapper and segmenter have finished the same session, and so has the viewer if `with_viewer`.
-  bool finished(bool with_viewer) const;
+  /// Mapper and segmenter have finished the same session, and so have those of `waited`.
+  bool finished(const OptionalProcesses& waited) const;
 
   /// The processes that have not finished, as text for a person; empty: all have.
-  std::string unfinished(bool with_viewer) const;
+  std::string unfinished(const OptionalProcesses& waited) const;
 
   /// When a counter last changed or a process finished; nothing before the first status.
   std::optional<std::int64_t> last_progress_us() const { return last_progress_us_; }
@@ -48,7 +55,7 @@ class Progress {
   void note_progress(std::int64_t now_us);
 
   bool is_watched(const std::string& map_name);
-  /// A segmenter or viewer that has not received any map yet has no map name, and counts as ours.
+  /// A process that has not received any map yet has no map name, and counts as ours.
   bool is_of_other_map(const std::string& map_name) const {
     return map_name_ && !map_name.empty() && map_name != *map_name_;
   }
@@ -59,9 +66,11 @@ class Progress {
   std::optional<MapperStatus> mapper_;
   std::optional<SegmenterStatus> segmenter_;
   std::optional<ViewerStatus> viewer_;
+  std::optional<DetectorStatus> detector_;
   int mapper_restarts_ = 0;  // runs after the first
   int segmenter_restarts_ = 0;
   int viewer_restarts_ = 0;
+  int detector_restarts_ = 0;
   std::int64_t work_done_ = -1;
   std::int64_t last_heard_us_ = 0;
   std::optional<std::int64_t> last_progress_us_;

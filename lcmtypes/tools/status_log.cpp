@@ -47,5 +47,6 @@ void StatusLog::append(const Status& status) {
 template void StatusLog::append(const MapperStatus&);
 template void StatusLog::append(const SegmenterStatus&);
 template void StatusLog::append(const ViewerStatus&);
+template void StatusLog::append(const DetectorStatus&);
 
 }  // namespace kintsugi

@@ -15,7 +15,7 @@ class StatusLog {
   /// Appends to the file if it exists. @throws std::runtime_error when it cannot be written
   explicit StatusLog(const std::filesystem::path& path);
 
-  /// Status: MapperStatus, SegmenterStatus or ViewerStatus.
+  /// Status: MapperStatus, SegmenterStatus, ViewerStatus or DetectorStatus.
   template <class Status>
   void append(const Status& status);
 

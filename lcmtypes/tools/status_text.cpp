@@ -86,4 +86,14 @@ std::string text_of(const ViewerStatus& status) {
          reception_text(status);
 }
 
+std::string text_of(const DetectorStatus& status) {
+  const std::int64_t there = status.detections_found + status.detections_confirmed;
+  std::string text = count(there) + " detections of " + count(status.library_objects) + " objects";
+  if (there > 0) text += " (" + count(status.detections_confirmed) + " confirmed)";
+  return text + some(status.detections_gone, "gone") + ", lag " + count(status.lag_slices) +
+         some(status.candidates_waiting, "candidates waiting") +
+         format(", %.0f ms, %.0f %% of a core", status.lag_p50_ms, 100.0 * status.cpu_share) +
+         some(status.library_refused, "objects REFUSED") + reception_text(status);
+}
+
 }  // namespace kintsugi

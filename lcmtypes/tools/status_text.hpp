@@ -11,5 +11,6 @@ namespace kintsugi {
 std::string text_of(const MapperStatus& status);
 std::string text_of(const SegmenterStatus& status);
 std::string text_of(const ViewerStatus& status);
+std::string text_of(const DetectorStatus& status);
 
 }  // namespace kintsugi

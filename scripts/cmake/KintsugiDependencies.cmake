@@ -29,6 +29,12 @@ target_link_libraries(kintsugi_opencv INTERFACE ${OpenCV_LIBS})
 add_library(kintsugi_flann INTERFACE)
 target_link_libraries(kintsugi_flann INTERFACE flann::flann_cpp ${LZ4_LIBRARY})
 
+# Not find_package(PCL), which looks for VTK and Qt too.
+pkg_check_modules(PCL REQUIRED IMPORTED_TARGET pcl_features)
+add_library(kintsugi_pcl INTERFACE)
+target_include_directories(kintsugi_pcl SYSTEM INTERFACE ${PCL_INCLUDE_DIRS})
+target_link_libraries(kintsugi_pcl INTERFACE pcl_features pcl_search pcl_kdtree pcl_common kintsugi_flann)
+
 # Debian's pkg-config file of librosbag-storage names packages that have none, and its headers look
 # for those of others without their folder.
 add_library(kintsugi_rosbag INTERFACE)

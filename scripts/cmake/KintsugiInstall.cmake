@@ -61,7 +61,11 @@ install(DIRECTORY ${packaged}/man1 DESTINATION ${CMAKE_INSTALL_MANDIR} OPTIONAL)
 
 # Services.
 file(READ ${packaging}/service-hardening.conf hardening)
-foreach(unit kintsugi-mapper@ kintsugi-segmenter kintsugi-viewer)
+set(units kintsugi-mapper@ kintsugi-segmenter kintsugi-viewer)
+if(TARGET kintsugi-objects)
+  list(APPEND units kintsugi-objects)
+endif()
+foreach(unit IN LISTS units)
   file(READ ${packaging}/${unit}.service text)
   string(REPLACE /usr/bin/ ${CMAKE_INSTALL_FULL_BINDIR}/ text "${text}")
   file(CONFIGURE OUTPUT ${packaged}/${unit}.service CONTENT "${text}${hardening}" @ONLY)

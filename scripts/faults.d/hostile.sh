@@ -24,6 +24,7 @@ hostile_row() {
   # Each stream counts a bad heartbeat: two of the segmenter, four of the viewer.
   counted segmenter "$(sent CLOUD_SLICE CAMERA_VIEW HEARTBEAT HEARTBEAT RESEND_REQUEST SEGMENT_QUERY)"
   counted viewer "$(sent CLOUD_SLICE CAMERA_VIEW SEGMENT_UPDATE SEGMENT_ANSWER CAMERA_POSE SEGMENTER_STATUS \
+    OBJECT_DETECTION DETECTOR_STATUS \
     HEARTBEAT HEARTBEAT HEARTBEAT HEARTBEAT)"
   counts_match mapper "$(json_number faulty/player.json requests_bad)" "$(sent RESEND_REQUEST)"
   no_growth segmenter "$allowed_mb"

@@ -43,7 +43,9 @@ assert segmenter.num_segments == 1, segmenter.segments()
 print('python:', len(points), 'points,', segmenter.num_segments, 'segment')" || { say "the Python package does not work"; exit 1; }
 # The units, as systemd itself reads them; their exposure is of 10.
 inside apt-get install -y -qq --no-install-recommends systemd >/dev/null 2>&1
-for unit in kintsugi-mapper@hall kintsugi-segmenter kintsugi-viewer; do
+units=(kintsugi-mapper@hall kintsugi-segmenter kintsugi-viewer)
+[[ -e "$root/usr/lib/systemd/system/kintsugi-objects.service" ]] && units+=(kintsugi-objects)
+for unit in "${units[@]}"; do
   inside systemd-analyze verify --man=no "$unit.service" || { say "$unit.service is not right"; exit 1; }
   inside systemd-analyze security --offline=true "/usr/lib/systemd/system/${unit/@hall/@}.service" | tail -1
 done

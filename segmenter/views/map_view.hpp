@@ -9,9 +9,9 @@
 namespace kintsugi::segmenter {
 
 struct MapView {
-  std::int64_t utime = 0;         ///< of the frame, device time, microseconds
-  Pose X_WC = Pose::Identity();   ///< as the map is corrected now
-  Intrinsics intrinsics;          ///< of the small depth image, pixels
+  std::int64_t utime = 0;               ///< of the frame, device time, microseconds
+  Pose X_WC = Pose::Identity();         ///< as the map is corrected now
+  Intrinsics intrinsics;                ///< of the small depth image, pixels
   std::vector<std::uint16_t> depth_mm;  ///< along C's z, row after row; 0: not measured
 
   bool operator==(const MapView&) const = default;

@@ -45,6 +45,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   decode_small<Heartbeat>(message);
   decode_small<ResendRequest>(message);
   decode_small<SegmentQuery>(message);
+  decode_small<DetectorStatus>(message);
+  decode_small<ObjectDetection>(message);
+  decode_small<ChangeReport>(message);
   decode_bulk<CloudSlice>(message);
   decode_bulk<SegmentUpdate>(message);
   decode_bulk<SegmentAnswer>(message);

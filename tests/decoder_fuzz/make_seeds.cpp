@@ -32,6 +32,7 @@ void write_all(const fs::path& folder) {
   write(folder / "ply", ply_seeds());
   write(folder / "point_file", point_file_seeds());
   write(folder / "saved_map", saved_map_seeds());
+  write(folder / "object", object_seeds());
   write(folder / "views_file", views_file_seeds());
   write(folder / "oni_file", oni_seeds());
   write(folder / "recording_file", recording_file_seeds());

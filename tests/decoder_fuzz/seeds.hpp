@@ -23,6 +23,7 @@ Seeds cloud_file_seeds();
 Seeds ply_seeds();
 Seeds point_file_seeds();
 Seeds saved_map_seeds();
+Seeds object_seeds();
 Seeds views_file_seeds();
 Seeds oni_seeds();
 Seeds recording_file_seeds();

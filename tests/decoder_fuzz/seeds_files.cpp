@@ -9,11 +9,13 @@
 #include "segmenter/core/make_engine.hpp"
 #include "segmenter/io/ply/labelled_ply_writer.hpp"
 #include "segmenter/io/saved_map.hpp"
+#include "segmenter/objects/library/object_files.hpp"
 #include "segmenter/io/views_file.hpp"
 #include "segmenter/views/view_record.hpp"
 #include "tests/decoder_fuzz/input_file.hpp"
 #include "tests/decoder_fuzz/seeds.hpp"
 #include "tests/segmenter/io/formats/example_clouds.hpp"
+#include "tests/segmenter/objects/library/example_object.hpp"
 #include "tests/segmenter/process/slice_session.hpp"
 #include "tests/support/example_messages.hpp"
 
@@ -146,6 +148,14 @@ Seeds saved_map_seeds() {
     seeds[std::string(mode)] = bytes_of(contents(path));
   }
   return seeds;
+}
+
+Seeds object_seeds() {
+  const auto folder = input_folder() / "library";
+  segmenter::write_object(segmenter::testing::example_object("mug"), folder);
+  const auto mug = folder / "mug";
+  return {{"mug", bytes_of(contents(mug / segmenter::kObjectFile) + '\0' +
+                           contents(mug / segmenter::kModelFile))}};
 }
 
 Seeds views_file_seeds() {

@@ -30,7 +30,7 @@ std::vector<std::string> fields_of_lcm_file(const std::string& process) {
 
 template <class Status>
 class StatusFields : public ::testing::Test {};
-using Statuses = ::testing::Types<MapperStatus, SegmenterStatus, ViewerStatus>;
+using Statuses = ::testing::Types<MapperStatus, SegmenterStatus, ViewerStatus, DetectorStatus>;
 TYPED_TEST_SUITE(StatusFields, Statuses);
 
 TYPED_TEST(StatusFields, HaveTheNamesAndTheOrderOfTheLcmFile) {

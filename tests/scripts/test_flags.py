@@ -27,6 +27,7 @@ Options:
                               fast or exact, < slow
   --ids UINT ... Needs: --mode
                               only these
+  --map TEXT Excludes: --mode a file
 [Option Group: The bus]
   at most one of these
   Options:
@@ -49,6 +50,7 @@ Options:
 | `--size` | `FLOAT > 0` |  | fills the column, > 0 |
 | `--mode` | `{fast,exact}` | `exact` | fast or exact, &lt; slow |
 | `--ids` | `UINT ...` |  | only these (needs --mode) |
+| `--map` | `TEXT` |  | a file (not with --mode) |
 
 The bus:
 
@@ -92,6 +94,14 @@ class Flags(unittest.TestCase):
         self.assertEqual(done.returncode, 1)
         self.assertIn(str(self.readme), done.stderr)
         self.assertEqual(self.readme.read_text(), text)
+
+    def test_a_subcommand_has_a_table_of_its_own(self):
+        self.program.write_text('#!/bin/sh\n[ "$*" = "teach --help" ] && cat "$(dirname "$0")/help.txt"\n')
+        self.readme.write_text("<!-- flags:fake teach -->\nold\n<!-- /flags -->\n")
+        done = self.flags()
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(self.readme.read_text(),
+                         f"<!-- flags:fake teach -->\n\n{TABLES}\n<!-- /flags -->\n")
 
     def test_a_program_that_is_not_there_is_an_error(self):
         self.program.unlink()

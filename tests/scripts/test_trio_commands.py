@@ -127,6 +127,33 @@ class Trio(CommandTest):
         self.assertIn("--map-name", said)
         self.assertEqual(sorted(path.name for path in (self.work / "run").iterdir()), before)
 
+    def test_objects_are_found_by_a_fourth_process(self):
+        self.program("objects", FINISHES)
+        self.expect(0, "trio", "--out", "run", "--no-log", "--objects", "library", "--detector", "--speed=2")
+        words = ["--library=library", "--exit-on-final", "--map-name=map", "--speed=2"]
+        self.assertEqual(self.call("kintsugi-objects"), ["detect", *words])
+        self.assertEqual(self.call("checked-kintsugi-objects"), ["detect", "--check", "--library=library", "--speed=2"])
+        self.assertTrue((self.work / "run/detector.log").exists())
+        self.expect(0, "trio", "--out", "other", "--no-log")
+        self.assertEqual(len((self.calls / "kintsugi-objects").read_text().splitlines()), 1)
+
+    def test_a_library_that_is_refused_ends_with_2(self):
+        write_program(self.programs / "kintsugi-objects", "echo kintsugi-objects: library: no such folder >&2; exit 1")
+        said = self.expect(2, "trio", "--out", "run", "--objects", "library")
+        self.assertEqual(said.splitlines()[-1], "trio: detector: library: no such folder")
+        self.assertFalse((self.work / "run").exists())
+
+    def test_a_detector_that_was_killed_is_started_again(self):
+        killed = 'if [ ! -e "$CALLS/killed" ]; then touch "$CALLS/killed"; kill -KILL $$; fi; '
+        self.program("objects", NOTE + killed + 'touch "$CALLS/again"; ' + UNTIL_TERM)
+        self.program("viewer", 'until [ -e "$CALLS/again" ]; do sleep 0.02; done')
+        said = self.expect(0, "trio", "--out", "run", "--no-log", "--objects", "library")
+        self.assertIn("detector was killed (signal 9); starting it again", said)
+        self.assertEqual(len((self.calls / "kintsugi-objects").read_text().splitlines()), 2)
+
+    def test_without_the_program_of_the_detector_nothing_is_started(self):
+        self.assertIn("there is no kintsugi-objects in", self.expect(1, "trio", "--out", "run", "--objects", "library"))
+
     def test_without_a_viewer_the_others_linger_for_a_minute(self):
         self.program("segmenter", FINISHES)
         self.expect(0, "trio", "--only", "mapper,segmenter", "--out", "run", "--no-log")

@@ -46,6 +46,24 @@ class TrioOptions(unittest.TestCase):
         self.assertEqual(options.viewer, ["--view", "1,2, 3"])
         self.assertEqual(options.segmenter, [])
 
+    def test_objects_add_the_detector_before_the_last_process(self):
+        self.assertEqual(parse_trio([]).only, ["mapper", "segmenter", "viewer"])
+        options = parse_trio(["--objects", "my objects", "--detector", "--map-name attic"])
+        self.assertEqual(options.only, ["mapper", "segmenter", "detector", "viewer"])
+        self.assertEqual(options.objects, "my objects")
+        self.assertEqual(options.detector, ["--map-name", "attic"])
+        for only, processes in (("segmenter", ["detector", "segmenter"]),
+                                ("mapper,segmenter", ["mapper", "detector", "segmenter"])):
+            self.assertEqual(parse_trio(["--objects=a", "--only", only]).only, processes)
+        self.assertEqual(parse_replay(["run.lcm", "--objects=a"]).only, ["segmenter", "detector", "viewer"])
+
+    def test_a_detector_needs_objects_and_the_segmenter(self):
+        self.expect_problem(["--detector", "--map-name attic"], "--detector needs --objects DIR")
+        self.expect_problem(["--objects=a", "--only", "viewer"], "--objects needs the segmenter")
+        self.expect_problem(["--objects"], "--objects needs a value")
+        self.expect_problem(["--objects=a", "--detector", "--library b"], "--objects of scripts/trio chooses the library")
+        self.expect_problem(["--objects=a", "--detector", "--help"], "kintsugi-objects detect only prints")
+
     def test_a_value_may_begin_with_a_dash(self):
         self.assertEqual(parse_trio(["--mapper", "--session=7", "--no-log"]).mapper, ["--session=7"])
 

@@ -36,6 +36,10 @@ class FakeStatus:
     def hears_lingering_mapper(self, timeout_s, give_up=lambda: False):
         return self.lingers
 
+    def hears_end_of_detection(self, timeout_s, give_up=lambda: False):
+        self.detector_awaited = wait_until(give_up)
+        return self.detector_awaited
+
     def hears_end_of_map(self, timeout_s, give_up=lambda: False):
         return True
 
@@ -70,6 +74,14 @@ class SupervisorTest(FolderTest):
         """What it does at its first start, and at later ones."""
         mark = self.folder.file(name + ".was_there")
         return self.shell(name, f"if [ -e {mark} ]; then {then}; else touch {mark}; {first}; fi")
+
+    def test_the_detector_finishes_before_the_segmenter_ends(self):
+        mapper, segmenter = self.until_term("mapper"), self.until_term("segmenter")
+        detector = self.shell("detector", f"sleep 0.3; echo detector >>{self.folder.file('ends')}")
+        supervisor = self.supervisor(mapper, segmenter, detector, self.shell("viewer", "exit 0"))
+        self.up(mapper, segmenter)
+        self.assertTrue(supervisor.watch())
+        self.assertEqual((self.folder.path / "ends").read_text().split(), ["detector", "segmenter", "mapper"])
 
     def test_the_run_ends_with_its_last_process_and_the_leader_ends_last(self):
         mapper, segmenter = self.until_term("mapper"), self.until_term("segmenter")

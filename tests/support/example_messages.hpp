@@ -275,6 +275,50 @@ inline CameraPose example_camera_pose() {
   return {7'000'000, 42, 210, TrackingState::kTracking, example_pose(), 2};
 }
 
+inline ObjectDetection example_detection() {
+  ObjectDetection detection;
+  detection.utime = 9'500'000;
+  detection.session = 47;
+  detection.map_session = 42;
+  detection.map_name = "office";
+  detection.detection = 3;
+  detection.num_detections = 5;
+  detection.event_number = 12;
+  detection.event = DetectionEvent::kMoved;
+  detection.name = "mug-2_blue";
+  detection.X_WO = example_pose();
+  detection.score = 0.75F;
+  for (int axis = 0; axis < 3; ++axis) {
+    detection.box_min_O[axis] = -0.05F - static_cast<float>(axis);
+    detection.box_max_O[axis] = 0.0625F * static_cast<float>(axis);
+  }
+  detection.points = 812;
+  detection.segment_ids = {7, 12, 0xFFFFFFFFU};
+  return detection;
+}
+
+inline ChangeReport example_change() {
+  ChangeReport change;
+  change.utime = 9'600'000;
+  change.session = 48;
+  change.map_session = 42;
+  change.map_name = "office";
+  change.before = "office yesterday";
+  change.change = 2;
+  change.num_changes = 4;
+  change.event_number = 9;
+  change.kind = ChangeKind::kMoved;
+  change.score = 0.5F;
+  change.motion_W = example_pose();
+  for (int axis = 0; axis < 3; ++axis) {
+    change.box_min_W[axis] = -0.5F - static_cast<float>(axis);
+    change.box_max_W[axis] = 0.25F * static_cast<float>(axis);
+  }
+  change.points = 1'234;
+  change.segment_ids = {3, 0xFFFFFFFEU};
+  return change;
+}
+
 /// Gives each field of a status a valid value of its own, other than its default.
 struct StatusFiller {
   int number = 0;  ///< of the field
@@ -303,6 +347,7 @@ Status example_status() {
 inline MapperStatus example_mapper_status() { return example_status<MapperStatus>(); }
 inline SegmenterStatus example_segmenter_status() { return example_status<SegmenterStatus>(); }
 inline ViewerStatus example_viewer_status() { return example_status<ViewerStatus>(); }
+inline DetectorStatus example_detector_status() { return example_status<DetectorStatus>(); }
 
 inline Heartbeat example_heartbeat() { return {1, 42, "CLOUD_SLICE", 3, 17, 5, "office"}; }
 

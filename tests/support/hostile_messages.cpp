@@ -36,6 +36,9 @@ std::map<std::string, std::vector<Bytes>> examples() {
           {channels::kMapperStatus, {encode(example_mapper_status())}},
           {channels::kSegmenterStatus, {encode(example_segmenter_status())}},
           {channels::kViewerStatus, {encode(example_viewer_status())}},
+          {channels::kDetectorStatus, {encode(example_detector_status())}},
+          {channels::kObjectDetection, {encode(example_detection())}},
+          {channels::kChangeReport, {encode(example_change())}},
           {channels::kHeartbeat, {encode(example_heartbeat())}},
           {channels::kResendRequest, {encode(example_resend_request())}}};
 }

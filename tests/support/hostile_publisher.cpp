@@ -44,9 +44,9 @@ void add_flags(CLI::App& app, Options& options) {
 
 void listen(Bus& bus, double seconds, HostileMessages& hostile) {
   using namespace channels;
-  for (const char* channel :
-       {kCloudSlice, kCameraPose, kRgbdFrame, kSegmentUpdate, kSnapshot, kMapperStatus,
-        kSegmenterStatus, kViewerStatus, kHeartbeat, kResendRequest}) {
+  for (const char* channel : {kCloudSlice, kCameraPose, kRgbdFrame, kSegmentUpdate, kSnapshot,
+                              kMapperStatus, kSegmenterStatus, kViewerStatus, kDetectorStatus,
+                              kObjectDetection, kChangeReport, kHeartbeat, kResendRequest}) {
     bus.subscribe(channel, [&hostile, channel](ByteView data) { hostile.learn(channel, data); });
   }
   const Clock::time_point end =

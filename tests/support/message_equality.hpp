@@ -2,6 +2,8 @@
 // Equality of the messages that have none of their own: with a pose, or with fields that only the
 // receiver sets. The structured bindings do not compile when a struct has a further field.
 
+#include <algorithm>
+
 #include "lcmtypes/messages.hpp"
 
 namespace kintsugi {
@@ -53,6 +55,28 @@ inline bool operator==(const KeyframeMessage& a, const KeyframeMessage& b) {
          noise_share == b.noise_share && noise_growth_per_m == b.noise_growth_per_m &&
          intrinsics == b.intrinsics && in_volume == b.in_volume && features == b.features &&
          depth == b.depth && intensity == b.intensity;
+}
+
+inline bool operator==(const ObjectDetection& a, const ObjectDetection& b) {
+  const auto& [utime, session, map_session, map_name, detection, num_detections, event_number,
+               event, name, X_WO, score, box_min_O, box_max_O, points, segment_ids] = a;
+  return utime == b.utime && session == b.session && map_session == b.map_session &&
+         map_name == b.map_name && detection == b.detection && num_detections == b.num_detections &&
+         event_number == b.event_number && event == b.event && name == b.name &&
+         equal(X_WO, b.X_WO) && score == b.score && std::ranges::equal(box_min_O, b.box_min_O) &&
+         std::ranges::equal(box_max_O, b.box_max_O) && points == b.points &&
+         segment_ids == b.segment_ids;
+}
+
+inline bool operator==(const ChangeReport& a, const ChangeReport& b) {
+  const auto& [utime, session, map_session, map_name, before, change, num_changes, event_number,
+               kind, score, motion_W, box_min_W, box_max_W, points, segment_ids] = a;
+  return utime == b.utime && session == b.session && map_session == b.map_session &&
+         map_name == b.map_name && before == b.before && change == b.change &&
+         num_changes == b.num_changes && event_number == b.event_number && kind == b.kind &&
+         score == b.score && equal(motion_W, b.motion_W) &&
+         std::ranges::equal(box_min_W, b.box_min_W) && std::ranges::equal(box_max_W, b.box_max_W) &&
+         points == b.points && segment_ids == b.segment_ids;
 }
 
 inline bool operator==(const CameraPose& a, const CameraPose& b) {

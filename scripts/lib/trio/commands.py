@@ -11,7 +11,7 @@ from .map_name import map_name, map_option, refuse_second_mapper
 from .messages import Problem, os_error_text, say
 from .process import Process, stop
 from .process_options import with_given
-from .programs import check_programs, program
+from .programs import check_programs, command_of, program
 from .run_folder import RunFolder
 from .status import Status
 from .summary import show_summary
@@ -69,7 +69,12 @@ def trio(arguments):
 def words_to_check(name, choice, folder):
     """A mapper that resumes may find its session complete, and then needs no device."""
     resumes = name == "mapper" and choice.resume and folder.has("mapper.lcm")
-    return [*([f"--resume={folder.file('mapper.lcm')}"] if resumes else []), *getattr(choice, name)]
+    return [*([f"--resume={folder.file('mapper.lcm')}"] if resumes else []), *library_option(name, choice),
+            *getattr(choice, name)]
+
+
+def library_option(name, choice):
+    return [f"--library={choice.objects}"] if name == options.DETECTOR else []
 
 
 def recalled(out, arguments):
@@ -84,7 +89,8 @@ def recalled(out, arguments):
 
 
 def run_trio(choice, folder):
-    make = {"mapper": mapper_process, "segmenter": segmenter_process, "viewer": viewer_process}
+    make = {"mapper": mapper_process, "segmenter": segmenter_process, "viewer": viewer_process,
+            "detector": detector_process}
     watched = [make[name](choice, folder) for name in choice.only]
     logger = None if choice.no_log else logger_process(folder)
     with supervised(folder, watched, logger, map_name(choice)) as supervisor:
@@ -148,6 +154,12 @@ def viewer_process(choice, folder):
     return Process("viewer", [program("viewer"), *with_given(own, choice.viewer)], folder)
 
 
+def detector_process(choice, folder):
+    """Exits when it has examined the whole map."""
+    own = [*library_option(options.DETECTOR, choice), "--exit-on-final", *map_option(map_name(choice), choice.detector)]
+    return Process("detector", [*command_of("detector"), *with_given(own, choice.detector)], folder)
+
+
 def logger_process(folder):
     url = os.environ.get("LCM_DEFAULT_URL")
     return Process("logger", ["lcm-logger", "-q", "-a", *([f"--lcm-url={url}"] if url else []),
@@ -169,14 +181,14 @@ def replay(arguments):
     choice = options.parse_replay(arguments)
     if not (os.access(choice.log, os.R_OK) and os.path.getsize(choice.log)):
         raise Problem(f"{choice.log}: no such log, or it is empty")
-    check_programs(["segmenter", "viewer", "status"], ["setpriv", "lcm-logplayer"])
+    check_programs([*choice.only, "status"], ["setpriv", "lcm-logplayer"])
     network.choose_network(choice.private, this_command())
     folder = RunFolder(choice.out)
     folder.lock_if_used()
-    check_options({name: getattr(choice, name) for name in ("segmenter", "viewer")})
+    check_options({name: [*library_option(name, choice), *getattr(choice, name)] for name in choice.only})
     folder.create()
     folder.lock()
-    for name in ("segmenter.log", "viewer.log", "player.log", "status.csv"):
+    for name in ("segmenter.log", "viewer.log", "detector.log", "player.log", "status.csv"):
         with contextlib.suppress(FileNotFoundError):
             os.remove(folder.file(name))
     network.tell_how_to_ask()
@@ -187,11 +199,11 @@ def run_replay(choice, folder):
     url = os.environ.get("LCM_DEFAULT_URL")
     player = Process("player", ["lcm-logplayer", *(["-l", url] if url else []), "-s", choice.speed,
                                 "-e", REPLAYED_CHANNELS, choice.log], folder)
-    listeners = [
-        Process("segmenter", [program("segmenter"), *with_given(
-            [f"--out={choice.out}", "--exit-on-final", f"--linger={UNTIL_TOLD}"], choice.segmenter)], folder),
-        Process("viewer", [program("viewer"), *with_given([f"--out={choice.out}", "--exit-on-final"], choice.viewer)],
-                folder)]
+    own = {"segmenter": [f"--out={choice.out}", "--exit-on-final", f"--linger={UNTIL_TOLD}"],
+           "detector": [*library_option(options.DETECTOR, choice), "--exit-on-final"],
+           "viewer": [f"--out={choice.out}", "--exit-on-final"]}
+    listeners = [Process(name, [*command_of(name), *with_given(own[name], getattr(choice, name))], folder)
+                 for name in choice.only]
     with supervised(folder, [player, *listeners]) as supervisor:
         for process in listeners:
             process.start()

@@ -8,6 +8,7 @@ from .messages import Problem
 from .process_options import ProcessOptions
 
 PROCESSES = ("mapper", "segmenter", "viewer")
+DETECTOR = "detector"  # runs with --objects only
 
 PASS_ON = "pass on"  # FLAG or FLAG=VALUE is passed to one process
 SPLIT = "split"  # the value is split into further options for one process
@@ -43,12 +44,15 @@ TRIO_OPTIONS = (
     ("--map-name", "NAME", STORE, None,
      "name of the map (default: map). Several runs on one bus need a name each; segmenter and viewer then use only "
      "this map"),
+    ("--objects", "DIR", STORE, None,
+     "find the objects of this library (kintsugi-objects teach) in the map: a fourth process, kintsugi-objects detect"),
     ("--only", "NAMES", STORE, ",".join(PROCESSES),
      "run only these of %(default)s; the others run on other hosts"),
     ("--private", None, STORE, False, "run in a private network that no other program hears"),
     ("--mapper", "'ARGS'", SPLIT, "mapper", "further options of kintsugi-mapper, quoted as in a shell"),
     ("--segmenter", "'ARGS'", SPLIT, "segmenter", "further options of kintsugi-segmenter"),
     ("--viewer", "'ARGS'", SPLIT, "viewer", "further options of kintsugi-viewer"),
+    ("--detector", "'ARGS'", SPLIT, DETECTOR, "further options of kintsugi-objects detect"),
 )
 
 REPLAY_OPTIONS = (
@@ -60,31 +64,36 @@ REPLAY_OPTIONS = (
     ("--private", None, STORE, False, "run in a private network that no other program hears"),
     ("--segmenter", "'ARGS'", SPLIT, "segmenter", "further options of kintsugi-segmenter, quoted as in a shell"),
     ("--viewer", "'ARGS'", SPLIT, "viewer", "further options of kintsugi-viewer"),
+    ("--objects", "DIR", STORE, None, "find the objects of this library in the map, with kintsugi-objects detect"),
+    ("--detector", "'ARGS'", SPLIT, DETECTOR, "further options of kintsugi-objects detect"),
 )
 
-MAY_BE_EMPTY = {"--device", "--mapper", "--segmenter", "--viewer"}
+MAY_BE_EMPTY = {"--device", "--mapper", "--segmenter", "--viewer", "--detector"}
 
 
 def parse_trio(arguments):
-    """Namespace with out, resume, video, no_log, private; only (list of names); and the options of
-    each process as lists: mapper, segmenter, viewer. Of an option given twice the last one counts."""
+    """Namespace with out, resume, video, no_log, private, objects; only (list of names, with objects also that of
+    the detector); and the options of each process as lists: mapper, segmenter, viewer, detector. Of an option given
+    twice the last one counts."""
     parser = Parser("scripts/trio", TRIO_OPTIONS, description=(
         "Runs mapper, segmenter and viewer over LCM with one set of options, restarts what is killed, and stops at "
         "the end of the device or at Ctrl-C with everything written (Ctrl-C twice: without waiting for the rest of "
         "the map to be drawn)."))
     options = parser.parse(arguments)
-    options.only = chosen_processes(options.only)
+    options.only = with_detector(chosen_processes(options.only), options)
     return options
 
 
 def parse_replay(arguments):
-    """Namespace with log, out, speed, private, and the lists segmenter and viewer."""
+    """Namespace with log, out, speed, private, objects, only (as of parse_trio), and the lists segmenter, viewer and
+    detector."""
     parser = Parser("scripts/replay", REPLAY_OPTIONS, usage="scripts/replay LOG [options]",
                     description="Plays a recorded log through lcm-logplayer into a segmenter and a viewer.")
     parser.add_argument("log", metavar="LOG", nargs="?", help="run.lcm or mapper.lcm of a run, or another LCM log")
     options = parser.parse(arguments)
     if not options.log:
         raise Problem("which log? see scripts/replay --help", 2)
+    options.only = with_detector(["segmenter", "viewer"], options)
     return options
 
 
@@ -93,6 +102,18 @@ def chosen_processes(names):
     if not set(given) <= set(PROCESSES):
         raise Problem(f"--only {names}: expected one or more of {','.join(PROCESSES)}", 2)
     return [name for name in PROCESSES if name in given]
+
+
+def with_detector(names, options):
+    """The names, with that of the detector if there are objects to find: not as the last one, which ends the run
+    when it has nothing left to do."""
+    if options.objects is None:
+        if options.detector:
+            raise Problem("--detector needs --objects DIR", 2)
+        return names
+    if "segmenter" not in names:
+        raise Problem("--objects needs the segmenter in --only", 2)
+    return [*names[:-1], DETECTOR, names[-1]]
 
 
 class Parser(argparse.ArgumentParser):
@@ -109,7 +130,7 @@ class Parser(argparse.ArgumentParser):
         options, rest = self.parse_known_args(self._join_values(arguments))
         if rest:
             raise Problem(f"unknown option {rest[0]}; see {self.prog} --help", 2)
-        for name in PROCESSES:
+        for name in (*PROCESSES, DETECTOR):
             if of_process := getattr(options, name, None):
                 of_process.check(self.prog)
             setattr(options, name, of_process.words() if of_process else [])

@@ -2,6 +2,7 @@
 --mapper '...' and the like. Of an option given twice the last one counts."""
 
 from .messages import Problem
+from .programs import called
 
 # Without these a run would not be watched, stopped, resumed or summed up any more.
 KEPT_BY_RUN = {
@@ -11,6 +12,7 @@ KEPT_BY_RUN = {
                   "--save": "the map is saved as segmenter.map in the folder of the run; --out chooses the folder",
                   "--resume": "the map is resumed from segmenter.map in the folder of the run"},
     "viewer": {"--out": "--out of {command} chooses the folder of the run"},
+    "detector": {"--library": "--objects of {command} chooses the library"},
 }
 ENDS_AT_ONCE = ("-h", "--help", "--version", "--print-config", "--list-devices", "--check")
 
@@ -50,7 +52,7 @@ class ProcessOptions:
             if flag in kept:
                 raise Problem(f"{option}: {command} sets {flag} itself: {kept[flag].format(command=command)}", 2)
             if flag in ENDS_AT_ONCE:
-                raise Problem(f"{option}: kintsugi-{self.name} only prints and ends with {flag}; run it by itself", 2)
+                raise Problem(f"{option}: {called(self.name)} only prints and ends with {flag}; run it by itself", 2)
 
     def words(self):
         return [word for _, words in self._options for word in words]

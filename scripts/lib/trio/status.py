@@ -93,6 +93,10 @@ class Status:
         """Waits until mapper and segmenter have finished."""
         return self._ask("--until-finished", timeout_s=timeout_s, give_up=give_up)
 
+    def hears_end_of_detection(self, timeout_s, give_up=lambda: False):
+        """Waits until the detector has examined the whole map."""
+        return self._ask("--until-finished", "--detector", timeout_s=timeout_s, give_up=give_up)
+
     @classmethod
     def hears_mapper_of(cls, map_name, timeout_s):
         """Whether a mapper with this map name is heard on the bus."""

@@ -9,6 +9,7 @@ from .process import stop
 PERIOD_S = 0.2
 IDLE_S = 60  # no progress for so long: the rest of the map will not come
 IDLE_AFTER_ERROR_S = 5  # the same after an error, when the others may be unable to finish
+DETECTOR_IDLE_S = 10  # no progress for so long: it does not get the rest of the map
 STOP_TIMEOUT_S = 60
 LEADING_PROCESSES = ("mapper", "player")
 
@@ -67,7 +68,7 @@ class Supervisor:
                 self._begin_to_stop()
             if self.num_stop_requests > 1 or self._stands_still():
                 self._stop(self.last)
-        for process in [*self.processes[1:], self.leader]:
+        for process in reversed(self.processes):  # each asks those before it for what it misses
             self.close(process)
         self.status.end()
         return not self.failed
@@ -153,10 +154,21 @@ class Supervisor:
         while process.started:
             if process.name == "mapper":
                 self._let_mapper_finish(process)
+            if process.name == "detector":
+                self._let_detector_finish(process)
             self._stop(process)
             self._check(process)
             if process.running:
                 self.status.hears_end_of_map(IDLE_S, give_up=lambda: not process.running)
+
+    def _let_detector_finish(self, detector):
+        """Waits until the detector has examined the whole map, unless all shall stop at once."""
+
+        def give_up():
+            return not detector.running or self.num_stop_requests > 1
+
+        if not give_up():
+            self.status.hears_end_of_detection(DETECTOR_IDLE_S, give_up=give_up)
 
     def _let_mapper_finish(self, mapper):
         """Waits until the mapper has published everything and only answers requests; one that still maps is

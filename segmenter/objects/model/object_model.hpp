@@ -1,11 +1,10 @@
 #pragma once
 // What is known of an object: its surface in a frame of its own, and how it comes out of a map.
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <string>
 #include <vector>
-
-#include <Eigen/Core>
 
 #include "lcmtypes/messages.hpp"
 #include "segmenter/core/parameters/engine_config.hpp"
@@ -20,7 +19,7 @@ struct ObjectModel {
   bool has_up = false;        ///< the map in which it was taught told which direction is up
   std::vector<CloudPoint> points_O;
   std::vector<Eigen::Vector3f> views_O;  ///< unit vectors towards the cameras that saw it
-  EngineConfig parameters;    ///< with which it comes out whole; resolution_m is the map's
+  EngineConfig parameters;  ///< with which it comes out whole; resolution_m is the map's
   std::int32_t times_taught = 1;
 };
 

@@ -1,4 +1,5 @@
-// kintsugi-query: asks a segmenter on the bus, or a saved map, about segments.
+// kintsugi-query: asks a segmenter on the bus, or a saved map, about segments, and a detector about
+// known objects.
 
 #include <array>
 #include <iostream>
@@ -13,6 +14,8 @@
 #include "segmenter/map/map_snapshot.hpp"
 #include "segmenter/query/answer.hpp"
 #include "segmenter/query/choose_map.hpp"
+#include "segmenter/tools/query/object_query.hpp"
+#include "segmenter/tools/query/object_report.hpp"
 #include "segmenter/tools/query/query_client.hpp"
 #include "segmenter/tools/query/query_options.hpp"
 #include "segmenter/tools/query/query_report.hpp"
@@ -21,6 +24,7 @@ namespace kintsugi::segmenter {
 namespace {
 
 constexpr int kFirstPixelCode = 3;  // exit codes from here on: why a pixel has no segment
+constexpr int kNoObjectCode = 6;
 
 SegmentAnswer ask_file(const QueryOptions& options, SegmentQuery query) {
   query.client = 1;
@@ -49,7 +53,21 @@ int exit_code(const SegmentAnswer& answer, QueryPlace place) {
   return 0;
 }
 
+int run_for_objects(const QueryOptions& options) {
+  if (!options.map.empty()) {
+    throw std::invalid_argument(
+        "--object asks the detector on the bus; a saved map has no objects");
+  }
+  FoundObjects found = ask_detector(options.lcm_url, options.query.map_name,
+                                    QueryClient::Seconds(options.timeout_s));
+  keep_named(options.object, found);
+  std::cout << (options.json ? objects_json(found) : objects_table(found)) << std::flush;
+  if (!std::cout) return 1;
+  return any_present(found) ? 0 : kNoObjectCode;
+}
+
 int run(const QueryOptions& options) {
+  if (asks_for_objects(options)) return run_for_objects(options);
   const SegmentQuery query = make_query(options);
   const SegmentAnswer answer =
       options.map.empty() ? ask_bus(options, query) : ask_file(options, query);
@@ -67,7 +85,7 @@ int main(int argc, char** argv) {
   return kintsugi::run_main(argv, [&] {
     CLI::App app(
         "Asks a segmenter on the bus, or a saved map, about segments: position, size, plane, "
-        "neighbours.");
+        "neighbours; and a detector on the bus where known objects are.");
     QueryOptions options;
     add_options(app, options);
     kintsugi::add_version_flag(app);

@@ -39,6 +39,17 @@ void add_places(CLI::App& app, QueryOptions& options) {
       ->expected(6);
   place.add_option("--id", options.query.segment_ids, "ID,...: the segments with these ids")
       ->delimiter(',');
+  place
+      .add_option("--object", options.object,
+                  "NAME: where the known object of this name is, as kintsugi-objects detect has "
+                  "found it. Exit code 6: no such object found")
+      ->check(CLI::Validator(
+          [](const std::string& name) {
+            return is_object_name(name) ? std::string()
+                                        : "'" + name + "' is not 1 to 64 letters, digits, - and _";
+          },
+          "NAME"));
+  place.add_flag("--objects", options.objects, "all known objects that are found");
 }
 
 Intrinsics given_intrinsics(const std::vector<double>& v) {

@@ -19,6 +19,9 @@ struct QueryOptions {
   double timeout_s = 5.0;
   bool json = false;
 
+  std::string object;    ///< asks for the known objects of this name
+  bool objects = false;  ///< asks for all known objects
+
   // Of the following, the flags that were not given are empty:
   std::vector<double> point_W;
   std::vector<double> ray;
@@ -30,6 +33,11 @@ struct QueryOptions {
 };
 
 void add_options(CLI::App& app, QueryOptions& options);
+
+/// The options ask a detector for objects, and not a segmenter for segments.
+inline bool asks_for_objects(const QueryOptions& options) {
+  return options.objects || !options.object.empty();
+}
 
 /// The query of the options. --pixel asks for what the camera measures there now, and with --pose
 /// for what a camera there would see of the map: that is a ray.

@@ -48,6 +48,9 @@ std::vector<Subject> subjects() {
           small("heartbeat", example_heartbeat()),
           small("resend_request", example_resend_request()),
           small("segment_query", example_query()),
+          small("detector_status", example_detector_status()),
+          small("object_detection", example_detection()),
+          small("change_report", example_change()),
           bulk("cloud_slice", example_slice(10)),
           bulk("patch", example_patch(6)),
           bulk("correction", example_correction(9)),
@@ -325,6 +328,99 @@ TEST(CodecBounds, ErrorsNameTypeFieldValueAndBound) {
                         r.ranges = {{5, 4}};
                       }),
               HasSubstr("last is 4"));
+}
+
+template <class Change>
+std::string refusal_of_detection(const Change& change) {
+  return refusal(example_detection(), change);
+}
+
+TEST(CodecBounds, ADetectionIsOneOfItsSession) {
+  EXPECT_EQ(refusal_of_detection([](ObjectDetection&) {}), "accepted");
+  EXPECT_THAT(refusal_of_detection([](ObjectDetection& d) { d.session = 0; }),
+              HasSubstr("object_detection_t.session is 0, expected > 0"));
+  EXPECT_THAT(refusal_of_detection([](ObjectDetection& d) { d.map_session = 0; }),
+              HasSubstr("map_session is 0, expected > 0"));
+  EXPECT_THAT(refusal_of_detection([](ObjectDetection& d) { d.detection = 0; }),
+              HasSubstr("detection is 0, expected 1 .. 5"));
+  EXPECT_THAT(refusal_of_detection([](ObjectDetection& d) { d.detection = 6; }),
+              HasSubstr("detection is 6, expected 1 .. 5"));
+  EXPECT_THAT(refusal_of_detection([](ObjectDetection& d) { d.num_detections = 0; }),
+              HasSubstr("num_detections is 0, expected > 0"));
+  EXPECT_THAT(refusal_of_detection([](ObjectDetection& d) { d.event_number = 0; }),
+              HasSubstr("event_number is 0, expected 1 .. "));
+  EXPECT_THAT(refusal_of_detection([](ObjectDetection& d) { d.event = DetectionEvent{4}; }),
+              HasSubstr("event is 4, expected 0 .. 3"));
+}
+
+TEST(CodecBounds, ADetectionHasAnObjectAPoseABoxAndSegments) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  for (const std::string name : {"", "a b", "../etc", "a.ply", "caf\xc3\xa9"}) {
+    EXPECT_THAT(refusal_of_detection([&](ObjectDetection& d) { d.name = name; }),
+                HasSubstr("name is '" + name + "', expected 1 to 64 letters, digits, - and _"));
+  }
+  EXPECT_EQ(refusal_of_detection([](ObjectDetection& d) { d.name = std::string(64, 'Z'); }),
+            "accepted");
+  EXPECT_THAT(refusal_of_detection([](ObjectDetection& d) { d.name = std::string(65, 'Z'); }),
+              HasSubstr("expected 1 to 64"));
+  EXPECT_THAT(refusal_of_detection([](ObjectDetection& d) { d.X_WO.linear() *= 1.001; }),
+              AllOf(HasSubstr("X_WO"), HasSubstr("a rotation")));
+  for (const float score : {-0.01F, 1.01F, nan}) {
+    EXPECT_THAT(refusal_of_detection([&](ObjectDetection& d) { d.score = score; }),
+                AllOf(HasSubstr("score is"), HasSubstr("expected 0 .. 1")));
+  }
+  EXPECT_THAT(refusal_of_detection([&](ObjectDetection& d) { d.box_min_O[1] = nan; }),
+              HasSubstr("box_min_O is nan"));
+  EXPECT_THAT(refusal_of_detection([](ObjectDetection& d) { d.box_max_O[2] = 2e6F; }),
+              HasSubstr("box_max_O is 2e+06"));
+  EXPECT_THAT(refusal_of_detection([](ObjectDetection& d) { d.box_max_O[0] = -1.0F; }),
+              HasSubstr("box_max_O is -1, expected at least box_min_O"));
+  EXPECT_THAT(refusal_of_detection([](ObjectDetection& d) { d.points = -1; }),
+              HasSubstr("points is -1"));
+  EXPECT_THAT(refusal_of_detection([](ObjectDetection& d) {
+                d.segment_ids = {7, 7};
+              }),
+              HasSubstr("segment_ids is 7, expected > 7, ascending"));
+  EXPECT_THAT(refusal_of_detection([](ObjectDetection& d) { d.segment_ids = {kNoSegment}; }),
+              HasSubstr("segment_ids is 0, expected > 0"));
+  EXPECT_THAT(refusal_of_detection([](ObjectDetection& d) { d.segment_ids.resize(1'025); }),
+              HasSubstr("num_segments is 1025, expected 0 .. 1024"));
+}
+
+template <class Change>
+std::string refusal_of_change(const Change& change) {
+  return refusal(example_change(), change);
+}
+
+TEST(CodecBounds, OnlyAMovedObjectHasAMotionAndAGoneOneHasNoSegments) {
+  EXPECT_EQ(refusal_of_change([](ChangeReport&) {}), "accepted");
+  for (const ChangeKind kind : {ChangeKind::kNew, ChangeKind::kGone}) {
+    EXPECT_THAT(refusal_of_change([&](ChangeReport& c) { c.kind = kind; }),
+                HasSubstr("change_report_t.motion_W is a motion, expected the identity"));
+  }
+  EXPECT_EQ(refusal_of_change([](ChangeReport& c) { c.kind = ChangeKind::kWithdrawn; }),
+            "accepted");
+  EXPECT_THAT(refusal_of_change([](ChangeReport& c) {
+                c.kind = ChangeKind::kGone;
+                c.motion_W = Pose::Identity();
+              }),
+              HasSubstr("num_segments is 2, expected 0, as the object is gone"));
+  EXPECT_THAT(refusal_of_change([](ChangeReport& c) { c.kind = ChangeKind{4}; }),
+              HasSubstr("kind is 4, expected 0 .. 3"));
+  EXPECT_THAT(refusal_of_change([](ChangeReport& c) { c.change = 5; }),
+              HasSubstr("change is 5, expected 1 .. 4"));
+  EXPECT_THAT(refusal_of_change([](ChangeReport& c) { c.event_number = -1; }),
+              HasSubstr("event_number is -1"));
+  EXPECT_THAT(refusal_of_change([](ChangeReport& c) { c.motion_W.linear()(0, 0) = 3.0; }),
+              AllOf(HasSubstr("motion_W"), HasSubstr("a rotation")));
+  EXPECT_THAT(refusal_of_change([](ChangeReport& c) { c.before = "\x1b[2J"; }),
+              HasSubstr("before is a text with byte 27"));
+  EXPECT_THAT(refusal_of_change([](ChangeReport& c) { c.box_max_W[1] = -9.0F; }),
+              HasSubstr("box_max_W is -9, expected at least box_min_W"));
+  EXPECT_THAT(refusal_of_change([](ChangeReport& c) {
+                c.segment_ids = {4, 3};
+              }),
+              HasSubstr("segment_ids is 3, expected > 4"));
 }
 
 template <class Change>

@@ -49,6 +49,9 @@ TEST(CodecRoundTrip, SmallMessagesKeepEveryField) {
   EXPECT_TRUE(through_the_wire(example_heartbeat()) == example_heartbeat());
   EXPECT_TRUE(through_the_wire(example_resend_request()) == example_resend_request());
   EXPECT_TRUE(through_the_wire(example_query()) == example_query());
+  EXPECT_TRUE(through_the_wire(example_detector_status()) == example_detector_status());
+  EXPECT_TRUE(through_the_wire(example_detection()) == example_detection());
+  EXPECT_TRUE(through_the_wire(example_change()) == example_change());
 }
 
 TEST(CodecRoundTrip, BulkMessagesKeepEveryFieldWhateverTheChunkSize) {

@@ -152,26 +152,81 @@ TEST(Progress, TimeLeftIsThatOfTheSlowerProcess) {
 TEST(Progress, IsFinishedWhenAllHaveFinishedTheSameMap) {
   Progress progress;
   progress.update(segmenter(0, true), 0);
-  EXPECT_FALSE(progress.finished(false));
+  EXPECT_FALSE(progress.finished({}));
   progress.update(mapper(1'000, true), 0);
-  EXPECT_TRUE(progress.finished(false));
-  EXPECT_FALSE(progress.finished(true));
-  EXPECT_EQ(progress.unfinished(true), "viewer sends no status");
+  EXPECT_TRUE(progress.finished({}));
+  EXPECT_FALSE(progress.finished({.viewer = true}));
+  EXPECT_EQ(progress.unfinished({.viewer = true}), "viewer sends no status");
   ViewerStatus viewer;
   progress.update(viewer, 0);
-  EXPECT_EQ(progress.unfinished(true), "viewer not finished");
+  EXPECT_EQ(progress.unfinished({.viewer = true}), "viewer not finished");
   viewer.finished = true;
   progress.update(viewer, 0);
-  EXPECT_EQ(progress.unfinished(true), "viewer finished another map");
+  EXPECT_EQ(progress.unfinished({.viewer = true}), "viewer finished another map");
   viewer.map_session = 42;
   progress.update(viewer, 0);
-  EXPECT_TRUE(progress.finished(true));
+  EXPECT_TRUE(progress.finished({.viewer = true}));
   EXPECT_THAT(progress.line(0), HasSubstr("finished"));
 
   MapperStatus next = mapper(1'000, true);
   next.session = 99;
   progress.update(next, 0);
-  EXPECT_EQ(progress.unfinished(false), "segmenter finished another map");
+  EXPECT_EQ(progress.unfinished({}), "segmenter finished another map");
+}
+
+DetectorStatus detector(bool finished) {
+  DetectorStatus status;
+  status.session = 44;
+  status.map_session = 42;
+  status.library_objects = 40;
+  status.detections_found = 2;
+  status.detections_confirmed = 5;
+  status.lag_p50_ms = 120.0;
+  status.cpu_share = 0.07;
+  status.finished = finished;
+  return status;
+}
+
+TEST(Progress, ShowsTheDetectorWhereThereIsOne) {
+  Progress progress;
+  progress.update(mapper(1'000, true), 0);
+  progress.update(segmenter(0, true), 0);
+  EXPECT_THAT(progress.line(0), AllOf(Not(HasSubstr("detect")), HasSubstr("finished")));
+
+  DetectorStatus status = detector(false);
+  progress.update(status, 0);
+  EXPECT_THAT(progress.line(0),
+              AllOf(HasSubstr("7 detections of 40 objects (5 confirmed), lag 0, 120 ms, 7 % of a "
+                              "core"),
+                    Not(HasSubstr("gone")), Not(HasSubstr("REFUSED")), Not(HasSubstr("finished"))));
+  status.session += 5;
+  status.detections_gone = 1;
+  status.candidates_waiting = 9;
+  status.library_refused = 3;
+  status.messages_bad = 4;
+  status.problem = "objects/mug: the model is cut off";
+  progress.update(status, 0);
+  EXPECT_THAT(progress.line(0), AllOf(HasSubstr(", 1 gone"), HasSubstr("9 candidates waiting"),
+                                      HasSubstr("3 objects REFUSED"), HasSubstr("4 bad messages"),
+                                      HasSubstr("detector restarted"),
+                                      HasSubstr("PROBLEM of the detector: objects/mug")));
+}
+
+TEST(Progress, WaitsForTheDetectorOnlyWhereItIsSaid) {
+  Progress progress;
+  progress.update(mapper(1'000, true), 0);
+  progress.update(segmenter(0, true), 0);
+  EXPECT_TRUE(progress.finished({}));
+  EXPECT_EQ(progress.unfinished({.detector = true}), "detector sends no status");
+  progress.update(detector(false), 10);
+  EXPECT_TRUE(progress.finished({}));
+  EXPECT_EQ(progress.unfinished({.detector = true}), "detector not finished");
+  DetectorStatus examined = detector(false);
+  examined.candidates_examined = 5;
+  progress.update(examined, 20);
+  EXPECT_EQ(progress.last_progress_us(), 20);
+  progress.update(detector(true), 30);
+  EXPECT_TRUE(progress.finished({.detector = true}));
 }
 
 TEST(Progress, NeedsAChangedCounterForProgress) {

@@ -39,6 +39,7 @@ TEST(StatusLog, HasALineForEachField) {
   segmenter.problem = "\"map\", full";
   log.append(segmenter);
   StatusLog(file).append(ViewerStatus{});  // appends to the file
+  log.append(DetectorStatus{});
 
   const auto lines = lines_of(file);
   EXPECT_EQ(lines.front(), "utime_us,process,field,value");
@@ -51,6 +52,7 @@ TEST(StatusLog, HasALineForEachField) {
   EXPECT_THAT(lines, Contains("6,segmenter,lag_slices,3"));
   EXPECT_THAT(lines, Contains("6,segmenter,problem,\"\"\"map\"\", full\""));
   EXPECT_THAT(lines, Contains("0,viewer,memory_bytes,0"));
+  EXPECT_THAT(lines, Contains("0,detector,cpu_share,0.000000"));
 }
 
 TEST(StatusLog, ThrowsWhenTheFileCannotBeWritten) {

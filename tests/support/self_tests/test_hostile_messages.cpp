@@ -12,7 +12,7 @@ namespace kintsugi::testing {
 namespace {
 
 using Kind = HostileMessages::Kind;
-constexpr int kMessages = 4'200;  // 100 of each kind on each channel
+constexpr int kMessages = 5'100;  // 100 of each kind on each channel
 
 /// The message is dropped by the decoder of its channel.
 bool is_refused(const HostileMessages::Message& message) {
@@ -29,6 +29,9 @@ bool is_refused(const HostileMessages::Message& message) {
     if (channel == channels::kMapperStatus) decode<MapperStatus>(message.data);
     if (channel == channels::kSegmenterStatus) decode<SegmenterStatus>(message.data);
     if (channel == channels::kViewerStatus) decode<ViewerStatus>(message.data);
+    if (channel == channels::kDetectorStatus) decode<DetectorStatus>(message.data);
+    if (channel == channels::kObjectDetection) decode<ObjectDetection>(message.data);
+    if (channel == channels::kChangeReport) decode<ChangeReport>(message.data);
     if (channel == channels::kHeartbeat) decode<Heartbeat>(message.data);
     if (channel == channels::kResendRequest) decode<ResendRequest>(message.data);
   } catch (const DecodeError&) {
@@ -44,7 +47,7 @@ TEST(HostileMessages, AreOfEveryKindOnEveryChannel) {
     const HostileMessages::Message message = hostile.next();
     ++counts[{message.channel, message.kind}];
   }
-  EXPECT_EQ(counts.size(), 14U * HostileMessages::kKinds.size());
+  EXPECT_EQ(counts.size(), 17U * HostileMessages::kKinds.size());
   for (const auto& [what, count] : counts) EXPECT_EQ(count, 100) << what.first;
 }
 

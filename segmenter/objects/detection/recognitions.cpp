@@ -1,0 +1,87 @@
+#include "segmenter/objects/detection/recognitions.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+namespace kintsugi::segmenter {
+
+namespace {
+
+/// The neighbours of the graph: points closer than two voxels, as in the engine's defaults.
+constexpr float kNeighbourRadius_vox = 2.0F;
+
+bool share_segments(const Recognition& a, const Recognition& b) {
+  const std::vector<std::uint32_t>& ids = b.placement.segment_ids;
+  return std::any_of(a.placement.segment_ids.begin(), a.placement.segment_ids.end(),
+                     [&ids](std::uint32_t id) {
+                       return std::binary_search(ids.begin(), ids.end(), id);
+                     });
+}
+
+}  // namespace
+
+void Recognitions::examine(std::uint32_t segment) {
+  by_segment_.erase(segment);
+  if (map_.num_points(segment) == 0) return;
+  std::optional<Recognition> best;
+  const std::vector<Candidate> candidates =
+      candidates_of(segment, map_, [this](std::uint32_t id) -> const std::vector<SegmentNeighbour>& {
+        return neighbours_of(id);
+      }, 2 * recognizer_.largest_radius_m() + 2 * access_.resolution_m);
+  for (const Candidate& candidate : candidates) {
+    const std::optional<Recognition>& found = recognize(candidate);
+    if (found && (!best || found->placement.score() > best->placement.score())) best = found;
+  }
+  if (best) by_segment_[segment] = std::move(*best);
+}
+
+void Recognitions::forget(const std::set<std::uint32_t>& changed) {
+  for (const std::uint32_t segment : changed) neighbours_.erase(segment);
+  by_candidate_.clear();
+}
+
+const std::optional<Recognition>& Recognitions::recognize(const Candidate& candidate) {
+  const auto [at, is_new] = by_candidate_.try_emplace(candidate);
+  if (is_new) {
+    ++num_candidates_;
+    at->second = recognizer_.recognize(map_.points_of(candidate), access_);
+  }
+  return at->second;
+}
+
+std::vector<Recognition> Recognitions::best() const {
+  std::vector<Recognition> all;
+  all.reserve(by_segment_.size());
+  for (const auto& [segment, recognition] : by_segment_) all.push_back(recognition);
+  std::stable_sort(all.begin(), all.end(), [](const Recognition& a, const Recognition& b) {
+    return a.placement.score() > b.placement.score();
+  });
+  std::vector<Recognition> best;
+  for (Recognition& recognition : all) {
+    const bool is_new = std::none_of(best.begin(), best.end(), [&](const Recognition& other) {
+      return share_segments(recognition, other);
+    });
+    if (is_new) best.push_back(std::move(recognition));
+  }
+  return best;
+}
+
+const std::vector<SegmentNeighbour>& Recognitions::neighbours_of(std::uint32_t segment) {
+  const auto known = neighbours_.find(segment);
+  if (known != neighbours_.end()) return known->second;
+  const Eigen::AlignedBox3f box = map_.box_of(segment);
+  const float radius_m = kNeighbourRadius_vox * access_.resolution_m;
+  const Eigen::Vector3f margin = Eigen::Vector3f::Constant(2 * radius_m);
+  const MapExcerpt excerpt = map_.points_in({box.min() - margin, box.max() + margin});
+  SegmentStatistics statistics;
+  statistics.segment_id = segment;
+  for (int axis = 0; axis < 3; ++axis) {
+    statistics.box_min_W[axis] = box.min()[axis];
+    statistics.box_max_W[axis] = box.max()[axis];
+  }
+  const LabelledCloud cloud{excerpt.points_W, excerpt.segment_ids, access_.resolution_m, radius_m};
+  return neighbours_[segment] = kintsugi::segmenter::neighbours_of(cloud, statistics);
+}
+
+}  // namespace kintsugi::segmenter

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <filesystem>
+
+namespace kintsugi::segmenter {
+
+/// Held while a program reads objects of a library in order to change them: of several, one at a
+/// time does. Who only reads needs none. Where the file system has no locks, it locks nothing.
+class LibraryLock {
+ public:
+  /// Waits for its turn. Makes the folder when it is absent.
+  /// @throws std::system_error naming a folder that cannot be made or opened
+  explicit LibraryLock(const std::filesystem::path& library);
+  ~LibraryLock();
+  LibraryLock(const LibraryLock&) = delete;
+  LibraryLock& operator=(const LibraryLock&) = delete;
+
+ private:
+  int descriptor_;
+};
+
+}  // namespace kintsugi::segmenter

@@ -1,0 +1,282 @@
+#include "segmenter/objects/library/object_json.hpp"
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <ctime>
+#include <limits>
+#include <stdexcept>
+
+#include <nlohmann/json.hpp>
+
+#include "lcmtypes/base/number_text.hpp"
+
+namespace kintsugi::segmenter {
+namespace {
+
+using Json = nlohmann::json;
+using OrderedJson = nlohmann::ordered_json;  // for writing: it looks keys up one by one
+constexpr const char* kFormat = "kintsugi object";
+
+[[noreturn]] void fail(const std::string& key, const std::string& expected) {
+  throw std::runtime_error("key '" + key + "': expected " + expected);
+}
+
+const Json& at(const Json& json, const std::string& key) {
+  if (!json.is_object()) throw std::runtime_error("expected an object with the key '" + key + "'");
+  const auto found = json.find(key);
+  if (found == json.end()) throw std::runtime_error("the key '" + key + "' is missing");
+  return *found;
+}
+
+std::string text(const Json& json, const std::string& key) {
+  const Json& value = at(json, key);
+  if (!value.is_string()) fail(key, "a text");
+  return value.get<std::string>();
+}
+
+bool truth(const Json& json, const std::string& key) {
+  const Json& value = at(json, key);
+  if (!value.is_boolean()) fail(key, "true or false");
+  return value.get<bool>();
+}
+
+double number(const Json& json, const std::string& key) {
+  const Json& value = at(json, key);
+  constexpr double kMost = 1e30;  // float32 can hold it
+  if (!value.is_number() || !(std::abs(value.get<double>()) <= kMost)) fail(key, "a number");
+  return value.get<double>();
+}
+
+/// @param json the value itself
+std::int64_t whole(const Json& json, const std::string& key, std::int64_t lowest,
+                   std::int64_t highest) {
+  const std::string expected =
+      "a whole number from " + std::to_string(lowest) + " to " + std::to_string(highest);
+  if (!json.is_number_integer()) fail(key, expected);
+  if (json.is_number_unsigned() &&
+      json.get<std::uint64_t>() > static_cast<std::uint64_t>(highest)) {
+    fail(key, expected);
+  }
+  const auto value = json.get<std::int64_t>();
+  if (value < lowest || value > highest) fail(key, expected);
+  return value;
+}
+
+const Json& list(const Json& json, const std::string& key) {
+  const Json& value = at(json, key);
+  if (!value.is_array()) fail(key, "a list");
+  return value;
+}
+
+std::string crc_text(std::uint32_t crc32) {
+  std::array<char, 9> hex{};
+  std::snprintf(hex.data(), hex.size(), "%08x", crc32);
+  return hex.data();
+}
+
+std::uint32_t crc_of(const Json& json, const std::string& key) {
+  const std::string hex = text(json, key);
+  std::uint32_t crc32 = 0;
+  const auto end = std::from_chars(hex.data(), hex.data() + hex.size(), crc32, 16);
+  if (hex.size() != 8 || end.ec != std::errc() || end.ptr != hex.data() + hex.size()) {
+    fail(key, "8 digits of a hexadecimal number");
+  }
+  return crc32;
+}
+
+constexpr const char* kTimeFormat = "%Y-%m-%dT%H:%M:%SZ";
+
+std::string time_text(std::int64_t time_s) {
+  const auto time = static_cast<std::time_t>(time_s);
+  std::tm utc{};
+  std::array<char, 64> text{};
+  if (gmtime_r(&time, &utc) == nullptr ||
+      std::strftime(text.data(), text.size(), kTimeFormat, &utc) == 0) {
+    throw std::runtime_error("a lesson's time cannot be written: " + std::to_string(time_s));
+  }
+  return text.data();
+}
+
+std::int64_t time_of(const Json& json, const std::string& key) {
+  const std::string written = text(json, key);
+  std::tm utc{};
+  const char* const end = strptime(written.c_str(), kTimeFormat, &utc);
+  if (end == nullptr || end != written.c_str() + written.size()) {
+    fail(key, "a time such as 2026-01-31T12:00:00Z");
+  }
+  return timegm(&utc);
+}
+
+OrderedJson vector_json(const Eigen::Vector3f& v) {
+  return {readable(v.x()), readable(v.y()), readable(v.z())};
+}
+
+Eigen::Vector3f vector_of(const Json& json, const std::string& key) {
+  if (!json.is_array() || json.size() != 3) fail(key, "three numbers");
+  Eigen::Vector3f v;
+  for (int i = 0; i < 3; ++i) {
+    const Json& value = json[static_cast<std::size_t>(i)];
+    if (!value.is_number() || !(std::abs(value.get<double>()) <= 1e6)) fail(key, "three numbers");
+    v[i] = static_cast<float>(value.get<double>());
+  }
+  return v;
+}
+
+OrderedJson size_json(const ObjectModel& model) {
+  Eigen::AlignedBox3f box_O;
+  for (const CloudPoint& p : model.points_O) box_O.extend(Eigen::Vector3f(p.x, p.y, p.z));
+  const Eigen::Vector3f size_m = box_O.sizes();
+  OrderedJson json = OrderedJson::array();
+  for (const float side_m : size_m) json.push_back(std::round(1e3 * side_m) / 1e3);
+  return json;
+}
+
+OrderedJson color_json(const ObjectModel& model) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const CloudPoint& p : model.points_O) sum += Eigen::Vector3d(p.red, p.green, p.blue);
+  OrderedJson json = OrderedJson::array();
+  for (const double channel : sum) {
+    json.push_back(std::lround(channel / static_cast<double>(model.points_O.size())));
+  }
+  return json;
+}
+
+OrderedJson parameters_json(const EngineConfig& config) {
+  OrderedJson json;
+  for (const EngineParameter& parameter : kMapParameters) {
+    json[std::string(parameter.name)] = config.*parameter.value;
+  }
+  return json;
+}
+
+EngineConfig parameters_of(const Json& json) {
+  EngineConfig config;
+  for (const EngineParameter& parameter : kMapParameters) {
+    config.*parameter.value = number(json, std::string(parameter.name));
+  }
+  return config;
+}
+
+OrderedJson lesson_json(const Lesson& lesson) {
+  OrderedJson json;
+  json["time"] = time_text(lesson.time_s);
+  json["map"] = lesson.map_name;
+  json["session"] = lesson.map_session;
+  json["segments"] = lesson.segment_ids;
+  return json;
+}
+
+Lesson lesson_of(const Json& json) {
+  Lesson lesson;
+  lesson.time_s = time_of(json, "time");
+  lesson.map_name = text(json, "map");
+  lesson.map_session =
+      whole(at(json, "session"), "session", 0, std::numeric_limits<std::int64_t>::max());
+  const Json& ids = list(json, "segments");
+  lesson.segment_ids.reserve(ids.size());
+  for (const Json& id : ids) {
+    lesson.segment_ids.push_back(static_cast<std::uint32_t>(
+        whole(id, "segments", 1, std::numeric_limits<std::uint32_t>::max())));
+  }
+  return lesson;
+}
+
+/// Bytes that are no UTF-8, as a name of a map may have, are replaced.
+std::string dump(const OrderedJson& json) {
+  return json.dump(-1, ' ', false, OrderedJson::error_handler_t::replace);
+}
+
+/// A list with a line for each entry; dump(2) would give each number a line of its own.
+std::string lines(const OrderedJson& list) {
+  std::string text;
+  for (const OrderedJson& entry : list) text += (text.empty() ? "\n    " : ",\n    ") + dump(entry);
+  return "[" + text + (list.empty() ? "]" : "\n  ]");
+}
+
+Json parse(std::string_view text) {
+  try {
+    return Json::parse(text.begin(), text.end());
+  } catch (const Json::parse_error& error) {
+    throw std::runtime_error(std::string("is no JSON: ") + error.what());
+  }
+}
+
+void check_format(const Json& json) {
+  if (!json.is_object() || !json.contains("format") || json["format"] != kFormat) {
+    throw std::runtime_error(std::string("is no object of a library: expected the key 'format' "
+                                         "with the value '") +
+                             kFormat + "'");
+  }
+  const auto version =
+      whole(at(json, "version"), "version", 1, std::numeric_limits<std::int32_t>::max());
+  if (version > kObjectVersion) {
+    throw std::runtime_error("has version " + std::to_string(version) +
+                             ", this program knows versions up to " +
+                             std::to_string(kObjectVersion));
+  }
+}
+
+KnownObject object_of(const Json& json) {
+  constexpr std::int64_t kMaxTimes = std::numeric_limits<std::int32_t>::max();
+  KnownObject object;
+  object.model.name = text(json, "name");
+  object.model.resolution_m = static_cast<float>(number(json, "resolution_m"));
+  object.model.has_up = truth(json, "has_up");
+  object.model.times_taught =
+      static_cast<std::int32_t>(whole(at(json, "times_taught"), "times_taught", 1, kMaxTimes));
+  object.wholeness = number(json, "wholeness");
+  object.model.parameters = parameters_of(at(json, "parameters"));
+  for (const Json& lesson : list(json, "lessons")) object.lessons.push_back(lesson_of(lesson));
+  const Json& views_O = list(json, "views_O");
+  object.model.views_O.reserve(views_O.size());
+  for (const Json& view_O : views_O) {
+    object.model.views_O.push_back(vector_of(view_O, "views_O"));
+  }
+  return object;
+}
+
+}  // namespace
+
+std::string object_json(const KnownObject& object, std::uint32_t model_crc32) {
+  const ObjectModel& model = object.model;
+  std::string text = "{";
+  const auto add = [&text](const char* key, const std::string& value) {
+    text += std::string(text.size() == 1 ? "\n  \"" : ",\n  \"") + key + "\": " + value;
+  };
+  OrderedJson lessons = OrderedJson::array();
+  for (const Lesson& lesson : object.lessons) lessons.push_back(lesson_json(lesson));
+  OrderedJson views_O = OrderedJson::array();
+  for (const Eigen::Vector3f& view_O : model.views_O) views_O.push_back(vector_json(view_O));
+  add("format", Json(kFormat).dump());
+  add("version", Json(kObjectVersion).dump());
+  add("name", Json(model.name).dump());
+  add("size_m", size_json(model).dump());
+  add("mean_color", color_json(model).dump());
+  add("points", Json(model.points_O.size()).dump());
+  add("resolution_m", Json(readable(model.resolution_m)).dump());
+  add("has_up", Json(model.has_up).dump());
+  add("times_taught", Json(model.times_taught).dump());
+  add("wholeness", Json(object.wholeness).dump());
+  add("parameters", parameters_json(model.parameters).dump());
+  add("model_crc32", Json(crc_text(model_crc32)).dump());
+  add("lessons", lines(lessons));
+  add("views_O", lines(views_O));
+  return text + "\n}\n";
+}
+
+ObjectDocument parse_object_json(std::string_view text) {
+  const Json json = parse(text);
+  check_format(json);
+  ObjectDocument document;
+  document.object = object_of(json);
+  document.num_points = static_cast<std::uint64_t>(
+      whole(at(json, "points"), "points", 1, std::numeric_limits<std::int64_t>::max()));
+  document.model_crc32 = crc_of(json, "model_crc32");
+  return document;
+}
+
+}  // namespace kintsugi::segmenter

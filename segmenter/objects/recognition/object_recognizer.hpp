@@ -1,0 +1,63 @@
+#pragma once
+// Finds the objects of a library on the surface of a map.
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "segmenter/objects/model/object_model.hpp"
+#include "segmenter/objects/recognition/map_access.hpp"
+#include "segmenter/objects/recognition/model_index.hpp"
+#include "segmenter/objects/recognition/placement.hpp"
+#include "segmenter/objects/recognition/pose_refinement.hpp"
+
+namespace kintsugi::segmenter {
+
+/// An object where it was recognised.
+struct Recognition {
+  std::size_t model = 0;  ///< index in ObjectRecognizer::models()
+  Placement placement;
+};
+
+class ObjectRecognizer {
+ public:
+  /// @param models in an order that is kept
+  /// @param resolution_m voxel size of the map, > 0
+  ObjectRecognizer(std::vector<ObjectModel> models, float resolution_m);
+
+  [[nodiscard]] const std::vector<ObjectModel>& models() const { return models_; }
+  /// Half the diagonal of the largest object; 0 without objects.
+  [[nodiscard]] float largest_radius_m() const { return largest_radius_m_; }
+
+  /// The object that the candidate, some touching segments of the map, is surface of; nothing if
+  /// there is none that could be told.
+  [[nodiscard]] std::optional<Recognition> recognize(std::span<const CloudPoint> candidate_W,
+                                                     const MapAccess& map) const;
+
+  /// The best place of one object on the candidate, however good it is; nothing if there is none.
+  [[nodiscard]] std::optional<Placement> place(std::size_t model,
+                                               std::span<const CloudPoint> candidate_W,
+                                               const MapAccess& map) const;
+
+  /// What is in the map now of an object that was at X_WO, after small corrections of the pose.
+  [[nodiscard]] Placement look_again(const Recognition& recognition, const MapAccess& map) const;
+
+ private:
+  /// By size and colours alone, at next to no cost.
+  [[nodiscard]] bool may_be_known(std::span<const CloudPoint> candidate_W) const;
+  [[nodiscard]] const PreparedModel& prepared(std::size_t model) const;
+
+  std::vector<ObjectModel> models_;
+  float resolution_m_;
+  float largest_radius_m_ = 0.0F;
+  std::vector<std::unique_ptr<const PreparedModel>> prepared_;
+  std::optional<ModelIndex> index_;
+};
+
+/// The placement is good enough to say that the object is there.
+bool is_recognized(const Placement& placement);
+
+}  // namespace kintsugi::segmenter

@@ -1,0 +1,39 @@
+#pragma once
+// Whether an object is really where it could be.
+
+#include <cstdint>
+#include <vector>
+
+#include "segmenter/objects/recognition/map_access.hpp"
+#include "segmenter/objects/recognition/pose_search.hpp"
+#include "segmenter/objects/recognition/prepared_model.hpp"
+
+namespace kintsugi::segmenter {
+
+/// An object at a place of the map, and what speaks for and against it.
+struct Placement {
+  Pose X_WO = Pose::Identity();
+  LightChange light;
+  /// Share of the model's surface that is in the map there.
+  float seen = 0.0F;
+  /// Share of the model's surface that is not in the map, although the camera saw that place: it is
+  /// free, or another surface is there.
+  float contradicted = 0.0F;
+  /// Share of the points of `segment_ids` that are surface of the object.
+  float explained = 0.0F;
+  /// Share of the map's points that are surface of the object that belong to `segment_ids`.
+  float own = 0.0F;
+  std::int32_t points = 0;                 ///< of the map that are surface of the object
+  std::vector<std::uint32_t> segment_ids;  ///< most of whose points are; ascending
+
+  /// From 0 to 1: how much of all that is to be seen of model and segments agrees.
+  [[nodiscard]] float score() const;
+};
+
+/// What is there of the object in the pose of the hypothesis.
+/// Where what the camera saw is not known, what is not in the map speaks against the object by
+/// half.
+Placement placement_of(const PreparedModel& model, const MapAccess& map,
+                       const PoseHypothesis& hypothesis);
+
+}  // namespace kintsugi::segmenter

@@ -1,0 +1,13 @@
+#pragma once
+// Moves an object onto the surface that is seen.
+
+#include "segmenter/objects/recognition/pose_search.hpp"
+
+namespace kintsugi::segmenter {
+
+/// Iterated closest points: point to plane, and weakly point to point, where planes leave a
+/// direction free; correspondences with unlike normals or colours do not count. Begins within a few
+/// spacings.
+PoseHypothesis refined_pose(const PreparedModel& model, const Surface& seen_W, const Pose& X_WO);
+
+}  // namespace kintsugi::segmenter

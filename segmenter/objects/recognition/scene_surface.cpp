@@ -1,0 +1,70 @@
+#include "segmenter/objects/recognition/scene_surface.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace kintsugi::segmenter {
+
+SceneSurface::SceneSurface(std::span<const CloudPoint> points_W,
+                           std::span<const std::uint32_t> segment_ids, float within_m)
+    : surface_W_(unthinned(points_W)),
+      segment_ids_(segment_ids.begin(), segment_ids.end()),
+      cell_m_(within_m) {
+  if (surface_W_.empty()) return;
+  Eigen::AlignedBox3f box;
+  for (const SurfacePoint& point : surface_W_) box.extend(point.position);
+  low_W_ = box.min();
+  size_ = (box.sizes() / cell_m_).array().floor().cast<int>() + 1;
+  first_.assign(static_cast<std::size_t>(size_.x()) * size_.y() * size_.z(), -1);
+  next_.resize(surface_W_.size());
+  for (std::size_t i = 0; i < surface_W_.size(); ++i) {
+    std::int32_t& first = first_[index_of(cell_of(surface_W_[i].position))];
+    next_[i] = first;
+    first = static_cast<std::int32_t>(i);
+  }
+}
+
+const SurfacePoint* SceneSurface::nearest(const Eigen::Vector3f& p_W) const {
+  if (surface_W_.empty()) return nullptr;
+  const Eigen::Vector3i cell = cell_of(p_W);
+  const Eigen::Vector3i low = (cell.array() - 1).max(0);
+  const Eigen::Vector3i high = (cell.array() + 1).min(size_.array() - 1);
+  const SurfacePoint* nearest = nullptr;
+  float least = cell_m_ * cell_m_;
+  for (int z = low.z(); z <= high.z(); ++z) {
+    for (int y = low.y(); y <= high.y(); ++y) {
+      for (int x = low.x(); x <= high.x(); ++x) {
+        for (std::int32_t i = first_[index_of({x, y, z})]; i >= 0;
+             i = next_[static_cast<std::size_t>(i)]) {
+          const SurfacePoint& point = surface_W_[static_cast<std::size_t>(i)];
+          const float squared = (point.position - p_W).squaredNorm();
+          if (squared > least) continue;
+          least = squared;
+          nearest = &point;
+        }
+      }
+    }
+  }
+  return nearest;
+}
+
+Surface SceneSurface::of_segments(std::span<const std::uint32_t> ids) const {
+  Surface surface;
+  for (std::size_t i = 0; i < surface_W_.size(); ++i) {
+    if (std::binary_search(ids.begin(), ids.end(), segment_ids_[i])) {
+      surface.push_back(surface_W_[i]);
+    }
+  }
+  return surface;
+}
+
+Eigen::Vector3i SceneSurface::cell_of(const Eigen::Vector3f& p_W) const {
+  return ((p_W - low_W_) / cell_m_).array().floor().cast<int>();
+}
+
+std::size_t SceneSurface::index_of(const Eigen::Vector3i& cell) const {
+  return (static_cast<std::size_t>(cell.z()) * size_.y() + cell.y()) * size_.x() + cell.x();
+}
+
+}  // namespace kintsugi::segmenter

@@ -1,0 +1,145 @@
+#include "segmenter/objects/recognition/view_descriptor.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <numeric>
+#include <utility>
+
+#include <Eigen/Dense>
+#include <Eigen/Geometry>
+
+namespace kintsugi::segmenter {
+
+namespace {
+
+constexpr std::size_t kFewestPoints = 3;
+constexpr int kTurns = 8;  // a face that is in view at one turn is at the next, too
+// As a person who walks sees things on the floor and on tables, and those at the height of the eyes.
+constexpr std::array<float, 2> kElevations_rad = {0.1F, 0.7F};
+constexpr float kGrazing = 0.17F;  // sine of 10 degrees: what is seen flatter is hardly measured
+
+Eigen::Vector3f direction(int turn, float elevation_rad) {
+  const float azimuth_rad =
+      2 * std::numbers::pi_v<float> * static_cast<float>(turn) / static_cast<float>(kTurns);
+  return {std::cos(elevation_rad) * std::cos(azimuth_rad),
+          std::cos(elevation_rad) * std::sin(azimuth_rad), std::sin(elevation_rad)};
+}
+
+/// The points that are the first in their cell of an image along `towards`, or nearly so.
+std::vector<std::size_t> seen_from(const Surface& surface, const Eigen::Vector3f& towards,
+                                   float spacing_m) {
+  const Eigen::Matrix3f R =
+      Eigen::Quaternionf::FromTwoVectors(towards, Eigen::Vector3f::UnitZ()).toRotationMatrix();
+  const float cell_m = 2 * spacing_m;  // without holes between the points
+  std::map<std::pair<int, int>, float> nearest;
+  const auto cell_of = [&](const Eigen::Vector3f& p) {
+    return std::pair(static_cast<int>(std::floor(p.x() / cell_m)),
+                     static_cast<int>(std::floor(p.y() / cell_m)));
+  };
+  for (const SurfacePoint& point : surface) {
+    const Eigen::Vector3f p = R * point.position;
+    const auto [at, is_new] = nearest.try_emplace(cell_of(p), p.z());
+    if (!is_new) at->second = std::max(at->second, p.z());
+  }
+  std::vector<std::size_t> seen;
+  for (std::size_t i = 0; i < surface.size(); ++i) {
+    const float facing = surface[i].normal.dot(towards);
+    if (facing < kGrazing) continue;
+    const Eigen::Vector3f p = R * surface[i].position;
+    // Within a cell a surface that is seen at this angle is as deep as this.
+    const float depth_m = cell_m / facing;
+    if (p.z() >= nearest[cell_of(p)] - depth_m) seen.push_back(i);
+  }
+  return seen;
+}
+
+Eigen::Vector3f principal_lengths(const Surface& surface) {
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (const SurfacePoint& point : surface) mean += point.position.cast<double>();
+  mean /= static_cast<double>(surface.size());
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  for (const SurfacePoint& point : surface) {
+    const Eigen::Vector3d d = point.position.cast<double>() - mean;
+    covariance += d * d.transpose();
+  }
+  covariance /= static_cast<double>(surface.size());
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance,
+                                                              Eigen::EigenvaluesOnly);
+  return solver.eigenvalues().reverse().cwiseMax(0.0).cwiseSqrt().cast<float>();
+}
+
+Eigen::Matrix<float, 6, 1> colors(const Surface& surface) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  Eigen::Vector3d squares = Eigen::Vector3d::Zero();
+  double count = 0;
+  for (const SurfacePoint& point : surface) {
+    if (!point.has_color) continue;
+    const Eigen::Vector3d lab = point.lab.cast<double>();
+    sum += lab;
+    squares += lab.cwiseProduct(lab);
+    count += 1;
+  }
+  Eigen::Matrix<float, 6, 1> colors = Eigen::Matrix<float, 6, 1>::Zero();
+  if (count == 0) return colors;
+  const Eigen::Vector3d mean = sum / count;
+  const Eigen::Vector3d variance = squares / count - mean.cwiseProduct(mean);
+  colors << mean.cast<float>(), variance.cwiseMax(0.0).cwiseSqrt().cast<float>();
+  return colors;
+}
+
+}  // namespace
+
+SizeAndColors size_and_colors(const Surface& surface, float spacing_m) {
+  SizeAndColors elements;
+  elements.head<3>() = (principal_lengths(surface).array() + spacing_m).log();
+  elements[3] = std::log(static_cast<float>(surface.size()) * spacing_m * spacing_m);
+  elements.tail<6>() = colors(surface);
+  return elements;
+}
+
+ViewDescriptor view_descriptor(const Surface& surface, const ShapeFeatures& features,
+                               float spacing_m) {
+  ViewDescriptor descriptor;
+  descriptor.head<kSizeAndColors>() = size_and_colors(surface, spacing_m);
+  descriptor.tail<kShapeFeatureSize>() = features.rowwise().mean();
+  return descriptor;
+}
+
+std::vector<std::vector<std::size_t>> simulated_views(const Surface& surface, float spacing_m) {
+  std::vector<std::vector<std::size_t>> views;
+  const auto add = [&views](std::vector<std::size_t> view) {
+    if (view.size() >= kFewestPoints) views.push_back(std::move(view));
+  };
+  std::vector<std::size_t> all(surface.size());
+  std::iota(all.begin(), all.end(), 0);
+  add(std::move(all));
+  for (const float elevation_rad : kElevations_rad) {
+    for (int turn = 0; turn < kTurns; ++turn) {
+      add(seen_from(surface, direction(turn, elevation_rad), spacing_m));
+    }
+  }
+  return views;
+}
+
+Surface points_of(const Surface& surface, const std::vector<std::size_t>& view) {
+  Surface points;
+  points.reserve(view.size());
+  for (const std::size_t i : view) points.push_back(surface[i]);
+  return points;
+}
+
+ShapeFeatures features_of(const ShapeFeatures& features, const std::vector<std::size_t>& view) {
+  ShapeFeatures chosen(kShapeFeatureSize, static_cast<Eigen::Index>(view.size()));
+  for (std::size_t i = 0; i < view.size(); ++i) {
+    chosen.col(static_cast<Eigen::Index>(i)) = features.col(static_cast<Eigen::Index>(view[i]));
+  }
+  return chosen;
+}
+
+}  // namespace kintsugi::segmenter

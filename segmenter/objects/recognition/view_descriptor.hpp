@@ -1,0 +1,44 @@
+#pragma once
+// A short description of a piece of surface as a whole: size, colours, shape. It chooses the objects
+// that a piece is compared with.
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "segmenter/objects/recognition/shape_features.hpp"
+#include "segmenter/objects/recognition/surface.hpp"
+
+namespace kintsugi::segmenter {
+
+/// The elements before the shape features, which cost next to nothing.
+inline constexpr int kSizeAndColors = 10;
+
+inline constexpr int kViewDescriptorSize = kSizeAndColors + kShapeFeatureSize;
+
+using SizeAndColors = Eigen::Matrix<float, kSizeAndColors, 1>;
+using ViewDescriptor = Eigen::Matrix<float, kViewDescriptorSize, 1>;
+
+/// Of a surface of at least one point:
+///   0-2    logarithms of the standard deviations of its points along their principal axes, metres,
+///          the largest first; a spacing is added before, so that flat things have a finite one
+///   3      logarithm of its area, square metres
+///   4-9    mean and standard deviation of L, a and b; 0 without colours
+///   10-42  the mean of the shape features of its points
+/// @param features of each point, see shape_features()
+/// @param spacing_m of the points
+SizeAndColors size_and_colors(const Surface& surface, float spacing_m);
+ViewDescriptor view_descriptor(const Surface& surface, const ShapeFeatures& features,
+                               float spacing_m);
+
+/// What can be seen of a surface from each of some directions around it and above it, besides all
+/// of it: points that face the direction and that nothing hides. Without those of which fewer than
+/// three points can be seen.
+/// @return the indices of the points of each view
+std::vector<std::vector<std::size_t>> simulated_views(const Surface& surface, float spacing_m);
+
+/// The points and features of a view.
+Surface points_of(const Surface& surface, const std::vector<std::size_t>& view);
+ShapeFeatures features_of(const ShapeFeatures& features, const std::vector<std::size_t>& view);
+
+}  // namespace kintsugi::segmenter

@@ -1,0 +1,105 @@
+#include "segmenter/tools/objects/map_difference.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string_view>
+
+#include <nlohmann/json.hpp>
+
+#include "segmenter/io/ply/ply_table.hpp"
+#include "segmenter/io/points/file_bytes.hpp"
+#include "segmenter/io/points/file_cloud.hpp"
+#include "segmenter/io/points/point_roles.hpp"
+
+namespace kintsugi::segmenter {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+bool shows_object(const std::string& kind) {
+  return kind == "new" || kind == "gone" || kind == "moved";
+}
+
+/// Points that are there as before, or as now.
+std::vector<CloudPoint> read_points(const fs::path& path, bool before) {
+  const std::string bytes = read_file_bytes(path);
+  const std::string name = path.string();
+  const PointTable table = parse_ply_table(bytes, name);
+  const std::vector<CloudPoint> all =
+      cloud_of(table, find_roles(table, name), {}, name).points_W;
+  const auto was = table.find("was");
+  if (!was.has_value()) {
+    throw std::runtime_error(name + ": has no property 'was', as kintsugi-diff writes it");
+  }
+  std::vector<CloudPoint> points_W;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if ((table.value(i, *was) != 0.0) == before) points_W.push_back(all[i]);
+  }
+  if (points_W.empty()) {
+    throw std::runtime_error(name + ": has no points with 'was' = " + (before ? "1" : "0"));
+  }
+  return points_W;
+}
+
+/// A path in changes.json is that of the one who ran kintsugi-diff, or relative to its output.
+fs::path found_map(const std::string& path, const fs::path& folder) {
+  return fs::exists(path) || !fs::exists(folder / path) ? fs::path(path) : folder / path;
+}
+
+ShownChange change_of(const Json& root, const Json& entry, const fs::path& folder) {
+  ShownChange change;
+  change.id = entry.at("id").get<std::int64_t>();
+  change.kind = entry.at("kind").get<std::string>();
+  const bool before = change.kind == "gone";
+  change.segment_ids = entry.at(before ? "before_segments" : "after_segments")
+                           .get<std::vector<std::uint32_t>>();
+  std::sort(change.segment_ids.begin(), change.segment_ids.end());
+  change.map = found_map(root.at(before ? "before" : "after").get<std::string>(), folder);
+  return change;
+}
+
+[[noreturn]] void refuse_id(const Json& changes, std::int64_t id) {
+  std::string ids;
+  for (const Json& entry : changes) {
+    ids += (ids.empty() ? "" : ", ") + entry.at("id").dump() + " (" +
+           entry.at("kind").get<std::string>() + ")";
+  }
+  throw std::runtime_error("no change " + std::to_string(id) +
+                           " that shows an object (new, gone or moved): it has " +
+                           (ids.empty() ? "none" : ids));
+}
+
+std::vector<ShownChange> parse_changes(const std::string& text, const fs::path& folder,
+                                       std::optional<std::int64_t> id) {
+  const Json root = Json::parse(text);
+  const Json& entries = root.at("changes");
+  std::vector<ShownChange> changes;
+  for (const Json& entry : entries) {
+    if (!shows_object(entry.at("kind").get<std::string>())) continue;
+    if (id.has_value() && entry.at("id").get<std::int64_t>() != *id) continue;
+    changes.push_back(change_of(root, entry, folder));
+  }
+  if (changes.empty() && id.has_value()) refuse_id(entries, *id);
+  return changes;
+}
+
+}  // namespace
+
+std::vector<ShownChange> read_changes(const fs::path& folder, std::optional<std::int64_t> id) {
+  const fs::path path = folder / "changes.json";
+  const std::string text = read_file_bytes(path);
+  std::vector<ShownChange> changes;
+  try {
+    changes = parse_changes(text, folder, id);
+  } catch (const std::exception& error) {
+    throw std::runtime_error(path.string() + ": " + error.what());
+  }
+  for (ShownChange& change : changes) {
+    change.points_W = read_points(folder / ("change_" + std::to_string(change.id) + ".ply"),
+                                  change.kind == "gone");
+  }
+  return changes;
+}
+
+}  // namespace kintsugi::segmenter

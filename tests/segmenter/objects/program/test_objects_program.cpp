@@ -1,0 +1,202 @@
+// kintsugi-objects, run as a user runs it.
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+#include <opencv2/imgcodecs.hpp>
+
+#include "lcmtypes/base/ply_writer.hpp"
+#include "segmenter/io/ply/labelled_ply_writer.hpp"
+#include "segmenter/objects/library/object_library.hpp"
+#include "tests/segmenter/objects/box_on_table.hpp"
+#include "tests/segmenter/tools/program.hpp"
+#include "tests/support/file_size_limit.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace kintsugi::segmenter {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using testing::box_on_table;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+void write_map(const ObservedMap& map, const fs::path& path) {
+  LabelledPlyWriter writer(path, std::ssize(map.points_W), {});
+  for (std::size_t i = 0; i < map.points_W.size(); ++i) {
+    writer.append(map.points_W[i], map.segment_ids[i], 0);
+  }
+  writer.commit();
+}
+
+void write_text(const fs::path& path, const std::string& text) { std::ofstream(path) << text; }
+
+class Objects : public ::testing::Test {
+ protected:
+  Objects() {
+    write_map(box_on_table(), folder_ / "hall.ply");
+    write_map(box_on_table({"z", "-y", "-x"}, {-0.15F, 0.1F, 0.0F}, 0.7F), folder_ / "room.ply");
+  }
+
+  /// FOLDER stands for the test's folder; the library is in it.
+  testing::ProgramResult run(std::string arguments) const {
+    arguments += " --library FOLDER/objects";
+    for (std::size_t at = 0; (at = arguments.find("FOLDER")) != std::string::npos;) {
+      arguments.replace(at, 6, folder_.path().string());
+    }
+    return testing::run_program("kintsugi-objects", arguments, folder_ / "log.txt");
+  }
+  std::string expect_success(const std::string& arguments) const {
+    const auto result = run(arguments);
+    EXPECT_EQ(result.exit_code, 0) << result.output;
+    return result.output;
+  }
+  void expect_error(const std::string& arguments, const std::string& reason) const {
+    const auto result = run(arguments);
+    EXPECT_EQ(result.exit_code, 1) << result.output;
+    EXPECT_THAT(result.output, HasSubstr("kintsugi-objects: "));
+    EXPECT_THAT(result.output, HasSubstr(reason));
+  }
+  ObjectLibrary library() const { return ObjectLibrary::read(folder_ / "objects"); }
+
+  /// What kintsugi-diff writes: the box came, the ball went.
+  void write_difference() const {
+    const fs::path diff = folder_ / "diff";
+    fs::create_directory(diff);
+    const json root = {
+        {"before", (folder_ / "hall.ply").string()},
+        {"after", (folder_ / "room.ply").string()},
+        {"changes",
+         {{{"id", 1}, {"kind", "new"}, {"before_segments", json::array()}, {"after_segments", {2}}},
+          {{"id", 2}, {"kind", "gone"}, {"before_segments", {3}}, {"after_segments", json::array()}},
+          {{"id", 3}, {"kind", "unseen"}}}}};
+    write_text(diff / "changes.json", root.dump());
+    write_change(diff / "change_1.ply", box_on_table({"z", "-y", "-x"}, {-0.15F, 0.1F, 0.0F}, 0.7F),
+                 testing::kBox, 0);
+    write_change(diff / "change_2.ply", box_on_table(), testing::kBall, 1);
+  }
+  static void write_change(const fs::path& path, const ObservedMap& map, std::uint32_t id,
+                           std::uint8_t was) {
+    PlyWriter writer(path, {{.name = "vertex",
+                             .properties = {"float x", "float y", "float z", "float nx", "float ny",
+                                            "float nz", "uchar red", "uchar green", "uchar blue",
+                                            "uchar was"}}});
+    for (std::size_t i = 0; i < map.points_W.size(); ++i) {
+      if (map.segment_ids[i] != id) continue;
+      const CloudPoint& p = map.points_W[i];
+      writer.append(0, p.x, p.y, p.z, p.nx, p.ny, p.nz, p.red, p.green, p.blue, was);
+    }
+    writer.commit();
+  }
+
+  kintsugi::testing::TemporaryFolder folder_;
+};
+
+TEST_F(Objects, AreTaughtListedShownAndForgotten) {
+  EXPECT_THAT(expect_success("teach --map FOLDER/hall.ply --ids 2 --name box"), HasSubstr("box: "));
+  expect_success("teach --map FOLDER/hall.ply --ids 3 --name ball");
+  EXPECT_THAT(expect_success("list"), ::testing::AllOf(HasSubstr("ball "), HasSubstr("box ")));
+  const json all = json::parse(expect_success("list --json"));
+  ASSERT_EQ(all.at("objects").size(), 2U);
+  EXPECT_EQ(all["objects"][1]["name"], "box");
+  EXPECT_EQ(all["objects"][1]["lessons"][0]["segments"], json({2}));
+
+  EXPECT_THAT(expect_success("show box --png FOLDER/box.png"), HasSubstr("z is up"));
+  const cv::Mat picture = cv::imread((folder_ / "box.png").string());
+  EXPECT_EQ(picture.cols, 1200);
+  EXPECT_EQ(json::parse(expect_success("show box --json")).at("points"),
+            library().find("box")->model.points_O.size());
+
+  EXPECT_THAT(expect_success("forget box"), HasSubstr("box: forgotten"));
+  EXPECT_EQ(library().objects().size(), 1U);
+}
+
+TEST_F(Objects, TaughtAgainAreRefined) {
+  expect_success("teach --map FOLDER/hall.ply --ids 2 --name box");
+  const std::size_t before = library().find("box")->model.points_O.size();
+  EXPECT_THAT(expect_success("teach --map FOLDER/room.ply --ids 2 --name box"),
+              HasSubstr("taught 2 times"));
+  EXPECT_GT(library().find("box")->model.points_O.size(), before + 100);
+  expect_error("teach --map FOLDER/room.ply --ids 3 --name box", "--replace forgets");
+  EXPECT_EQ(library().find("box")->model.times_taught, 2);
+  expect_success("teach --map FOLDER/room.ply --ids 3 --name box --replace");
+  EXPECT_EQ(library().find("box")->model.times_taught, 1);
+}
+
+TEST_F(Objects, OfTwoNamesBecomeOne) {
+  expect_success("teach --map FOLDER/hall.ply --ids 2 --name box");
+  expect_success("teach --map FOLDER/room.ply --ids 2 --name carton");
+  expect_success("teach --map FOLDER/room.ply --ids 3 --name ball");
+  EXPECT_THAT(expect_success("merge box carton"), HasSubstr("carton: is box now"));
+  EXPECT_EQ(library().objects().size(), 2U);
+  EXPECT_EQ(library().find("box")->lessons.size(), 2U);
+  expect_error("merge box ball", "'ball' does not fit what is known of 'box'");
+  expect_error("merge box box", "into itself");
+  expect_error("merge box carton", "there is no object 'carton'; it has ball, box");
+  EXPECT_EQ(library().objects().size(), 2U);
+}
+
+TEST_F(Objects, AreTaughtFromADifference) {
+  write_difference();
+  const std::string output = expect_success("teach --from-diff FOLDER/diff");
+  EXPECT_THAT(output, ::testing::AllOf(HasSubstr("new_1: "), HasSubstr("gone_2: ")));
+  ASSERT_NE(library().find("gone_2"), nullptr);
+  EXPECT_EQ(library().find("gone_2")->lessons[0].segment_ids, std::vector<std::uint32_t>{3});
+  expect_success("teach --from-diff FOLDER/diff --change 1");
+  EXPECT_NE(library().find("new_1_2"), nullptr);
+  expect_success("teach --from-diff FOLDER/diff --change 2 --name ball");
+  EXPECT_NE(library().find("ball"), nullptr);
+  expect_error("teach --from-diff FOLDER/diff --name ball", "choose one with --change");
+  expect_error("teach --from-diff FOLDER/diff --change 3", "1 (new), 2 (gone), 3 (unseen)");
+  expect_error("teach --from-diff FOLDER/none", "changes.json: no such file");
+  write_text(folder_ / "diff" / "changes.json", "{}");
+  expect_error("teach --from-diff FOLDER/diff", "changes.json: ");
+}
+
+TEST_F(Objects, WhatCannotBeTaughtSaysWhy) {
+  expect_error("teach --map FOLDER/hall.ply --ids 9 --name box",
+               "there is no segment 9 among its 3; the nearest ids are 3");
+  expect_error("teach --map FOLDER/hall.ply --name box", "--map needs --ids");
+  expect_error("teach --map FOLDER/hall.ply --ids 2", "--map needs --name");
+  expect_error("teach --name box", "give either --map");
+  expect_error("teach --map FOLDER/none.ply --ids 2 --name box", "none.ply");
+  expect_error("teach --map FOLDER/hall.ply --ids 2 --name ../box", "letters, digits");
+  EXPECT_FALSE(fs::exists(folder_ / "objects"));
+  write_text(folder_ / "objects", "a file");
+  expect_error("teach --map FOLDER/hall.ply --ids 2 --name box", "objects'");
+  EXPECT_GE(run("teach --maps x").exit_code, 100);
+  EXPECT_GE(run("").exit_code, 100);
+}
+
+TEST_F(Objects, AFullDiskLeavesTheLibraryAsItWas) {
+  expect_success("teach --map FOLDER/hall.ply --ids 2 --name box");
+  {
+    const kintsugi::testing::FileSizeLimit limit(4096);
+    expect_error("teach --map FOLDER/room.ply --ids 2 --name box", "File too large");
+    expect_error("teach --map FOLDER/hall.ply --ids 3 --name ball", "File too large");
+  }
+  EXPECT_EQ(library().objects().size(), 1U);
+  EXPECT_EQ(library().find("box")->model.times_taught, 1);
+}
+
+TEST_F(Objects, ThatAreDamagedAreNamedAndTheOthersUsed) {
+  expect_success("teach --map FOLDER/hall.ply --ids 2 --name box");
+  expect_success("teach --map FOLDER/hall.ply --ids 3 --name ball");
+  write_text(folder_ / "objects" / "ball" / "object.json", "{");
+  EXPECT_THAT(expect_success("list"),
+              ::testing::AllOf(HasSubstr("'ball' is not used: "), HasSubstr("box ")));
+  expect_error("show ball", "ball/object.json: is no JSON");
+  expect_error("teach --map FOLDER/room.ply --ids 3 --name ball", "--replace forgets");
+  expect_error("forget box cup", "there is no object 'cup'");
+  EXPECT_NE(library().find("box"), nullptr);  // all or none
+  expect_success("forget ball");
+  EXPECT_THAT(expect_success("list"), Not(HasSubstr("ball")));
+}
+
+}  // namespace
+}  // namespace kintsugi::segmenter
