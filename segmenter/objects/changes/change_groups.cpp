@@ -1,0 +1,157 @@
+#include "segmenter/objects/changes/change_groups.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <set>
+#include <utility>
+
+namespace kintsugi::segmenter {
+namespace {
+
+constexpr double kMost = 0.5;  // of a segment that is changed as a whole
+// Of a segment of which less is known, what has changed says nothing about the rest.
+constexpr double kLeastKnown = 0.3;
+constexpr double kCell_vox = 1.5;  // points of a surface are in neighbouring cells
+// Of the 27 cells around one in the middle of a surface 9 and more have points; on a strip three
+// voxels wide 6 at most have all.
+constexpr int kWide_cells = 8;
+constexpr int kLeastWideCells = 3;
+
+using Cell = std::array<std::int32_t, 3>;
+
+struct Tally {
+  double same = 0.0;
+  double changed = 0.0;
+  double all = 0.0;
+};
+
+std::map<std::uint32_t, Tally> tallies_of(std::span<const std::uint32_t> segment_ids,
+                                          std::span<const PointChange> changes) {
+  std::map<std::uint32_t, Tally> tallies;
+  for (std::size_t i = 0; i < changes.size(); ++i) {
+    Tally& tally = tallies[segment_ids[i]];
+    tally.all += 1.0;
+    tally.same += changes[i] == PointChange::kSame ? 1.0 : 0.0;
+    tally.changed += changes[i] == PointChange::kChanged ? 1.0 : 0.0;
+  }
+  return tallies;
+}
+
+bool is_changed_as_a_whole(const Tally& tally) {
+  const double known = tally.same + tally.changed;
+  return known >= kLeastKnown * tally.all && tally.changed >= kMost * known;
+}
+
+/// Disjoint sets of numbers.
+class Sets {
+ public:
+  explicit Sets(std::size_t size) : parents_(size) {
+    std::iota(parents_.begin(), parents_.end(), std::size_t{0});
+  }
+  std::size_t find(std::size_t i) {
+    while (parents_[i] != i) i = parents_[i] = parents_[parents_[i]];
+    return i;
+  }
+  void join(std::size_t a, std::size_t b) {
+    a = find(a);
+    b = find(b);
+    parents_[std::max(a, b)] = std::min(a, b);
+  }
+
+ private:
+  std::vector<std::size_t> parents_;
+};
+
+/// The points that may be in groups, by the cell they are in.
+struct CellPoints {
+  std::vector<std::size_t> points;
+  std::size_t number = 0;
+};
+using Cells = std::map<Cell, CellPoints>;
+
+template <class Visit>
+void visit_around(const Cells& cells, const Cell& at, const Visit& visit) {
+  for (std::int32_t dx = -1; dx <= 1; ++dx) {
+    for (std::int32_t dy = -1; dy <= 1; ++dy) {
+      for (std::int32_t dz = -1; dz <= 1; ++dz) {
+        const auto found = cells.find({at[0] + dx, at[1] + dy, at[2] + dz});
+        if (found != cells.end()) visit(found->second);
+      }
+    }
+  }
+}
+
+Cells cells_of(std::span<const CloudPoint> points, const std::vector<bool>& is_member,
+               double cell_m) {
+  Cells cells;
+  const auto index = [&](float x) {
+    return static_cast<std::int32_t>(std::floor(static_cast<double>(x) / cell_m));
+  };
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!is_member[i]) continue;
+    cells[{index(points[i].x), index(points[i].y), index(points[i].z)}].points.push_back(i);
+  }
+  std::size_t number = 0;
+  for (auto& [cell, content] : cells) content.number = number++;
+  return cells;
+}
+
+struct Gathered {
+  std::vector<std::size_t> points;
+  int wide_cells = 0;
+};
+
+std::map<std::size_t, Gathered> gather(const Cells& cells) {
+  Sets sets(cells.size());
+  for (const auto& [at, content] : cells) {
+    visit_around(cells, at,
+                 [&](const CellPoints& near) { sets.join(content.number, near.number); });
+  }
+  std::map<std::size_t, Gathered> groups;
+  for (const auto& [at, content] : cells) {
+    Gathered& group = groups[sets.find(content.number)];
+    group.points.insert(group.points.end(), content.points.begin(), content.points.end());
+    int occupied = 0;
+    visit_around(cells, at, [&](const CellPoints&) { ++occupied; });
+    group.wide_cells += occupied >= kWide_cells ? 1 : 0;
+  }
+  return groups;
+}
+
+}  // namespace
+
+std::vector<ChangeGroup> group_changes(std::span<const CloudPoint> points,
+                                       std::span<const std::uint32_t> segment_ids,
+                                       std::span<const PointChange> changes, double voxel_m) {
+  const auto tallies = tallies_of(segment_ids, changes);
+  std::set<std::uint32_t> whole;
+  for (const auto& [id, tally] : tallies) {
+    if (id != 0 && is_changed_as_a_whole(tally)) whole.insert(id);
+  }
+  std::vector<bool> is_member(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    is_member[i] = changes[i] == PointChange::kChanged || whole.contains(segment_ids[i]);
+  }
+  const double least = kLeastPoints * std::pow(0.01 / voxel_m, 2);
+  std::vector<ChangeGroup> groups;
+  for (auto& [number, gathered] : gather(cells_of(points, is_member, kCell_vox * voxel_m))) {
+    const auto num_changed = static_cast<double>(std::ranges::count_if(
+        gathered.points, [&](std::size_t i) { return changes[i] == PointChange::kChanged; }));
+    if (num_changed < least || gathered.wide_cells < kLeastWideCells) continue;
+    ChangeGroup group;
+    group.share_changed = num_changed / static_cast<double>(gathered.points.size());
+    group.points = std::move(gathered.points);
+    std::ranges::sort(group.points);
+    std::set<std::uint32_t> ids;
+    for (const std::size_t i : group.points) ids.insert(segment_ids[i]);
+    ids.erase(0);
+    group.segment_ids.assign(ids.begin(), ids.end());
+    groups.push_back(std::move(group));
+  }
+  return groups;
+}
+
+}  // namespace kintsugi::segmenter

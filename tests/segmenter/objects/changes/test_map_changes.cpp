@@ -1,0 +1,208 @@
+// What has come, gone and moved in a room of boxes.
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include "segmenter/objects/changes/change_files.hpp"
+#include "segmenter/objects/changes/map_changes.hpp"
+#include "tests/segmenter/objects/toy_room.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace kintsugi::segmenter {
+namespace {
+
+using testing::Box;
+using ::testing::ElementsAre;
+using testing::furnished_room;
+using ::testing::IsEmpty;
+using testing::observe;
+using testing::ToyRoom;
+using testing::walk_through;
+
+/// Of a room that is walked through twice, on other paths.
+struct Twice {
+  std::vector<Pose> path_before;
+  std::vector<Pose> path_after;
+  ObservedMap before;
+  ObservedMap after;
+  Pose X_AB;
+
+  Twice(const ToyRoom& was, const ToyRoom& is)
+      : path_before(walk_through(was)),
+        path_after(walk_through(is, 0.5, 28)),
+        before(observe(was, path_before)),
+        after(observe(is, path_after)),
+        X_AB(path_after.front().inverse(Eigen::Isometry) * path_before.front()) {}
+
+  [[nodiscard]] MapChanges changes() const { return find_changes(before, after, X_AB); }
+  /// A place of the room in AFTER's W.
+  [[nodiscard]] Eigen::Vector3d in_after(const Eigen::Vector3d& p_S) const {
+    return path_after.front().inverse(Eigen::Isometry) * p_S;
+  }
+};
+
+Eigen::Vector3d center_of(const MapChange& change) {
+  Eigen::AlignedBox3d box;
+  for (const CloudPoint& p : change.points()) box.extend(Eigen::Vector3d(p.x, p.y, p.z));
+  return box.center();
+}
+
+const Box kOnTable{.center_S = {1.6, 1.2, 0.9}, .size_m = {0.3, 0.2, 0.3}, .color = {40, 160, 60}};
+const Box kOnBench{.center_S = {2.7, 2.75, 0.6}, .size_m = {0.24, 0.3, 0.2}};
+
+TEST(MapChanges, OfAnUnchangedRoomThereAreNone) {
+  const ToyRoom room = furnished_room();
+  const MapChanges result = Twice(room, room).changes();
+  EXPECT_THAT(result.changes, IsEmpty());
+}
+
+TEST(MapChanges, ErrorsOfTheAlignmentUpToAVoxelAreNone) {
+  const ToyRoom room = furnished_room();
+  Twice twice(room, room);
+  for (const Eigen::Vector3d& shift :
+       {Eigen::Vector3d(0.02, 0, 0), Eigen::Vector3d(0, -0.02, 0), Eigen::Vector3d(0, 0, 0.02)}) {
+    Pose X_AB = twice.X_AB;
+    X_AB.pretranslate(shift);
+    EXPECT_THAT(find_changes(twice.before, twice.after, X_AB).changes, IsEmpty())
+        << shift.transpose();
+  }
+}
+
+TEST(MapChanges, AThingThatCame) {
+  const ToyRoom was = furnished_room();
+  ToyRoom is = was;
+  is.boxes.push_back(kOnTable);
+  const Twice twice(was, is);
+  const MapChanges result = twice.changes();
+  ASSERT_EQ(result.changes.size(), 1U);
+  const MapChange& change = result.changes[0];
+  EXPECT_EQ(change.kind, ChangeKind::kNew);
+  EXPECT_EQ(change.id, 1);
+  EXPECT_THAT(change.after_segments, ElementsAre(11));
+  EXPECT_THAT(change.before_segments, IsEmpty());
+  EXPECT_THAT(change.before, IsEmpty());
+  EXPECT_LT((center_of(change) - twice.in_after(kOnTable.center_S)).norm(), 0.03);
+  EXPECT_GT(change.score, 0.5);
+}
+
+TEST(MapChanges, AThingThatWent) {
+  ToyRoom was = furnished_room();
+  const ToyRoom is = was;
+  was.boxes.push_back(kOnTable);
+  const Twice twice(was, is);
+  const MapChanges result = twice.changes();
+  ASSERT_EQ(result.changes.size(), 1U);
+  EXPECT_EQ(result.changes[0].kind, ChangeKind::kGone);
+  EXPECT_THAT(result.changes[0].before_segments, ElementsAre(11));
+  EXPECT_THAT(result.changes[0].after, IsEmpty());
+  EXPECT_LT((center_of(result.changes[0]) - twice.in_after(kOnTable.center_S)).norm(), 0.03);
+}
+
+TEST(MapChanges, AThingOfOneSegmentWithWhatItStandsOn) {
+  ToyRoom was = furnished_room();
+  const ToyRoom is = was;
+  was.boxes.push_back(kOnTable);
+  was.boxes.back().color = was.boxes[0].color;
+  Twice twice(was, is);
+  std::ranges::replace(twice.before.segment_ids, 11U, 7U);  // that of the table
+  const MapChanges result = twice.changes();
+  ASSERT_EQ(result.changes.size(), 1U);
+  EXPECT_EQ(result.changes[0].kind, ChangeKind::kGone);
+  EXPECT_LT((center_of(result.changes[0]) - twice.in_after(kOnTable.center_S)).norm(), 0.05);
+}
+
+TEST(MapChanges, AThingThatMoved) {
+  ToyRoom was = furnished_room();
+  ToyRoom is = was;
+  was.boxes.push_back(kOnBench);
+  Box moved = kOnBench;
+  moved.center_S = {1.2, 1.2, 0.85};
+  moved.yaw_rad = 0.6;
+  is.boxes.push_back(moved);
+  Twice twice(was, is);
+  testing::relight(twice.after, 0.8, 0.9, 1.0);
+  const MapChanges result = twice.changes();
+  ASSERT_EQ(result.changes.size(), 1U);
+  const MapChange& change = result.changes[0];
+  EXPECT_EQ(change.kind, ChangeKind::kMoved);
+  EXPECT_THAT(change.before_segments, ElementsAre(11));
+  EXPECT_THAT(change.after_segments, ElementsAre(11));
+  const Eigen::Vector3d now = change.X_after_before * twice.in_after(kOnBench.center_S);
+  EXPECT_LT((now - twice.in_after(moved.center_S)).norm(), 0.02);
+}
+
+TEST(MapChanges, TwoThingsThatAreNotAlikeHaveNotMoved) {
+  ToyRoom was = furnished_room();
+  ToyRoom is = was;
+  was.boxes.push_back(kOnBench);
+  is.boxes.push_back(kOnTable);
+  const MapChanges result = Twice(was, is).changes();
+  ASSERT_EQ(result.changes.size(), 2U);
+  EXPECT_NE(result.changes[0].kind, ChangeKind::kMoved);
+  EXPECT_NE(result.changes[1].kind, ChangeKind::kMoved);
+}
+
+TEST(MapChanges, WhatWasNotLookedAtIsNotSeenThisTime) {
+  ToyRoom was = furnished_room();
+  const ToyRoom is = was;
+  was.boxes.push_back(kOnTable);
+  Twice twice(was, is);
+  twice.after.views.clear();  // nobody looked through the place
+  const MapChanges unseen = twice.changes();
+  EXPECT_THAT(unseen.changes, IsEmpty());
+  EXPECT_GT(unseen.not_seen_again, 200);
+}
+
+TEST(MapChanges, WhatStandsBehindAnotherThingIsNotGone) {
+  ToyRoom was = furnished_room();
+  ToyRoom is = was;
+  was.boxes.push_back(kOnTable);
+  is.boxes.push_back({.center_S = {1.6, 1.2, 1.0}, .size_m = {0.6, 0.5, 0.5}});  // it covers all
+  const MapChanges result = Twice(was, is).changes();
+  ASSERT_EQ(result.changes.size(), 1U);
+  EXPECT_EQ(result.changes[0].kind, ChangeKind::kNew);
+  EXPECT_GT(result.not_seen_again, 200);
+}
+
+TEST(ChangeFiles, SayWhatWasFound) {
+  ToyRoom was = furnished_room();
+  ToyRoom is = was;
+  was.boxes.push_back(kOnBench);
+  is.boxes.push_back(kOnTable);
+  const Twice twice(was, is);
+  MapDifference difference;
+  difference.before = "a";
+  difference.after = "b";
+  difference.alignment.X_AB = twice.X_AB;
+  difference.changes = twice.changes();
+  const kintsugi::testing::TemporaryFolder temporary;
+  const std::filesystem::path folder = temporary / "new" / "folder";
+  std::filesystem::create_directories(folder);
+  std::ofstream(folder / "change_9.ply") << "of an earlier run";
+  write_changes(difference, twice.after, folder);
+  std::ifstream file(folder / "changes.json");
+  const auto json = nlohmann::json::parse(file);
+  EXPECT_EQ(json["before"], "a");
+  EXPECT_EQ(json["X_AB"].size(), 12U);
+  EXPECT_EQ(json["X_AB"][3], twice.X_AB.translation().x());
+  ASSERT_EQ(json["changes"].size(), 2U);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const auto& change = json["changes"][i];
+    EXPECT_EQ(change["id"], i + 1);
+    const MapChange& expected = difference.changes.changes[i];
+    EXPECT_EQ(change["points"], expected.points().size());
+    EXPECT_FALSE(change.contains("X_after_before"));
+    EXPECT_TRUE(std::filesystem::exists(folder / ("change_" + std::to_string(i + 1) + ".ply")));
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder / "change_9.ply"));
+  EXPECT_GT(std::filesystem::file_size(folder / "changes.png"), 10'000U);
+}
+
+}  // namespace
+}  // namespace kintsugi::segmenter
