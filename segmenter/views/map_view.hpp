@@ -13,8 +13,6 @@ struct MapView {
   Pose X_WC = Pose::Identity();         ///< as the map is corrected now
   Intrinsics intrinsics;                ///< of the small depth image, pixels
   std::vector<std::uint16_t> depth_mm;  ///< along C's z, row after row; 0: not measured
-
-  bool operator==(const MapView&) const = default;
 };
 
 }  // namespace kintsugi::segmenter

@@ -29,7 +29,7 @@ double scene_depth_m(std::span<const std::uint16_t> depth_mm) {
 /// Of the image that has every step-th pixel; its pixel centres are integers, too.
 Intrinsics small_intrinsics(const CameraView& view) {
   const double step = view.depth_step;
-  const double first_px = view.depth_step / 2;  // in integers, as CameraView tells
+  const int first_px = view.depth_step / 2;  // in integers, as CameraView tells
   Intrinsics small;
   small.fx = view.intrinsics.fx / step;
   small.fy = view.intrinsics.fy / step;

@@ -19,6 +19,7 @@ constexpr double kCell_vox = 1.5;  // points of a surface are in neighbouring ce
 // voxels wide 6 at most have all.
 constexpr int kWide_cells = 8;
 constexpr int kLeastWideCells = 3;
+constexpr double kEdge = 0.7;
 
 using Cell = std::array<std::int32_t, 3>;
 
@@ -65,12 +66,12 @@ class Sets {
   std::vector<std::size_t> parents_;
 };
 
-/// The points that may be in groups, by the cell they are in.
+/// The points of one segment in one cell.
 struct CellPoints {
   std::vector<std::size_t> points;
   std::size_t number = 0;
 };
-using Cells = std::map<Cell, CellPoints>;
+using Cells = std::map<Cell, std::map<std::uint32_t, CellPoints>>;
 
 template <class Visit>
 void visit_around(const Cells& cells, const Cell& at, const Visit& visit) {
@@ -84,19 +85,65 @@ void visit_around(const Cells& cells, const Cell& at, const Visit& visit) {
   }
 }
 
-Cells cells_of(std::span<const CloudPoint> points, const std::vector<bool>& is_member,
-               double cell_m) {
+Cells cells_of(std::span<const CloudPoint> points, std::span<const std::uint32_t> segment_ids,
+               const std::vector<bool>& is_member, double cell_m) {
   Cells cells;
   const auto index = [&](float x) {
     return static_cast<std::int32_t>(std::floor(static_cast<double>(x) / cell_m));
   };
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (!is_member[i]) continue;
-    cells[{index(points[i].x), index(points[i].y), index(points[i].z)}].points.push_back(i);
+    const Cell at{index(points[i].x), index(points[i].y), index(points[i].z)};
+    cells[at][segment_ids[i]].points.push_back(i);
   }
   std::size_t number = 0;
-  for (auto& [cell, content] : cells) content.number = number++;
+  for (auto& [at, segments] : cells) {
+    for (auto& [id, content] : segments) content.number = number++;
+  }
   return cells;
+}
+
+std::size_t num_pieces(const Cells& cells) {
+  std::size_t number = 0;
+  for (const auto& [at, segments] : cells) number += segments.size();
+  return number;
+}
+
+/// Joins what is connected within each segment.
+void join_segments(const Cells& cells, Sets& sets) {
+  for (const auto& [at, segments] : cells) {
+    visit_around(cells, at, [&, &here = segments](const auto& around) {
+      for (const auto& [id, content] : here) {
+        const auto same = around.find(id);
+        if (same != around.end()) sets.join(content.number, same->second.number);
+      }
+    });
+  }
+}
+
+/// Joins pieces of different segments that meet along an edge, as the faces of one thing do: it is
+/// as long as kEdge of the side of the smaller one. Things that stand side by side touch at less.
+void join_faces(const Cells& cells, Sets& sets) {
+  using Pair = std::pair<std::size_t, std::size_t>;
+  std::map<std::size_t, double> sizes;  // cells
+  std::map<Pair, double> contacts;      // cells of the first that touch the second
+  for (const auto& [at, segments] : cells) {
+    for (const auto& [id, content] : segments) {
+      const std::size_t here = sets.find(content.number);
+      sizes[here] += 1.0;
+      std::set<std::size_t> others;
+      visit_around(cells, at, [&](const auto& around) {
+        for (const auto& [other_id, other] : around) others.insert(sets.find(other.number));
+      });
+      for (const std::size_t other : others) {
+        if (other != here) contacts[{here, other}] += 1.0;
+      }
+    }
+  }
+  for (const auto& [pair, contact] : contacts) {
+    const double smaller = std::min(sizes[pair.first], sizes[pair.second]);
+    if (contact >= kEdge * std::sqrt(smaller)) sets.join(pair.first, pair.second);
+  }
 }
 
 struct Gathered {
@@ -105,18 +152,18 @@ struct Gathered {
 };
 
 std::map<std::size_t, Gathered> gather(const Cells& cells) {
-  Sets sets(cells.size());
-  for (const auto& [at, content] : cells) {
-    visit_around(cells, at,
-                 [&](const CellPoints& near) { sets.join(content.number, near.number); });
-  }
+  Sets sets(num_pieces(cells));
+  join_segments(cells, sets);
+  join_faces(cells, sets);
   std::map<std::size_t, Gathered> groups;
-  for (const auto& [at, content] : cells) {
-    Gathered& group = groups[sets.find(content.number)];
-    group.points.insert(group.points.end(), content.points.begin(), content.points.end());
+  for (const auto& [at, segments] : cells) {
     int occupied = 0;
-    visit_around(cells, at, [&](const CellPoints&) { ++occupied; });
-    group.wide_cells += occupied >= kWide_cells ? 1 : 0;
+    visit_around(cells, at, [&](const auto&) { ++occupied; });
+    for (const auto& [id, content] : segments) {
+      Gathered& group = groups[sets.find(content.number)];
+      group.points.insert(group.points.end(), content.points.begin(), content.points.end());
+      group.wide_cells += occupied >= kWide_cells ? 1 : 0;
+    }
   }
   return groups;
 }
@@ -137,7 +184,8 @@ std::vector<ChangeGroup> group_changes(std::span<const CloudPoint> points,
   }
   const double least = kLeastPoints * std::pow(0.01 / voxel_m, 2);
   std::vector<ChangeGroup> groups;
-  for (auto& [number, gathered] : gather(cells_of(points, is_member, kCell_vox * voxel_m))) {
+  for (auto& [number, gathered] :
+       gather(cells_of(points, segment_ids, is_member, kCell_vox * voxel_m))) {
     const auto num_changed = static_cast<double>(std::ranges::count_if(
         gathered.points, [&](std::size_t i) { return changes[i] == PointChange::kChanged; }));
     if (num_changed < least || gathered.wide_cells < kLeastWideCells) continue;

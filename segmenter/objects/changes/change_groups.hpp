@@ -20,9 +20,9 @@ struct ChangeGroup {
 
 /// A segment most of whose points have changed, as far as that is known, is changed as a whole; of
 /// another one the changed points alone, as where a thing is of one colour with what it stands on.
-/// What touches is one thing. Left out is what is smaller than kLeastPoints at a voxel of 1 cm, or
-/// the same area at another, and what is nowhere wider than three voxels: along the edges of things
-/// two maps differ by so much, from where their cameras were.
+/// Segments that meet along an edge are one thing. Left out is what is smaller than kLeastPoints at
+/// a voxel of 1 cm, or the same area at another, and what is nowhere wider than three voxels: along
+/// the edges of things two maps differ by so much, from where their cameras were.
 /// @param segment_ids, changes of each point
 std::vector<ChangeGroup> group_changes(std::span<const CloudPoint> points,
                                        std::span<const std::uint32_t> segment_ids,

@@ -131,8 +131,9 @@ std::string change_picture_png(std::span<const MapChange> changes, const Observe
   UpDirection up;
   up.add(after.points_W);
   Painter painter(up.up_W());
-  for (const CloudPoint& point : after.points_W) painter.add(point, grey_of(point), false);
+  // Changes first: of two points at one place the first is drawn.
   for (const MapChange& change : changes) paint(change, painter);
+  for (const CloudPoint& point : after.points_W) painter.add(point, grey_of(point), false);
   std::vector<unsigned char> png;
   cv::imencode(".png", painter.draw(after.resolution_m), png);
   return {png.begin(), png.end()};

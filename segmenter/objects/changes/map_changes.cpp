@@ -141,6 +141,8 @@ std::string_view name_of(ChangeKind kind) {
       return "gone";
     case ChangeKind::kMoved:
       return "moved";
+    case ChangeKind::kWithdrawn:
+      return "withdrawn";
   }
   return "unknown";
 }

@@ -7,13 +7,12 @@
 
 #include "lcmtypes/geometry.hpp"
 #include "lcmtypes/messages.hpp"
+#include "lcmtypes/object_messages.hpp"
 #include "segmenter/views/observed_map.hpp"
 
 namespace kintsugi::segmenter {
 
-enum class ChangeKind : std::uint8_t { kNew, kGone, kMoved };
-
-/// "new", "gone" or "moved".
+/// "new", "gone", "moved" or "withdrawn".
 std::string_view name_of(ChangeKind kind);
 
 /// A thing that is in one map and not in the other, or elsewhere in the other. In AFTER's W.

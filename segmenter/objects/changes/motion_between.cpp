@@ -13,7 +13,8 @@ namespace kintsugi::segmenter {
 namespace {
 
 constexpr int kTurns = 24;  // 15 degrees: the refinement turns half of it
-constexpr double kLeastScore = 0.5;
+// Two thirds of each are where the other is; a chair and a monitor can share a half.
+constexpr double kLeastScore = 0.65;
 // From different sides a camera sees half of a thing, and the other half.
 constexpr double kMostPointsRatio = 2.5;
 constexpr double kMostSizeRatio = 1.5;

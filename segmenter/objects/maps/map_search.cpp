@@ -120,12 +120,13 @@ std::vector<double> lifts_of(const std::vector<CloudPoint>& A_L,
                              const std::vector<CloudPoint>& B_L) {
   const Heights a = heights_of(A_L);
   const Heights b = heights_of(B_L);
-  const auto size_a = static_cast<int>(a.up.size());
-  const auto size_b = static_cast<int>(b.up.size());
-  std::vector<double> agreement(static_cast<std::size_t>(size_a + size_b), 0.0);
-  for (int shift = -size_b; shift < size_a; ++shift) {
+  const std::ptrdiff_t size_a = std::ssize(a.up);
+  const std::ptrdiff_t size_b = std::ssize(b.up);
+  std::vector<double> agreement(a.up.size() + b.up.size(), 0.0);
+  for (std::ptrdiff_t shift = -size_b; shift < size_a; ++shift) {
     double& sum = agreement[static_cast<std::size_t>(shift + size_b)];
-    for (int i = std::max(0, -shift); i < std::min(size_b, size_a - shift); ++i) {
+    const std::ptrdiff_t end = std::min(size_b, size_a - shift);
+    for (std::ptrdiff_t i = std::max<std::ptrdiff_t>(0, -shift); i < end; ++i) {
       const auto in_b = static_cast<std::size_t>(i);
       const auto in_a = static_cast<std::size_t>(i + shift);
       // The root: a floor seen in full must not outweigh table tops.
@@ -134,7 +135,7 @@ std::vector<double> lifts_of(const std::vector<CloudPoint>& A_L,
   }
   std::vector<double> lifts;
   for (const Peak& peak : peaks_of(agreement, 4, kNumHeights, false)) {
-    lifts.push_back((peak.place - size_b) * kHeightBin_m + a.low_m - b.low_m);
+    lifts.push_back(static_cast<double>(peak.place - size_b) * kHeightBin_m + a.low_m - b.low_m);
   }
   return lifts;
 }
