@@ -7,8 +7,8 @@ namespace kintsugi::segmenter {
 
 namespace {
 
-// A detection that still holds so long after it was found is confirmed. The camera, at walking pace,
-// has seen the rest of an object by then.
+// A detection that still holds so long after it was found is confirmed. The camera, at walking
+// pace, has seen the rest of an object by then.
 constexpr std::int64_t kConfirmed_us = 1'000'000;
 
 bool is_active(const Detection& detection) { return detection.event != DetectionEvent::kGone; }

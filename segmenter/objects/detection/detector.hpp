@@ -17,12 +17,12 @@ namespace kintsugi::segmenter {
 
 /// One object in the map. Of two robots' worth of the same thing there are two detections.
 struct Detection {
-  std::int32_t number = 0;  ///< from 1
-  Recognition recognition;  ///< when gone, the last one
+  std::int32_t number = 0;                        ///< from 1
+  Recognition recognition;                        ///< when gone, the last one
   DetectionEvent event = DetectionEvent::kFound;  ///< the last one
-  std::int64_t event_number = 0;  ///< ascending over all detections, from 1
-  std::int64_t event_utime = 0;   ///< device time of the map at the event, microseconds
-  std::int64_t found_utime = 0;   ///< the same when it was found where it is
+  std::int64_t event_number = 0;                  ///< ascending over all detections, from 1
+  std::int64_t event_utime = 0;  ///< device time of the map at the event, microseconds
+  std::int64_t found_utime = 0;  ///< the same when it was found where it is
 };
 
 /// Pieces of the map come with set_piece(); segments that changed wait until examine_next() has

@@ -1,6 +1,7 @@
 #pragma once
 // The points of a growing map by segment and by place.
 
+#include <Eigen/Geometry>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -8,8 +9,6 @@
 #include <set>
 #include <span>
 #include <vector>
-
-#include <Eigen/Geometry>
 
 #include "lcmtypes/messages.hpp"
 #include "lcmtypes/scene/up_direction.hpp"

@@ -4,6 +4,8 @@
 #include <optional>
 #include <utility>
 
+#include "segmenter/objects/recognition/scene_light.hpp"
+
 namespace kintsugi::segmenter {
 
 namespace {
@@ -13,10 +15,31 @@ constexpr float kNeighbourRadius_vox = 2.0F;
 
 bool share_segments(const Recognition& a, const Recognition& b) {
   const std::vector<std::uint32_t>& ids = b.placement.segment_ids;
-  return std::any_of(a.placement.segment_ids.begin(), a.placement.segment_ids.end(),
-                     [&ids](std::uint32_t id) {
-                       return std::binary_search(ids.begin(), ids.end(), id);
-                     });
+  return std::any_of(
+      a.placement.segment_ids.begin(), a.placement.segment_ids.end(),
+      [&ids](std::uint32_t id) { return std::binary_search(ids.begin(), ids.end(), id); });
+}
+
+/// The best first; of those that have segments in common only the best.
+std::vector<Recognition> without_overlap(std::vector<Recognition> all) {
+  std::stable_sort(all.begin(), all.end(), [](const Recognition& a, const Recognition& b) {
+    return a.placement.score() > b.placement.score();
+  });
+  std::vector<Recognition> best;
+  for (Recognition& recognition : all) {
+    const bool is_new = std::none_of(best.begin(), best.end(), [&](const Recognition& other) {
+      return share_segments(recognition, other);
+    });
+    if (is_new) best.push_back(std::move(recognition));
+  }
+  return best;
+}
+
+SceneLight light_of_recognitions(const std::vector<Recognition>& recognitions) {
+  std::vector<const Placement*> placements;
+  placements.reserve(recognitions.size());
+  for (const Recognition& recognition : recognitions) placements.push_back(&recognition.placement);
+  return light_of_scene(placements);
 }
 
 }  // namespace
@@ -25,10 +48,12 @@ bool Recognitions::examine(std::uint32_t segment) {
   const bool was_there = by_segment_.erase(segment) > 0;
   if (map_.num_points(segment) == 0) return was_there;
   std::optional<Recognition> best;
-  const std::vector<Candidate> candidates =
-      candidates_of(segment, map_, [this](std::uint32_t id) -> const std::vector<SegmentNeighbour>& {
+  const std::vector<Candidate> candidates = candidates_of(
+      segment, map_,
+      [this](std::uint32_t id) -> const std::vector<SegmentNeighbour>& {
         return neighbours_of(id);
-      }, 2 * recognizer_.largest_radius_m() + 2 * access_.resolution_m);
+      },
+      2 * recognizer_.largest_radius_m() + 2 * access_.resolution_m);
   for (const Candidate& candidate : candidates) {
     const std::optional<Recognition>& found = recognize(candidate);
     if (found && (!best || found->placement.score() > best->placement.score())) best = found;
@@ -67,17 +92,14 @@ std::vector<Recognition> Recognitions::best() const {
   std::vector<Recognition> all;
   all.reserve(by_segment_.size());
   for (const auto& [segment, recognition] : by_segment_) all.push_back(recognition);
-  std::stable_sort(all.begin(), all.end(), [](const Recognition& a, const Recognition& b) {
-    return a.placement.score() > b.placement.score();
-  });
-  std::vector<Recognition> best;
+  const SceneLight light = light_of_recognitions(without_overlap(all));
   for (Recognition& recognition : all) {
-    const bool is_new = std::none_of(best.begin(), best.end(), [&](const Recognition& other) {
-      return share_segments(recognition, other);
-    });
-    if (is_new) best.push_back(std::move(recognition));
+    recognition.placement.light_agreement = light.agreement(recognition.placement.light);
   }
-  return best;
+  std::erase_if(all, [](const Recognition& recognition) {
+    return recognition.placement.score() < kLeastScore;
+  });
+  return without_overlap(std::move(all));
 }
 
 const std::vector<SegmentNeighbour>& Recognitions::neighbours_of(std::uint32_t segment) {

@@ -18,8 +18,7 @@ namespace kintsugi::segmenter {
 class Recognitions {
  public:
   /// `recognizer`, `map` and `access` must outlive this.
-  Recognitions(const ObjectRecognizer& recognizer, const LabelledMap& map,
-               const MapAccess& access)
+  Recognitions(const ObjectRecognizer& recognizer, const LabelledMap& map, const MapAccess& access)
       : recognizer_(recognizer), map_(map), access_(access) {}
 
   /// Examines the segment and its unions with neighbours again. One that does not exist any more is

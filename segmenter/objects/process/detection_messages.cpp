@@ -1,12 +1,12 @@
 #include "segmenter/objects/process/detection_messages.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <iomanip>
 #include <sstream>
 
-#include <Eigen/Geometry>
 #include <nlohmann/json.hpp>
 
 namespace kintsugi::segmenter {

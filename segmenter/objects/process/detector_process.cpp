@@ -56,10 +56,10 @@ class DetectorProcess {
         budget_(options.cpu_share) {}
 
   int run() {
-    spdlog::info("follows {}, at most {:.0f} % of a core",
-                 options_.map_name.empty() ? "the first map it hears of"
-                                           : "map " + options_.map_name,
-                 100 * options_.cpu_share);
+    spdlog::info(
+        "follows {}, at most {:.0f} % of a core",
+        options_.map_name.empty() ? "the first map it hears of" : "map " + options_.map_name,
+        100 * options_.cpu_share);
     while (!stop_requested() && !(options_.exit_on_final && is_finished_)) {
       receive();
       examine();

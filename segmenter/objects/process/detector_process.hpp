@@ -8,9 +8,9 @@ namespace kintsugi::segmenter {
 
 struct DetectorOptions {
   std::filesystem::path library = "objects";
-  std::string map_name;   ///< empty: the map of the first segment update that is received
-  std::string lcm_url;    ///< of the bus; empty: LCM_DEFAULT_URL
-  double cpu_share = 0.1; ///< of one core, on average, while the map grows
+  std::string map_name;    ///< empty: the map of the first segment update that is received
+  std::string lcm_url;     ///< of the bus; empty: LCM_DEFAULT_URL
+  double cpu_share = 0.1;  ///< of one core, on average, while the map grows
   bool exit_on_final = false;
   std::filesystem::path json;  ///< written at the end; empty: nothing is
 };

@@ -39,9 +39,9 @@ std::unique_ptr<Detector> detect_in(const ObservedMap& map, const ObjectLibrary&
   }
   std::int32_t id = 0;
   for (auto& [cell, piece] : pieces) {
-    detector->set_piece(
-        id++, std::make_shared<const std::vector<CloudPoint>>(std::move(piece.points_W)),
-        std::move(piece.segment_ids), 0);
+    detector->set_piece(id++,
+                        std::make_shared<const std::vector<CloudPoint>>(std::move(piece.points_W)),
+                        std::move(piece.segment_ids), 0);
   }
   detector->examine_all();
   while (detector->num_waiting() > 0) detector->examine_next();

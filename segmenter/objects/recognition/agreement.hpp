@@ -14,22 +14,25 @@ inline constexpr float kSameDistance = 1.5F;
 /// Cosine of 45 degrees: normals are averages over some voxels, so that at an edge between two
 /// faces they lie anywhere between both.
 inline constexpr float kSameNormal = std::numbers::sqrt2_v<float> / 2;
+/// Sine of 10 degrees: a surface that is seen flatter is hardly measured.
+inline constexpr float kGrazing = 0.17F;
 /// CIELAB. Colours of one surface in two maps differ by the light of the place where it stands, by
 /// shades, and by what the sensor mixes at edges; above 2.3 a difference is just noticeable.
 inline constexpr float kSameColor = 15.0F;
 
-/// What the light of another place adds to all colours of a thing. It is bounded: else white and
-/// grey things of one shape would be the same.
+/// The light of another place multiplies the linear red, green and blue of all that it falls on.
 struct LightChange {
-  Eigen::Vector3f lab = Eigen::Vector3f::Zero();
+  Eigen::Vector3f log_gain = Eigen::Vector3f::Zero();  ///< natural logarithms
 
-  static constexpr float kMaxLightness = 15.0F;
-  static constexpr float kMaxTint = 8.0F;
+  /// A factor of 2.7 in brightness, and of 1.6 between colours: from daylight to a bulb. Beyond, a
+  /// white thing would be the same as a dark grey one, or as an orange one.
+  static constexpr float kMaxBrightness = 1.0F;
+  static constexpr float kMaxTint = 0.5F;
 
   void limit() {
-    lab.x() = std::clamp(lab.x(), -kMaxLightness, kMaxLightness);
-    lab.y() = std::clamp(lab.y(), -kMaxTint, kMaxTint);
-    lab.z() = std::clamp(lab.z(), -kMaxTint, kMaxTint);
+    const float brightness = std::clamp(log_gain.mean(), -kMaxBrightness, kMaxBrightness);
+    const Eigen::Array3f tint = (log_gain.array() - log_gain.mean()).max(-kMaxTint).min(kMaxTint);
+    log_gain = (tint + brightness).matrix();
   }
 };
 
@@ -37,7 +40,8 @@ struct LightChange {
 inline bool same_color(const SurfacePoint& model, const SurfacePoint& seen,
                        const LightChange& light) {
   if (!model.has_color || !seen.has_color) return true;
-  return (model.lab + light.lab - seen.lab).squaredNorm() <= kSameColor * kSameColor;
+  const Eigen::Vector3f lit = (model.rgb.array() * light.log_gain.array().exp()).min(1.0F);
+  return (lab_of(lit) - seen.lab).squaredNorm() <= kSameColor * kSameColor;
 }
 
 }  // namespace kintsugi::segmenter

@@ -1,11 +1,10 @@
 #pragma once
 // What recognition needs to know of a map.
 
+#include <Eigen/Geometry>
 #include <cstdint>
 #include <functional>
 #include <vector>
-
-#include <Eigen/Geometry>
 
 #include "lcmtypes/messages.hpp"
 #include "segmenter/views/observed_space.hpp"

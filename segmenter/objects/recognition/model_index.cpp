@@ -14,7 +14,7 @@ namespace {
 /// The least that an element is taken to vary: between two maps, not only between two views.
 ViewDescriptor least_deviation() {
   ViewDescriptor least;
-  least.head<4>().setConstant(0.1F);  // of logarithms: 10 %
+  least.head<4>().setConstant(0.1F);      // of logarithms: 10 %
   least.segment<6>(4).setConstant(5.0F);  // CIELAB
   least.tail<kShapeFeatureSize>().setConstant(0.05F);
   return least;
@@ -23,8 +23,7 @@ ViewDescriptor least_deviation() {
 ViewDescriptor deviation_between_views(const std::vector<IndexedView>& views) {
   std::map<std::size_t, std::pair<ViewDescriptor, float>> sums;
   for (const IndexedView& view : views) {
-    auto& [sum, count] =
-        sums.try_emplace(view.model, ViewDescriptor::Zero(), 0.0F).first->second;
+    auto& [sum, count] = sums.try_emplace(view.model, ViewDescriptor::Zero(), 0.0F).first->second;
     sum += view.descriptor;
     count += 1.0F;
   }
@@ -57,7 +56,8 @@ ModelIndex::ModelIndex(const std::vector<IndexedView>& views)
     const ViewDescriptor scaled = view.descriptor.cwiseProduct(search_->inverse_deviation);
     search_->data.insert(search_->data.end(), scaled.begin(), scaled.end());
   }
-  // Exact, so that the result is the same in every run: FLANN's trees for approximate search are random.
+  // Exact, so that the result is the same in every run: FLANN's trees for approximate search are
+  // random.
   search_->index = std::make_unique<flann::Index<flann::L2<float>>>(
       flann::Matrix<float>(search_->data.data(), views.size(), kViewDescriptorSize),
       flann::KDTreeSingleIndexParams());
@@ -94,12 +94,10 @@ std::vector<ModelMatch> ModelIndex::nearest(const ViewDescriptor& descriptor,
                             distances, wanted, flann::SearchParams(flann::FLANN_CHECKS_UNLIMITED));
   for (std::size_t i = 0; i < wanted && matches.size() < count; ++i) {
     const std::size_t model = search_->models[static_cast<std::size_t>(indices[i])];
-    const bool is_known = std::any_of(matches.begin(), matches.end(), [model](const ModelMatch& m) {
-      return m.model == model;
-    });
+    const bool is_known = std::any_of(matches.begin(), matches.end(),
+                                      [model](const ModelMatch& m) { return m.model == model; });
     if (is_known) continue;
-    matches.push_back(
-        {model, std::sqrt(squares[i] / static_cast<float>(kViewDescriptorSize))});
+    matches.push_back({model, std::sqrt(squares[i] / static_cast<float>(kViewDescriptorSize))});
   }
   return matches;
 }

@@ -15,7 +15,14 @@ constexpr std::size_t kTried = 4;
 // cut by occlusions and by segments that join other things, which simulated views are not.
 constexpr float kLargestDistance = 1.0F;
 constexpr std::size_t kPoses = 3;  // tried of each object
-constexpr float kLeastAgreement = 0.5F;  // of the candidate with an object: else most of it is something else
+constexpr float kLeastAgreement =
+    0.5F;  // of the candidate with an object: else most of it is something else
+
+// A third of what is known of an object, as when it is seen from another side; of less, too many
+// other things have alike faces.
+constexpr float kLeastSeen = 0.33F;
+// Otherwise the object is only a part of a larger thing that has the same surface.
+constexpr float kLeastOwn = 0.6F;
 
 /// Better: more agrees, and on equal terms the one found first.
 void keep_better(std::optional<Placement>& best, Placement placement) {
@@ -97,7 +104,8 @@ Placement ObjectRecognizer::look_again(const Recognition& recognition, const Map
 }
 
 bool is_recognized(const Placement& placement) {
-  return placement.score() >= 0.6F && placement.seen >= 0.3F && placement.own >= 0.6F;
+  return placement.score() >= kLeastScore && placement.seen >= kLeastSeen &&
+         placement.own >= kLeastOwn;
 }
 
 }  // namespace kintsugi::segmenter

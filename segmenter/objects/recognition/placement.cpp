@@ -1,5 +1,6 @@
 #include "segmenter/objects/recognition/placement.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <map>
 
@@ -11,6 +12,7 @@ namespace {
 
 // Enough for stable shares, as in the search.
 constexpr std::size_t kModelSamples = 300;
+constexpr std::size_t kSeenNormals = 100;
 
 SceneSurface scene_around(const PreparedModel& model, const MapAccess& map, const Pose& X_WO) {
   const Eigen::Isometry3f X = X_WO.cast<float>();
@@ -19,7 +21,7 @@ SceneSurface scene_around(const PreparedModel& model, const MapAccess& map, cons
   const float same_m = kSameDistance * model.spacing_m;
   const Eigen::Vector3f margin = Eigen::Vector3f::Constant(same_m);
   const MapExcerpt excerpt = map.points_in({box.min() - margin, box.max() + margin});
-  return {excerpt.points_W, excerpt.segment_ids, same_m};
+  return {excerpt.points_W, excerpt.segment_ids, map.resolution_m, same_m};
 }
 
 /// Whether the point of the map is surface of the object.
@@ -32,6 +34,23 @@ bool is_explained(const PreparedModel& model, const SurfacePoint& seen,
   const float same_m = kSameDistance * model.spacing_m;
   return (p - q.position).squaredNorm() <= same_m * same_m &&
          q.normal.dot(X_OW.linear() * seen.normal) >= kSameNormal && same_color(q, seen, light);
+}
+
+/// Whether a surface with this normal was in view when the object was taught. Unknown views count
+/// as all views.
+bool was_in_view(const PreparedModel& model, const Eigen::Vector3f& normal_O) {
+  const std::vector<Eigen::Vector3f>& views_O = model.object->views_O;
+  return views_O.empty() || std::any_of(views_O.begin(), views_O.end(), [&](const auto& view_O) {
+           return view_O.dot(normal_O) >= kGrazing;
+         });
+}
+
+/// Whether a face with this normal is in view where the object is: something of it is in the map
+/// that faces nearly the same way.
+bool is_in_view(const std::vector<Eigen::Vector3f>& seen_normals_W,
+                const Eigen::Vector3f& normal_W) {
+  return std::any_of(seen_normals_W.begin(), seen_normals_W.end(),
+                     [&](const auto& seen_W) { return seen_W.dot(normal_W) >= kSameNormal; });
 }
 
 enum class Evidence : std::uint8_t { kSeen, kContradicted, kUnknown };
@@ -54,7 +73,7 @@ Evidence evidence_at(const SurfacePoint& model_W, const SceneSurface& scene,
 
 float Placement::score() const {
   const float visible = seen + contradicted;
-  return visible > 0.0F ? seen / visible * explained : 0.0F;
+  return visible > 0.0F ? seen / visible * explained * light_agreement : 0.0F;
 }
 
 Placement placement_of(const PreparedModel& model, const MapAccess& map,
@@ -65,24 +84,41 @@ Placement placement_of(const PreparedModel& model, const MapAccess& map,
   const SceneSurface scene = scene_around(model, map, hypothesis.X_WO);
 
   const Eigen::Isometry3f X_OW = hypothesis.X_WO.inverse().cast<float>();
-  std::map<std::uint32_t, std::int64_t> explained;  // points of each segment
+  struct Counts {
+    std::int64_t explained = 0;
+    std::int64_t new_side = 0;  // not explained, but nothing is known of that side of the object
+  };
+  std::map<std::uint32_t, Counts> by_segment;
+  std::vector<Eigen::Vector3f> seen_normals_W;
   for (std::size_t i = 0; i < scene.surface_W().size(); ++i) {
-    if (!is_explained(model, scene.surface_W()[i], X_OW, hypothesis.light)) continue;
-    ++explained[scene.segment_ids()[i]];
-    ++placement.points;
+    const SurfacePoint& seen = scene.surface_W()[i];
+    Counts& counts = by_segment[scene.segment_ids()[i]];
+    if (is_explained(model, seen, X_OW, hypothesis.light)) {
+      ++counts.explained;
+      ++placement.points;
+      seen_normals_W.push_back(seen.normal);
+    } else if (!was_in_view(model, X_OW.linear() * seen.normal)) {
+      ++counts.new_side;
+    }
   }
   std::int64_t own = 0;
   std::int64_t own_explained = 0;
-  for (const auto& [id, count] : explained) {
-    const std::int64_t all = map.num_points(id);
-    if (id == kNoSegment || 2 * count <= all) continue;
+  for (const auto& [id, counts] : by_segment) {
+    const std::int64_t all = map.num_points(id) - counts.new_side;
+    if (id == kNoSegment || counts.explained == 0 || 2 * counts.explained <= all) continue;
     placement.segment_ids.push_back(id);
     own += all;
-    own_explained += count;
+    own_explained += counts.explained;
   }
   if (own > 0) {
     placement.explained = static_cast<float>(own_explained) / static_cast<float>(own);
     placement.own = static_cast<float>(own_explained) / static_cast<float>(placement.points);
+  }
+  if (seen_normals_W.size() > kSeenNormals) {
+    for (std::size_t i = 0; i < kSeenNormals; ++i) {
+      seen_normals_W[i] = seen_normals_W[i * seen_normals_W.size() / kSeenNormals];
+    }
+    seen_normals_W.resize(kSeenNormals);
   }
 
   const Surface samples_W = transformed(every_few(model.surface_O, kModelSamples), hypothesis.X_WO);
@@ -97,7 +133,9 @@ Placement placement_of(const PreparedModel& model, const MapAccess& map,
         contradicted += 1.0F;
         break;
       case Evidence::kUnknown:
-        if (map.observed == nullptr) contradicted += 0.5F;
+        if (map.observed == nullptr && is_in_view(seen_normals_W, point.normal)) {
+          contradicted += 0.5F;
+        }
         break;
     }
   }

@@ -23,12 +23,17 @@ struct Placement {
   float explained = 0.0F;
   /// Share of the map's points that are surface of the object that belong to `segment_ids`.
   float own = 0.0F;
+  /// How well `light` agrees with that of the map, from 0 to 1; see SceneLight.
+  float light_agreement = 1.0F;
   std::int32_t points = 0;                 ///< of the map that are surface of the object
   std::vector<std::uint32_t> segment_ids;  ///< most of whose points are; ascending
 
   /// From 0 to 1: how much of all that is to be seen of model and segments agrees.
   [[nodiscard]] float score() const;
 };
+
+/// With this score and more an object is said to be there.
+inline constexpr float kLeastScore = 0.6F;
 
 /// What is there of the object in the pose of the hypothesis.
 /// Where what the camera saw is not known, what is not in the map speaks against the object by

@@ -31,15 +31,19 @@ float median(std::vector<float>& values) {
 }
 
 LightChange light_change(const std::vector<Match>& matches) {
+  // The logarithm of what is dark is noise.
+  constexpr float kDark = 0.002F;
   std::array<std::vector<float>, 3> differences;
   for (const Match& match : matches) {
     if (!match.model->has_color || !match.seen->has_color) continue;
-    const Eigen::Vector3f difference = match.seen->lab - match.model->lab;
-    for (int k = 0; k < 3; ++k) differences[static_cast<std::size_t>(k)].push_back(difference[k]);
+    for (int k = 0; k < 3; ++k) {
+      differences[static_cast<std::size_t>(k)].push_back(
+          std::log((match.seen->rgb[k] + kDark) / (match.model->rgb[k] + kDark)));
+    }
   }
   LightChange light;
   if (differences[0].empty()) return light;
-  for (int k = 0; k < 3; ++k) light.lab[k] = median(differences[static_cast<std::size_t>(k)]);
+  for (int k = 0; k < 3; ++k) light.log_gain[k] = median(differences[static_cast<std::size_t>(k)]);
   light.limit();
   return light;
 }

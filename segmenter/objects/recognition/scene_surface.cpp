@@ -7,8 +7,9 @@
 namespace kintsugi::segmenter {
 
 SceneSurface::SceneSurface(std::span<const CloudPoint> points_W,
-                           std::span<const std::uint32_t> segment_ids, float within_m)
-    : surface_W_(unthinned(points_W)),
+                           std::span<const std::uint32_t> segment_ids, float spacing_m,
+                           float within_m)
+    : surface_W_(unthinned(points_W, spacing_m)),
       segment_ids_(segment_ids.begin(), segment_ids.end()),
       cell_m_(within_m) {
   if (surface_W_.empty()) return;

@@ -15,9 +15,10 @@ namespace kintsugi::segmenter {
 class SceneSurface {
  public:
   /// @param segment_ids of each point
+  /// @param spacing_m of the points
   /// @param within_m the distance of nearest(), > 0
   SceneSurface(std::span<const CloudPoint> points_W, std::span<const std::uint32_t> segment_ids,
-               float within_m);
+               float spacing_m, float within_m);
 
   [[nodiscard]] const Surface& surface_W() const { return surface_W_; }
   [[nodiscard]] const std::vector<std::uint32_t>& segment_ids() const { return segment_ids_; }

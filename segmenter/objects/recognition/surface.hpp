@@ -15,22 +15,32 @@ namespace kintsugi::segmenter {
 struct SurfacePoint {
   Eigen::Vector3f position = Eigen::Vector3f::Zero();  ///< metres
   Eigen::Vector3f normal = Eigen::Vector3f::Zero();    ///< unit, towards free space
-  Eigen::Vector3f lab = Eigen::Vector3f::Zero();       ///< CIELAB: L from 0 to 100, a, b
+  Eigen::Vector3f rgb = Eigen::Vector3f::Zero();       ///< linear, as light adds: 0 to 1
+  Eigen::Vector3f lab = Eigen::Vector3f::Zero();  ///< the same in CIELAB: L from 0 to 100, a, b
   bool has_color = false;
 };
 
 using Surface = std::vector<SurfacePoint>;
 
-/// One point for each cube of the side `spacing_m` that has points: their mean position, normal and
-/// colour. Points without a normal, and cubes whose normals cancel out, are left out. By ascending
-/// cube: the result does not depend on the order of the points.
+/// One point for each cube of the side `spacing_m` that has points: their mean position and
+/// normal, and the mean colour around it (smooth_colors()). Points without a normal, and cubes
+/// whose normals cancel out, are left out. By ascending cube: the result does not depend on the
+/// order of the points.
 Surface thinned(std::span<const CloudPoint> points, float spacing_m);
 
-/// Each point of the map as it is; those without a normal have the normal zero.
-Surface unthinned(std::span<const CloudPoint> points);
+/// Each point of the map where it is, with its normal, which may be zero, and the colour as above.
+/// @param spacing_m of the points
+Surface unthinned(std::span<const CloudPoint> points, float spacing_m);
+
+/// Replaces each linear colour by the mean of those within `radius_m`, and CIELAB with it. Patterns
+/// as fine as the voxels come out differently in each map; means of some voxels do not.
+void smooth_colors(Surface& surface, float radius_m);
 
 /// The surface where `X_BA` puts it.
 Surface transformed(const Surface& surface_A, const Pose& X_BA);
+
+/// A linear colour in CIELAB, for the white of sRGB (D65).
+Eigen::Vector3f lab_of(const Eigen::Vector3f& linear_rgb);
 
 /// Half the diagonal of the box of the points, metres; 0 without points.
 float radius_of(const Surface& surface);

@@ -1,5 +1,7 @@
 #include "segmenter/objects/recognition/view_descriptor.hpp"
 
+#include <Eigen/Dense>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,8 +13,7 @@
 #include <numeric>
 #include <utility>
 
-#include <Eigen/Dense>
-#include <Eigen/Geometry>
+#include "segmenter/objects/recognition/agreement.hpp"
 
 namespace kintsugi::segmenter {
 
@@ -20,9 +21,9 @@ namespace {
 
 constexpr std::size_t kFewestPoints = 3;
 constexpr int kTurns = 8;  // a face that is in view at one turn is at the next, too
-// As a person who walks sees things on the floor and on tables, and those at the height of the eyes.
+// As a person who walks sees things on the floor and on tables, and those at the height of the
+// eyes.
 constexpr std::array<float, 2> kElevations_rad = {0.1F, 0.7F};
-constexpr float kGrazing = 0.17F;  // sine of 10 degrees: what is seen flatter is hardly measured
 
 Eigen::Vector3f direction(int turn, float elevation_rad) {
   const float azimuth_rad =
@@ -69,8 +70,7 @@ Eigen::Vector3f principal_lengths(const Surface& surface) {
     covariance += d * d.transpose();
   }
   covariance /= static_cast<double>(surface.size());
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance,
-                                                              Eigen::EigenvaluesOnly);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance, Eigen::EigenvaluesOnly);
   return solver.eigenvalues().reverse().cwiseMax(0.0).cwiseSqrt().cast<float>();
 }
 

@@ -1,10 +1,9 @@
 #pragma once
-// A short description of a piece of surface as a whole: size, colours, shape. It chooses the objects
-// that a piece is compared with.
-
-#include <vector>
+// A short description of a piece of surface as a whole: size, colours, shape. It chooses the
+// objects that a piece is compared with.
 
 #include <Eigen/Core>
+#include <vector>
 
 #include "segmenter/objects/recognition/shape_features.hpp"
 #include "segmenter/objects/recognition/surface.hpp"

@@ -75,15 +75,17 @@ void add_detect_command(CLI::App& app, ObjectsAction& action) {
                      "on the bus: the map of this name (default: the first one it hears of)");
   command.add_option("--lcm-url", options->live.lcm_url, "the bus (default: LCM_DEFAULT_URL)");
   command
-      .add_option("--cpu-share", options->live.cpu_share,
-                  "on the bus: as much of one core may be used on average while the map grows; what "
-                  "does not fit waits")
+      .add_option(
+          "--cpu-share", options->live.cpu_share,
+          "on the bus: as much of one core may be used on average while the map grows; what "
+          "does not fit waits")
       ->capture_default_str()
       ->check(CLI::Range(0.001, 1.0));
   command.add_flag("--exit-on-final", options->live.exit_on_final,
                    "on the bus: exit when the final slice is segmented and examined");
-  command.add_flag("--check", options->only_check,
-                   "check the options and the library and exit: 0 if all is well, or with the reason");
+  command.add_flag(
+      "--check", options->only_check,
+      "check the options and the library and exit: 0 if all is well, or with the reason");
   command.callback([options, &action] { action = [options] { return detect(*options); }; });
 }
 

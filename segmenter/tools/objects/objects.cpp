@@ -13,7 +13,9 @@ int main(int argc, char** argv) {
   return kintsugi::run_main(argv, [&] {
     spdlog::set_default_logger(spdlog::stderr_color_mt("kintsugi-objects"));
     spdlog::set_pattern("%^%l%$: %v");
-    CLI::App app{"Teaches objects from segmented maps, looks after the library of them, and finds them in maps."};
+    CLI::App app{
+        "Teaches objects from segmented maps, looks after the library of them, and finds them in "
+        "maps."};
     app.require_subcommand(1);
     app.set_help_all_flag("--help-all", "Print the help of all subcommands and exit");
     kintsugi::add_version_flag(app);
