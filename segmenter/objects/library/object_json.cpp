@@ -200,7 +200,7 @@ std::string lines(const OrderedJson& list) {
 Json parse(std::string_view text) {
   try {
     return Json::parse(text.begin(), text.end());
-  } catch (const Json::parse_error& error) {
+  } catch (const Json::exception& error) {  // also of a number that is too large
     throw std::runtime_error(std::string("is no JSON: ") + error.what());
   }
 }

@@ -149,6 +149,7 @@ TEST_F(Library, RefusesAKeyThatIsMissingOrWrongWithItsPlace) {
   expect_refused_with("\"times_taught\": 2", "\"times_taught\": 18446744073709551615",
                       "key 'times_taught'");
   expect_refused_with("\"resolution_m\": 0.005", "\"resolution_m\": 1e300", "key 'resolution_m'");
+  expect_refused_with("\"resolution_m\": 0.005", "\"resolution_m\": 1e999", "number overflow");
   expect_refused_with("\"resolution_m\": 0.005", "\"resolution_m\": -0.5", "resolution_m is -0.5");
   expect_refused_with("\"scale\":0.0013", "\"scale\":-1", "scale");
   expect_refused_with("\"wholeness\": 0.875", "\"wholeness\": 2", "wholeness is 2");
@@ -322,6 +323,10 @@ TEST(ObjectName, IsThatOfAFolderWithoutSurprises) {
        {"", "-x", ".", "..", "a/b", "a b", "tasse\n", "t\xc3\xa4sse", "a.tmp"}) {
     EXPECT_TRUE(reason_to_refuse_name(name).has_value()) << name;
   }
+}
+
+TEST(ObjectJson, WithANumberThatIsTooLargeIsRefusedAsOtherText) {
+  EXPECT_THROW(parse_object_json("{\"points\": 1e999}"), std::runtime_error);
 }
 
 TEST(ObjectJson, OfADeepOrCrowdedTextEndsSoon) {
