@@ -131,7 +131,7 @@ class FitSearch {
     for (const PoseHypothesis& found : upright_poses(lesson_, known_.surface_O, up, kHypotheses)) {
       const PoseHypothesis fine = refined_pose(lesson_, known_.surface_O, found.X_WO);
       LightChange light;
-      light.lab = -fine.light.lab;
+      light.log_gain = -fine.light.log_gain;
       consider(fine.X_WO, light);
     }
     return best;
@@ -141,7 +141,7 @@ class FitSearch {
   /// @param light what the lesson has more
   [[nodiscard]] ObservationFit fit_at(const Pose& X_OL, const LightChange& light) const {
     LightChange back;
-    back.lab = -light.lab;
+    back.log_gain = -light.log_gain;
     const Counts lesson = compare(known_, lesson_.surface_O, X_OL.inverse(), light, known_sides_);
     const Counts known = compare(lesson_, known_.surface_O, X_OL, back, lesson_sides_);
     ObservationFit fit;
