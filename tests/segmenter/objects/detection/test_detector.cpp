@@ -16,10 +16,10 @@ namespace kintsugi::segmenter {
 namespace {
 
 using testing::box_on_table;
+using ::testing::ElementsAre;
 using testing::kBall;
 using testing::kBox;
 using testing::kTable;
-using ::testing::ElementsAre;
 
 constexpr std::int64_t kSecond_us = 1'000'000;
 
@@ -101,14 +101,13 @@ TEST(Candidates, GrowByNeighboursAndNotBeyondTheLargestObject) {
                      map.segment_ids);
   const std::vector<SegmentNeighbour> of_box{{kTable, 40}};
   const std::vector<SegmentNeighbour> of_table{{kBox, 40}, {kBall, 10}};
-  const NeighboursOf neighbours =
-      [&](std::uint32_t id) -> const std::vector<SegmentNeighbour>& {
+  const NeighboursOf neighbours = [&](std::uint32_t id) -> const std::vector<SegmentNeighbour>& {
     return id == kTable ? of_table : of_box;
   };
   EXPECT_THAT(candidates_of(kBox, labelled, neighbours, 0.5F), ElementsAre(Candidate{kBox}));
-  EXPECT_THAT(candidates_of(kBox, labelled, neighbours, 3.0F),
-              ElementsAre(Candidate{kBox}, Candidate{kTable, kBox},
-                          Candidate{kTable, kBox, kBall}));
+  EXPECT_THAT(
+      candidates_of(kBox, labelled, neighbours, 3.0F),
+      ElementsAre(Candidate{kBox}, Candidate{kTable, kBox}, Candidate{kTable, kBox, kBall}));
   EXPECT_TRUE(candidates_of(kTable, labelled, neighbours, 0.5F).empty());
   EXPECT_TRUE(candidates_of(99, labelled, neighbours, 3.0F).empty());
 }
@@ -148,8 +147,7 @@ TEST(Detector, TellsWhenAnObjectIsGoneAndWhenItComesBackElsewhere) {
   EXPECT_EQ(gone.event, DetectionEvent::kGone);
   EXPECT_EQ(gone.event_utime, 5 * kSecond_us);
 
-  give(detector, box_on_table({"z", "-y", "x"}, {-0.3F, 0.2F, 0.0F}, 0.5F), 9 * kSecond_us,
-       {kBox});
+  give(detector, box_on_table({"z", "-y", "x"}, {-0.3F, 0.2F, 0.0F}, 0.5F), 9 * kSecond_us, {kBox});
   examine(detector);
   const Detection& moved = detection_of(detector, "box");
   EXPECT_EQ(moved.event, DetectionEvent::kMoved);

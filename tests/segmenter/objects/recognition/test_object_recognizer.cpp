@@ -75,8 +75,7 @@ PoseError error_of(const Pose& X, const Pose& X_true) {
 /// The motion of a box in W that is moved on the table.
 Pose motion_W(const Eigen::Vector3d& shift_U, double turn_rad) {
   Pose motion_U = Pose::Identity();
-  motion_U.linear() =
-      Eigen::AngleAxisd(turn_rad, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  motion_U.linear() = Eigen::AngleAxisd(turn_rad, Eigen::Vector3d::UnitZ()).toRotationMatrix();
   motion_U.translation() = shift_U;
   const Pose X_WU = MapOfThings::X_WU();
   return X_WU * motion_U * X_WU.inverse();
@@ -104,13 +103,13 @@ class TurnedBox : public ::testing::TestWithParam<double> {};
 TEST_P(TurnedBox, IsRecognisedAndPlaced) {
   const ObservedMap before = box_on_table(kFourSides);
   const MadeModel box = taught(before, kBox, "box");
-  const ObservedMap after = box_on_table(kFourSides, {-0.25F, 0.1F, 0.0F},
-                                         static_cast<float>(GetParam()));
+  const ObservedMap after =
+      box_on_table(kFourSides, {-0.25F, 0.1F, 0.0F}, static_cast<float>(GetParam()));
   const ObjectRecognizer recognizer({box.model}, after.resolution_m);
   const auto found = recognizer.recognize(points_of(after, kBox), access_to(after));
   ASSERT_TRUE(found.has_value());
-  const PoseError error = error_of(found->placement.X_WO,
-                                   motion_W({-0.25, 0.1, 0.0}, GetParam()) * box.X_WO);
+  const PoseError error =
+      error_of(found->placement.X_WO, motion_W({-0.25, 0.1, 0.0}, GetParam()) * box.X_WO);
   EXPECT_LT(error.shift_m, 0.005);
   EXPECT_LT(error.turn_rad, 0.03);
   // At the edges, which have a tenth of the points, the colours of two faces mix.

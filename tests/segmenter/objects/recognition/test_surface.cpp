@@ -149,8 +149,7 @@ TEST(LightChange, IsBoundedInBrightnessAndTint) {
   EXPECT_EQ(light.log_gain, Eigen::Vector3f::Constant(-LightChange::kMaxBrightness));
   light = {{1.0F, 0.0F, -1.0F}};
   light.limit();
-  EXPECT_EQ(light.log_gain,
-            Eigen::Vector3f(LightChange::kMaxTint, 0.0F, -LightChange::kMaxTint));
+  EXPECT_EQ(light.log_gain, Eigen::Vector3f(LightChange::kMaxTint, 0.0F, -LightChange::kMaxTint));
 }
 
 }  // namespace
