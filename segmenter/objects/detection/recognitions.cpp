@@ -1,6 +1,7 @@
 #include "segmenter/objects/detection/recognitions.hpp"
 
 #include <algorithm>
+#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -53,7 +54,7 @@ bool Recognitions::examine(std::uint32_t segment) {
       [this](std::uint32_t id) -> const std::vector<SegmentNeighbour>& {
         return neighbours_of(id);
       },
-      2 * recognizer_.largest_radius_m() + 2 * access_.resolution_m);
+      largest_box_m());
   for (const Candidate& candidate : candidates) {
     const std::optional<Recognition>& found = recognize(candidate);
     if (found && (!best || found->placement.score() > best->placement.score())) best = found;
@@ -100,6 +101,13 @@ std::vector<Recognition> Recognitions::best() const {
     return recognition.placement.score() < kLeastScore;
   });
   return without_overlap(std::move(all));
+}
+
+/// The box along the axes of W of a thing that is turned about the vertical is up to sqrt(2) times
+/// as large along both horizontal axes.
+float Recognitions::largest_box_m() const {
+  return std::numbers::sqrt2_v<float> * 2 * recognizer_.largest_radius_m() +
+         2 * access_.resolution_m;
 }
 
 const std::vector<SegmentNeighbour>& Recognitions::neighbours_of(std::uint32_t segment) {

@@ -39,6 +39,7 @@ class Recognitions {
   [[nodiscard]] std::int64_t num_candidates() const { return num_candidates_; }
 
  private:
+  [[nodiscard]] float largest_box_m() const;
   const std::optional<Recognition>& recognize(const Candidate& candidate);
   const std::vector<SegmentNeighbour>& neighbours_of(std::uint32_t segment);
 

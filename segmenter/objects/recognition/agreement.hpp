@@ -2,7 +2,6 @@
 // When two points show the same surface of the same thing.
 
 #include <algorithm>
-#include <numbers>
 
 #include "segmenter/objects/recognition/surface.hpp"
 
@@ -11,9 +10,6 @@ namespace kintsugi::segmenter {
 /// Distances in multiples of the spacing of the surfaces. Two samplings of one surface lie up to
 /// half a spacing apart on each side, and the map is registered to about as much.
 inline constexpr float kSameDistance = 1.5F;
-/// Cosine of 45 degrees: normals are averages over some voxels, so that at an edge between two
-/// faces they lie anywhere between both.
-inline constexpr float kSameNormal = std::numbers::sqrt2_v<float> / 2;
 /// Sine of 10 degrees: a surface that is seen flatter is hardly measured.
 inline constexpr float kGrazing = 0.17F;
 /// CIELAB. Colours of one surface in two maps differ by the light of the place where it stands, by

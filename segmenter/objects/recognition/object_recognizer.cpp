@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "segmenter/objects/recognition/pose_search.hpp"
+
 namespace kintsugi::segmenter {
 
 namespace {
@@ -13,7 +15,7 @@ namespace {
 constexpr std::size_t kTried = 4;
 // In standard deviations between views of one object, on average over all elements. Candidates are
 // cut by occlusions and by segments that join other things, which simulated views are not.
-constexpr float kLargestDistance = 1.0F;
+constexpr float kLargestDistance = 1.25F;
 constexpr std::size_t kPoses = 3;  // tried of each object
 constexpr float kLeastAgreement =
     0.5F;  // of the candidate with an object: else most of it is something else

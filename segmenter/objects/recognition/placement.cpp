@@ -28,12 +28,10 @@ SceneSurface scene_around(const PreparedModel& model, const MapAccess& map, cons
 bool is_explained(const PreparedModel& model, const SurfacePoint& seen,
                   const Eigen::Isometry3f& X_OW, const LightChange& light) {
   const Eigen::Vector3f p = X_OW * seen.position;
-  const std::int32_t nearest = model.field.nearest(p);
-  if (nearest < 0) return false;
-  const SurfacePoint& q = model.surface_O[static_cast<std::size_t>(nearest)];
-  const float same_m = kSameDistance * model.spacing_m;
-  return (p - q.position).squaredNorm() <= same_m * same_m &&
-         q.normal.dot(X_OW.linear() * seen.normal) >= kSameNormal && same_color(q, seen, light);
+  // The field knows quickly where there is nothing.
+  if (model.field.nearest(p) < 0) return false;
+  const SurfacePoint* const q = model.points_O.nearest_facing(p, X_OW.linear() * seen.normal);
+  return q != nullptr && same_color(*q, seen, light);
 }
 
 /// Whether a surface with this normal was in view when the object was taught. Unknown views count
@@ -57,13 +55,12 @@ enum class Evidence : std::uint8_t { kSeen, kContradicted, kUnknown };
 
 Evidence evidence_at(const SurfacePoint& model_W, const SceneSurface& scene,
                      const ObservedSpace* observed, const LightChange& light) {
-  const SurfacePoint* seen = scene.nearest(model_W.position);
+  const SurfacePoint* const seen = scene.nearest_facing(model_W.position, model_W.normal);
   if (seen != nullptr) {
-    if (!same_color(model_W, *seen, light)) return Evidence::kContradicted;
-    // Another face of the same edge, or of something that touches the object.
-    if (model_W.normal.dot(seen->normal) < kSameNormal) return Evidence::kUnknown;
-    return Evidence::kSeen;
+    return same_color(model_W, *seen, light) ? Evidence::kSeen : Evidence::kContradicted;
   }
+  // Another face of the same edge, or of something that touches the object.
+  if (scene.nearest(model_W.position) != nullptr) return Evidence::kUnknown;
   if (observed == nullptr || observed->empty()) return Evidence::kUnknown;
   const Sights sights = observed->sights(model_W.position);
   return sights.through > sights.measured ? Evidence::kContradicted : Evidence::kUnknown;

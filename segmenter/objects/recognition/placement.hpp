@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "segmenter/objects/recognition/map_access.hpp"
-#include "segmenter/objects/recognition/pose_search.hpp"
+#include "segmenter/objects/recognition/pose_hypothesis.hpp"
 #include "segmenter/objects/recognition/prepared_model.hpp"
 
 namespace kintsugi::segmenter {

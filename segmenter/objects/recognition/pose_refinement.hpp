@@ -1,7 +1,8 @@
 #pragma once
 // Moves an object onto the surface that is seen.
 
-#include "segmenter/objects/recognition/pose_search.hpp"
+#include "segmenter/objects/recognition/pose_hypothesis.hpp"
+#include "segmenter/objects/recognition/prepared_model.hpp"
 
 namespace kintsugi::segmenter {
 

@@ -3,16 +3,10 @@
 
 #include <vector>
 
+#include "segmenter/objects/recognition/pose_hypothesis.hpp"
 #include "segmenter/objects/recognition/prepared_model.hpp"
 
 namespace kintsugi::segmenter {
-
-struct PoseHypothesis {
-  Pose X_WO = Pose::Identity();
-  LightChange light;
-  /// Share of the points seen that agree with the model's surface.
-  float agreement = 0.0F;
-};
 
 /// Poses in which the object stands upright: a vote of pairs of a seen and a model point with like
 /// normals and colours for each turn about `up_W` (a generalised Hough transform: Ballard, 1981).

@@ -43,6 +43,7 @@ PreparedModel::PreparedModel(const ObjectModel& object_, float spacing)
       surface_O(thinned(object_.points_O, spacing)),
       radius_m(radius_of(surface_O)),
       field(surface_O, spacing, kReach * spacing),
+      points_O(surface_O, kSameDistance * spacing),
       described(object_.points_O, spacing) {}
 
 }  // namespace kintsugi::segmenter

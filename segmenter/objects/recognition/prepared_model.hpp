@@ -6,6 +6,7 @@
 
 #include "segmenter/objects/model/object_model.hpp"
 #include "segmenter/objects/recognition/agreement.hpp"
+#include "segmenter/objects/recognition/scene_surface.hpp"
 #include "segmenter/objects/recognition/shape_features.hpp"
 #include "segmenter/objects/recognition/surface.hpp"
 #include "segmenter/objects/recognition/surface_field.hpp"
@@ -42,6 +43,7 @@ struct PreparedModel {
   Surface surface_O;
   float radius_m;  ///< half the diagonal of its box
   SurfaceField field;
+  SceneSurface points_O;  ///< the same surface, for what `field` gets wrong at edges
   /// The same at the spacing of descriptors, for ModelIndex.
   DescribedSurface described;
 };

@@ -8,7 +8,8 @@
 
 namespace kintsugi::segmenter {
 
-/// What the light of a map changes of all colours beside those of the library, and how sure that is.
+/// What the light of a map changes of all colours beside those of the library, and how sure that
+/// is.
 struct SceneLight {
   Eigen::Vector3f log_gain = Eigen::Vector3f::Zero();  ///< as LightChange::log_gain
   /// Standard deviation of that of a single thing: things stand brighter or darker, and cameras

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
 namespace kintsugi::segmenter {
 
@@ -12,6 +13,17 @@ SceneSurface::SceneSurface(std::span<const CloudPoint> points_W,
     : surface_W_(unthinned(points_W, spacing_m)),
       segment_ids_(segment_ids.begin(), segment_ids.end()),
       cell_m_(within_m) {
+  build_cells();
+}
+
+SceneSurface::SceneSurface(Surface surface_W, float within_m)
+    : surface_W_(std::move(surface_W)),
+      segment_ids_(surface_W_.size(), kNoSegment),
+      cell_m_(within_m) {
+  build_cells();
+}
+
+void SceneSurface::build_cells() {
   if (surface_W_.empty()) return;
   Eigen::AlignedBox3f box;
   for (const SurfacePoint& point : surface_W_) box.extend(point.position);
@@ -24,30 +36,6 @@ SceneSurface::SceneSurface(std::span<const CloudPoint> points_W,
     next_[i] = first;
     first = static_cast<std::int32_t>(i);
   }
-}
-
-const SurfacePoint* SceneSurface::nearest(const Eigen::Vector3f& p_W) const {
-  if (surface_W_.empty()) return nullptr;
-  const Eigen::Vector3i cell = cell_of(p_W);
-  const Eigen::Vector3i low = (cell.array() - 1).max(0);
-  const Eigen::Vector3i high = (cell.array() + 1).min(size_.array() - 1);
-  const SurfacePoint* nearest = nullptr;
-  float least = cell_m_ * cell_m_;
-  for (int z = low.z(); z <= high.z(); ++z) {
-    for (int y = low.y(); y <= high.y(); ++y) {
-      for (int x = low.x(); x <= high.x(); ++x) {
-        for (std::int32_t i = first_[index_of({x, y, z})]; i >= 0;
-             i = next_[static_cast<std::size_t>(i)]) {
-          const SurfacePoint& point = surface_W_[static_cast<std::size_t>(i)];
-          const float squared = (point.position - p_W).squaredNorm();
-          if (squared > least) continue;
-          least = squared;
-          nearest = &point;
-        }
-      }
-    }
-  }
-  return nearest;
 }
 
 Surface SceneSurface::of_segments(std::span<const std::uint32_t> ids) const {

@@ -138,6 +138,7 @@ void smooth_colors(Surface& surface, float radius_m) {
   std::vector<Eigen::Vector3f> means(surface.size());
   for (const Cell& cell : cells) {
     const Eigen::Vector3f& p = surface[cell.point].position;
+    const Eigen::Vector3f& n = surface[cell.point].normal;
     Eigen::Vector3f sum = Eigen::Vector3f::Zero();
     float count = 0.0F;
     for (int x = -1; x <= 1; ++x) {
@@ -150,6 +151,7 @@ void smooth_colors(Surface& surface, float radius_m) {
              ++at) {
           const SurfacePoint& other = surface[at->point];
           if ((other.position - p).squaredNorm() > radius_m * radius_m) continue;
+          if (other.normal.dot(n) < kSameNormal && at->point != cell.point) continue;
           sum += other.rgb;
           count += 1.0F;
         }

@@ -3,7 +3,8 @@
 // works on.
 
 #include <Eigen/Core>
-#include <cstdint>
+#include <cstddef>
+#include <numbers>
 #include <span>
 #include <vector>
 
@@ -32,8 +33,13 @@ Surface thinned(std::span<const CloudPoint> points, float spacing_m);
 /// @param spacing_m of the points
 Surface unthinned(std::span<const CloudPoint> points, float spacing_m);
 
-/// Replaces each linear colour by the mean of those within `radius_m`, and CIELAB with it. Patterns
-/// as fine as the voxels come out differently in each map; means of some voxels do not.
+/// Cosine of 45 degrees: normals this close are of one face. They are averages over some voxels, so
+/// that at an edge between two faces they lie anywhere between both.
+inline constexpr float kSameNormal = std::numbers::sqrt2_v<float> / 2;
+
+/// Replaces each linear colour by the mean of those within `radius_m` on the same face
+/// (kSameNormal), and CIELAB with it. Patterns as fine as the voxels come out differently in each
+/// map; means of some voxels do not.
 void smooth_colors(Surface& surface, float radius_m);
 
 /// The surface where `X_BA` puts it.
