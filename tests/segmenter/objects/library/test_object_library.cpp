@@ -282,7 +282,7 @@ TEST_F(Library, IsWholeForThoseWhoReadWhileItIsWritten) {
   std::thread writer([&] {
     for (int i = 0; i < 50; ++i) {
       KnownObject object = example_object("cup");
-      object.model.points_O.resize(static_cast<std::size_t>(100 + i));
+      object.model.points_O.resize(100 + i);
       write_object(object, folder_.path());
     }
   });

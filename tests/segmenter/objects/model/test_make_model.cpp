@@ -133,7 +133,7 @@ MapView view_of_box(const MadeModel& made, const Eigen::Vector3d& p_U, double be
   view.X_WC.linear().col(2) = forward;
   view.X_WC.translation() = p_W;
   view.intrinsics = {.fx = 60, .fy = 60, .cx = 39.5, .cy = 29.5, .width = 80, .height = 60};
-  view.depth_mm.assign(80 * 60, 0);
+  view.depth_mm.assign(std::size_t{80} * 60, 0);
   for (const CloudPoint& p : made.model.points_O) {
     const Eigen::Vector3d p_C = view.X_WC.inverse() * (made.X_WO * Eigen::Vector3d(p.x, p.y, p.z));
     const auto u = static_cast<std::size_t>(std::lround(60 * p_C.x() / p_C.z() + 39.5));

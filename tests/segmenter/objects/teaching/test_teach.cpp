@@ -141,7 +141,11 @@ TEST(Refine, AveragesTheSameSidesAndAddsTheOthers) {
 
   const TwoLessons other({"z", "-y", "-x"});
   const Refinement more = refined(other.known, other.lesson);
-  const std::size_t side = 16 * 12;
+  // Only the ends of two sides tell where it is along x. The points of the third are 12 cm
+  // beside the middle, and the origins are in the means of the points.
+  const double apart_m = 2.0 * 0.12 * (16.0 * 12) / (24 * 16 + 24 * 12 + 16 * 12);
+  EXPECT_LT((more.fit.X_OL.translation() - Eigen::Vector3d(-apart_m, 0.0, 0.0)).norm(), 0.01);
+  const std::size_t side = std::size_t{16} * 12;
   EXPECT_GT(more.num_added, side * 8 / 10);
   EXPECT_LT(more.num_added, side * 12 / 10);
   Eigen::AlignedBox3f box_O;
