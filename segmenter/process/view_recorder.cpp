@@ -41,7 +41,10 @@ bool ViewRecorder::handle(const std::string& channel, ByteView message) {
 
 void ViewRecorder::resume(ViewSet saved, const SegmentMap& map) {
   const std::lock_guard lock(mutex_);
-  by_session_.insert_or_assign(map.map_session(), ViewRecord(std::move(saved), map));
+  ViewRecord record(std::move(saved), map);
+  const auto meanwhile = by_session_.find(map.map_session());
+  if (meanwhile != by_session_.end()) record.append(meanwhile->second);
+  by_session_.insert_or_assign(map.map_session(), std::move(record));
 }
 
 std::shared_ptr<const ViewSet> ViewRecorder::views(std::int64_t map_session) const {

@@ -120,6 +120,21 @@ void ViewRecord::add(const CloudSlice& slice) {
   last_patch_[slice.part] = slice.id;
 }
 
+void ViewRecord::append(const ViewRecord& later) {
+  for (const KeptView& view : later.set_.views) {
+    if (view.utime <= last_utime_) continue;
+    set_.views.push_back(view);
+    thin_out();
+  }
+  last_utime_ = std::max(last_utime_, later.last_utime_);
+  for (const auto& [id, place] : later.headers_) {
+    PatchPlace& known = headers_[id];
+    if (place.correction >= known.correction) known = place;
+  }
+  for (const auto& [part, id] : later.last_patch_) last_patch_[part] = id;
+  for (const auto& [id, place] : later.motions_.places()) motions_.learn(id, place);
+}
+
 void ViewRecord::hang_up(KeptView& view) const {
   const auto last = last_patch_.find(view.part);
   if (last == last_patch_.end()) return;

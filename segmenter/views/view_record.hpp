@@ -43,6 +43,9 @@ class ViewRecord {
   /// What the header of a slice of the session tells, or a correction.
   void add(const CloudSlice& slice);
 
+  /// What `later` was told of the same session while this one was read from a file.
+  void append(const ViewRecord& later);
+
   /// The views that are kept, with their poses as of now.
   [[nodiscard]] ViewSet views() const;
 

@@ -165,7 +165,7 @@ Seeds views_file_seeds() {
   record.add(patch);
   for (int i = 1; i < 4; ++i) {
     CameraView view;
-    view.utime = 1'000'000 * i;
+    view.utime = std::int64_t{1'000'000} * i;
     view.session = 5;
     view.state = TrackingState::kTracking;
     view.X_WC.translation().x() = i;

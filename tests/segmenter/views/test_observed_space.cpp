@@ -20,12 +20,14 @@ constexpr double kVoxel_m = 0.01;
 MapView wall(double depth_m) {
   MapView view;
   view.intrinsics = {.fx = 130, .fy = 130, .cx = 79.5, .cy = 59.5, .width = 160, .height = 120};
-  view.depth_mm.assign(160 * 120, static_cast<std::uint16_t>(1e3 * depth_m));
+  view.depth_mm.assign(std::size_t{160} * 120, static_cast<std::uint16_t>(1e3 * depth_m));
   return view;
 }
 
 std::uint16_t& depth_at(MapView& view, int i, int j) {
-  return view.depth_mm.at(static_cast<std::size_t>(j * view.intrinsics.width + i));
+  return view.depth_mm.at(static_cast<std::size_t>(j) *
+                              static_cast<std::size_t>(view.intrinsics.width) +
+                          static_cast<std::size_t>(i));
 }
 
 Sights sights_of(const MapView& view, const Eigen::Vector3f& p_W) {

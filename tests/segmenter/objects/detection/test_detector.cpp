@@ -43,7 +43,7 @@ std::vector<ObjectModel> box_and_ball() {
 
 /// Gives the detector the map as one piece of each segment.
 void give(Detector& detector, const ObservedMap& map, std::int64_t utime,
-          std::vector<std::uint32_t> segments = {kTable, kBox, kBall}) {
+          const std::vector<std::uint32_t>& segments = {kTable, kBox, kBall}) {
   for (const std::uint32_t id : segments) {
     const std::vector<CloudPoint> points_W = points_of(map, id);
     const std::vector<std::uint32_t> labels(points_W.size(), id);

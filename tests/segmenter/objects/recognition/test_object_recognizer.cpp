@@ -195,8 +195,9 @@ TEST(ModelIndex, FindsTheObjectOfTheNearestViewAndBoundsItFromBelow) {
     for (int view = 0; view < 5; ++view) {
       ViewDescriptor descriptor;
       for (int k = 0; k < kViewDescriptorSize; ++k) {
-        descriptor[k] = std::sin(static_cast<float>(1 + 7 * model + 3 * k)) +
-                        0.05F * std::cos(static_cast<float>(view + k));
+        descriptor[k] =
+            std::sin(1.0F + 7.0F * static_cast<float>(model) + 3.0F * static_cast<float>(k)) +
+            0.05F * std::cos(static_cast<float>(view + k));
       }
       views.push_back({model, descriptor});
     }
