@@ -55,11 +55,13 @@ const PreparedModel& ObjectRecognizer::prepared(std::size_t model) const {
 std::optional<Recognition> ObjectRecognizer::recognize(std::span<const CloudPoint> candidate_W,
                                                        const MapAccess& map) const {
   if (!index_ || candidate_W.empty()) return std::nullopt;
-  if (!may_be_known(candidate_W)) return std::nullopt;
+  // Few objects do not tell how much the elements of descriptions vary; all of them are tried.
+  const bool is_choice = models_.size() > kTried;
+  if (is_choice && !may_be_known(candidate_W)) return std::nullopt;
   const DescribedSurface described(candidate_W, resolution_m_);
   std::optional<Recognition> best;
   for (const ModelMatch& match : index_->nearest(described.descriptor(), kTried)) {
-    if (match.distance > kLargestDistance) break;
+    if (is_choice && match.distance > kLargestDistance) break;
     std::optional<Placement> placement = place(match.model, candidate_W, map);
     if (!placement || !is_recognized(*placement)) continue;
     if (best && best->placement.score() >= placement->score()) continue;

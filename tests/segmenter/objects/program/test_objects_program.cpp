@@ -201,5 +201,33 @@ TEST_F(Objects, ThatAreDamagedAreNamedAndTheOthersUsed) {
   EXPECT_THAT(expect_success("list"), Not(HasSubstr("ball")));
 }
 
+TEST_F(Objects, AreDetectedInAnotherMap) {
+  expect_success("teach --map FOLDER/hall.ply --ids 2 --name box");
+  expect_success("teach --map FOLDER/hall.ply --ids 3 --name ball");
+  write_map(box_on_table({"z", "-y", "x"}, {-0.2F, 0.15F, 0.0F}, 0.5F), folder_ / "later.ply");
+  const std::string text = expect_success("detect FOLDER/later.ply --json FOLDER/found.json");
+  EXPECT_THAT(text, ::testing::AllOf(HasSubstr("ball "), HasSubstr("box ")));
+  std::ifstream file(folder_ / "found.json");
+  const json found = json::parse(file);
+  ASSERT_EQ(found.at("detections").size(), 2U);
+  for (const json& detection : found["detections"]) {
+    const std::uint32_t id = detection["name"] == "box" ? testing::kBox : testing::kBall;
+    EXPECT_EQ(detection["segments"], json({id}));
+    EXPECT_EQ(detection["event"], "confirmed");
+    EXPECT_GE(detection["score"].get<double>(), 0.6);
+    EXPECT_EQ(detection["X_WO"].size(), 12U);
+  }
+}
+
+TEST_F(Objects, AreNotLookedForInMapsOrLibrariesThatAreNone) {
+  expect_error("detect FOLDER/hall.ply", "there is no such library");
+  expect_success("teach --map FOLDER/hall.ply --ids 2 --name box");
+  expect_error("detect FOLDER/absent.map", "absent.map");
+  expect_success("detect --check");
+  write_text(folder_ / "objects" / "box" / "object.json", "{");
+  EXPECT_THAT(expect_success("detect --check"), HasSubstr("box"));
+  EXPECT_THAT(expect_success("detect FOLDER/hall.ply"), Not(HasSubstr("box  ")));
+}
+
 }  // namespace
 }  // namespace kintsugi::segmenter
