@@ -11,6 +11,7 @@
 
 #include "lcmtypes/base/atomic_file.hpp"
 #include "lcmtypes/base/ply_writer.hpp"
+#include "lcmtypes/client/object_text.hpp"
 #include "segmenter/objects/changes/change_picture.hpp"
 #include "segmenter/objects/maps/surface_samples.hpp"
 
@@ -42,7 +43,7 @@ Json json_of(const MapChange& change) {
   const Eigen::Vector3f centroid = (sum / static_cast<double>(points.size())).cast<float>();
   Json json;
   json["id"] = change.id;
-  json["kind"] = name_of(change.kind);
+  json["kind"] = to_string(change.kind);
   json["points"] = points.size();
   json["centroid"] = numbers_of(centroid);
   json["box_min"] = numbers_of(Eigen::Vector3f(box.min()));
@@ -63,7 +64,7 @@ void write_ply(const MapChange& change, const std::filesystem::path& path) {
         .count = std::ssize(change.before) + std::ssize(change.after)}},
       {fmt::format("kintsugi change {}, {}, W of the map after, metres; was 1: as it "
                    "was before, 0: as it is now",
-                   change.id, name_of(change.kind))});
+                   change.id, to_string(change.kind))});
   const auto append = [&](const std::vector<CloudPoint>& points, std::uint8_t was) {
     for (const CloudPoint& p : points) {
       writer.append(0, p.x, p.y, p.z, p.nx, p.ny, p.nz, p.red, p.green, p.blue, was);

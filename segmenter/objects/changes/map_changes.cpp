@@ -133,20 +133,6 @@ void join_moved(std::vector<MapChange>& gone, std::vector<MapChange>& come,
 
 }  // namespace
 
-std::string_view name_of(ChangeKind kind) {
-  switch (kind) {
-    case ChangeKind::kNew:
-      return "new";
-    case ChangeKind::kGone:
-      return "gone";
-    case ChangeKind::kMoved:
-      return "moved";
-    case ChangeKind::kWithdrawn:
-      return "withdrawn";
-  }
-  return "unknown";
-}
-
 MapChanges find_changes(const ObservedMap& before, const ObservedMap& after, const Pose& X_AB) {
   const double voxel_m = std::max(before.resolution_m, after.resolution_m);
   const std::vector<CloudPoint> before_A = transformed(X_AB, before.points_W);

@@ -2,7 +2,6 @@
 // What has come, gone and moved between two maps of one place.
 
 #include <cstdint>
-#include <string_view>
 #include <vector>
 
 #include "lcmtypes/geometry.hpp"
@@ -11,9 +10,6 @@
 #include "segmenter/views/observed_map.hpp"
 
 namespace kintsugi::segmenter {
-
-/// "new", "gone", "moved" or "withdrawn".
-std::string_view name_of(ChangeKind kind);
 
 /// A thing that is in one map and not in the other, or elsewhere in the other. In AFTER's W.
 struct MapChange {

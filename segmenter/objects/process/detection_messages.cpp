@@ -9,6 +9,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "lcmtypes/client/object_text.hpp"
+
 namespace kintsugi::segmenter {
 
 namespace {
@@ -19,20 +21,6 @@ Eigen::AlignedBox3f box_of(const ObjectModel& model) {
   Eigen::AlignedBox3f box;
   for (const CloudPoint& p : model.points_O) box.extend(Eigen::Vector3f(p.x, p.y, p.z));
   return box;
-}
-
-const char* name_of(DetectionEvent event) {
-  switch (event) {
-    case DetectionEvent::kFound:
-      return "found";
-    case DetectionEvent::kConfirmed:
-      return "confirmed";
-    case DetectionEvent::kMoved:
-      return "moved";
-    case DetectionEvent::kGone:
-      return "gone";
-  }
-  return "";
 }
 
 Json rows_of(const Pose& pose) {
@@ -90,7 +78,7 @@ std::string detections_json(const Detector& detector, const DetectionSource& sou
     entry["segments"] = message.segment_ids;
     entry["box_min_O"] = list_of(message.box_min_O);
     entry["box_max_O"] = list_of(message.box_max_O);
-    entry["event"] = name_of(message.event);
+    entry["event"] = to_string(message.event);
     entry["utime"] = detection.event_utime;
     json["detections"].push_back(std::move(entry));
   }

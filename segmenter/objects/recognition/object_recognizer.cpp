@@ -95,18 +95,6 @@ std::optional<Placement> ObjectRecognizer::place(std::size_t model,
   return best;
 }
 
-Placement ObjectRecognizer::look_again(const Recognition& recognition, const MapAccess& map) const {
-  const PreparedModel& object = prepared(recognition.model);
-  PoseHypothesis pose;
-  pose.X_WO = recognition.placement.X_WO;
-  pose.light = recognition.placement.light;
-  Placement best = placement_of(object, map, pose);
-  if (best.segment_ids.empty()) return best;
-  const Surface own_W = thinned(map.points_of(best.segment_ids), object.spacing_m);
-  Placement moved = placement_of(object, map, refined_pose(object, own_W, pose.X_WO));
-  return moved.score() > best.score() ? moved : best;
-}
-
 bool is_recognized(const Placement& placement) {
   return placement.score() >= kLeastScore && placement.seen >= kLeastSeen &&
          placement.own >= kLeastOwn;

@@ -43,9 +43,6 @@ class ObjectRecognizer {
                                                std::span<const CloudPoint> candidate_W,
                                                const MapAccess& map) const;
 
-  /// What is in the map now of an object that was at X_WO, after small corrections of the pose.
-  [[nodiscard]] Placement look_again(const Recognition& recognition, const MapAccess& map) const;
-
  private:
   /// By size and colours alone, at next to no cost.
   [[nodiscard]] bool may_be_known(std::span<const CloudPoint> candidate_W) const;

@@ -1,6 +1,5 @@
 #include "segmenter/objects/recognition/scene_surface.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <utility>
@@ -36,16 +35,6 @@ void SceneSurface::build_cells() {
     next_[i] = first;
     first = static_cast<std::int32_t>(i);
   }
-}
-
-Surface SceneSurface::of_segments(std::span<const std::uint32_t> ids) const {
-  Surface surface;
-  for (std::size_t i = 0; i < surface_W_.size(); ++i) {
-    if (std::binary_search(ids.begin(), ids.end(), segment_ids_[i])) {
-      surface.push_back(surface_W_[i]);
-    }
-  }
-  return surface;
 }
 
 Eigen::Vector3i SceneSurface::cell_of(const Eigen::Vector3f& p_W) const {

@@ -39,9 +39,6 @@ class SceneSurface {
     });
   }
 
-  /// The points of these segments, which are given in ascending order.
-  [[nodiscard]] Surface of_segments(std::span<const std::uint32_t> ids) const;
-
  private:
   template <class IsWanted>
   const SurfacePoint* nearest(const Eigen::Vector3f& p_W, const IsWanted& is_wanted) const;

@@ -12,6 +12,7 @@
 
 #include "lcmtypes/base/command_line.hpp"
 #include "lcmtypes/base/run_main.hpp"
+#include "lcmtypes/client/object_text.hpp"
 #include "segmenter/objects/changes/change_files.hpp"
 #include "segmenter/objects/maps/observed_map_file.hpp"
 #include "segmenter/objects/maps/surface_samples.hpp"
@@ -53,7 +54,7 @@ std::string table_row(const MapChange& change) {
   std::string row = fmt::format(
       "{:>4} {:<6} {:>7}  {:7.2f} {:7.2f} {:7.2f}  {:5.2f} {:5.2f} {:5.2f}  "
       "{:5.2f}",
-      change.id, name_of(change.kind), change.points().size(), center.x(), center.y(), center.z(),
+      change.id, to_string(change.kind), change.points().size(), center.x(), center.y(), center.z(),
       size.x(), size.y(), size.z(), change.score);
   if (change.kind == ChangeKind::kMoved) {
     Eigen::AlignedBox3f was;
