@@ -6,15 +6,12 @@
 #include <vector>
 
 #include "segmenter/description/adjacency_graph.hpp"
-#include "segmenter/objects/detection/labelled_map.hpp"
+#include "segmenter/objects/recognition/scene.hpp"
 
 namespace kintsugi::segmenter {
 
 /// A candidate has at most so many segments.
 inline constexpr std::size_t kCandidateSegments = 5;
-
-/// The ids of segments, ascending.
-using Candidate = std::vector<std::uint32_t>;
 
 /// The neighbours of a segment.
 using NeighboursOf = std::function<const std::vector<SegmentNeighbour>&(std::uint32_t)>;

@@ -11,6 +11,9 @@ namespace {
 // pace, has seen the rest of an object by then.
 constexpr std::int64_t kConfirmed_us = 1'000'000;
 
+// Of logarithms: 10 %, less than things of one place differ.
+constexpr float kSameLight = 0.1F;
+
 bool is_active(const Detection& detection) { return detection.event != DetectionEvent::kGone; }
 
 bool share_segments(const Recognition& a, const Recognition& b) {
@@ -23,30 +26,55 @@ bool share_segments(const Recognition& a, const Recognition& b) {
 }  // namespace
 
 Detector::Detector(std::vector<ObjectModel> models, float resolution_m)
-    : recognizer_(std::move(models), resolution_m), recognitions_(recognizer_, map_, access_) {
-  access_.resolution_m = resolution_m;
-  access_.points_in = [this](const Eigen::AlignedBox3f& box_W) { return map_.points_in(box_W); };
-  access_.points_of = [this](const std::vector<std::uint32_t>& ids) { return map_.points_of(ids); };
-  access_.num_points = [this](std::uint32_t id) { return map_.num_points(id); };
-}
+    : recognizer_(std::move(models), resolution_m),
+      scene_(resolution_m),
+      observed_(resolution_m),
+      recognitions_(recognizer_, scene_) {}
 
 void Detector::set_piece(std::int32_t id, LabelledMap::Points points_W,
                          std::vector<std::uint32_t> segment_ids, std::int64_t utime) {
   utime_ = std::max(utime_, utime);
   const std::set<std::uint32_t> changed =
-      map_.set_piece(id, std::move(points_W), std::move(segment_ids));
+      scene_.set_piece(id, std::move(points_W), std::move(segment_ids));
   changed_.insert(changed.begin(), changed.end());
   for (const std::uint32_t segment : changed) wait_for(segment);
   for (const std::uint32_t seed : recognitions_.seeds_of(changed)) wait_for(seed);
 }
 
+void Detector::set_views(std::span<const MapView> views) {
+  observed_.clear();
+  for (const MapView& view : views) observed_.add(view);
+  scene_.set_observed(observed_.empty() ? nullptr : &observed_);
+}
+
 void Detector::examine_all() {
+  is_light_settled_ = false;
+  scene_.set_light({});
+  recognitions_.forget_all();
+  wait_for_all();
+}
+
+void Detector::wait_for_all() {
   waiting_.clear();
   is_waiting_.clear();
-  for (const std::uint32_t segment : map_.segments()) {
+  for (const std::uint32_t segment : map().segments()) {
     changed_.insert(segment);
     wait_for(segment);
   }
+}
+
+/// When the light of the map becomes known and is another one, all is examined in it once more.
+void Detector::settle_light() {
+  if (is_light_settled_) return;
+  const std::optional<LightChange> change = recognitions_.light();
+  if (!change) return;
+  is_light_settled_ = true;
+  if (change->log_gain.cwiseAbs().maxCoeff() < kSameLight) return;
+  LightChange light;
+  light.log_gain = scene_.light().log_gain + change->log_gain;
+  scene_.set_light(light);
+  recognitions_.forget_all();
+  wait_for_all();
 }
 
 std::optional<std::int64_t> Detector::waiting_since_us() const {
@@ -63,12 +91,13 @@ void Detector::examine_next() {
   if (!changed_.empty()) {
     recognitions_.forget(changed_);
     changed_.clear();
-    access_.up_W = map_.up_W();
   }
   const std::uint32_t segment = waiting_.front().segment;
   waiting_.pop_front();
   is_waiting_.erase(segment);
-  if (recognitions_.examine(segment)) update_detections();
+  const bool may_change = recognitions_.examine(segment);
+  if (waiting_.empty()) settle_light();
+  if (may_change) update_detections();
   confirm_old_ones();
 }
 

@@ -5,13 +5,16 @@
 #include <deque>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "lcmtypes/object_messages.hpp"
-#include "segmenter/objects/detection/labelled_map.hpp"
 #include "segmenter/objects/detection/recognitions.hpp"
 #include "segmenter/objects/recognition/object_recognizer.hpp"
+#include "segmenter/objects/recognition/scene.hpp"
+#include "segmenter/views/map_view.hpp"
+#include "segmenter/views/observed_space.hpp"
 
 namespace kintsugi::segmenter {
 
@@ -40,7 +43,9 @@ class Detector {
   /// @param utime device time of the map then, microseconds
   void set_piece(std::int32_t id, LabelledMap::Points points_W,
                  std::vector<std::uint32_t> segment_ids, std::int64_t utime);
-  /// Lets all segments wait: what depends on the whole map may have changed.
+  /// What the cameras of the map saw.
+  void set_views(std::span<const MapView> views);
+  /// Lets all segments wait: what depends on the whole map may have changed, also its light.
   void examine_all();
 
   /// Examines one segment, if one waits, and updates the detections.
@@ -54,10 +59,12 @@ class Detector {
   [[nodiscard]] const std::vector<ObjectModel>& models() const { return recognizer_.models(); }
   [[nodiscard]] std::int64_t num_events() const { return num_events_; }
   [[nodiscard]] std::int64_t num_candidates() const { return recognitions_.num_candidates(); }
-  [[nodiscard]] const LabelledMap& map() const { return map_; }
+  [[nodiscard]] const LabelledMap& map() const { return scene_.map(); }
 
  private:
   void wait_for(std::uint32_t segment);
+  void wait_for_all();
+  void settle_light();
   void update_detections();
   void confirm_old_ones();
   [[nodiscard]] Detection* same_place(const Recognition& recognition,
@@ -67,8 +74,9 @@ class Detector {
   void tell(Detection& detection, DetectionEvent event);
 
   ObjectRecognizer recognizer_;
-  LabelledMap map_;
-  MapAccess access_;
+  Scene scene_;
+  ObservedSpace observed_;
+  bool is_light_settled_ = false;
   Recognitions recognitions_;
   struct Waiting {
     std::uint32_t segment;

@@ -36,6 +36,15 @@ std::vector<Recognition> without_overlap(std::vector<Recognition> all) {
   return best;
 }
 
+std::vector<Recognition> all_of(
+    const std::map<std::uint32_t, std::vector<Recognition>>& by_segment) {
+  std::vector<Recognition> all;
+  for (const auto& [segment, recognitions] : by_segment) {
+    all.insert(all.end(), recognitions.begin(), recognitions.end());
+  }
+  return all;
+}
+
 SceneLight light_of_recognitions(const std::vector<Recognition>& recognitions) {
   std::vector<const Placement*> placements;
   placements.reserve(recognitions.size());
@@ -47,32 +56,47 @@ SceneLight light_of_recognitions(const std::vector<Recognition>& recognitions) {
 
 bool Recognitions::examine(std::uint32_t segment) {
   const bool was_there = by_segment_.erase(segment) > 0;
-  if (map_.num_points(segment) == 0) return was_there;
-  std::optional<Recognition> best;
+  if (scene_.map().num_points(segment) == 0) return was_there;
+  std::map<std::size_t, Recognition> best;  // by model
   const std::vector<Candidate> candidates = candidates_of(
-      segment, map_,
+      segment, scene_.map(),
       [this](std::uint32_t id) -> const std::vector<SegmentNeighbour>& {
         return neighbours_of(id);
       },
       largest_box_m());
   for (const Candidate& candidate : candidates) {
-    const std::optional<Recognition>& found = recognize(candidate);
-    if (found && (!best || found->placement.score() > best->placement.score())) best = found;
+    for (const Recognition& found : recognize(candidate)) {
+      const auto [at, is_first] = best.try_emplace(found.model, found);
+      if (!is_first && found.placement.score() > at->second.placement.score()) at->second = found;
+    }
   }
-  if (best) by_segment_[segment] = std::move(*best);
-  return was_there || best;
+  if (best.empty()) return was_there;
+  std::vector<Recognition>& all = by_segment_[segment];
+  for (auto& [model, recognition] : best) all.push_back(std::move(recognition));
+  return true;
 }
 
 std::set<std::uint32_t> Recognitions::seeds_of(const std::set<std::uint32_t>& parts) const {
   std::set<std::uint32_t> seeds;
-  for (const auto& [seed, recognition] : by_segment_) {
-    const std::vector<std::uint32_t>& ids = recognition.placement.segment_ids;
-    if (std::any_of(ids.begin(), ids.end(),
-                    [&parts](std::uint32_t id) { return parts.contains(id); })) {
-      seeds.insert(seed);
-    }
+  const auto is_part = [&parts](std::uint32_t id) { return parts.contains(id); };
+  for (const auto& [seed, recognitions] : by_segment_) {
+    const bool has_part = std::ranges::any_of(recognitions, [&](const Recognition& recognition) {
+      return std::ranges::any_of(recognition.placement.segment_ids, is_part);
+    });
+    if (has_part) seeds.insert(seed);
   }
   return seeds;
+}
+
+std::optional<LightChange> Recognitions::light() const {
+  const SceneLight light = light_of_recognitions(without_overlap(all_of(by_segment_)));
+  if (!light.is_known) return std::nullopt;
+  return LightChange{light.log_gain};
+}
+
+void Recognitions::forget_all() {
+  by_segment_.clear();
+  by_candidate_.clear();
 }
 
 void Recognitions::forget(const std::set<std::uint32_t>& changed) {
@@ -80,19 +104,17 @@ void Recognitions::forget(const std::set<std::uint32_t>& changed) {
   by_candidate_.clear();
 }
 
-const std::optional<Recognition>& Recognitions::recognize(const Candidate& candidate) {
+const std::vector<Recognition>& Recognitions::recognize(const Candidate& candidate) {
   const auto [at, is_new] = by_candidate_.try_emplace(candidate);
   if (is_new) {
     ++num_candidates_;
-    at->second = recognizer_.recognize(map_.points_of(candidate), access_);
+    at->second = recognizer_.recognize(candidate, scene_);
   }
   return at->second;
 }
 
 std::vector<Recognition> Recognitions::best() const {
-  std::vector<Recognition> all;
-  all.reserve(by_segment_.size());
-  for (const auto& [segment, recognition] : by_segment_) all.push_back(recognition);
+  std::vector<Recognition> all = all_of(by_segment_);
   const SceneLight light = light_of_recognitions(without_overlap(all));
   for (Recognition& recognition : all) {
     recognition.placement.light_agreement = light.agreement(recognition.placement.light);
@@ -107,23 +129,23 @@ std::vector<Recognition> Recognitions::best() const {
 /// as large along both horizontal axes.
 float Recognitions::largest_box_m() const {
   return std::numbers::sqrt2_v<float> * 2 * recognizer_.largest_radius_m() +
-         2 * access_.resolution_m;
+         2 * scene_.resolution_m();
 }
 
 const std::vector<SegmentNeighbour>& Recognitions::neighbours_of(std::uint32_t segment) {
   const auto known = neighbours_.find(segment);
   if (known != neighbours_.end()) return known->second;
-  const Eigen::AlignedBox3f box = map_.box_of(segment);
-  const float radius_m = kNeighbourRadius_vox * access_.resolution_m;
+  const Eigen::AlignedBox3f box = scene_.map().box_of(segment);
+  const float radius_m = kNeighbourRadius_vox * scene_.resolution_m();
   const Eigen::Vector3f margin = Eigen::Vector3f::Constant(2 * radius_m);
-  const MapExcerpt excerpt = map_.points_in({box.min() - margin, box.max() + margin});
+  const MapExcerpt excerpt = scene_.map().points_in({box.min() - margin, box.max() + margin});
   SegmentStatistics statistics;
   statistics.segment_id = segment;
   for (int axis = 0; axis < 3; ++axis) {
     statistics.box_min_W[axis] = box.min()[axis];
     statistics.box_max_W[axis] = box.max()[axis];
   }
-  const LabelledCloud cloud{excerpt.points_W, excerpt.segment_ids, access_.resolution_m, radius_m};
+  const LabelledCloud cloud{excerpt.points_W, excerpt.segment_ids, scene_.resolution_m(), radius_m};
   return neighbours_[segment] = kintsugi::segmenter::neighbours_of(cloud, statistics);
 }
 

@@ -8,18 +8,17 @@
 #include <vector>
 
 #include "segmenter/objects/detection/candidates.hpp"
-#include "segmenter/objects/detection/labelled_map.hpp"
 #include "segmenter/objects/recognition/object_recognizer.hpp"
 
 namespace kintsugi::segmenter {
 
-/// The best recognition at each segment. It depends on the map alone, not on the order in which
+/// What each segment may be. It depends on the map alone, not on the order in which
 /// segments came and were examined.
 class Recognitions {
  public:
-  /// `recognizer`, `map` and `access` must outlive this.
-  Recognitions(const ObjectRecognizer& recognizer, const LabelledMap& map, const MapAccess& access)
-      : recognizer_(recognizer), map_(map), access_(access) {}
+  /// `recognizer` and `scene` must outlive this.
+  Recognitions(const ObjectRecognizer& recognizer, const Scene& scene)
+      : recognizer_(recognizer), scene_(scene) {}
 
   /// Examines the segment and its unions with neighbours again. One that does not exist any more is
   /// forgotten. @return whether something may be recognised there now, or was before
@@ -32,6 +31,12 @@ class Recognitions {
   /// of the higher score counts. The highest score first.
   [[nodiscard]] std::vector<Recognition> best() const;
 
+  /// How the light of the map differs from that of the scene (Scene::set_light()) as far as what is
+  /// recognised tells; nothing: too little is.
+  [[nodiscard]] std::optional<LightChange> light() const;
+
+  /// All of the scene looks different.
+  void forget_all();
   /// The map has changed: what was computed of these segments does not hold any more.
   void forget(const std::set<std::uint32_t>& changed);
 
@@ -40,16 +45,15 @@ class Recognitions {
 
  private:
   [[nodiscard]] float largest_box_m() const;
-  const std::optional<Recognition>& recognize(const Candidate& candidate);
+  const std::vector<Recognition>& recognize(const Candidate& candidate);
   const std::vector<SegmentNeighbour>& neighbours_of(std::uint32_t segment);
 
   const ObjectRecognizer& recognizer_;
-  const LabelledMap& map_;
-  const MapAccess& access_;
+  const Scene& scene_;
   std::map<std::uint32_t, std::vector<SegmentNeighbour>> neighbours_;
-  std::map<std::uint32_t, Recognition> by_segment_;
+  std::map<std::uint32_t, std::vector<Recognition>> by_segment_;  // the best of each object
   /// What was found at each candidate since the map changed: most are those of several segments.
-  std::map<Candidate, std::optional<Recognition>> by_candidate_;
+  std::map<Candidate, std::vector<Recognition>> by_candidate_;
   std::int64_t num_candidates_ = 0;
 };
 

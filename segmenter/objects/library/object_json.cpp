@@ -9,6 +9,8 @@
 #include <ctime>
 #include <limits>
 #include <stdexcept>
+#include <utility>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
@@ -185,6 +187,53 @@ Lesson lesson_of(const Json& json) {
   return lesson;
 }
 
+/// As hexadecimal digits: four cells each, the first in the lowest bit.
+std::string digits_of(const std::vector<bool>& cells) {
+  std::string digits((cells.size() + 3) / 4, '0');
+  for (std::size_t digit = 0; digit < digits.size(); ++digit) {
+    unsigned value = 0;
+    for (std::size_t bit = 0; bit < 4 && 4 * digit + bit < cells.size(); ++bit) {
+      value |= (cells[4 * digit + bit] ? 1U : 0U) << bit;
+    }
+    digits[digit] = "0123456789abcdef"[value];
+  }
+  return digits;
+}
+
+OrderedJson empty_json(const EmptySpace& empty_O) {
+  OrderedJson json;
+  json["low_O"] = vector_json(empty_O.low_O());
+  json["cell_m"] = readable(empty_O.cell_m());
+  json["size"] = {empty_O.size().x(), empty_O.size().y(), empty_O.size().z()};
+  json["cells"] = digits_of(empty_O.is_empty());
+  return json;
+}
+
+EmptySpace empty_of(const Json& json) {
+  const Json& sides = list(json, "size");
+  if (sides.size() != 3) fail("size", "three whole numbers");
+  Eigen::Vector3i size;
+  for (int axis = 0; axis < 3; ++axis) {
+    size[axis] = static_cast<int>(
+        whole(sides[static_cast<std::size_t>(axis)], "size", 1, EmptySpace::kMostCells));
+  }
+  const auto num_cells = static_cast<std::size_t>(size.prod());
+  const std::string digits = text(json, "cells");
+  if (digits.size() != (num_cells + 3) / 4 ||
+      digits.find_first_not_of("0123456789abcdef") != std::string::npos) {
+    fail("cells", std::to_string((num_cells + 3) / 4) + " hexadecimal digits");
+  }
+  std::vector<bool> cells(num_cells);
+  for (std::size_t i = 0; i < num_cells; ++i) {
+    const char digit = digits[i / 4];
+    const int value = digit <= '9' ? digit - '0' : digit - 'a' + 10;
+    cells[i] = ((value >> (i % 4)) & 1) != 0;
+  }
+  const auto cell_m = static_cast<float>(number(json, "cell_m"));
+  if (!(cell_m > 0.0F)) fail("cell_m", "a number above 0");
+  return {vector_of(at(json, "low_O"), "low_O"), cell_m, size, std::move(cells)};
+}
+
 /// Bytes that are no UTF-8, as a name of a map may have, are replaced.
 std::string dump(const OrderedJson& json) {
   return json.dump(-1, ' ', false, OrderedJson::error_handler_t::replace);
@@ -236,6 +285,7 @@ KnownObject object_of(const Json& json) {
   for (const Json& view_O : views_O) {
     object.model.views_O.push_back(vector_of(view_O, "views_O"));
   }
+  if (json.contains("empty_O")) object.model.empty_O = empty_of(json["empty_O"]);
   return object;
 }
 
@@ -265,6 +315,7 @@ std::string object_json(const KnownObject& object, std::uint32_t model_crc32) {
   add("model_crc32", Json(crc_text(model_crc32)).dump());
   add("lessons", lines(lessons));
   add("views_O", lines(views_O));
+  if (!model.empty_O.is_unknown()) add("empty_O", dump(empty_json(model.empty_O)));
   return text + "\n}\n";
 }
 

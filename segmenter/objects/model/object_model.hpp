@@ -8,6 +8,7 @@
 
 #include "lcmtypes/messages.hpp"
 #include "segmenter/core/parameters/engine_config.hpp"
+#include "segmenter/objects/model/empty_space.hpp"
 
 namespace kintsugi::segmenter {
 
@@ -19,6 +20,7 @@ struct ObjectModel {
   bool has_up = false;        ///< the map in which it was taught told which direction is up
   std::vector<CloudPoint> points_O;
   std::vector<Eigen::Vector3f> views_O;  ///< unit vectors towards the cameras that saw it
+  EmptySpace empty_O;                    ///< what was seen around it
   EngineConfig parameters;  ///< with which it comes out whole; resolution_m is the map's
   std::int32_t times_taught = 1;
 };

@@ -1,24 +1,9 @@
 #include "segmenter/objects/process/map_detection.hpp"
 
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <map>
-#include <utility>
+#include <memory>
+#include <vector>
 
 namespace kintsugi::segmenter {
-
-namespace {
-
-// As large as objects: then what is around one is in few pieces.
-constexpr float kPiece_m = 0.5F;
-
-struct Piece {
-  std::vector<CloudPoint> points_W;
-  std::vector<std::uint32_t> segment_ids;
-};
-
-}  // namespace
 
 std::vector<ObjectModel> models_of(const ObjectLibrary& library) {
   std::vector<ObjectModel> models;
@@ -29,20 +14,9 @@ std::vector<ObjectModel> models_of(const ObjectLibrary& library) {
 
 std::unique_ptr<Detector> detect_in(const ObservedMap& map, const ObjectLibrary& library) {
   auto detector = std::make_unique<Detector>(models_of(library), map.resolution_m);
-  std::map<std::array<int, 3>, Piece> pieces;
-  for (std::size_t i = 0; i < map.points_W.size(); ++i) {
-    const CloudPoint& p = map.points_W[i];
-    const auto cell = [](float x) { return static_cast<int>(std::floor(x / kPiece_m)); };
-    Piece& piece = pieces[{cell(p.x), cell(p.y), cell(p.z)}];
-    piece.points_W.push_back(p);
-    piece.segment_ids.push_back(map.segment_ids[i]);
-  }
-  std::int32_t id = 0;
-  for (auto& [cell, piece] : pieces) {
-    detector->set_piece(id++,
-                        std::make_shared<const std::vector<CloudPoint>>(std::move(piece.points_W)),
-                        std::move(piece.segment_ids), 0);
-  }
+  detector->set_piece(0, std::make_shared<const std::vector<CloudPoint>>(map.points_W),
+                      map.segment_ids, 0);
+  detector->set_views(map.views);
   detector->examine_all();
   while (detector->num_waiting() > 0) detector->examine_next();
   return detector;

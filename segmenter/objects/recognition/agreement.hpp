@@ -32,12 +32,4 @@ struct LightChange {
   }
 };
 
-/// Points without colour say nothing about it.
-inline bool same_color(const SurfacePoint& model, const SurfacePoint& seen,
-                       const LightChange& light) {
-  if (!model.has_color || !seen.has_color) return true;
-  const Eigen::Vector3f lit = (model.rgb.array() * light.log_gain.array().exp()).min(1.0F);
-  return (lab_of(lit) - seen.lab).squaredNorm() <= kSameColor * kSameColor;
-}
-
 }  // namespace kintsugi::segmenter

@@ -20,6 +20,19 @@ ViewDescriptor least_deviation() {
   return least;
 }
 
+/// Size, colours and shape count alike, however many elements they have.
+ViewDescriptor weights() {
+  ViewDescriptor weights;
+  const auto weight = [](int elements) {
+    return std::sqrt(static_cast<float>(kViewDescriptorSize) /
+                     (3.0F * static_cast<float>(elements)));
+  };
+  weights.head<4>().setConstant(weight(4));
+  weights.segment<6>(4).setConstant(weight(6));
+  weights.tail<kShapeFeatureSize>().setConstant(weight(kShapeFeatureSize));
+  return weights;
+}
+
 ViewDescriptor deviation_between_views(const std::vector<IndexedView>& views) {
   std::map<std::size_t, std::pair<ViewDescriptor, float>> sums;
   for (const IndexedView& view : views) {
@@ -48,7 +61,8 @@ struct ModelIndex::Search {
 ModelIndex::ModelIndex(const std::vector<IndexedView>& views)
     : search_(std::make_unique<Search>()) {
   if (views.empty()) return;
-  search_->inverse_deviation = deviation_between_views(views).cwiseInverse();
+  search_->inverse_deviation =
+      deviation_between_views(views).cwiseInverse().cwiseProduct(weights());
   search_->models.reserve(views.size());
   search_->data.reserve(views.size() * kViewDescriptorSize);
   for (const IndexedView& view : views) {

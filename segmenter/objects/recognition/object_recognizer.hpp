@@ -5,14 +5,13 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include "segmenter/objects/model/object_model.hpp"
-#include "segmenter/objects/recognition/map_access.hpp"
 #include "segmenter/objects/recognition/model_index.hpp"
 #include "segmenter/objects/recognition/placement.hpp"
 #include "segmenter/objects/recognition/pose_refinement.hpp"
+#include "segmenter/objects/recognition/scene.hpp"
 
 namespace kintsugi::segmenter {
 
@@ -33,19 +32,16 @@ class ObjectRecognizer {
   [[nodiscard]] float largest_radius_m() const { return largest_radius_m_; }
   [[nodiscard]] float radius_m(std::size_t model) const { return prepared(model).radius_m; }
 
-  /// The object that the candidate, some touching segments of the map, is surface of; nothing if
-  /// there is none that could be told.
-  [[nodiscard]] std::optional<Recognition> recognize(std::span<const CloudPoint> candidate_W,
-                                                     const MapAccess& map) const;
+  /// The objects that the candidate could be surface of: some look alike until more is known of
+  /// the light of the map. Each once.
+  [[nodiscard]] std::vector<Recognition> recognize(const Candidate& candidate,
+                                                   const Scene& scene) const;
 
   /// The best place of one object on the candidate, however good it is; nothing if there is none.
-  [[nodiscard]] std::optional<Placement> place(std::size_t model,
-                                               std::span<const CloudPoint> candidate_W,
-                                               const MapAccess& map) const;
+  [[nodiscard]] std::optional<Placement> place(std::size_t model, const Candidate& candidate,
+                                               const Scene& scene) const;
 
  private:
-  /// By size and colours alone, at next to no cost.
-  [[nodiscard]] bool may_be_known(std::span<const CloudPoint> candidate_W) const;
   [[nodiscard]] const PreparedModel& prepared(std::size_t model) const;
 
   std::vector<ObjectModel> models_;

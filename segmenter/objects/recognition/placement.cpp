@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <map>
 
-#include "segmenter/objects/recognition/scene_surface.hpp"
+#include "segmenter/objects/recognition/lit_model.hpp"
 
 namespace kintsugi::segmenter {
 
@@ -14,24 +14,33 @@ namespace {
 constexpr std::size_t kModelSamples = 300;
 constexpr std::size_t kSeenNormals = 100;
 
-SceneSurface scene_around(const PreparedModel& model, const MapAccess& map, const Pose& X_WO) {
+/// Where points of the map may be surface of the object.
+Eigen::AlignedBox3f box_around(const PreparedModel& model, const Pose& X_WO) {
   const Eigen::Isometry3f X = X_WO.cast<float>();
-  Eigen::AlignedBox3f box;
-  for (const SurfacePoint& point : model.surface_O) box.extend(X * point.position);
-  const float same_m = kSameDistance * model.spacing_m;
-  const Eigen::Vector3f margin = Eigen::Vector3f::Constant(same_m);
-  const MapExcerpt excerpt = map.points_in({box.min() - margin, box.max() + margin});
-  return {excerpt.points_W, excerpt.segment_ids, map.resolution_m, same_m};
+  Eigen::AlignedBox3f box_W;
+  for (const SurfacePoint& point : model.surface_O) box_W.extend(X * point.position);
+  const Eigen::Vector3f margin = Eigen::Vector3f::Constant(kSameDistance * model.spacing_m);
+  return {box_W.min() - margin, box_W.max() + margin};
 }
 
-/// Whether the point of the map is surface of the object.
-bool is_explained(const PreparedModel& model, const SurfacePoint& seen,
-                  const Eigen::Isometry3f& X_OW, const LightChange& light) {
+/// What a point of the map is to an object that is at a place.
+enum class Relation : std::uint8_t {
+  kSurface,  ///< surface of the object
+  kRepaint,  ///< where the object has surface, but of another colour
+  kOther,
+};
+
+Relation relation_of(const PreparedModel& model, const SurfacePoint& seen,
+                     const Eigen::Isometry3f& X_OW, LitModel& lit) {
   const Eigen::Vector3f p = X_OW * seen.position;
   // The field knows quickly where there is nothing.
-  if (model.field.nearest(p) < 0) return false;
-  const SurfacePoint* const q = model.points_O.nearest_facing(p, X_OW.linear() * seen.normal);
-  return q != nullptr && same_color(*q, seen, light);
+  if (model.field.nearest(p) < 0) return Relation::kOther;
+  const Eigen::Vector3f normal = X_OW.linear() * seen.normal;
+  const NearestPoint nearest =
+      model.grid_O.nearest(p, kSameDistance * model.spacing_m, facing(normal));
+  if (nearest.index < 0) return Relation::kOther;
+  return lit.same_color(static_cast<std::size_t>(nearest.index), seen) ? Relation::kSurface
+                                                                       : Relation::kRepaint;
 }
 
 /// Whether a surface with this normal was in view when the object was taught. Unknown views count
@@ -41,6 +50,14 @@ bool was_in_view(const PreparedModel& model, const Eigen::Vector3f& normal_O) {
   return views_O.empty() || std::any_of(views_O.begin(), views_O.end(), [&](const auto& view_O) {
            return view_O.dot(normal_O) >= kGrazing;
          });
+}
+
+/// Whether the object would have this surface if it were its: it was in view when the object was
+/// taught, and where it would be there was nothing.
+bool speaks_against(const PreparedModel& model, const Eigen::Vector3f& p_O,
+                    const Eigen::Vector3f& normal_O) {
+  const EmptySpace& empty_O = model.object->empty_O;
+  return empty_O.is_unknown() ? was_in_view(model, normal_O) : empty_O.contains(p_O);
 }
 
 /// Whether a face with this normal is in view where the object is: something of it is in the map
@@ -53,17 +70,112 @@ bool is_in_view(const std::vector<Eigen::Vector3f>& seen_normals_W,
 
 enum class Evidence : std::uint8_t { kSeen, kContradicted, kUnknown };
 
-Evidence evidence_at(const SurfacePoint& model_W, const SceneSurface& scene,
-                     const ObservedSpace* observed, const LightChange& light) {
-  const SurfacePoint* const seen = scene.nearest_facing(model_W.position, model_W.normal);
+/// @param model_W the point of this number of the model, where the hypothesis puts it
+Evidence evidence_at(std::size_t model_point, const SurfacePoint& model_W, float within_m,
+                     const Scene& scene, LitModel& lit) {
+  const SceneSurface& surface_W = scene.surface();
+  const SurfacePoint* const seen =
+      surface_W.nearest(model_W.position, within_m, facing(model_W.normal));
   if (seen != nullptr) {
-    return same_color(model_W, *seen, light) ? Evidence::kSeen : Evidence::kContradicted;
+    return lit.same_color(model_point, *seen) ? Evidence::kSeen : Evidence::kContradicted;
   }
   // Another face of the same edge, or of something that touches the object.
-  if (scene.nearest(model_W.position) != nullptr) return Evidence::kUnknown;
+  if (surface_W.nearest(model_W.position, within_m, any_point) != nullptr) {
+    return Evidence::kUnknown;
+  }
+  const ObservedSpace* const observed = scene.observed();
   if (observed == nullptr || observed->empty()) return Evidence::kUnknown;
   const Sights sights = observed->sights(model_W.position);
   return sights.through > sights.measured ? Evidence::kContradicted : Evidence::kUnknown;
+}
+
+/// Counts of points of the map.
+struct Counts {
+  std::int64_t explained = 0;
+  std::int64_t new_side = 0;  // not explained, but nothing is known of that side of the object
+};
+
+struct SeenSurface {
+  std::map<std::uint32_t, Counts> by_segment;
+  std::int32_t explained = 0;
+  std::vector<Eigen::Vector3f> normals_W;  // of what is explained
+};
+
+SeenSurface seen_surface(const PreparedModel& model, const Scene& scene, const Pose& X_WO,
+                         LitModel& lit) {
+  SeenSurface result;
+  const Eigen::Isometry3f X_OW = X_WO.inverse().cast<float>();
+  Counts* counts = nullptr;
+  std::uint32_t last = kNoSegment;
+  scene.surface().visit(
+      box_around(model, X_WO), [&](const SurfacePoint& seen, std::uint32_t segment) {
+        if (counts == nullptr || segment != last) counts = &result.by_segment[segment];
+        last = segment;
+        const Relation relation = relation_of(model, seen, X_OW, lit);
+        if (relation == Relation::kSurface) {
+          ++counts->explained;
+          ++result.explained;
+          result.normals_W.push_back(seen.normal);
+        } else if (relation == Relation::kOther &&
+                   !speaks_against(model, X_OW * seen.position, X_OW.linear() * seen.normal)) {
+          ++counts->new_side;
+        }
+      });
+  if (result.normals_W.size() > kSeenNormals) {
+    for (std::size_t i = 0; i < kSeenNormals; ++i) {
+      result.normals_W[i] = result.normals_W[i * result.normals_W.size() / kSeenNormals];
+    }
+    result.normals_W.resize(kSeenNormals);
+  }
+  return result;
+}
+
+/// The segments most of whose points are explained, and what is said of them.
+void add_segments(const SeenSurface& seen, const LabelledMap& map, Placement& placement) {
+  std::int64_t own = 0;
+  std::int64_t own_explained = 0;
+  for (const auto& [id, counts] : seen.by_segment) {
+    const std::int64_t all = map.num_points(id) - counts.new_side;
+    if (id == kNoSegment || counts.explained == 0 || 2 * counts.explained <= all) continue;
+    placement.segment_ids.push_back(id);
+    own += all;
+    own_explained += counts.explained;
+  }
+  if (own == 0) return;
+  placement.explained = static_cast<float>(own_explained) / static_cast<float>(own);
+  placement.own = static_cast<float>(own_explained) / static_cast<float>(placement.points);
+}
+
+/// Shares of the model's surface that are in the map, and that should be.
+void add_evidence(const PreparedModel& model, const Scene& scene,
+                  const std::vector<Eigen::Vector3f>& seen_normals_W, LitModel& lit,
+                  Placement& placement) {
+  const Eigen::Isometry3f X_WO = placement.X_WO.cast<float>();
+  const std::size_t samples = std::min(kModelSamples, model.surface_O.size());
+  float seen = 0.0F;
+  float contradicted = 0.0F;
+  for (std::size_t k = 0; k < samples; ++k) {
+    const std::size_t i = k * model.surface_O.size() / samples;
+    SurfacePoint point_W = model.surface_O[i];
+    point_W.position = X_WO * point_W.position;
+    point_W.normal = X_WO.linear() * point_W.normal;
+    switch (evidence_at(i, point_W, kSameDistance * model.spacing_m, scene, lit)) {
+      case Evidence::kSeen:
+        seen += 1.0F;
+        break;
+      case Evidence::kContradicted:
+        contradicted += 1.0F;
+        break;
+      case Evidence::kUnknown:
+        if (scene.observed() == nullptr && is_in_view(seen_normals_W, point_W.normal)) {
+          contradicted += 0.5F;
+        }
+        break;
+    }
+  }
+  if (samples == 0) return;
+  placement.seen = seen / static_cast<float>(samples);
+  placement.contradicted = contradicted / static_cast<float>(samples);
 }
 
 }  // namespace
@@ -73,73 +185,16 @@ float Placement::score() const {
   return visible > 0.0F ? seen / visible * explained * light_agreement : 0.0F;
 }
 
-Placement placement_of(const PreparedModel& model, const MapAccess& map,
+Placement placement_of(const PreparedModel& model, const Scene& scene,
                        const PoseHypothesis& hypothesis) {
   Placement placement;
   placement.X_WO = hypothesis.X_WO;
   placement.light = hypothesis.light;
-  const SceneSurface scene = scene_around(model, map, hypothesis.X_WO);
-
-  const Eigen::Isometry3f X_OW = hypothesis.X_WO.inverse().cast<float>();
-  struct Counts {
-    std::int64_t explained = 0;
-    std::int64_t new_side = 0;  // not explained, but nothing is known of that side of the object
-  };
-  std::map<std::uint32_t, Counts> by_segment;
-  std::vector<Eigen::Vector3f> seen_normals_W;
-  for (std::size_t i = 0; i < scene.surface_W().size(); ++i) {
-    const SurfacePoint& seen = scene.surface_W()[i];
-    Counts& counts = by_segment[scene.segment_ids()[i]];
-    if (is_explained(model, seen, X_OW, hypothesis.light)) {
-      ++counts.explained;
-      ++placement.points;
-      seen_normals_W.push_back(seen.normal);
-    } else if (!was_in_view(model, X_OW.linear() * seen.normal)) {
-      ++counts.new_side;
-    }
-  }
-  std::int64_t own = 0;
-  std::int64_t own_explained = 0;
-  for (const auto& [id, counts] : by_segment) {
-    const std::int64_t all = map.num_points(id) - counts.new_side;
-    if (id == kNoSegment || counts.explained == 0 || 2 * counts.explained <= all) continue;
-    placement.segment_ids.push_back(id);
-    own += all;
-    own_explained += counts.explained;
-  }
-  if (own > 0) {
-    placement.explained = static_cast<float>(own_explained) / static_cast<float>(own);
-    placement.own = static_cast<float>(own_explained) / static_cast<float>(placement.points);
-  }
-  if (seen_normals_W.size() > kSeenNormals) {
-    for (std::size_t i = 0; i < kSeenNormals; ++i) {
-      seen_normals_W[i] = seen_normals_W[i * seen_normals_W.size() / kSeenNormals];
-    }
-    seen_normals_W.resize(kSeenNormals);
-  }
-
-  const Surface samples_W = transformed(every_few(model.surface_O, kModelSamples), hypothesis.X_WO);
-  float seen = 0.0F;
-  float contradicted = 0.0F;
-  for (const SurfacePoint& point : samples_W) {
-    switch (evidence_at(point, scene, map.observed, hypothesis.light)) {
-      case Evidence::kSeen:
-        seen += 1.0F;
-        break;
-      case Evidence::kContradicted:
-        contradicted += 1.0F;
-        break;
-      case Evidence::kUnknown:
-        if (map.observed == nullptr && is_in_view(seen_normals_W, point.normal)) {
-          contradicted += 0.5F;
-        }
-        break;
-    }
-  }
-  if (!samples_W.empty()) {
-    placement.seen = seen / static_cast<float>(samples_W.size());
-    placement.contradicted = contradicted / static_cast<float>(samples_W.size());
-  }
+  LitModel lit(model.surface_O, hypothesis.light);
+  const SeenSurface seen = seen_surface(model, scene, hypothesis.X_WO, lit);
+  placement.points = seen.explained;
+  add_segments(seen, scene.map(), placement);
+  add_evidence(model, scene, seen.normals_W, lit, placement);
   return placement;
 }
 

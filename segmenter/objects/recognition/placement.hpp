@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "segmenter/objects/recognition/map_access.hpp"
 #include "segmenter/objects/recognition/pose_hypothesis.hpp"
 #include "segmenter/objects/recognition/prepared_model.hpp"
+#include "segmenter/objects/recognition/scene.hpp"
 
 namespace kintsugi::segmenter {
 
@@ -38,7 +38,7 @@ inline constexpr float kLeastScore = 0.6F;
 /// What is there of the object in the pose of the hypothesis.
 /// Where what the camera saw is not known, what is not in the map speaks against the object by
 /// half.
-Placement placement_of(const PreparedModel& model, const MapAccess& map,
+Placement placement_of(const PreparedModel& model, const Scene& scene,
                        const PoseHypothesis& hypothesis);
 
 }  // namespace kintsugi::segmenter

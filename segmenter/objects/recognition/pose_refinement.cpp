@@ -4,13 +4,18 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <vector>
+
+#include "segmenter/objects/recognition/lit_model.hpp"
 
 namespace kintsugi::segmenter {
 
 namespace {
 
+// The reach shrinks from a few spacings down to what counts as the same.
 constexpr int kIterations = 12;
+constexpr int kRoughIterations = 4;
 // Of a point-to-point residual beside one to the plane: along the surface a point has no
 // counterpart of its own, only one within half a spacing.
 constexpr double kPointWeight = 0.1;
@@ -18,7 +23,12 @@ constexpr double kPointWeight = 0.1;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 
+float reach_m(const PreparedModel& model, int iteration) {
+  return std::max(kSameDistance, 4.0F - static_cast<float>(iteration) * 0.4F) * model.spacing_m;
+}
+
 struct Match {
+  std::size_t model_point;
   const SurfacePoint* model;
   const SurfacePoint* seen;
   Eigen::Vector3f seen_O;
@@ -61,14 +71,14 @@ std::vector<Match> matches_of(const PreparedModel& model, const Surface& seen_W,
     const SurfacePoint& q = model.surface_O[static_cast<std::size_t>(nearest)];
     if ((p - q.position).squaredNorm() > reach_m * reach_m) continue;
     if (q.normal.dot(X.linear() * seen.normal) < kSameNormal) continue;
-    matches.push_back({&q, &seen, p});
+    matches.push_back({static_cast<std::size_t>(nearest), &q, &seen, p});
   }
   return matches;
 }
 
-void keep_colors(std::vector<Match>& matches, const LightChange& light) {
-  std::erase_if(matches, [&light](const Match& match) {
-    return !same_color(*match.model, *match.seen, light);
+void keep_colors(std::vector<Match>& matches, LitModel& lit) {
+  std::erase_if(matches, [&lit](const Match& match) {
+    return !lit.same_color(match.model_point, *match.seen);
   });
 }
 
@@ -95,45 +105,60 @@ Vector6d step_O(const std::vector<Match>& matches) {
   return H.ldlt().solve(b);
 }
 
-}  // namespace
+Pose motion_of(const Vector6d& step) {
+  Pose motion = Pose::Identity();
+  const double angle = step.tail<3>().norm();
+  if (angle > 0.0) {
+    motion.linear() = Eigen::AngleAxisd(angle, step.tail<3>() / angle).toRotationMatrix();
+  }
+  motion.translation() = step.head<3>();
+  return motion;
+}
 
-PoseHypothesis refined_pose(const PreparedModel& model, const Surface& seen_W, const Pose& X_WO) {
-  PoseHypothesis result;
-  Pose X_OW = X_WO.inverse();
+/// Iterations `first` to before `last`. Beyond the first matches, light is that of these.
+PoseHypothesis refined(const PreparedModel& model, const Surface& seen_W, const Pose& X_WO,
+                       int first, int last) {
   constexpr std::size_t kFewest = 6;  // what six unknowns take
-  for (int i = 0; i < kIterations; ++i) {
-    // From a few spacings down to what counts as the same.
-    const float reach_m =
-        std::max(kSameDistance, 4.0F - static_cast<float>(i) * 0.4F) * model.spacing_m;
-    std::vector<Match> matches = matches_of(model, seen_W, X_OW, reach_m);
-    result.light = light_change(matches);
-    keep_colors(matches, result.light);
+  Pose X_OW = X_WO.inverse();
+  std::vector<Match> matches = matches_of(model, seen_W, X_OW, reach_m(model, first));
+  LitModel lit(model.surface_O, light_change(matches));
+  for (int i = first; i < last; ++i) {
+    if (i > first) matches = matches_of(model, seen_W, X_OW, reach_m(model, i));
+    keep_colors(matches, lit);
     if (matches.size() < kFewest) break;
-    // Within the largest reach a pose that is right has nearly all points.
-    if (i == 3 && static_cast<float>(matches.size()) < 0.4F * static_cast<float>(seen_W.size())) {
-      break;
-    }
     const Vector6d step = step_O(matches);
-    Pose motion = Pose::Identity();
-    const double angle = step.tail<3>().norm();
-    if (angle > 0.0) {
-      motion.linear() = Eigen::AngleAxisd(angle, step.tail<3>() / angle).toRotationMatrix();
-    }
-    motion.translation() = step.head<3>();
-    X_OW = motion * X_OW;
-    const bool is_done = reach_m <= kSameDistance * model.spacing_m * 1.001F &&
-                         step.head<3>().norm() + angle * model.radius_m < 1e-4;
-    if (is_done) break;
+    X_OW = motion_of(step) * X_OW;
+    const bool is_shortest = reach_m(model, i) <= reach_m(model, kIterations);
+    const double moved_m = step.head<3>().norm() + step.tail<3>().norm() * model.radius_m;
+    if (is_shortest && moved_m < 1e-4) break;
   }
   X_OW.linear() = Eigen::Quaterniond(X_OW.linear()).normalized().toRotationMatrix();
+  PoseHypothesis result;
   result.X_WO = X_OW.inverse();
-  std::vector<Match> matches = matches_of(model, seen_W, X_OW, kSameDistance * model.spacing_m);
+  matches = matches_of(model, seen_W, X_OW, reach_m(model, last));
   result.light = light_change(matches);
-  keep_colors(matches, result.light);
+  LitModel lit_at_last(model.surface_O, result.light);
+  keep_colors(matches, lit_at_last);
   result.agreement = seen_W.empty()
                          ? 0.0F
                          : static_cast<float>(matches.size()) / static_cast<float>(seen_W.size());
   return result;
+}
+
+}  // namespace
+
+PoseHypothesis refined_pose(const PreparedModel& model, const Surface& seen_W, const Pose& X_WO) {
+  return refined(model, seen_W, X_WO, 0, kIterations);
+}
+
+PoseHypothesis roughly_refined_pose(const PreparedModel& model, const Surface& seen_W,
+                                    const Pose& X_WO) {
+  return refined(model, seen_W, X_WO, 0, kRoughIterations);
+}
+
+PoseHypothesis finely_refined_pose(const PreparedModel& model, const Surface& seen_W,
+                                   const Pose& X_WO) {
+  return refined(model, seen_W, X_WO, kRoughIterations, kIterations);
 }
 
 }  // namespace kintsugi::segmenter

@@ -11,4 +11,12 @@ namespace kintsugi::segmenter {
 /// spacings.
 PoseHypothesis refined_pose(const PreparedModel& model, const Surface& seen_W, const Pose& X_WO);
 
+/// The first steps of the same, after which poses can be compared. Agreement is within as many
+/// spacings as the next step would reach.
+PoseHypothesis roughly_refined_pose(const PreparedModel& model, const Surface& seen_W,
+                                    const Pose& X_WO);
+/// The other steps, from a pose that is roughly refined.
+PoseHypothesis finely_refined_pose(const PreparedModel& model, const Surface& seen_W,
+                                   const Pose& X_WO);
+
 }  // namespace kintsugi::segmenter

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdint>
 #include <numbers>
+#include <utility>
+#include <vector>
 
 #include "segmenter/objects/recognition/pose_refinement.hpp"
 
@@ -17,28 +19,34 @@ constexpr std::size_t kVotersSeen = 60;
 constexpr std::size_t kVotersOfModel = 150;
 constexpr std::size_t kRefined = 8;    // hypotheses that are refined
 constexpr std::size_t kSamples = 150;  // points by which hypotheses are compared
+// Below, noise of the normal is most of its direction around the vertical: sine of 60 degrees.
+constexpr float kUpright = 0.87F;
+// Of the direction around the vertical: normals of a rough or worn face vary as much.
+constexpr float kTurnTolerance_rad = 0.26F;  // 15 degrees
 // The rim of a model moves by one cell from one turn to the next.
 constexpr float kCellsInRadius = 8.0F;
 
 /// Votes for translations of a model that has a given rotation.
 class TranslationVotes {
  public:
-  TranslationVotes(const Eigen::Vector3f& low, const Eigen::Vector3f& high, float cell_m)
-      : low_(low),
+  TranslationVotes(const Eigen::AlignedBox3f& box, float cell_m)
+      : low_(box.min()),
         cell_m_(cell_m),
-        size_(((high - low) / cell_m).array().ceil().max(1.0F).matrix().cast<int>()),
+        size_((box.sizes() / cell_m).array().ceil().max(1.0F).matrix().cast<int>()),
         votes_(static_cast<std::size_t>(size_.x()) * size_.y() * size_.z(), 0) {}
 
   void clear() { std::fill(votes_.begin(), votes_.end(), 0); }
 
   void add(const Eigen::Vector3f& t) {
-    const Eigen::Vector3i cell = ((t - low_) / cell_m_).cast<int>();
-    if ((cell.array() < 0).any() || (cell.array() >= size_.array()).any()) return;
-    ++votes_[(static_cast<std::size_t>(cell.z()) * size_.y() + cell.y()) * size_.x() + cell.x()];
+    const Eigen::Vector3f cell = (t - low_) / cell_m_;
+    if (cell.minCoeff() < 0.0F) return;
+    const Eigen::Vector3i at = cell.cast<int>();
+    if ((at.array() >= size_.array()).any()) return;
+    ++votes_[(static_cast<std::size_t>(at.z()) * size_.y() + at.y()) * size_.x() + at.x()];
   }
 
   /// The cell with most votes, and how many it has.
-  std::pair<Eigen::Vector3f, int> best() const {
+  [[nodiscard]] std::pair<Eigen::Vector3f, int> best() const {
     const auto most = std::max_element(votes_.begin(), votes_.end());
     auto rest = static_cast<int>(most - votes_.begin());
     Eigen::Vector3i cell;
@@ -65,29 +73,76 @@ struct Vote {
 /// vertical can bring together.
 struct Pair {
   Eigen::Vector3f position_O;
-  Eigen::Vector3f normal_O;
   Eigen::Vector3f position_U;  ///< U: W turned so that its z is up
-  Eigen::Vector3f normal_U;
 };
 
-std::vector<Pair> pairs_of(const Surface& voters_O, const Surface& voters_U) {
-  std::vector<Pair> pairs;
-  pairs.reserve(voters_O.size() * voters_U.size() / 4);
+bool may_be_same(const SurfacePoint& o, const SurfacePoint& u) {
+  const float horizontal =
+      std::hypot(o.normal.x(), o.normal.y()) * std::hypot(u.normal.x(), u.normal.y());
+  if (o.normal.z() * u.normal.z() + horizontal < kSameNormal) return false;
+  // Twice as far as colours of one thing may be: what the light changes is not known yet.
+  return !o.has_color || !u.has_color ||
+         (o.lab - u.lab).squaredNorm() <= 4 * kSameColor * kSameColor;
+}
+
+/// The pairs that speak for each turn: normals that are not upright tell it.
+std::vector<std::vector<Pair>> pairs_by_turn(const Surface& voters_O, const Surface& voters_U,
+                                             int turns) {
+  std::vector<std::vector<Pair>> by_turn(static_cast<std::size_t>(turns));
+  const float turn_rad = 2 * std::numbers::pi_v<float> / static_cast<float>(turns);
+  const auto azimuth = [](const SurfacePoint& point) {
+    return std::atan2(point.normal.y(), point.normal.x());
+  };
+  const auto is_upright = [](const SurfacePoint& point) {
+    return std::abs(point.normal.z()) > kUpright;
+  };
+  std::vector<float> azimuths_U;
+  azimuths_U.reserve(voters_U.size());
+  for (const SurfacePoint& u : voters_U) azimuths_U.push_back(azimuth(u));
+  const int around = static_cast<int>(std::ceil(kTurnTolerance_rad / turn_rad));
   for (const SurfacePoint& o : voters_O) {
-    const float horizontal_O = std::hypot(o.normal.x(), o.normal.y());
-    for (const SurfacePoint& u : voters_U) {
-      const float largest_cosine =
-          o.normal.z() * u.normal.z() + horizontal_O * std::hypot(u.normal.x(), u.normal.y());
-      if (largest_cosine < kSameNormal) continue;
-      // Twice as far as colours of one thing may be: what the light changes is not known yet.
-      if (o.has_color && u.has_color &&
-          (o.lab - u.lab).squaredNorm() > 4 * kSameColor * kSameColor) {
+    const float azimuth_O = azimuth(o);
+    for (std::size_t i = 0; i < voters_U.size(); ++i) {
+      const SurfacePoint& u = voters_U[i];
+      if (!may_be_same(o, u)) continue;
+      const Pair pair{o.position, u.position};
+      if (is_upright(o) || is_upright(u)) {
+        for (std::vector<Pair>& pairs : by_turn) pairs.push_back(pair);
         continue;
       }
-      pairs.push_back({o.position, o.normal, u.position, u.normal});
+      const int middle =
+          static_cast<int>(std::lround((azimuths_U[i] - azimuth_O) / turn_rad)) + 2 * turns;
+      for (int turn = middle - around; turn <= middle + around; ++turn) {
+        by_turn[static_cast<std::size_t>(turn % turns)].push_back(pair);
+      }
     }
   }
-  return pairs;
+  return by_turn;
+}
+
+/// Where O's origin may be in U if the object has half of the points or more.
+Eigen::AlignedBox3f origins_of(const Surface& surface_O, const Surface& voters_U, float cell_m) {
+  Eigen::Vector3f low_U;
+  Eigen::Vector3f high_U;
+  std::vector<float> values(voters_U.size());
+  for (int axis = 0; axis < 3; ++axis) {
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = voters_U[i].position[axis];
+    std::sort(values.begin(), values.end());
+    low_U[axis] = values[values.size() / 4];
+    high_U[axis] = values[values.size() - 1 - values.size() / 4];
+  }
+  float radius_m = 0.0F;  // about the vertical through O's origin
+  float bottom_m = 0.0F;
+  float top_m = 0.0F;
+  for (const SurfacePoint& point : surface_O) {
+    radius_m = std::max(radius_m, point.position.head<2>().norm());
+    bottom_m = std::min(bottom_m, point.position.z());
+    top_m = std::max(top_m, point.position.z());
+  }
+  const Eigen::Vector3f slack = Eigen::Vector3f::Constant(2 * cell_m);
+  const Eigen::Vector3f first = high_U - Eigen::Vector3f(radius_m, radius_m, top_m) - slack;
+  const Eigen::Vector3f last = low_U + Eigen::Vector3f(radius_m, radius_m, -bottom_m) + slack;
+  return {first.cwiseMin(last), first.cwiseMax(last)};
 }
 
 std::vector<Vote> votes_for_turns(const PreparedModel& model, const Surface& seen_W,
@@ -96,27 +151,21 @@ std::vector<Vote> votes_for_turns(const PreparedModel& model, const Surface& see
   X_UW.linear() =
       Eigen::Quaterniond::FromTwoVectors(up_W, Eigen::Vector3d::UnitZ()).toRotationMatrix();
   const Surface voters_U = transformed(every_few(seen_W, kVotersSeen), X_UW);
-  const std::vector<Pair> pairs = pairs_of(every_few(model.surface_O, kVotersOfModel), voters_U);
+  const Surface voters_O = every_few(model.surface_O, kVotersOfModel);
   const float cell_m = std::max(2 * model.spacing_m, model.radius_m / kCellsInRadius);
   const int turns = std::max(
       8, static_cast<int>(std::ceil(2 * std::numbers::pi_v<float> * model.radius_m / cell_m)));
-  Eigen::AlignedBox3f box;
-  for (const SurfacePoint& point : voters_U) box.extend(point.position);
-  // O's origin is inside the object, so at most its diameter away from each of its points.
-  const Eigen::Vector3f margin = Eigen::Vector3f::Constant(2 * model.radius_m);
-  TranslationVotes accumulator(box.min() - margin, box.max() + margin, cell_m);
+  TranslationVotes accumulator(origins_of(voters_O, voters_U, cell_m), cell_m);
   std::vector<Vote> votes;
   votes.reserve(static_cast<std::size_t>(turns));
-  for (int turn = 0; turn < turns; ++turn) {
+  int turn = 0;
+  for (const std::vector<Pair>& pairs : pairs_by_turn(voters_O, voters_U, turns)) {
     const Eigen::Matrix3d R_UO =
-        Eigen::AngleAxisd(2 * std::numbers::pi * turn / turns, Eigen::Vector3d::UnitZ())
+        Eigen::AngleAxisd(2 * std::numbers::pi * turn++ / turns, Eigen::Vector3d::UnitZ())
             .toRotationMatrix();
     const Eigen::Matrix3f R = R_UO.cast<float>();
     accumulator.clear();
-    for (const Pair& pair : pairs) {
-      if ((R * pair.normal_O).dot(pair.normal_U) < kSameNormal) continue;
-      accumulator.add(pair.position_U - R * pair.position_O);
-    }
+    for (const Pair& pair : pairs) accumulator.add(pair.position_U - R * pair.position_O);
     const auto [t_U, count] = accumulator.best();
     if (count == 0) continue;
     Pose X_UO = Pose::Identity();
@@ -153,26 +202,22 @@ std::vector<PoseHypothesis> best_of(std::vector<PoseHypothesis> hypotheses,
   return best;
 }
 
-std::vector<PoseHypothesis> refined(const std::vector<Pose>& poses, const PreparedModel& model,
-                                    const Surface& seen_W, std::size_t count) {
-  const Surface samples_W = every_few(seen_W, kSamples);
-  std::vector<PoseHypothesis> hypotheses;
-  hypotheses.reserve(poses.size());
-  for (const Pose& X_WO : poses) hypotheses.push_back(refined_pose(model, samples_W, X_WO));
-  return best_of(std::move(hypotheses), model, count);
-}
-
 }  // namespace
 
 std::vector<PoseHypothesis> upright_poses(const PreparedModel& model, const Surface& seen_W,
                                           const Eigen::Vector3d& up_W, std::size_t count) {
   if (model.surface_O.empty() || seen_W.empty()) return {};
   const std::vector<Vote> votes = votes_for_turns(model, seen_W, up_W);
-  std::vector<Pose> poses;
-  for (std::size_t i = 0; i < std::min(kRefined, votes.size()); ++i) {
-    poses.push_back(votes[i].X_WO);
+  const Surface samples_W = every_few(seen_W, kSamples);
+  const std::size_t tried = std::min(kRefined, votes.size());
+  std::vector<PoseHypothesis> rough;
+  rough.reserve(tried);
+  for (std::size_t i = 0; i < tried; ++i) {
+    rough.push_back(roughly_refined_pose(model, samples_W, votes[i].X_WO));
   }
-  return refined(poses, model, seen_W, count);
+  std::vector<PoseHypothesis> poses = best_of(std::move(rough), model, count);
+  for (PoseHypothesis& pose : poses) pose = finely_refined_pose(model, samples_W, pose.X_WO);
+  return best_of(std::move(poses), model, count);
 }
 
 }  // namespace kintsugi::segmenter

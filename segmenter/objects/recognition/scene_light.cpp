@@ -7,13 +7,19 @@ namespace kintsugi::segmenter {
 
 namespace {
 
-constexpr float kKnownDeviation = 0.3F;  // of logarithms: 30 %
-constexpr std::size_t kFewest = 3;       // two wrong ones may agree by chance
+// Of logarithms. Brightness: shadows and exposure. Tint: light from coloured walls, and the
+// camera's white balance.
+constexpr float kBrightnessDeviation = 0.3F;
+constexpr float kTintDeviation = 0.1F;
+constexpr std::size_t kFewest = 3;  // two wrong ones may agree by chance
 
 }  // namespace
 
 float SceneLight::agreement(const LightChange& light) const {
-  return std::exp(-(light.log_gain - log_gain).squaredNorm() / (2 * deviation * deviation));
+  const Eigen::Vector3f difference = light.log_gain - log_gain;
+  const float brightness = difference.mean() / brightness_deviation;
+  const float tint = (difference.array() - difference.mean()).matrix().norm() / tint_deviation;
+  return std::exp(-(brightness * brightness + tint * tint) / 2);
 }
 
 SceneLight light_of_scene(std::span<const Placement* const> placements) {
@@ -24,7 +30,7 @@ SceneLight light_of_scene(std::span<const Placement* const> placements) {
     float weight = 0.0F;
     std::size_t count = 0;
     for (const Placement* other : placements) {
-      if ((other->light.log_gain - middle->light.log_gain).norm() > kKnownDeviation) continue;
+      if ((other->light.log_gain - middle->light.log_gain).norm() > kBrightnessDeviation) continue;
       sum += other->score() * other->light.log_gain;
       weight += other->score();
       ++count;
@@ -32,7 +38,9 @@ SceneLight light_of_scene(std::span<const Placement* const> placements) {
     if (count < kFewest || weight <= most) continue;
     most = weight;
     scene.log_gain = sum / weight;
-    scene.deviation = kKnownDeviation;
+    scene.is_known = true;
+    scene.brightness_deviation = kBrightnessDeviation;
+    scene.tint_deviation = kTintDeviation;
   }
   return scene;
 }

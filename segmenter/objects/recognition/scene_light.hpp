@@ -9,12 +9,13 @@
 namespace kintsugi::segmenter {
 
 /// What the light of a map changes of all colours beside those of the library, and how sure that
-/// is.
+/// is. Things stand brighter or darker, in the shadow or near a lamp, but the light of a place has
+/// one colour.
 struct SceneLight {
   Eigen::Vector3f log_gain = Eigen::Vector3f::Zero();  ///< as LightChange::log_gain
-  /// Standard deviation of that of a single thing: things stand brighter or darker, and cameras
-  /// adjust themselves.
-  float deviation = 0.4F;
+  bool is_known = false;                               ///< three placements or more agree
+  float brightness_deviation = 0.4F;  ///< standard deviation of that of a single thing
+  float tint_deviation = 0.3F;        ///< the same between channels
 
   /// From 0 to 1: how well the light that a placement assumes agrees.
   [[nodiscard]] float agreement(const LightChange& light) const;

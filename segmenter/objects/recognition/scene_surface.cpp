@@ -1,48 +1,77 @@
 #include "segmenter/objects/recognition/scene_surface.hpp"
 
-#include <cmath>
+#include <algorithm>
 #include <cstddef>
+#include <tuple>
 #include <utility>
+
+#include "segmenter/objects/recognition/agreement.hpp"
 
 namespace kintsugi::segmenter {
 
-SceneSurface::SceneSurface(std::span<const CloudPoint> points_W,
-                           std::span<const std::uint32_t> segment_ids, float spacing_m,
-                           float within_m)
-    : surface_W_(unthinned(points_W, spacing_m)),
-      segment_ids_(segment_ids.begin(), segment_ids.end()),
-      cell_m_(within_m) {
-  build_cells();
+void SceneSurface::set_gain(const Eigen::Array3f& gain) {
+  gain_ = gain;
+  blocks_.clear();
 }
 
-SceneSurface::SceneSurface(Surface surface_W, float within_m)
-    : surface_W_(std::move(surface_W)),
-      segment_ids_(surface_W_.size(), kNoSegment),
-      cell_m_(within_m) {
-  build_cells();
-}
-
-void SceneSurface::build_cells() {
-  if (surface_W_.empty()) return;
-  Eigen::AlignedBox3f box;
-  for (const SurfacePoint& point : surface_W_) box.extend(point.position);
-  low_W_ = box.min();
-  size_ = (box.sizes() / cell_m_).array().floor().cast<int>() + 1;
-  first_.assign(static_cast<std::size_t>(size_.x()) * size_.y() * size_.z(), -1);
-  next_.resize(surface_W_.size());
-  for (std::size_t i = 0; i < surface_W_.size(); ++i) {
-    std::int32_t& first = first_[index_of(cell_of(surface_W_[i].position))];
-    next_[i] = first;
-    first = static_cast<std::int32_t>(i);
+void SceneSurface::forget(const std::set<BlockKey>& blocks) {
+  // The colours of a point are means that reach into the blocks around its own.
+  for (const BlockKey& key : blocks) {
+    for (std::int32_t z = key[2] - 1; z <= key[2] + 1; ++z) {
+      for (std::int32_t y = key[1] - 1; y <= key[1] + 1; ++y) {
+        for (std::int32_t x = key[0] - 1; x <= key[0] + 1; ++x) {
+          blocks_.erase({x, y, z});
+        }
+      }
+    }
   }
 }
 
-Eigen::Vector3i SceneSurface::cell_of(const Eigen::Vector3f& p_W) const {
-  return ((p_W - low_W_) / cell_m_).array().floor().cast<int>();
+const SceneSurface::Block* SceneSurface::block(const BlockKey& key) const {
+  const auto at = blocks_.find(key);
+  if (at != blocks_.end()) return &at->second;
+  if (map_.points_in(key).empty()) return nullptr;
+  return &blocks_.emplace(key, made(key)).first->second;
 }
 
-std::size_t SceneSurface::index_of(const Eigen::Vector3i& cell) const {
-  return (static_cast<std::size_t>(cell.z()) * size_.y() + cell.y()) * size_.x() + cell.x();
+SceneSurface::Block SceneSurface::made(const BlockKey& key) const {
+  const Eigen::Vector3f low_W =
+      Eigen::Vector3f(static_cast<float>(key[0]), static_cast<float>(key[1]),
+                      static_cast<float>(key[2])) *
+      map_.block_m();
+  const Eigen::Vector3f margin = Eigen::Vector3f::Constant(color_radius_m(resolution_m_));
+  const Eigen::Vector3f high_W = low_W.array() + map_.block_m();
+  const Eigen::AlignedBox3f box_W(low_W - margin, high_W + margin);
+  std::vector<LabelledMap::PointRef> refs;
+  std::vector<CloudPoint> points_W;
+  const auto add = [&](const BlockKey& from) {
+    for (const LabelledMap::PointRef& ref : map_.points_in(from)) {
+      const CloudPoint& point = map_.point_W(ref);
+      if (from == key) {
+        refs.push_back(ref);
+      } else if (box_W.contains(Eigen::Vector3f(point.x, point.y, point.z))) {
+        points_W.push_back(point);
+      }
+    }
+  };
+  add(key);
+  // The means are of floats: their order must not depend on that in which the pieces came.
+  std::sort(refs.begin(), refs.end(), [](const auto& a, const auto& b) {
+    return std::tie(a.piece, a.index) < std::tie(b.piece, b.index);
+  });
+  points_W.reserve(refs.size());
+  for (const LabelledMap::PointRef& ref : refs) points_W.push_back(map_.point_W(ref));
+  for (std::int32_t z = key[2] - 1; z <= key[2] + 1; ++z) {
+    for (std::int32_t y = key[1] - 1; y <= key[1] + 1; ++y) {
+      for (std::int32_t x = key[0] - 1; x <= key[0] + 1; ++x) {
+        if (const BlockKey other{x, y, z}; other != key) add(other);
+      }
+    }
+  }
+  Surface surface_W = unthinned(points_W, resolution_m_);
+  surface_W.resize(refs.size());
+  relight(surface_W, gain_);
+  return {std::move(refs), SurfaceGrid(std::move(surface_W), kSameDistance * resolution_m_)};
 }
 
 }  // namespace kintsugi::segmenter

@@ -1,83 +1,93 @@
 #pragma once
-// A part of a map in which an object may be.
+// The surface of a map, found by place.
 
+#include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <cstddef>
 #include <cstdint>
-#include <span>
+#include <set>
+#include <unordered_map>
 #include <vector>
 
-#include "lcmtypes/messages.hpp"
-#include "segmenter/objects/recognition/surface.hpp"
+#include "segmenter/objects/recognition/labelled_map.hpp"
+#include "segmenter/objects/recognition/surface_grid.hpp"
 
 namespace kintsugi::segmenter {
 
-/// Points of the map with their segments, found by place.
+/// Blocks of the map are made into surface when they are first looked at: most of a map is floor
+/// and walls, where nobody looks for objects. Not to be used by two threads at once.
 class SceneSurface {
  public:
-  /// @param segment_ids of each point
-  /// @param spacing_m of the points
-  /// @param within_m the distance of nearest(), > 0
-  SceneSurface(std::span<const CloudPoint> points_W, std::span<const std::uint32_t> segment_ids,
-               float spacing_m, float within_m);
+  /// `map` must outlive this. @param resolution_m voxel size of the map, > 0
+  SceneSurface(const LabelledMap& map, float resolution_m)
+      : map_(map), resolution_m_(resolution_m) {}
 
-  /// Of a surface of which nothing is known of segments.
-  SceneSurface(Surface surface_W, float within_m);
+  /// All colours are multiplied by this (red, green, blue).
+  void set_gain(const Eigen::Array3f& gain);
+  /// The points of these blocks have changed.
+  void forget(const std::set<BlockKey>& blocks);
 
-  [[nodiscard]] const Surface& surface_W() const { return surface_W_; }
-  [[nodiscard]] const std::vector<std::uint32_t>& segment_ids() const { return segment_ids_; }
+  /// Calls visit(const SurfacePoint&, segment id) for each point in the box.
+  template <class Visit>
+  void visit(const Eigen::AlignedBox3f& box_W, const Visit& visit) const;
 
-  /// The nearest point that is at most `within_m` from `p_W`; nullptr: there is none.
-  [[nodiscard]] const SurfacePoint* nearest(const Eigen::Vector3f& p_W) const {
-    return nearest(p_W, [](const SurfacePoint&) { return true; });
-  }
-  /// The same of those that face nearly the way of `normal_W` (kSameNormal): at an edge the nearest
-  /// may be on the other face. nullptr: there is none.
-  [[nodiscard]] const SurfacePoint* nearest_facing(const Eigen::Vector3f& p_W,
-                                                   const Eigen::Vector3f& normal_W) const {
-    return nearest(p_W, [&normal_W](const SurfacePoint& point) {
-      return point.normal.dot(normal_W) >= kSameNormal;
-    });
-  }
+  /// The nearest point that is at most `within_m` from `p_W` and wanted; nullptr: there is none.
+  template <class IsWanted>
+  [[nodiscard]] const SurfacePoint* nearest(const Eigen::Vector3f& p_W, float within_m,
+                                            const IsWanted& is_wanted) const;
 
  private:
-  template <class IsWanted>
-  const SurfacePoint* nearest(const Eigen::Vector3f& p_W, const IsWanted& is_wanted) const;
-  void build_cells();
-  [[nodiscard]] Eigen::Vector3i cell_of(const Eigen::Vector3f& p_W) const;
-  [[nodiscard]] std::size_t index_of(const Eigen::Vector3i& cell) const;
+  struct Block {
+    std::vector<LabelledMap::PointRef> refs;  // of each point of the surface
+    SurfaceGrid grid_W;
+  };
 
-  Surface surface_W_;
-  std::vector<std::uint32_t> segment_ids_;
-  float cell_m_;
-  Eigen::Vector3f low_W_ = Eigen::Vector3f::Zero();
-  Eigen::Vector3i size_ = Eigen::Vector3i::Zero();
-  std::vector<std::int32_t> first_;  // of the points in each cell; -1: none
-  std::vector<std::int32_t> next_;   // by point
+  [[nodiscard]] const Block* block(const BlockKey& key) const;
+  [[nodiscard]] Block made(const BlockKey& key) const;
+  template <class Visit>
+  void visit_blocks(const Eigen::AlignedBox3f& box_W, const Visit& visit) const;
+
+  const LabelledMap& map_;
+  float resolution_m_;
+  Eigen::Array3f gain_ = Eigen::Array3f::Ones();
+  mutable std::unordered_map<BlockKey, Block, BlockKeyHash> blocks_;
 };
 
-template <class IsWanted>
-const SurfacePoint* SceneSurface::nearest(const Eigen::Vector3f& p_W,
-                                          const IsWanted& is_wanted) const {
-  if (surface_W_.empty()) return nullptr;
-  const Eigen::Vector3i cell = cell_of(p_W);
-  const Eigen::Vector3i low = (cell.array() - 1).max(0);
-  const Eigen::Vector3i high = (cell.array() + 1).min(size_.array() - 1);
-  const SurfacePoint* nearest = nullptr;
-  float least = cell_m_ * cell_m_;
-  for (int z = low.z(); z <= high.z(); ++z) {
-    for (int y = low.y(); y <= high.y(); ++y) {
-      for (int x = low.x(); x <= high.x(); ++x) {
-        for (std::int32_t i = first_[index_of({x, y, z})]; i >= 0;
-             i = next_[static_cast<std::size_t>(i)]) {
-          const SurfacePoint& point = surface_W_[static_cast<std::size_t>(i)];
-          const float squared = (point.position - p_W).squaredNorm();
-          if (squared > least || !is_wanted(point)) continue;
-          least = squared;
-          nearest = &point;
-        }
+template <class Visit>
+void SceneSurface::visit_blocks(const Eigen::AlignedBox3f& box_W, const Visit& visit) const {
+  const BlockKey low = map_.block_of(box_W.min());
+  const BlockKey high = map_.block_of(box_W.max());
+  for (std::int32_t z = low[2]; z <= high[2]; ++z) {
+    for (std::int32_t y = low[1]; y <= high[1]; ++y) {
+      for (std::int32_t x = low[0]; x <= high[0]; ++x) {
+        if (const Block* const found = block({x, y, z})) visit(*found);
       }
     }
   }
+}
+
+template <class Visit>
+void SceneSurface::visit(const Eigen::AlignedBox3f& box_W, const Visit& visit) const {
+  visit_blocks(box_W, [&](const Block& block) {
+    const Surface& surface_W = block.grid_W.surface();
+    for (std::size_t i = 0; i < surface_W.size(); ++i) {
+      if (box_W.contains(surface_W[i].position)) visit(surface_W[i], map_.label(block.refs[i]));
+    }
+  });
+}
+
+template <class IsWanted>
+const SurfacePoint* SceneSurface::nearest(const Eigen::Vector3f& p_W, float within_m,
+                                          const IsWanted& is_wanted) const {
+  const Eigen::Vector3f reach = Eigen::Vector3f::Constant(within_m);
+  const SurfacePoint* nearest = nullptr;
+  float least_m2 = 0.0F;
+  visit_blocks({p_W - reach, p_W + reach}, [&](const Block& block) {
+    const NearestPoint found = block.grid_W.nearest(p_W, within_m, is_wanted);
+    if (found.index < 0 || (nearest != nullptr && found.squared_m2 >= least_m2)) return;
+    nearest = &block.grid_W.surface()[static_cast<std::size_t>(found.index)];
+    least_m2 = found.squared_m2;
+  });
   return nearest;
 }
 

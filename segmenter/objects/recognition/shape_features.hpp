@@ -9,6 +9,7 @@ namespace kintsugi::segmenter {
 
 inline constexpr int kShapeFeatureSize = 33;
 
+using ShapeFeature = Eigen::Matrix<float, kShapeFeatureSize, 1>;
 /// A column for each point, in order.
 using ShapeFeatures = Eigen::Matrix<float, kShapeFeatureSize, Eigen::Dynamic>;
 

@@ -11,32 +11,39 @@ namespace {
 
 using Cube = std::array<std::int32_t, 3>;
 
-// Patterns are averaged over about twelve points.
-constexpr float kColorRadius = 2.0F;  // spacings
+Cube cube_of(const Eigen::Vector3f& p, float side_m) {
+  const Eigen::Vector3i cube = (p / side_m).array().floor().cast<int>();
+  return {cube.x(), cube.y(), cube.z()};
+}
 
-struct PlacedPoint {
-  Cube cube;
-  const CloudPoint* point;
-};
+Eigen::Vector3f position_of(const CloudPoint& p) { return {p.x, p.y, p.z}; }
+Eigen::Vector3f position_of(const SurfacePoint& p) { return p.position; }
+
+bool has_normal(const CloudPoint& p) { return p.nx != 0.0F || p.ny != 0.0F || p.nz != 0.0F; }
+bool has_normal(const SurfacePoint& p) { return !p.normal.isZero(0.0F); }
 
 /// Black means that a point has no colour, see segmenter/README.md.
 bool has_color(const CloudPoint& p) { return p.red != 0 || p.green != 0 || p.blue != 0; }
 
-std::vector<PlacedPoint> placed(std::span<const CloudPoint> points, float spacing_m) {
-  std::vector<PlacedPoint> placed;
+template <class Point>
+struct PlacedPoint {
+  Cube cube;
+  const Point* point;
+};
+
+template <class Point>
+std::vector<PlacedPoint<Point>> placed(std::span<const Point> points, float spacing_m) {
+  std::vector<PlacedPoint<Point>> placed;
   placed.reserve(points.size());
-  const auto cell = [spacing_m](float x) {
-    return static_cast<std::int32_t>(std::floor(x / spacing_m));
-  };
-  for (const CloudPoint& p : points) {
-    if (p.nx == 0.0F && p.ny == 0.0F && p.nz == 0.0F) continue;
-    placed.push_back({{cell(p.x), cell(p.y), cell(p.z)}, &p});
+  for (const Point& p : points) {
+    if (has_normal(p)) placed.push_back({cube_of(position_of(p), spacing_m), &p});
   }
   // The sums below are of floats: their order must not depend on that of the points.
-  std::sort(placed.begin(), placed.end(), [](const PlacedPoint& a, const PlacedPoint& b) {
+  std::sort(placed.begin(), placed.end(), [](const auto& a, const auto& b) {
     if (a.cube != b.cube) return a.cube < b.cube;
-    return std::array{a.point->x, a.point->y, a.point->z} <
-           std::array{b.point->x, b.point->y, b.point->z};
+    const Eigen::Vector3f p = position_of(*a.point);
+    const Eigen::Vector3f q = position_of(*b.point);
+    return std::array{p.x(), p.y(), p.z()} < std::array{q.x(), q.y(), q.z()};
   });
   return placed;
 }
@@ -67,19 +74,27 @@ struct Sums {
   float colors = 0.0F;
 
   void add(const CloudPoint& p) {
-    position += Eigen::Vector3f(p.x, p.y, p.z);
+    position += position_of(p);
     normal += Eigen::Vector3f(p.nx, p.ny, p.nz);
     count += 1.0F;
     if (!has_color(p)) return;
     rgb += linear_rgb_of(p);
     colors += 1.0F;
   }
+  void add(const SurfacePoint& p) {
+    position += p.position;
+    normal += p.normal;
+    count += 1.0F;
+    if (!p.has_color) return;
+    rgb += p.rgb;
+    colors += 1.0F;
+  }
 };
 
-}  // namespace
-
-Surface thinned(std::span<const CloudPoint> points, float spacing_m) {
-  const std::vector<PlacedPoint> by_cube = placed(points, spacing_m);
+/// One point for each cube, without CIELAB.
+template <class Point>
+Surface means_in_cubes(std::span<const Point> points, float spacing_m) {
+  const std::vector<PlacedPoint<Point>> by_cube = placed(points, spacing_m);
   Surface surface;
   for (std::size_t first = 0; first < by_cube.size();) {
     Sums sums;
@@ -98,8 +113,79 @@ Surface thinned(std::span<const CloudPoint> points, float spacing_m) {
     point.has_color = sums.colors > 0.0F;
     if (point.has_color) point.rgb = sums.rgb / sums.colors;
   }
-  smooth_colors(surface, kColorRadius * spacing_m);
   return surface;
+}
+
+/// The points in each cube, and those in the 27 cubes around it.
+class Neighbourhoods {
+ public:
+  Neighbourhoods(const Surface& surface, float cube_m) {
+    cells_.reserve(surface.size());
+    for (std::size_t i = 0; i < surface.size(); ++i) {
+      if (surface[i].has_color) cells_.push_back({cube_of(surface[i].position, cube_m), i});
+    }
+    std::sort(cells_.begin(), cells_.end(), [](const Cell& a, const Cell& b) {
+      return a.cube != b.cube ? a.cube < b.cube : a.point < b.point;
+    });
+  }
+
+  /// Calls visit(points in the cube, points in and around it) for each cube with points.
+  template <class Visit>
+  void visit(const Visit& visit) const {
+    std::vector<std::size_t> inside;
+    std::vector<std::size_t> around;
+    for (std::size_t first = 0; first < cells_.size();) {
+      const Cube& cube = cells_[first].cube;
+      inside.clear();
+      std::size_t end = first;
+      for (; end < cells_.size() && cells_[end].cube == cube; ++end) {
+        inside.push_back(cells_[end].point);
+      }
+      gather_around(cube, around);
+      visit(inside, around);
+      first = end;
+    }
+  }
+
+ private:
+  struct Cell {
+    Cube cube;
+    std::size_t point;
+  };
+
+  void gather_around(const Cube& cube, std::vector<std::size_t>& around) const {
+    around.clear();
+    const auto before = [](const Cell& cell, const Cube& other) { return cell.cube < other; };
+    for (int x = -1; x <= 1; ++x) {
+      for (int y = -1; y <= 1; ++y) {
+        // Three cubes along z follow each other.
+        const Cube first{cube[0] + x, cube[1] + y, cube[2] - 1};
+        const Cube last{cube[0] + x, cube[1] + y, cube[2] + 1};
+        for (auto at = std::lower_bound(cells_.begin(), cells_.end(), first, before);
+             at != cells_.end() && at->cube <= last; ++at) {
+          around.push_back(at->point);
+        }
+      }
+    }
+  }
+
+  std::vector<Cell> cells_;
+};
+
+}  // namespace
+
+Surface thinned(std::span<const CloudPoint> points, float spacing_m) {
+  Surface surface = means_in_cubes(points, spacing_m);
+  smooth_colors(surface, color_radius_m(spacing_m));
+  return surface;
+}
+
+Surface thinned(const Surface& surface, float spacing_m) {
+  Surface thinned = means_in_cubes(std::span<const SurfacePoint>(surface), spacing_m);
+  for (SurfacePoint& point : thinned) {
+    if (point.has_color) point.lab = lab_of(point.rgb);
+  }
+  return thinned;
 }
 
 Surface unthinned(std::span<const CloudPoint> points, float spacing_m) {
@@ -107,61 +193,35 @@ Surface unthinned(std::span<const CloudPoint> points, float spacing_m) {
   surface.reserve(points.size());
   for (const CloudPoint& p : points) {
     SurfacePoint& point = surface.emplace_back();
-    point.position = {p.x, p.y, p.z};
+    point.position = position_of(p);
     point.normal = {p.nx, p.ny, p.nz};
     point.has_color = has_color(p);
     if (point.has_color) point.rgb = linear_rgb_of(p);
   }
-  smooth_colors(surface, kColorRadius * spacing_m);
+  smooth_colors(surface, color_radius_m(spacing_m));
   return surface;
 }
 
 void smooth_colors(Surface& surface, float radius_m) {
-  if (surface.empty()) return;
-  struct Cell {
-    Cube cube;
-    std::size_t point;
-  };
-  const auto cube_of = [radius_m](const Eigen::Vector3f& p) {
-    const Eigen::Vector3i cube = (p / radius_m).array().floor().cast<int>();
-    return Cube{cube.x(), cube.y(), cube.z()};
-  };
-  std::vector<Cell> cells;
-  cells.reserve(surface.size());
-  for (std::size_t i = 0; i < surface.size(); ++i) {
-    if (surface[i].has_color) cells.push_back({cube_of(surface[i].position), i});
-  }
-  std::sort(cells.begin(), cells.end(), [](const Cell& a, const Cell& b) {
-    return a.cube != b.cube ? a.cube < b.cube : a.point < b.point;
-  });
-  const auto before = [](const Cell& cell, const Cube& cube) { return cell.cube < cube; };
   std::vector<Eigen::Vector3f> means(surface.size());
-  for (const Cell& cell : cells) {
-    const Eigen::Vector3f& p = surface[cell.point].position;
-    const Eigen::Vector3f& n = surface[cell.point].normal;
-    Eigen::Vector3f sum = Eigen::Vector3f::Zero();
-    float count = 0.0F;
-    for (int x = -1; x <= 1; ++x) {
-      for (int y = -1; y <= 1; ++y) {
-        // Three cubes along z follow each other.
-        const Cube first{cell.cube[0] + x, cell.cube[1] + y, cell.cube[2] - 1};
-        for (auto at = std::lower_bound(cells.begin(), cells.end(), first, before);
-             at != cells.end() && at->cube[0] == first[0] && at->cube[1] == first[1] &&
-             at->cube[2] <= cell.cube[2] + 1;
-             ++at) {
-          const SurfacePoint& other = surface[at->point];
-          if ((other.position - p).squaredNorm() > radius_m * radius_m) continue;
-          if (other.normal.dot(n) < kSameNormal && at->point != cell.point) continue;
-          sum += other.rgb;
-          count += 1.0F;
-        }
+  Neighbourhoods(surface, radius_m).visit([&](const auto& inside, const auto& around) {
+    for (const std::size_t i : inside) {
+      Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+      float count = 0.0F;
+      for (const std::size_t k : around) {
+        const SurfacePoint& other = surface[k];
+        if ((other.position - surface[i].position).squaredNorm() > radius_m * radius_m) continue;
+        if (other.normal.dot(surface[i].normal) < kSameNormal && k != i) continue;
+        sum += other.rgb;
+        count += 1.0F;
       }
+      means[i] = sum / count;
     }
-    means[cell.point] = sum / count;
-  }
-  for (const Cell& cell : cells) {
-    surface[cell.point].rgb = means[cell.point];
-    surface[cell.point].lab = lab_of(means[cell.point]);
+  });
+  for (std::size_t i = 0; i < surface.size(); ++i) {
+    if (!surface[i].has_color) continue;
+    surface[i].rgb = means[i];
+    surface[i].lab = lab_of(means[i]);
   }
 }
 
@@ -176,6 +236,15 @@ Eigen::Vector3f lab_of(const Eigen::Vector3f& linear_rgb) {
     f[k] = f[k] > 0.008856F ? std::cbrt(f[k]) : 7.787F * f[k] + 16.0F / 116.0F;
   }
   return {116.0F * f.y() - 16.0F, 500.0F * (f.x() - f.y()), 200.0F * (f.y() - f.z())};
+}
+
+void relight(Surface& surface, const Eigen::Array3f& gain) {
+  if ((gain == 1.0F).all()) return;
+  for (SurfacePoint& point : surface) {
+    if (!point.has_color) continue;
+    point.rgb.array() *= gain;
+    point.lab = lab_of(point.rgb);
+  }
 }
 
 Surface transformed(const Surface& surface_A, const Pose& X_BA) {

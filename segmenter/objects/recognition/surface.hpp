@@ -29,6 +29,9 @@ using Surface = std::vector<SurfacePoint>;
 /// order of the points.
 Surface thinned(std::span<const CloudPoint> points, float spacing_m);
 
+/// The same of a surface, whose colours are means already.
+Surface thinned(const Surface& surface, float spacing_m);
+
 /// Each point of the map where it is, with its normal, which may be zero, and the colour as above.
 /// @param spacing_m of the points
 Surface unthinned(std::span<const CloudPoint> points, float spacing_m);
@@ -37,10 +40,16 @@ Surface unthinned(std::span<const CloudPoint> points, float spacing_m);
 /// that at an edge between two faces they lie anywhere between both.
 inline constexpr float kSameNormal = std::numbers::sqrt2_v<float> / 2;
 
+/// Colours are means over so much of a surface: about twelve points.
+inline float color_radius_m(float spacing_m) { return 2 * spacing_m; }
+
 /// Replaces each linear colour by the mean of those within `radius_m` on the same face
 /// (kSameNormal), and CIELAB with it. Patterns as fine as the voxels come out differently in each
 /// map; means of some voxels do not.
 void smooth_colors(Surface& surface, float radius_m);
+
+/// The surface as it would look if all light on it were multiplied by `gain` (red, green, blue).
+void relight(Surface& surface, const Eigen::Array3f& gain);
 
 /// The surface where `X_BA` puts it.
 Surface transformed(const Surface& surface_A, const Pose& X_BA);

@@ -103,11 +103,9 @@ SizeAndColors size_and_colors(const Surface& surface, float spacing_m) {
   return elements;
 }
 
-ViewDescriptor view_descriptor(const Surface& surface, const ShapeFeatures& features,
-                               float spacing_m) {
+ViewDescriptor view_descriptor(const SizeAndColors& beginning, const ShapeFeature& mean_features) {
   ViewDescriptor descriptor;
-  descriptor.head<kSizeAndColors>() = size_and_colors(surface, spacing_m);
-  descriptor.tail<kShapeFeatureSize>() = features.rowwise().mean();
+  descriptor << beginning, mean_features;
   return descriptor;
 }
 

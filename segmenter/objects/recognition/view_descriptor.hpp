@@ -24,11 +24,10 @@ using ViewDescriptor = Eigen::Matrix<float, kViewDescriptorSize, 1>;
 ///   3      logarithm of its area, square metres
 ///   4-9    mean and standard deviation of L, a and b; 0 without colours
 ///   10-42  the mean of the shape features of its points
-/// @param features of each point, see shape_features()
 /// @param spacing_m of the points
 SizeAndColors size_and_colors(const Surface& surface, float spacing_m);
-ViewDescriptor view_descriptor(const Surface& surface, const ShapeFeatures& features,
-                               float spacing_m);
+/// @param mean_features of its points, see shape_features()
+ViewDescriptor view_descriptor(const SizeAndColors& beginning, const ShapeFeature& mean_features);
 
 /// What can be seen of a surface from each of some directions around it and above it, besides all
 /// of it: points that face the direction and that nothing hides. Without those of which fewer than

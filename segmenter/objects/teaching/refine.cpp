@@ -13,10 +13,12 @@
 #include <vector>
 
 #include "segmenter/objects/library/object_check.hpp"
+#include "segmenter/objects/model/empty_space.hpp"
 #include "segmenter/objects/model/make_model.hpp"
 #include "segmenter/objects/model/merged_points.hpp"
 #include "segmenter/objects/model/object_views.hpp"
 #include "segmenter/objects/recognition/agreement.hpp"
+#include "segmenter/objects/recognition/lit_model.hpp"
 #include "segmenter/objects/recognition/pose_refinement.hpp"
 #include "segmenter/objects/recognition/pose_search.hpp"
 #include "segmenter/objects/recognition/prepared_model.hpp"
@@ -83,6 +85,7 @@ Counts compare(const PreparedModel& model, const Surface& seen, const Pose& X_SO
                const LightChange& light, const std::vector<Eigen::Vector3f>& sides_O) {
   const Eigen::Isometry3f X_OS = X_SO.inverse().cast<float>();
   const float reach_m = kSameDistance * model.spacing_m;
+  LitModel lit(model.surface_O, light);
   Counts counts;
   for (const SurfacePoint& point : seen) {
     const Eigen::Vector3f p_O = X_OS * point.position;
@@ -92,7 +95,8 @@ Counts compare(const PreparedModel& model, const Surface& seen, const Pose& X_SO
     const SurfacePoint* const other =
         nearest < 0 ? nullptr : &model.surface_O[static_cast<std::size_t>(nearest)];
     const bool is_same = other != nullptr && (other->position - p_O).norm() <= reach_m &&
-                         other->normal.dot(n_O) >= kSameNormal && same_color(*other, point, light);
+                         other->normal.dot(n_O) >= kSameNormal &&
+                         lit.same_color(static_cast<std::size_t>(nearest), point);
     if (is_same) ++counts.same;
     if (is_same || std::any_of(sides_O.begin(), sides_O.end(), [&](const Eigen::Vector3f& side) {
           return side.dot(n_O) > kSameSide;
@@ -222,6 +226,8 @@ Refinement refined(const KnownObject& known, const KnownObject& lesson) {
     views_O.emplace_back(refinement.fit.X_OL.linear().cast<float>() * view);
   }
   merge_directions(model.views_O, views_O);
+  model.empty_O =
+      merged(model.points_O, known.model.empty_O, lesson.model.empty_O, refinement.fit.X_OL);
   add_lesson(refinement.object, lesson);
   check_object(refinement.object);
   return refinement;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "segmenter/objects/model/make_model.hpp"
+#include "segmenter/objects/recognition/lit_model.hpp"
 #include "segmenter/objects/recognition/surface.hpp"
 #include "segmenter/preprocess/nearest_neighbours.hpp"
 
@@ -45,13 +46,14 @@ class Observation {
     for (const std::size_t i : asked) queries.push_back(transformed(other.points_[i], X_AB));
     NearestNeighbours::Result found;
     nearest_.find(queries, 1, found);
+    LitModel lit(surface_, light);
     std::int64_t num_same = 0;
     for (std::size_t k = 0; k < queries.size(); ++k) {
       if (found.squared_distances[k] > reach_m * reach_m) continue;
       const SurfacePoint& here = surface_[found.indices[k]];
       const Eigen::Vector3f normal(queries[k].nx, queries[k].ny, queries[k].nz);
       if (here.normal.dot(normal) < kSameNormal) continue;
-      if (same_color(here, other.surface_[asked[k]], light)) ++num_same;
+      if (lit.same_color(found.indices[k], other.surface_[asked[k]])) ++num_same;
     }
     return num_same;
   }

@@ -8,9 +8,11 @@
 #include "lcmtypes/scene/up_direction.hpp"
 #include "segmenter/core/parameters/presets.hpp"
 #include "segmenter/objects/library/object_check.hpp"
+#include "segmenter/objects/model/empty_space.hpp"
 #include "segmenter/objects/model/make_model.hpp"
 #include "segmenter/objects/model/object_views.hpp"
 #include "segmenter/objects/teaching/learned_parameters.hpp"
+#include "segmenter/views/observed_space.hpp"
 
 namespace kintsugi::segmenter {
 namespace {
@@ -44,6 +46,9 @@ KnownObject taught_object(const std::string& name, const ObservedMap& map,
   object.model = std::move(made.model);
   object.model.views_O =
       directions_of_views(object.model.points_O, made.X_WO, map.views, map.resolution_m);
+  ObservedSpace observed(map.resolution_m);
+  for (const MapView& view : map.views) observed.add(view);
+  object.model.empty_O = empty_space(object.model.points_O, made.X_WO, observed);
   const LearnedParameters learned = learned_parameters(map, surface);
   object.model.parameters = learned.parameters;
   object.wholeness = learned.wholeness;

@@ -81,13 +81,19 @@ const Detection& detection_of(const Detector& detector, const std::string& name)
 
 TEST(LabelledMap, TellsWhichSegmentsChange) {
   const ObservedMap map = box_on_table();
-  LabelledMap labelled;
+  LabelledMap labelled(0.2F);
   const auto points = std::make_shared<const std::vector<CloudPoint>>(map.points_W);
-  EXPECT_THAT(labelled.set_piece(1, points, map.segment_ids), ElementsAre(kTable, kBox, kBall));
-  EXPECT_TRUE(labelled.set_piece(1, points, map.segment_ids).empty());
+  const LabelledMap::Change first = labelled.set_piece(1, points, map.segment_ids);
+  EXPECT_THAT(first.segments, ElementsAre(kTable, kBox, kBall));
+  EXPECT_FALSE(first.blocks.empty());
+  const LabelledMap::Change same = labelled.set_piece(1, points, map.segment_ids);
+  EXPECT_TRUE(same.segments.empty());
+  EXPECT_TRUE(same.blocks.empty());
   std::vector<std::uint32_t> joined = map.segment_ids;
   std::replace(joined.begin(), joined.end(), kBall, kTable);
-  EXPECT_THAT(labelled.set_piece(1, points, joined), ElementsAre(kTable, kBall));
+  const LabelledMap::Change labels = labelled.set_piece(1, points, joined);
+  EXPECT_THAT(labels.segments, ElementsAre(kTable, kBall));
+  EXPECT_TRUE(labels.blocks.empty());
   EXPECT_EQ(labelled.num_points(kBall), 0);
   EXPECT_EQ(labelled.num_points(), static_cast<std::int64_t>(map.points_W.size()));
   EXPECT_TRUE(labelled.box_of(kBall).isEmpty());
@@ -96,7 +102,7 @@ TEST(LabelledMap, TellsWhichSegmentsChange) {
 
 TEST(Candidates, GrowByNeighboursAndNotBeyondTheLargestObject) {
   const ObservedMap map = box_on_table();
-  LabelledMap labelled;
+  LabelledMap labelled(0.2F);
   labelled.set_piece(1, std::make_shared<const std::vector<CloudPoint>>(map.points_W),
                      map.segment_ids);
   const std::vector<SegmentNeighbour> of_box{{kTable, 40}};
@@ -181,6 +187,35 @@ TEST(Detector, EndsWithTheSameDetectionsWhateverTheOrder) {
       EXPECT_EQ(of[i].matrix(), poses[0][i].matrix());
     }
   }
+}
+
+TEST(Detector, ComparesColoursInTheLightThatMostObjectsTell) {
+  ObservedMap map = box_on_table();
+  for (CloudPoint& p : map.points_W) {
+    p.red = static_cast<std::uint8_t>(0.96 * p.red);
+    p.green = static_cast<std::uint8_t>(0.92 * p.green);
+    p.blue = static_cast<std::uint8_t>(0.88 * p.blue);
+  }
+  const auto largest_change = [](const Detector& detector) {
+    float largest = 0.0F;
+    for (const Detection& detection : detector.detections()) {
+      largest = std::max(largest, detection.recognition.placement.light.log_gain.norm());
+    }
+    return largest;
+  };
+  Detector detector(box_and_ball(), 0.01F);
+  give(detector, map, kSecond_us);
+  examine(detector);
+  EXPECT_EQ(names_of(detector).size(), 2U);
+  EXPECT_GT(largest_change(detector), 0.2F);  // two things do not tell the light of a place
+
+  for (CloudPoint& p : map.points_W) p.x += 3.0F;
+  constexpr std::uint32_t kOthers = 10;
+  for (std::uint32_t& id : map.segment_ids) id += kOthers;
+  give(detector, map, 2 * kSecond_us, {kOthers + kTable, kOthers + kBox, kOthers + kBall});
+  examine(detector);
+  EXPECT_THAT(names_of(detector), ElementsAre("ball", "ball", "box", "box"));
+  EXPECT_LT(largest_change(detector), 0.1F);
 }
 
 TEST(Detector, WaitsWithTheSegmentThatChangedFirst) {

@@ -31,6 +31,9 @@ inline KnownObject example_object(const std::string& name) {
   }
   object.model.views_O = {Eigen::Vector3f(1.0F, 2.0F, 0.5F).normalized(),
                           -Eigen::Vector3f::UnitY()};
+  object.model.empty_O = EmptySpace({-0.05F, -0.05F, -0.06F}, 0.05F, {2, 2, 3},
+                                    {true, false, false, true, true, false,  //
+                                     true, true, false, false, false, true});
   object.model.parameters = preset("objects");
   object.model.parameters.scale = 0.0013;
   object.model.times_taught = 2;

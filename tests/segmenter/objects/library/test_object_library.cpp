@@ -159,6 +159,11 @@ TEST_F(Library, RefusesAKeyThatIsMissingOrWrongWithItsPlace) {
   expect_refused_with(",-1.0,", ",", "three numbers");
   expect_refused_with(",-1.0,", ",-9.0,", "the length of a view");
   expect_refused_with("\"model_crc32\": \"", "\"model_crc32\": \"x", "8 digits");
+  expect_refused_with("\"cells\":\"9d8\"", "\"cells\":\"9d\"", "key 'cells': expected 3 hex");
+  expect_refused_with("\"cells\":\"9d8\"", "\"cells\":\"9D8\"", "key 'cells': expected 3 hex");
+  expect_refused_with("\"size\":[2,2,3]", "\"size\":[2,2]", "key 'size': expected three");
+  expect_refused_with("\"size\":[2,2,3]", "\"size\":[2,2,17]", "key 'size'");
+  expect_refused_with("\"cell_m\":0.05", "\"cell_m\":0", "key 'cell_m'");
   expect_refused_with("\"has_up\": true,", "\"has_up\": true", "line 10, column");
 }
 

@@ -1,6 +1,7 @@
-#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -9,7 +10,9 @@
 #include "segmenter/objects/model/make_model.hpp"
 #include "segmenter/objects/recognition/model_index.hpp"
 #include "segmenter/objects/recognition/object_recognizer.hpp"
+#include "segmenter/objects/recognition/scene.hpp"
 #include "segmenter/objects/recognition/scene_light.hpp"
+#include "segmenter/objects/recognition/surface_grid.hpp"
 #include "tests/segmenter/objects/box_on_table.hpp"
 
 namespace kintsugi::segmenter {
@@ -34,32 +37,18 @@ MadeModel taught(const ObservedMap& map, std::uint32_t id, const std::string& na
   return make_model(name, points_of(map, id), map.resolution_m, kUp_W);
 }
 
-MapAccess access_to(const ObservedMap& map) {
-  MapAccess access;
-  access.resolution_m = map.resolution_m;
-  access.up_W = kUp_W;
-  access.points_in = [&map](const Eigen::AlignedBox3f& box_W) {
-    MapExcerpt excerpt;
-    for (std::size_t i = 0; i < map.points_W.size(); ++i) {
-      const CloudPoint& p = map.points_W[i];
-      if (!box_W.contains(Eigen::Vector3f(p.x, p.y, p.z))) continue;
-      excerpt.points_W.push_back(p);
-      excerpt.segment_ids.push_back(map.segment_ids[i]);
-    }
-    return excerpt;
-  };
-  access.points_of = [&map](const std::vector<std::uint32_t>& ids) {
-    std::vector<CloudPoint> all;
-    for (const std::uint32_t id : ids) {
-      const std::vector<CloudPoint> of = points_of(map, id);
-      all.insert(all.end(), of.begin(), of.end());
-    }
-    return all;
-  };
-  access.num_points = [&map](std::uint32_t id) {
-    return std::count(map.segment_ids.begin(), map.segment_ids.end(), id);
-  };
-  return access;
+/// The whole map as one piece.
+struct SceneOf {
+  explicit SceneOf(const ObservedMap& map) : scene(map.resolution_m) {
+    scene.set_piece(0, std::make_shared<const std::vector<CloudPoint>>(map.points_W),
+                    map.segment_ids);
+  }
+  Scene scene;
+};
+
+std::vector<Recognition> recognized(const ObjectRecognizer& recognizer, const ObservedMap& map,
+                                    const Candidate& candidate) {
+  return recognizer.recognize(candidate, SceneOf(map).scene);
 }
 
 struct PoseError {
@@ -106,15 +95,15 @@ TEST_P(TurnedBox, IsRecognisedAndPlaced) {
   const ObservedMap after =
       box_on_table(kFourSides, {-0.25F, 0.1F, 0.0F}, static_cast<float>(GetParam()));
   const ObjectRecognizer recognizer({box.model}, after.resolution_m);
-  const auto found = recognizer.recognize(points_of(after, kBox), access_to(after));
-  ASSERT_TRUE(found.has_value());
+  const std::vector<Recognition> found = recognized(recognizer, after, {kBox});
+  ASSERT_EQ(found.size(), 1U);
   const PoseError error =
-      error_of(found->placement.X_WO, motion_W({-0.25, 0.1, 0.0}, GetParam()) * box.X_WO);
+      error_of(found[0].placement.X_WO, motion_W({-0.25, 0.1, 0.0}, GetParam()) * box.X_WO);
   EXPECT_LT(error.shift_m, 0.005);
   EXPECT_LT(error.turn_rad, 0.03);
   // At the edges, which have a tenth of the points, the colours of two faces mix.
-  EXPECT_GT(found->placement.score(), 0.75F);
-  EXPECT_THAT(found->placement.segment_ids, ::testing::ElementsAre(kBox));
+  EXPECT_GT(found[0].placement.score(), 0.75F);
+  EXPECT_THAT(found[0].placement.segment_ids, ::testing::ElementsAre(kBox));
 }
 
 INSTANTIATE_TEST_SUITE_P(Turns, TurnedBox, ::testing::Values(0.0, 0.4, 1.6, 3.1, -2.0));
@@ -123,8 +112,8 @@ TEST(ObjectRecognizer, TellsOneObjectFromAnother) {
   const ObservedMap map = box_on_table(kFourSides);
   const ObjectRecognizer recognizer(
       {taught(map, kBall, "ball").model, taught(map, kBox, "box").model}, map.resolution_m);
-  EXPECT_EQ(recognizer.recognize(points_of(map, kBall), access_to(map))->model, 0U);
-  EXPECT_EQ(recognizer.recognize(points_of(map, kBox), access_to(map))->model, 1U);
+  EXPECT_EQ(recognized(recognizer, map, {kBall}).at(0).model, 0U);
+  EXPECT_EQ(recognized(recognizer, map, {kBox}).at(0).model, 1U);
 }
 
 TEST(ObjectRecognizer, DoesNotTakeABoxOfAnotherSizeForTheOneItKnows) {
@@ -132,14 +121,14 @@ TEST(ObjectRecognizer, DoesNotTakeABoxOfAnotherSizeForTheOneItKnows) {
   const ObservedMap other =
       box_on_table(kFourSides, Eigen::Vector3f::Zero(), 0.0F, {0.12F, 0.16F, 0.24F});
   const ObjectRecognizer recognizer({taught(known, kBox, "box").model}, known.resolution_m);
-  EXPECT_FALSE(recognizer.recognize(points_of(other, kBox), access_to(other)).has_value());
+  EXPECT_THAT(recognized(recognizer, other, {kBox}), ::testing::IsEmpty());
 }
 
 TEST(ObjectRecognizer, DoesNotTakeAnotherColourForTheOneItKnows) {
   ObservedMap map = box_on_table(kFourSides);
   const ObjectRecognizer recognizer({taught(map, kBox, "box").model}, map.resolution_m);
   for (CloudPoint& p : map.points_W) std::swap(p.red, p.blue);
-  EXPECT_FALSE(recognizer.recognize(points_of(map, kBox), access_to(map)).has_value());
+  EXPECT_THAT(recognized(recognizer, map, {kBox}), ::testing::IsEmpty());
 }
 
 TEST(ObjectRecognizer, RecognisesAnObjectInOtherLight) {
@@ -150,28 +139,30 @@ TEST(ObjectRecognizer, RecognisesAnObjectInOtherLight) {
     p.green = static_cast<std::uint8_t>(0.8 * p.green);
     p.blue = static_cast<std::uint8_t>(0.66 * p.blue);
   }
-  const auto found = recognizer.recognize(points_of(map, kBox), access_to(map));
-  ASSERT_TRUE(found.has_value());
+  const std::vector<Recognition> found = recognized(recognizer, map, {kBox});
+  ASSERT_EQ(found.size(), 1U);
   // The exponent of sRGB's transfer function is about 2.2.
-  EXPECT_NEAR(found->placement.light.log_gain.x(), 2.2 * std::log(0.9), 0.1);
-  EXPECT_NEAR(found->placement.light.log_gain.y(), 2.2 * std::log(0.8), 0.1);
+  EXPECT_NEAR(found[0].placement.light.log_gain.x(), 2.2 * std::log(0.9), 0.1);
+  EXPECT_NEAR(found[0].placement.light.log_gain.y(), 2.2 * std::log(0.8), 0.1);
   // Its blues are dark, where the transfer function is flatter.
-  EXPECT_NEAR(found->placement.light.log_gain.z(), 2.2 * std::log(0.66), 0.35);
+  EXPECT_NEAR(found[0].placement.light.log_gain.z(), 2.2 * std::log(0.66), 0.35);
 }
 
 TEST(ObjectRecognizer, FindsNothingWithoutObjectsOrSurface) {
   const ObservedMap map = box_on_table();
   const ObjectRecognizer none({}, map.resolution_m);
-  EXPECT_FALSE(none.recognize(points_of(map, kBox), access_to(map)).has_value());
+  EXPECT_THAT(recognized(none, map, {kBox}), ::testing::IsEmpty());
   const ObjectRecognizer some({taught(map, kBox, "box").model}, map.resolution_m);
-  EXPECT_FALSE(some.recognize({}, access_to(map)).has_value());
+  EXPECT_THAT(recognized(some, map, {}), ::testing::IsEmpty());
+  constexpr std::uint32_t kNoSuchSegment = 4711;
+  EXPECT_THAT(recognized(some, map, {kNoSuchSegment}), ::testing::IsEmpty());
 }
 
 TEST(Placement, CountsWhatSpeaksAgainstTheObject) {
   const ObservedMap map = box_on_table(kFourSides);
   const MadeModel box = taught(map, kBox, "box");
   const PreparedModel model(box.model, map.resolution_m);
-  const Placement right = placement_of(model, access_to(map), {.X_WO = box.X_WO, .light = {}});
+  const Placement right = placement_of(model, SceneOf(map).scene, {.X_WO = box.X_WO, .light = {}});
   EXPECT_GT(right.score(), 0.75F);
   EXPECT_GT(right.points, 0.85 * static_cast<double>(points_of(map, kBox).size()));
   EXPECT_LE(right.points, static_cast<std::int32_t>(points_of(map, kBox).size()));
@@ -183,10 +174,101 @@ TEST(Placement, CountsWhatSpeaksAgainstTheObject) {
     halved.points_W.erase(halved.points_W.begin() + static_cast<std::ptrdiff_t>(i));
     halved.segment_ids.erase(halved.segment_ids.begin() + static_cast<std::ptrdiff_t>(i));
   }
-  const Placement half = placement_of(model, access_to(halved), {.X_WO = box.X_WO, .light = {}});
+  const Placement half =
+      placement_of(model, SceneOf(halved).scene, {.X_WO = box.X_WO, .light = {}});
   EXPECT_LT(half.seen, 0.7F);
   EXPECT_GT(half.contradicted, 0.1F);
   EXPECT_LT(half.score(), right.score() - 0.05F);
+}
+
+TEST(Placement, KnowsNothingOfASideThatWasNotSeenWhenItWasTaught) {
+  const ObservedMap map = box_on_table(kFourSides);
+  MadeModel box = taught(map, kBox, "box");
+  // Taught from one side only.
+  const auto is_behind = [](const CloudPoint& p_O) { return p_O.ny > 0.5F || p_O.nx > 0.5F; };
+  std::erase_if(box.model.points_O, is_behind);
+  const auto explained = [&](const EmptySpace& empty_O) {
+    box.model.empty_O = empty_O;
+    const PreparedModel model(box.model, map.resolution_m);
+    return placement_of(model, SceneOf(map).scene, {.X_WO = box.X_WO, .light = {}}).explained;
+  };
+  const Eigen::Vector3f low_O(-1.0F, -1.0F, -1.0F);
+  const float unknown = explained({});
+  const float hidden = explained({low_O, 1.0F, {2, 2, 2}, {1, 0, 0, 0, 0, 0, 0, 0}});
+  const float free = explained({low_O, 1.0F, {2, 2, 2}, std::vector<bool>(8, true)});
+  EXPECT_FLOAT_EQ(free, unknown);
+  EXPECT_LT(free, 0.85F);
+  EXPECT_GT(hidden, free + 0.1F);
+}
+
+TEST(Scene, SeesTheSameSurfaceInPiecesOfAnyOrder) {
+  const ObservedMap map = box_on_table(kFourSides);
+  std::array<std::vector<CloudPoint>, 3> points_W;
+  std::array<std::vector<std::uint32_t>, 3> labels;
+  for (std::size_t i = 0; i < map.points_W.size(); ++i) {
+    points_W[i % 3].push_back(map.points_W[i]);
+    labels[i % 3].push_back(map.segment_ids[i]);
+  }
+  const MadeModel box = taught(map, kBox, "box");
+  const PreparedModel model(box.model, map.resolution_m);
+  const auto placed_in_order = [&](const std::vector<int>& order) {
+    Scene scene(map.resolution_m);
+    for (const int piece : order) {
+      const auto i = static_cast<std::size_t>(piece);
+      scene.set_piece(piece, std::make_shared<const std::vector<CloudPoint>>(points_W[i]),
+                      labels[i]);
+      // What is computed too early is computed again.
+      const Placement early = placement_of(model, scene, {.X_WO = box.X_WO, .light = {}});
+      EXPECT_LE(early.seen, 1.0F);
+    }
+    return placement_of(model, scene, {.X_WO = box.X_WO, .light = {}});
+  };
+  const Placement first = placed_in_order({0, 1, 2});
+  const Placement second = placed_in_order({2, 0, 1});
+  EXPECT_EQ(first.seen, second.seen);
+  EXPECT_EQ(first.explained, second.explained);
+  EXPECT_EQ(first.points, second.points);
+  EXPECT_GT(first.score(), 0.75F);
+}
+
+TEST(Scene, ForgetsWhatHasGone) {
+  const ObservedMap map = box_on_table(kFourSides);
+  const MadeModel box = taught(map, kBox, "box");
+  const PreparedModel model(box.model, map.resolution_m);
+  SceneOf whole(map);
+  const PoseHypothesis there{.X_WO = box.X_WO, .light = {}};
+  EXPECT_GT(placement_of(model, whole.scene, there).points, 0);
+  EXPECT_THAT(whole.scene.set_piece(0, std::make_shared<const std::vector<CloudPoint>>(), {}),
+              ::testing::Contains(kBox));
+  EXPECT_EQ(placement_of(model, whole.scene, there).points, 0);
+  EXPECT_THAT(whole.scene.surface_W(Candidate{kBox}), ::testing::IsEmpty());
+}
+
+TEST(SurfaceGrid, FindsTheNearestOfManyPoints) {
+  Surface surface;
+  for (int i = 0; i < 500; ++i) {
+    SurfacePoint point;
+    point.position = {std::sin(1.3F * static_cast<float>(i)),
+                      std::sin(2.1F * static_cast<float>(i)),
+                      std::sin(0.7F * static_cast<float>(i))};
+    point.normal = i % 2 == 0 ? Eigen::Vector3f::UnitX() : Eigen::Vector3f::UnitY();
+    surface.push_back(point);
+  }
+  const SurfaceGrid grid(surface, 0.1F);
+  for (int i = 0; i < 50; ++i) {
+    const Eigen::Vector3f p = 1.2F * surface[static_cast<std::size_t>(7 * i)].position;
+    constexpr float kWithin_m = 0.3F;
+    std::int32_t nearest = -1;
+    float least = kWithin_m * kWithin_m;
+    for (std::size_t k = 0; k < surface.size(); k += 2) {
+      const float squared = (surface[k].position - p).squaredNorm();
+      if (squared > least) continue;
+      least = squared;
+      nearest = static_cast<std::int32_t>(k);
+    }
+    EXPECT_EQ(grid.nearest(p, kWithin_m, facing(Eigen::Vector3f::UnitX())).index, nearest);
+  }
+  EXPECT_EQ(SurfaceGrid().nearest({0, 0, 0}, 1.0F, any_point).index, -1);
 }
 
 TEST(ModelIndex, FindsTheObjectOfTheNearestViewAndBoundsItFromBelow) {
@@ -232,6 +314,9 @@ TEST(SceneLight, IsThatOfMostPlacements) {
   EXPECT_LT((light.log_gain - Eigen::Vector3f(-0.22F, -0.42F, -0.78F)).norm(), 0.05F);
   EXPECT_GT(light.agreement(placements[0].light), 0.95F);
   EXPECT_LT(light.agreement(placements[1].light), 0.01F);
+  // A thing in the shadow, and one that is lit in another colour.
+  EXPECT_GT(light.agreement(with_light({-0.42F, -0.62F, -0.98F}).light), 0.7F);
+  EXPECT_LT(light.agreement(with_light({-0.02F, -0.42F, -0.98F}).light), 0.2F);
   EXPECT_EQ(light_of_scene(std::span(all).first(2)).log_gain, Eigen::Vector3f::Zero());
 }
 

@@ -1,10 +1,15 @@
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
 #include <random>
 #include <vector>
 
 #include <gmock/gmock.h>
 
 #include "segmenter/objects/recognition/agreement.hpp"
+#include "segmenter/objects/recognition/labelled_map.hpp"
+#include "segmenter/objects/recognition/lit_model.hpp"
 #include "segmenter/objects/recognition/scene_surface.hpp"
 #include "segmenter/objects/recognition/surface.hpp"
 #include "segmenter/objects/recognition/surface_field.hpp"
@@ -110,25 +115,36 @@ TEST(SurfaceField, FindsTheNearestPointUpToHalfACell) {
   EXPECT_EQ(field.nearest(Eigen::Vector3f::Constant(std::nanf(""))), -1);
 }
 
-TEST(SceneSurface, FindsTheNearestPointExactly) {
+TEST(SceneSurface, FindsTheNearestPointInAllBlocks) {
   const std::vector<CloudPoint> points = random_points(300, 6);
-  const SceneSurface scene(points, std::vector<std::uint32_t>(300, 1), 0.01F, 0.02F);
+  LabelledMap map(0.05F);
+  map.set_piece(0, std::make_shared<const std::vector<CloudPoint>>(points),
+                std::vector<std::uint32_t>(points.size(), 1));
+  const SceneSurface scene(map, 0.01F);
+  constexpr float kWithin_m = 0.02F;
   for (const SurfacePoint& query : unthinned(random_points(500, 7), 0.01F)) {
-    float least = 0.02F;
-    for (const SurfacePoint& p : scene.surface_W()) {
-      least = std::min(least, (p.position - query.position).norm());
+    float least = kWithin_m;
+    for (const CloudPoint& p : points) {
+      least = std::min(least, (Eigen::Vector3f(p.x, p.y, p.z) - query.position).norm());
     }
-    const SurfacePoint* const nearest = scene.nearest(query.position);
-    if (least < 0.02F) {
+    const SurfacePoint* const nearest = scene.nearest(query.position, kWithin_m, any_point);
+    if (least < kWithin_m) {
       ASSERT_NE(nearest, nullptr);
       EXPECT_FLOAT_EQ((nearest->position - query.position).norm(), least);
     } else {
       EXPECT_EQ(nearest, nullptr);
     }
   }
+  std::size_t count = 0;
+  scene.visit({Eigen::Vector3f::Constant(-10.0F), Eigen::Vector3f::Constant(10.0F)},
+              [&count](const SurfacePoint& /*point*/, std::uint32_t segment) {
+                EXPECT_EQ(segment, 1U);
+                ++count;
+              });
+  EXPECT_EQ(count, points.size());
 }
 
-TEST(SameColor, AllowsForTheLightOfThePlace) {
+TEST(LitModel, AllowsForTheLightOfThePlace) {
   SurfacePoint model;
   model.has_color = true;
   model.rgb = {0.5F, 0.4F, 0.3F};
@@ -137,10 +153,17 @@ TEST(SameColor, AllowsForTheLightOfThePlace) {
   SurfacePoint seen = model;
   seen.rgb = (model.rgb.array() * evening.log_gain.array().exp()).matrix();
   seen.lab = lab_of(seen.rgb);
-  EXPECT_FALSE(same_color(model, seen, {}));
-  EXPECT_TRUE(same_color(model, seen, evening));
+  const Surface surface{model};
+  const auto is_same = [&](const LightChange& light) {
+    return LitModel(surface, light).same_color(0, seen);
+  };
+  EXPECT_FALSE(is_same({}));
+  EXPECT_TRUE(is_same(evening));
+  Surface relit{seen};
+  relight(relit, (-evening.log_gain.array()).exp());
+  EXPECT_LT((relit[0].lab - model.lab).norm(), 0.01F);
   seen.has_color = false;
-  EXPECT_TRUE(same_color(model, seen, {}));
+  EXPECT_TRUE(is_same({}));
 }
 
 TEST(LightChange, IsBoundedInBrightnessAndTint) {

@@ -1,0 +1,119 @@
+#pragma once
+// The points of a growing map by segment and by place.
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <set>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include "lcmtypes/messages.hpp"
+#include "lcmtypes/scene/up_direction.hpp"
+
+namespace kintsugi::segmenter {
+
+/// The map is cut into cubes, which are numbered along the axes of W.
+using BlockKey = std::array<std::int32_t, 3>;
+
+struct BlockKeyHash {
+  std::size_t operator()(const BlockKey& key) const {
+    // Teschner et al., "Optimized spatial hashing for collision detection of deformable objects"
+    // (2003).
+    return (static_cast<std::size_t>(key[0]) * 73'856'093U) ^
+           (static_cast<std::size_t>(key[1]) * 19'349'663U) ^
+           (static_cast<std::size_t>(key[2]) * 83'492'791U);
+  }
+};
+
+/// The map around a place.
+struct MapExcerpt {
+  std::vector<CloudPoint> points_W;
+  std::vector<std::uint32_t> segment_ids;  ///< of each point
+};
+
+/// Pieces (slices of the map) with labels, as a client of the bus has them, or a saved map as one
+/// piece.
+class LabelledMap {
+ public:
+  using Points = std::shared_ptr<const std::vector<CloudPoint>>;
+
+  /// Where a point is kept.
+  struct PointRef {
+    std::int32_t piece = 0;
+    std::uint32_t index = 0;
+  };
+
+  /// What set_piece() has changed.
+  struct Change {
+    std::set<std::uint32_t> segments;  ///< that lost or gained points
+    std::set<BlockKey> blocks;         ///< in which points came or went; none: only labels changed
+  };
+
+  /// @param block_m side of a block, > 0
+  explicit LabelledMap(float block_m) : block_m_(block_m) {}
+
+  /// Adds or replaces a piece; `segment_ids` of each point, 0 for none.
+  /// @throws std::invalid_argument unless there is a label for each point
+  Change set_piece(std::int32_t id, Points points_W, std::vector<std::uint32_t> segment_ids);
+
+  [[nodiscard]] const CloudPoint& point_W(PointRef ref) const {
+    return (*pieces_.at(ref.piece).points_W)[ref.index];
+  }
+  [[nodiscard]] std::uint32_t label(PointRef ref) const {
+    return pieces_.at(ref.piece).segment_ids[ref.index];
+  }
+
+  [[nodiscard]] float block_m() const { return block_m_; }
+  [[nodiscard]] BlockKey block_of(const Eigen::Vector3f& p_W) const;
+  /// All points of a block.
+  [[nodiscard]] std::span<const PointRef> points_in(const BlockKey& block) const;
+
+  /// All points in the box.
+  [[nodiscard]] MapExcerpt points_in(const Eigen::AlignedBox3f& box_W) const;
+  /// All points of a segment.
+  [[nodiscard]] std::vector<CloudPoint> points_of(std::uint32_t id) const;
+  /// Of a segment; 0 if there is none of this id.
+  [[nodiscard]] std::int64_t num_points(std::uint32_t id) const;
+  [[nodiscard]] std::int64_t num_points() const { return num_points_; }
+  [[nodiscard]] std::size_t num_segments() const { return segments_.size(); }
+  /// The ids of all segments, the one with most points first.
+  [[nodiscard]] std::vector<std::uint32_t> segments() const;
+  /// The box of a segment; empty if there is none of this id.
+  [[nodiscard]] Eigen::AlignedBox3f box_of(std::uint32_t id) const;
+  /// The direction that is up in W.
+  [[nodiscard]] Eigen::Vector3d up_W() const { return up_.up_W(); }
+
+ private:
+  struct Part {
+    std::vector<std::uint32_t> indices;  // in the piece
+    Eigen::AlignedBox3f box;
+  };
+  struct Piece {
+    Points points_W;
+    std::vector<std::uint32_t> segment_ids;
+    std::map<std::uint32_t, Part> segments;
+  };
+  struct Segment {
+    std::set<std::int32_t> pieces;
+    std::int64_t count = 0;
+  };
+
+  void remove_labels(std::int32_t id, const Piece& piece);
+  void add_labels(std::int32_t id, const Piece& piece);
+  std::set<BlockKey> remove_points(std::int32_t id, const Piece& piece);
+  std::set<BlockKey> add_points(std::int32_t id, const Piece& piece);
+
+  float block_m_;
+  std::map<std::int32_t, Piece> pieces_;
+  std::map<std::uint32_t, Segment> segments_;
+  std::unordered_map<BlockKey, std::vector<PointRef>, BlockKeyHash> blocks_;
+  UpDirection up_;
+  std::int64_t num_points_ = 0;
+};
+
+}  // namespace kintsugi::segmenter

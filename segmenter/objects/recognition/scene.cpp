@@ -1,0 +1,78 @@
+#include "segmenter/objects/recognition/scene.hpp"
+
+#include <utility>
+
+#include "segmenter/objects/recognition/described_surface.hpp"
+
+namespace kintsugi::segmenter {
+
+namespace {
+
+// A block is about as large as a cup, so that what is around an object is in some tens of them.
+constexpr float kBlock_vox = 16.0F;
+
+}  // namespace
+
+Scene::Scene(float resolution_m)
+    : resolution_m_(resolution_m), map_(kBlock_vox * resolution_m), surface_(map_, resolution_m) {}
+
+std::set<std::uint32_t> Scene::set_piece(std::int32_t id, LabelledMap::Points points_W,
+                                         std::vector<std::uint32_t> segment_ids) {
+  LabelledMap::Change change = map_.set_piece(id, std::move(points_W), std::move(segment_ids));
+  surface_.forget(change.blocks);
+  for (const std::uint32_t segment : change.segments) segments_.erase(segment);
+  return std::move(change.segments);
+}
+
+void Scene::set_light(const LightChange& light) {
+  light_ = light;
+  surface_.set_gain((-light.log_gain.array()).exp());
+  segments_.clear();
+}
+
+Scene::SegmentSurface& Scene::segment(std::uint32_t id) const {
+  const auto known = segments_.find(id);
+  if (known != segments_.end()) return known->second;
+  SegmentSurface segment;
+  segment.surface_W = thinned(map_.points_of(id), resolution_m_);
+  relight(segment.surface_W, (-light_.log_gain.array()).exp());
+  segment.described_W = thinned(segment.surface_W, described_spacing_m(resolution_m_));
+  return segments_[id] = std::move(segment);
+}
+
+Surface Scene::surface_W(std::span<const std::uint32_t> segments) const {
+  Surface all;
+  for (const std::uint32_t id : segments) {
+    const Surface& surface = segment(id).surface_W;
+    all.insert(all.end(), surface.begin(), surface.end());
+  }
+  return all;
+}
+
+SizeAndColors Scene::size_and_colors(std::span<const std::uint32_t> segments) const {
+  Surface all_W;
+  for (const std::uint32_t id : segments) {
+    const Surface& surface_W = segment(id).described_W;
+    all_W.insert(all_W.end(), surface_W.begin(), surface_W.end());
+  }
+  return kintsugi::segmenter::size_and_colors(all_W, described_spacing_m(resolution_m_));
+}
+
+ShapeFeature Scene::shape(std::span<const std::uint32_t> segments) const {
+  ShapeFeature sum = ShapeFeature::Zero();
+  float count = 0.0F;
+  for (const std::uint32_t id : segments) {
+    SegmentSurface& part = segment(id);
+    if (part.described_W.empty()) continue;
+    if (!part.shape) {
+      const DescribedSurface described(part.described_W, described_spacing_m(resolution_m_));
+      part.shape = described.features.rowwise().mean();
+    }
+    const auto points = static_cast<float>(part.described_W.size());
+    sum += points * *part.shape;
+    count += points;
+  }
+  return count > 0.0F ? ShapeFeature(sum / count) : sum;
+}
+
+}  // namespace kintsugi::segmenter
