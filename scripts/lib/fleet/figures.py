@@ -1,0 +1,107 @@
+"""The plots of the report page: scripts for gnuplot, and what gnuplot draws from them."""
+
+import shutil
+import subprocess
+from dataclasses import dataclass
+
+from .table import busy_periods, with_values
+
+# Told apart by colour-blind people, too.
+KINDS = (("cloud", "#0072b2", 7), ("log", "#d55e00", 5), ("recording", "#009e73", 9))
+CURVES = ("#0072b2", "#d55e00")
+TERMINAL = ("set terminal svg name '{name}' size 900,420 dynamic background rgb 'white' font 'sans-serif,14' noenhanced\n"
+            "set border 3 linecolor rgb '#555555'\nset tics nomirror\nset grid linecolor rgb '#e4e4e4'\n"
+            "set key outside above center horizontal Left reverse samplen 2\n")
+
+
+@dataclass(frozen=True)
+class Figure:
+    title: str
+    caption: str
+    script: str  # without its terminal
+
+
+def figures_of(rows):
+    """Those for which the rows have figures."""
+    return [figure for figure in (
+        over_points(rows, "segmented_s", "Time", "time, s",
+                    "Wall time of the programs for each input, without the comparison with the truth."),
+        over_points(rows, "segments", "Segments", "segments", "Number of segments of each input."),
+        over_points(rows, "peak_memory_MB", "Memory", "peak memory, MB",
+                    "The most memory that a program took for each input."),
+        sorted_curves(rows, (("object_iou", "objects"), ("instance_iou", "all instances")), "Quality of the segments",
+                      "mean best IoU", "Mean best intersection over union of the true instances with a segment; inputs "
+                      "of known truth in ascending order, for each curve by itself.", top=1.0),
+        sorted_curves(rows, (("ate_m", "ATE, root mean square"),), "Error of the camera's path", "m",
+                      "Recordings of known path in ascending order.", is_log=True),
+        progress(rows)) if figure]
+
+
+def over_points(rows, column, title, label, caption):
+    """A point for each input."""
+    found = [row for row in with_values(rows, "points", column) if row["points"] > 0 and row[column] > 0]
+    series = [(kind, f"with points linecolor rgb '{color}' pointtype {shape} pointsize 0.6 title '{kind}'",
+               [(row["points"], row[column]) for row in found if row["kind"] == kind]) for kind, color, shape in KINDS]
+    series = [each for each in series if each[2]]
+    if not series:
+        return None
+    return Figure(title, caption, f"set xlabel 'points'\nset ylabel '{label}'\nset logscale xy\nset format '%g'\n"
+                  + roomy_log_range("x", [row["points"] for row in found])
+                  + roomy_log_range("y", [row[column] for row in found]) + plot(series))
+
+
+def roomy_log_range(axis, values):
+    """gnuplot cannot choose a range where all values are one, and puts extreme points on the border."""
+    return f"set {axis}range [{min(values) / 1.3:.6g}:{max(values) * 1.3:.6g}]\n"
+
+
+def sorted_curves(rows, columns, title, label, caption, *, top=None, is_log=False):
+    series = []
+    for (column, name), color in zip(columns, CURVES, strict=False):
+        values = sorted(row[column] for row in with_values(rows, column))
+        if values:
+            series.append((column, f"with linespoints linecolor rgb '{color}' linewidth 1.5 pointtype 7 pointsize 0.3 "
+                           f"title '{name}'", list(enumerate(values, 1))))
+    if not series:
+        return None
+    count = max(len(points) for _, _, points in series)
+    scale = "set logscale y\nset format y '%g'\n" if is_log else f"set yrange [0:{top or ''}]\n"
+    return Figure(title, caption, f"set xlabel 'inputs'\nset ylabel '{label}'\nset xrange [0:{count + 1}]\n{scale}"
+                  + plot(series))
+
+
+def progress(rows):
+    """How many inputs had a result after so long, and how many tasks worked."""
+    periods = busy_periods(rows)
+    if not periods:
+        return None
+    ends = list(enumerate(sorted(end for _, end in periods), 1))
+    changes = sorted([(begin, 1) for begin, _ in periods] + [(end, -1) for _, end in periods])
+    working, at_work = 0, [(0.0, 0)]
+    for time_s, change in changes:
+        working += change
+        at_work.append((time_s, working))
+    series = [("ended", f"with steps linecolor rgb '{CURVES[0]}' linewidth 1.5 title 'results'",
+               [(0.0, 0), *((end, number) for number, end in ends)]),
+              ("working", f"axes x1y2 with steps linecolor rgb '{CURVES[1]}' title 'tasks at work (right)'", at_work)]
+    most = max(number for _, number in at_work)
+    return Figure("Progress", "Results, and tasks at work, since the first task of this table began.",
+                  "set xlabel 'time, s'\nset ylabel 'results'\nset y2label 'tasks at work'\nset border 11\n"
+                  f"set yrange [0:*]\nset y2range [0:{2 * most}]\nset y2tics {max(1, most // 4)}\n" + plot(series))
+
+
+def plot(series):
+    """`series`: (name, how it is drawn, points)."""
+    data = "".join(f"${name} << EOD\n" + "".join(f"{x:.9g} {y:.9g}\n" for x, y in points) + "EOD\n"
+                   for name, _, points in series)
+    return data + "plot " + ", \\\n  ".join(f"${name} using 1:2 {style}" for name, style, _ in series) + "\n"
+
+
+def drawn(figure, name):
+    """The SVG element, or nothing: gnuplot is not there, or failed."""
+    if not shutil.which("gnuplot"):
+        return ""
+    done = subprocess.run(["gnuplot"], input=TERMINAL.format(name=name) + figure.script, capture_output=True, text=True,
+                          check=False)
+    start = done.stdout.find("<svg")  # the header before is of a file
+    return done.stdout[start:] if not done.returncode and start >= 0 else ""
