@@ -75,15 +75,18 @@ def work_through(choice, folder, scheduler, to_do):
     workers = f", {scheduler.workers} at a time" if scheduler.workers else ""
     say(f"{len(to_do)} tasks with {scheduler.name}{workers}")
     begun, start_s = time.strftime("%Y-%m-%d %H:%M:%S"), time.monotonic()
-    ended = Rounds(folder, to_do, scheduler, choice.timeout, choice.cpus).run()
+    rounds = Rounds(folder, to_do, scheduler, choice.timeout, choice.cpus)
+    ended = rounds.run()
     elapsed_s = time.monotonic() - start_s
     folder.tidy()
-    rows = [row for row in folder.rows(to_do) if row["state"] != "missing"]
+    rows = folder.rows(rounds.with_result())
     task_s = sum(row.get("wall_s", 0.0) for row in rows)
     folder.add_run({"begun": begun, "elapsed_s": round(elapsed_s, 1), "scheduler": scheduler.name,
                     "workers": scheduler.workers or None, "tasks": len(rows),
                     "failed": sum(row["state"] == "failed" for row in rows), "task_s": round(task_s, 1),
-                    "speed_up": round(task_s / elapsed_s, 2)})
+                    "speed_up": round(task_s / elapsed_s, 2),
+                    # of its first task, by the clock of the tasks
+                    "begun_s": min((row["started_s"] for row in rows if "started_s" in row), default=0.0)})
     return ended
 
 

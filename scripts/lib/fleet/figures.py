@@ -1,5 +1,6 @@
 """The plots of the report page: scripts for gnuplot, and what gnuplot draws from them."""
 
+import math
 import shutil
 import subprocess
 from dataclasses import dataclass
@@ -21,8 +22,8 @@ class Figure:
     script: str  # without its terminal
 
 
-def figures_of(rows):
-    """Those for which the rows have figures."""
+def figures_of(rows, since_s=0.0):
+    """Those for which the rows have figures. The progress is that of tasks that began after `since_s` (Unix time)."""
     return [figure for figure in (
         over_points(rows, "segmented_s", "Time", "time, s",
                     "Wall time of the programs for each input, without the comparison with the truth."),
@@ -32,9 +33,9 @@ def figures_of(rows):
         sorted_curves(rows, (("object_iou", "objects"), ("instance_iou", "all instances")), "Quality of the segments",
                       "mean best IoU", "Mean best intersection over union of the true instances with a segment; inputs "
                       "of known truth in ascending order, for each curve by itself.", top=1.0),
-        sorted_curves(rows, (("ate_m", "ATE, root mean square"),), "Error of the camera's path", "m",
+        sorted_curves(rows, (("ate_m", "ATE, root mean square"),), "Error of the camera's path", "error, m",
                       "Recordings of known path in ascending order.", is_log=True),
-        progress(rows)) if figure]
+        progress([row for row in rows if row.get("started_s", 0.0) >= since_s])) if figure]
 
 
 def over_points(rows, column, title, label, caption):
@@ -45,29 +46,42 @@ def over_points(rows, column, title, label, caption):
     series = [each for each in series if each[2]]
     if not series:
         return None
-    return Figure(title, caption, f"set xlabel 'points'\nset ylabel '{label}'\nset logscale xy\nset format '%g'\n"
-                  + roomy_log_range("x", [row["points"] for row in found])
-                  + roomy_log_range("y", [row[column] for row in found]) + plot(series))
+    return Figure(title, caption, f"set xlabel 'points'\nset ylabel '{label}'\nset grid\n"
+                  + log_axis("x", [row["points"] for row in found])
+                  + log_axis("y", [row[column] for row in found]) + plot(series))
 
 
-def roomy_log_range(axis, values):
-    """gnuplot cannot choose a range where all values are one, and puts extreme points on the border."""
-    return f"set {axis}range [{min(values) / 1.3:.6g}:{max(values) * 1.3:.6g}]\n"
+def log_axis(axis, values):
+    """A range with room at both ends, also where all values are one; and tics in it where it is less than some powers
+    of ten, at which gnuplot has none."""
+    least, most = min(values) / 1.3, max(values) * 1.3
+    steps = (1, 2, 5) if most / least < 300 else (1,)
+    powers = range(math.floor(math.log10(least)), math.ceil(math.log10(most)) + 1)
+    tics = [step * 10.0**power for power in powers for step in steps if least <= step * 10.0**power <= most]
+    return (f"set logscale {axis}\nset {axis}range [{least:.6g}:{most:.6g}]\n"
+            f"set {axis}tics ({', '.join(f'{tic_label(tic)!r} {tic:.6g}' for tic in tics)})\n")
+
+
+def tic_label(value):
+    return f"{value:,.0f}" if value >= 1 else f"{value:g}"
 
 
 def sorted_curves(rows, columns, title, label, caption, *, top=None, is_log=False):
-    series = []
+    series, shown = [], []
     for (column, name), color in zip(columns, CURVES, strict=False):
         values = sorted(row[column] for row in with_values(rows, column))
         if values:
-            series.append((column, f"with linespoints linecolor rgb '{color}' linewidth 1.5 pointtype 7 pointsize 0.3 "
+            shown += values
+            size = 0.3 if len(values) > 30 else 0.6
+            series.append((column, f"with linespoints linecolor rgb '{color}' linewidth 1.5 pointtype 7 pointsize {size} "
                            f"title '{name}'", list(enumerate(values, 1))))
     if not series:
         return None
     count = max(len(points) for _, _, points in series)
-    scale = "set logscale y\nset format y '%g'\n" if is_log else f"set yrange [0:{top or ''}]\n"
-    return Figure(title, caption, f"set xlabel 'inputs'\nset ylabel '{label}'\nset xrange [0:{count + 1}]\n{scale}"
-                  + plot(series))
+    scale = log_axis("y", shown) if is_log else f"set yrange [0:{top or ''}]\n"
+    each = "set xtics 1\n" if count < 15 else ""  # not at halves
+    return Figure(title, caption, f"set xlabel 'inputs'\nset ylabel '{label}'\nset grid\nset xrange [0:{count + 1}]\n"
+                  f"{each}{scale}" + plot(series))
 
 
 def progress(rows):
@@ -85,7 +99,7 @@ def progress(rows):
                [(0.0, 0), *((end, number) for number, end in ends)]),
               ("working", f"axes x1y2 with steps linecolor rgb '{CURVES[1]}' title 'tasks at work (right)'", at_work)]
     most = max(number for _, number in at_work)
-    return Figure("Progress", "Results, and tasks at work, since the first task of this table began.",
+    return Figure("Progress", "Results of the last run, and its tasks at work.",
                   "set xlabel 'time, s'\nset ylabel 'results'\nset y2label 'tasks at work'\nset border 11\n"
                   f"set yrange [0:*]\nset y2range [0:{2 * most}]\nset y2tics {max(1, most // 4)}\n" + plot(series))
 

@@ -151,7 +151,7 @@ def difference(was, now):
 
 def shown(value):
     text = " ".join(value) if isinstance(value, list) else str(value)
-    return f"'{text}'"
+    return f"'{text}'" if text else "not given"
 
 
 def write_text(file, text):

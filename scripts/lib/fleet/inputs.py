@@ -51,12 +51,12 @@ def read_list(file):
             if words := words_of(line):
                 parsed.append((number, parse_line(words, folder)))
         except Problem as problem:
-            errors.append(f"{file}:{number}: {problem}")
-    errors += [f"{file}:{number}: there is a name={name} in line {first} already"
-               for number, name, first in repeated(parsed)]
+            errors.append((number, str(problem)))
+    errors += [(number, f"there is a name={name} in line {first} already") for number, name, first in repeated(parsed)]
     if errors:
-        rest = [f"and {len(errors) - SHOWN_ERRORS} more"] if len(errors) > SHOWN_ERRORS else []
-        raise Problem("\n  ".join(errors[:SHOWN_ERRORS] + rest), 2)
+        lines = [f"{file}:{number}: {text}" for number, text in sorted(errors)]
+        rest = [f"and {len(lines) - SHOWN_ERRORS} more"] if len(lines) > SHOWN_ERRORS else []
+        raise Problem("\n  ".join(lines[:SHOWN_ERRORS] + rest), 2)
     if not parsed:
         raise Problem(f"{file}: there is no input in it; expected one a line, see scripts/fleet run --help", 2)
     return with_names([given for _, given in parsed])

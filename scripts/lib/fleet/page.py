@@ -11,7 +11,7 @@ body { font: 16px/1.5 sans-serif; color: #222; background: #fff; max-width: 60re
 h1 { font-size: 1.6rem; } h2 { font-size: 1.2rem; margin-top: 2.2rem; }
 table { border-collapse: collapse; font-size: .92rem; }
 th, td { padding: .25rem .8rem .25rem 0; border-bottom: 1px solid #e0e0e0; text-align: right; vertical-align: top; }
-th:first-child, td:first-child, td.text, th.text { text-align: left; overflow-wrap: anywhere; }
+th:first-child, td:first-child, .text, .long { text-align: left; } .long { overflow-wrap: anywhere; }
 dl { display: grid; grid-template-columns: max-content auto; gap: .1rem 1.2rem; }
 dt { color: #666; } dd { margin: 0; overflow-wrap: anywhere; }
 .note, figcaption { color: #555; font-size: .92rem; } .remark { color: #a04000; }
@@ -21,13 +21,13 @@ figure { margin: 1rem 0 2rem; } svg { width: 100%; height: auto; }
 EXTREMES = 10  # rows in the tables of the slowest and the worst
 MOST_ROWS = 2000  # in the table of all: a page of some 100 KB; results.csv has all
 MOST_FAILED = 200
-TEXTS = ("kind", "state", "reason", "step", "input", "begun", "scheduler")
+CLASSES = {"reason": "long", "input": "long", **dict.fromkeys(("kind", "state", "step", "begun", "scheduler"), "text")}
 
 
 def page(title, rows, runs, settings):
     """`rows` of the table, `runs` of the folder, `settings`: the options of the fleet."""
     body = [definitions(facts(rows, runs, settings)), failures(rows)]
-    for number, figure in enumerate(figures_of(rows)):
+    for number, figure in enumerate(figures_of(rows, runs[-1]["begun_s"] if runs else 0.0)):
         picture = drawn(figure, f"figure{number}") or remark("Not drawn: gnuplot is missing or failed. It is in the "
                                                              "Debian package gnuplot-nox.")
         body.append(f"{section(figure.title)}<figure>\n{picture}\n<figcaption>{escape(figure.caption)}</figcaption>\n"
@@ -97,7 +97,7 @@ def all_rows(rows):
 
 def table(columns, rows):
     def cells(tag, values):
-        return "".join(f"<{tag}{' class=text' if column in TEXTS else ''}>{escape(value)}</{tag}>"
+        return "".join(f'<{tag} class="{CLASSES.get(column, "number")}">{escape(value)}</{tag}>'
                        for column, value in zip(columns, values, strict=True))
 
     lines = "".join(f"<tr>{cells('td', [shown(row.get(column)) for column in columns])}</tr>\n" for row in rows)

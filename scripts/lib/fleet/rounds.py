@@ -50,8 +50,9 @@ class Rounds:
             for signal_number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
                 signal.signal(signal_number, signal.SIG_IGN)  # until the tasks have ended
             say("stopping; a second run goes on with what is missing")
-            self._scheduler.stop()
             return False
+        finally:
+            self._scheduler.stop()
         for number, given in enumerate(left, 1):
             said = self._scheduler.last_words(number)
             lost(self._folder, given, f"its worker ended {MAX_ROUNDS} times without a result" + (f": {said}" if said else ""))
@@ -67,6 +68,11 @@ class Rounds:
         self.tell(at_once=True)
         if problem := self._scheduler.problem():
             raise Problem(f"{self._scheduler.name}: {problem}")
+
+    def with_result(self):
+        """The inputs that have got a result in this run."""
+        left = {given.name for given in self._without_result()}
+        return [given for given in self._inputs if given.name not in left]
 
     def _without_result(self):
         now = self._folder.results()
