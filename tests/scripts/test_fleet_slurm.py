@@ -31,7 +31,7 @@ class SlurmTest(WholeRuns, FleetTest):
 
     def test_auto_takes_slurm_where_it_answers(self):
         self.write_list(a="")
-        self.assertIn("1 tasks with Slurm", self.fleet("run", "list.txt", "--out", self.out))
+        self.assertIn("tasks: 1, with Slurm", self.fleet("run", "list.txt", "--out", self.out))
 
     def test_tasks_go_on_without_the_run_and_the_next_run_waits_for_them(self):
         self.write_list(slow="touch $1.begun; while [ ! -e $1.cure ]; do sleep 0.05; done; echo x >> $1.times")

@@ -73,7 +73,7 @@ def work_through(choice, folder, scheduler, to_do):
     if not to_do:
         return True
     workers = f", {scheduler.workers} at a time" if scheduler.workers else ""
-    say(f"{len(to_do)} tasks with {scheduler.name}{workers}")
+    say(f"tasks: {len(to_do)}, with {scheduler.name}{workers}")
     begun, start_s = time.strftime("%Y-%m-%d %H:%M:%S"), time.monotonic()
     rounds = Rounds(folder, to_do, scheduler, choice.timeout, choice.cpus)
     ended = rounds.run()

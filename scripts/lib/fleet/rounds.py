@@ -11,7 +11,7 @@ from .folder import write_json
 from .task import lost
 
 MAX_ROUNDS = 3  # a task whose worker was killed is done again
-POLL_S = 0.5
+POLL_S = 1.0
 TELL_S = 10.0  # between two lines about progress
 TODO = "todo.json"
 
@@ -45,7 +45,7 @@ class Rounds:
                 if not left:
                     return True
                 if number + 1 < MAX_ROUNDS:
-                    say(f"{len(left)} tasks have ended without a result (their workers were killed?): once more")
+                    say(f"tasks without a result, because their workers were killed: {len(left)}; once more")
         except Stopped:
             for signal_number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
                 signal.signal(signal_number, signal.SIG_IGN)  # until the tasks have ended
@@ -62,9 +62,10 @@ class Rounds:
         write_json(self._folder.job_file(TODO), {"names": [given.name for given in inputs],
                                                  "timeout_s": self._timeout_s, "cpus": self._cpus})
         self._scheduler.start([f"{ROOT}/scripts/fleet", "task", str(self._folder.path)], len(inputs))
+        start_s = time.monotonic()
         while self._scheduler.is_at_work():
             self.tell()
-            time.sleep(POLL_S)
+            time.sleep(min(POLL_S, 0.05 + 0.1 * (time.monotonic() - start_s)))  # a short round is not made longer
         self.tell(at_once=True)
         if problem := self._scheduler.problem():
             raise Problem(f"{self._scheduler.name}: {problem}")
