@@ -179,13 +179,3 @@ class WholeRuns:
         self.write("slow.ply.cure", "")
         self.assertIn("1 of 3 inputs have been done before", self.run_fleet())
         self.assertEqual({row["state"] for row in self.table().values()}, {"done"})
-
-    def test_a_second_run_at_once_is_refused(self):
-        self.write_list(slow="touch $1.begun; while [ ! -e $1.cure ]; do sleep 0.05; done")
-        run = self.begin("run", "list.txt", "--out", self.out, *self.scheduler)
-        self.wait_for((self.here / "slow.ply.begun").exists)
-        self.assertIn(f"is at work in {self.out} (pid {run.pid})", self.run_fleet(expect=1))
-        self.write("slow.ply.cure", "")
-        self.assertEqual(run.wait(PATIENCE_S), 0, (self.here / "messages.txt").read_text())
-
-

@@ -83,7 +83,7 @@ class PageTest(FleetTest):
     def test_facts_and_runs(self):
         text = self.page([row("a"), row("b", host="node2")], [
             {"begun": "2026-01-01 00:00:00", "begun_s": 0.0, "elapsed_s": 2.0, "scheduler": "Slurm", "workers": 2,
-             "tasks": 2, "failed": 0, "task_s": 4.0, "speed_up": 2.0}])
+             "tasks": 2, "failed": 0, "task_s": 4.0, "at_work": 2.0}])
         for told in ("node1, node2", "preset paper; mapper: --resolution 0.01", "2,000", "4.0 s of all tasks", "Fleet &lt;1&gt;"):
             self.assertIn(told, text)
 
@@ -93,8 +93,10 @@ class PageTest(FleetTest):
         self.assertIn("results.csv has all", text)
 
     def test_tasks_at_work_are_counted_over_time(self):
+        self.assertEqual(table.at_work([(0.0, 5.0), (2.0, 3.0)], 5), [(0.5, 1.0), (1.5, 1.0), (2.5, 2.0), (3.5, 1.0), (4.5, 1.0)])
+        self.assertEqual(table.at_work([(0.5, 1.0), (1.25, 2.0)], 2), [(0.5, 0.5), (1.5, 0.75)])
         figure = figures.progress([row("a", started_s=10.0, wall_s=5.0), row("b", started_s=12.0, wall_s=1.0)])
-        self.assertIn("0 1\n2 2\n3 1\n5 0\n", figure.script)
+        self.assertIn("$ended << EOD\n0 0\n3 1\n5 2\nEOD\n", figure.script)
 
     def test_logarithmic_axes_have_tics_in_narrow_ranges(self):
         self.assertIn("('2,000' 2000, '5,000' 5000)", figures.log_axis("x", [1500, 5000]))

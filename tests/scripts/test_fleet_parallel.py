@@ -26,6 +26,14 @@ class ParallelTest(WholeRuns, FleetTest):
         self.run_fleet()
         self.assertEqual(self.table()["slow"]["state"], "done")
 
+    def test_a_second_run_at_once_is_refused(self):
+        self.write_list(slow="touch $1.begun; while [ ! -e $1.cure ]; do sleep 0.05; done")
+        run = self.begin("run", "list.txt", "--out", self.out, *self.scheduler)
+        self.wait_for((self.here / "slow.ply.begun").exists)
+        self.assertIn(f"is at work in {self.out} (pid {run.pid})", self.run_fleet(expect=1))
+        self.write("slow.ply.cure", "")
+        self.assertEqual(run.wait(PATIENCE_S), 0, (self.here / "messages.txt").read_text())
+
     def test_so_many_tasks_at_a_time_as_jobs_says_each_with_processors_of_its_own(self):
         # Each waits for the other.
         script = ("touch {here}/{name}.here; until [ -e {here}/a.here ] && [ -e {here}/b.here ]; do sleep 0.01; done; "

@@ -84,7 +84,7 @@ def work_through(choice, folder, scheduler, to_do):
     folder.add_run({"begun": begun, "elapsed_s": round(elapsed_s, 1), "scheduler": scheduler.name,
                     "workers": scheduler.workers or None, "tasks": len(rows),
                     "failed": sum(row["state"] == "failed" for row in rows), "task_s": round(task_s, 1),
-                    "speed_up": round(task_s / elapsed_s, 2),
+                    "at_work": round(task_s / elapsed_s, 2),
                     # of its first task, by the clock of the tasks
                     "begun_s": min((row["started_s"] for row in rows if "started_s" in row), default=0.0)})
     return ended

@@ -5,11 +5,12 @@ import shutil
 import subprocess
 from dataclasses import dataclass
 
-from .table import busy_periods, with_values
+from .table import at_work, busy_periods, with_values
 
 # Told apart by colour-blind people, too.
 KINDS = (("cloud", "#0072b2", 7), ("log", "#d55e00", 5), ("recording", "#009e73", 9))
 CURVES = ("#0072b2", "#d55e00")
+INTERVALS = 100  # of the plot of progress
 TERMINAL = ("set terminal svg name '{name}' size 900,420 dynamic background rgb 'white' font 'sans-serif,14' noenhanced\n"
             "set border 3 linecolor rgb '#555555'\nset tics nomirror\nset grid linecolor rgb '#e4e4e4'\n"
             "set key outside above center horizontal Left reverse samplen 2\n")
@@ -89,19 +90,14 @@ def progress(rows):
     periods = busy_periods(rows)
     if not periods:
         return None
-    ends = list(enumerate(sorted(end for _, end in periods), 1))
-    changes = sorted([(begin, 1) for begin, _ in periods] + [(end, -1) for _, end in periods])
-    working, at_work = 0, [(0.0, 0)]
-    for time_s, change in changes:
-        working += change
-        at_work.append((time_s, working))
-    series = [("ended", f"with steps linecolor rgb '{CURVES[0]}' linewidth 1.5 title 'results'",
-               [(0.0, 0), *((end, number) for number, end in ends)]),
-              ("working", f"axes x1y2 with steps linecolor rgb '{CURVES[1]}' title 'tasks at work (right)'", at_work)]
-    most = max(number for _, number in at_work)
-    return Figure("Progress", "Results of the last run, and its tasks at work.",
-                  "set xlabel 'time, s'\nset ylabel 'results'\nset y2label 'tasks at work'\nset border 11\n"
-                  f"set yrange [0:*]\nset y2range [0:{2 * most}]\nset y2tics {max(1, most // 4)}\n" + plot(series))
+    ends = [(end, number) for number, end in enumerate(sorted(end for _, end in periods), 1)]
+    busy = at_work(periods, INTERVALS)
+    series = [("ended", f"with steps linecolor rgb '{CURVES[0]}' linewidth 1.5 title 'results'", [(0.0, 0), *ends]),
+              ("working", f"axes x1y2 with histeps linecolor rgb '{CURVES[1]}' title 'tasks at work (right)'", busy)]
+    most = max((number for _, number in busy), default=1.0)
+    return Figure("Progress", f"Results of the last run, and its tasks at work (mean of each {INTERVALS}th of the time).",
+                  "set xlabel 'time, s'\nset ylabel 'results'\nset y2label 'tasks at work'\nset border 11\nset y2tics\n"
+                  f"set xrange [0:*]\nset yrange [0:*]\nset y2range [0:{1.5 * most:.6g}]\n" + plot(series))
 
 
 def plot(series):

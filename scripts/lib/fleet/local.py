@@ -5,6 +5,7 @@ import shlex
 import shutil
 import signal
 import subprocess
+import sys
 
 from trio.messages import Problem
 from trio.process import spawn
@@ -28,7 +29,7 @@ class Local:
     def start(self, task_command, count):
         """Starts tasks 1 to `count`: task_command with the number of the task and of its slot behind."""
         # exec: no shell between parallel and a task, which is killed when parallel dies.
-        task = shlex.join(["exec", "setpriv", "--pdeathsig", "KILL", *task_command]) + " {} {%}"
+        task = shlex.join(["exec", "setpriv", "--pdeathsig", "KILL", sys.executable, *task_command]) + " {} {%}"
         environment = {key: value for key, value in os.environ.items() if key != "PARALLEL"}  # its default options
         lock = self._folder.lock_descriptor
         with open(self._folder.job_file("parallel.txt"), "wb") as log:

@@ -97,9 +97,10 @@ def instance_quality(folder):
     file = Path(folder, "quality.csv")
     if not file.exists():
         return {}
-    row = read_csv(file)[0]
-    return {name: float(row[name]) for name in ("object_iou", "instance_iou", "objects_found", "objects",
-                                                "achievable_accuracy", "undersegmentation_error") if is_number(row[name])}
+    row = {name: float(text) for name, text in read_csv(file)[0].items() if is_number(text)}
+    of_objects = ("object_iou", "objects_found", "objects") if row.get("objects") else ()  # there may be none
+    return {name: row[name] for name in (*of_objects, "instance_iou", "achievable_accuracy", "undersegmentation_error")
+            if name in row}
 
 
 def path_quality(tables):

@@ -71,7 +71,7 @@ def failures(rows):
 
 def extremes(rows):
     parts = []
-    for title, column, worst_first in (("The slowest", "segmented_s", True), ("The least quality", "object_iou", False),
+    for title, column, worst_first in (("The slowest", "segmented_s", True), ("The lowest quality", "object_iou", False),
                                        ("The largest errors of the path", "ate_m", True)):
         found = sorted(with_values(rows, column), key=lambda row: row[column], reverse=worst_first)
         if len(found) > 1:
@@ -83,9 +83,9 @@ def extremes(rows):
 def all_runs(runs):
     if not runs:
         return ""
-    return section("Runs") + table(("begun", "elapsed_s", "scheduler", "workers", "tasks", "failed", "task_s", "speed_up"),
+    return section("Runs") + table(("begun", "elapsed_s", "scheduler", "workers", "tasks", "failed", "task_s", "at_work"),
                                    runs) + note(
-        "workers: tasks at a time, where that was limited; task_s: time of all its tasks; speed_up: that by the elapsed time.")
+        "workers: tasks at a time, where that was limited; task s: time of all its tasks; at work: tasks at a time, mean.")
 
 
 def all_rows(rows):

@@ -45,3 +45,15 @@ def busy_periods(rows):
     found = [(row["started_s"], row["started_s"] + row["wall_s"]) for row in rows if "started_s" in row]
     first = min((begin for begin, _ in found), default=0.0)
     return [(begin - first, end - first) for begin, end in found]
+
+
+def at_work(periods, num_intervals):
+    """(middle, mean number of tasks at work) of intervals of one length, up to the end of the last task."""
+    length = max(end for _, end in periods) / num_intervals
+    if not length:
+        return []
+    sums = [0.0] * num_intervals
+    for begin, end in periods:
+        for place in range(int(begin / length), min(int(end / length) + 1, num_intervals)):
+            sums[place] += max(0.0, min(end, (place + 1) * length) - max(begin, place * length))
+    return [((place + 0.5) * length, busy_s / length) for place, busy_s in enumerate(sums)]
