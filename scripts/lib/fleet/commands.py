@@ -30,7 +30,7 @@ def main(arguments):
     commands = {"run": run, "report": report, "task": task}
     try:
         if not arguments or arguments[0] in ("-h", "--help"):
-            write(STDOUT, USAGE)
+            write(STDOUT, USAGE + RunParser().format_help())
             return 0 if arguments else 2
         if arguments[0] not in commands:
             raise Problem(f"unknown command {arguments[0]}; expected run or report, see scripts/fleet --help", 2)

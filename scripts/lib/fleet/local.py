@@ -10,6 +10,8 @@ import sys
 from trio.messages import Problem
 from trio.process import spawn
 
+from .folder import write_text
+
 STOP_S = 10.0
 
 
@@ -32,11 +34,13 @@ class Local:
         task = shlex.join(["exec", "setpriv", "--pdeathsig", "KILL", sys.executable, *task_command]) + " {} {%}"
         environment = {key: value for key, value in os.environ.items() if key != "PARALLEL"}  # its default options
         lock = self._folder.lock_descriptor
+        numbers = self._folder.job_file("numbers.txt")
+        write_text(numbers, "".join(f"{number}\n" for number in range(1, count + 1)))
         with open(self._folder.job_file("parallel.txt"), "wb") as log:
             # Without --ungroup the output of tasks would go through files; they have none.
             self._parallel = spawn(
-                ["parallel", "--will-cite", "--ungroup", f"--jobs={self.workers}", *self._words, task, ":::",
-                 *map(str, range(1, count + 1))], "KILL", env=environment, stdout=log, stderr=subprocess.STDOUT,
+                ["parallel", "--will-cite", "--ungroup", f"--jobs={self.workers}", *self._words, task, "::::",
+                 str(numbers)], "KILL", env=environment, stdout=log, stderr=subprocess.STDOUT,
                 pass_fds=() if lock is None else (lock,))
 
     def is_at_work(self):

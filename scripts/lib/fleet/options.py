@@ -46,10 +46,9 @@ Words with blanks are quoted as in a shell; # begins a comment.
 """
 
 USAGE = """\
-usage: scripts/fleet run LIST --out DIR [options]     segments or maps every input of LIST
+usage: scripts/fleet run LIST --out DIR [options]     segments or maps every input of LIST (below)
        scripts/fleet report DIR                       writes results.csv and report.html of DIR again, also during a run
 
-See scripts/fleet run --help.
 """
 
 # What a fleet sets itself, and why.
