@@ -102,8 +102,9 @@ class OneMachineSlurm:
         while not condition():
             for process in self._processes:
                 if process.poll() is not None or time.monotonic() > deadline:
-                    said = (self.folder / f"{self._processes[-1].args[0]}.txt").read_text(errors="replace").splitlines()
-                    raise NoSlurm(f"{self._processes[-1].args[0]} does not come up: {' / '.join(said[-2:])}")
+                    name = self._processes[-1].args[0]
+                    said = (self.folder / f"{name}.txt").read_text(errors="replace").splitlines()
+                    raise NoSlurm(f"{name} does not come up: {' / '.join(said[-2:])}")
             time.sleep(0.05)
 
     def close(self):

@@ -59,6 +59,16 @@ class TaskTest(FleetTest):
                       "printf 'ate_m_pairs,ate_m_rmse\\n4,0.125\\n' > $6 ;; *--csv*) exit 1 ;; esac")
         self.assertEqual(self.do(Input("a", "synthetic://office"))["ate_m"], 0.125)
 
+    def test_a_path_that_cannot_be_compared_fails_only_where_that_was_asked_for(self):
+        write_program(self.programs / "kintsugi-evaluate", "echo no poses; exit 1")
+        recording = self.here / "walk"
+        recording.mkdir()
+        (recording / "groundtruth.txt").write_text("0.5 0 0 0 0 0 0 1\n")
+        row = self.do(Input("a", str(recording)))
+        self.assertEqual((row["state"], row["reason"]), ("done", "the path was not compared: no poses"))
+        row = self.do(Input("b", str(recording), path=str(recording / "groundtruth.txt")))
+        self.expect_failed(row, "no poses", 1)
+
     def test_time_and_memory_are_those_of_the_programs(self):
         # 60 MB in a string of the shell, made by doubling.
         row = self.do(self.cloud("x=0123456789012345678901234567890123456789012345678901234567890; "

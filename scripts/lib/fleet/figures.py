@@ -11,8 +11,8 @@ from .table import at_work, busy_periods, with_values
 KINDS = (("cloud", "#0072b2", 7), ("log", "#d55e00", 5), ("recording", "#009e73", 9))
 CURVES = ("#0072b2", "#d55e00")
 INTERVALS = 100  # of the plot of progress
-TERMINAL = ("set terminal svg name '{name}' size 900,420 dynamic background rgb 'white' font 'sans-serif,14' noenhanced\n"
-            "set border 3 linecolor rgb '#555555'\nset tics nomirror\nset grid linecolor rgb '#e4e4e4'\n"
+TERMINAL = ("set terminal svg name '{name}' size 900,420 dynamic background rgb 'white' font 'sans-serif,14' "
+            "noenhanced\nset border 3 linecolor rgb '#555555'\nset tics nomirror\nset grid linecolor rgb '#e4e4e4'\n"
             "set key outside above center horizontal Left reverse samplen 2\n")
 
 
@@ -74,8 +74,8 @@ def sorted_curves(rows, columns, title, label, caption, *, top=None, is_log=Fals
         if values:
             shown += values
             size = 0.3 if len(values) > 30 else 0.6
-            series.append((column, f"with linespoints linecolor rgb '{color}' linewidth 1.5 pointtype 7 pointsize {size} "
-                           f"title '{name}'", list(enumerate(values, 1))))
+            series.append((column, f"with linespoints linecolor rgb '{color}' linewidth 1.5 pointtype 7 "
+                           f"pointsize {size} title '{name}'", list(enumerate(values, 1))))
     if not series:
         return None
     count = max(len(points) for _, _, points in series)
@@ -92,7 +92,8 @@ def progress(rows):
         return None
     ends = [(end, number) for number, end in enumerate(sorted(end for _, end in periods), 1)]
     busy = at_work(periods, INTERVALS)
-    series = [("ended", f"with steps linecolor rgb '{CURVES[0]}' linewidth 1.5 title 'results'", [(0.0, 0), *ends]),
+    series = [("ended", f"with steps linecolor rgb '{CURVES[0]}' linewidth 1.5 title 'results'",
+               [(0.0, 0), *ends]),
               ("working", f"axes x1y2 with histeps linecolor rgb '{CURVES[1]}' title 'tasks at work (right)'", busy)]
     most = max((number for _, number in busy), default=1.0)
     return Figure("Progress", f"Results of the last run, and its tasks at work (mean of each {INTERVALS}th of the time).",

@@ -40,20 +40,21 @@ class FleetFolder:
         if not (self.path / FLEET).exists():
             others = sorted(set(os.listdir(self.path)) - {".lock"}) if self.path.is_dir() else []
             if others:
-                raise Problem(f"{self.path} holds other files ({others[0]}, ...) and no fleet; choose a new folder with "
-                              "--out", 2)
+                raise Problem(f"{self.path} holds other files ({others[0]}, ...) and no fleet; choose a new folder "
+                              "with --out", 2)
             return
         of_inputs, of_settings = self.recall()
         now = {given.name: given for given in inputs}
         for given in of_inputs:
             if now.get(given.name) != given:
-                raise Problem(f"{self.path} is the folder of another list: {difference(given, now.get(given.name))}. Go "
-                              "on with that list (inputs may be added to it), or choose another folder with --out", 2)
+                raise Problem(f"{self.path} is the folder of another list: {difference(given, now.get(given.name))}. "
+                              "Go on with that list (inputs may be added to it), or choose another folder with --out",
+                              2)
         changed = [key for key in settings if settings[key] != of_settings.get(key)]
         if changed:
             was, wanted = (shown(of[changed[0]]) for of in (of_settings, settings))
-            raise Problem(f"{self.path} was begun with other options: {changed[0]} was {was}, and is {wanted} now. Go on "
-                          "with the options that it has, or choose another folder with --out", 2)
+            raise Problem(f"{self.path} was begun with other options: {changed[0]} was {was}, and is {wanted} now. "
+                          "Go on with the options that it has, or choose another folder with --out", 2)
 
     def begin(self, inputs, settings):
         """Creates and locks the folder, and remembers what it is of."""

@@ -21,8 +21,8 @@ class Local:
     def __init__(self, folder, jobs, cpus, words):
         """`words`: further options of parallel."""
         if not shutil.which("parallel"):
-            raise Problem("there is neither a controller of Slurm that answers nor GNU parallel; "
-                          "apt-get install parallel")
+            raise Problem("GNU parallel is not installed (apt-get install parallel), and Slurm does not answer or was "
+                          "not chosen")
         self.workers = jobs or max(1, len(os.sched_getaffinity(0)) // cpus)
         self._folder = folder
         self._words = words

@@ -40,9 +40,9 @@ LIST is a file with one input a line, or - for standard input:
 
 PATH is a point cloud (PLY, PCD, LAS, NPY, text), an LCM log of a mapper, or a recording: what --device of
 kintsugi-mapper takes, a folder or synthetic://NAME too. kind=cloud, log or recording says so where the name does not.
-truth is a PLY file with the true instances, path the camera's true path (TUM format); both are known of synthetic scenes,
-and the path of folders with groundtruth.txt. Paths are relative to the folder of LIST (of -: to the current folder).
-Words with blanks are quoted as in a shell; # begins a comment.
+truth is a PLY file with the true instances, path the camera's true path (TUM format); both are known of synthetic
+scenes, and the path of folders with groundtruth.txt. Paths are relative to the folder of LIST (of -: to the current
+folder). Words with blanks are quoted as in a shell; # begins a comment.
 """
 
 USAGE = """\
@@ -55,8 +55,8 @@ usage: scripts/fleet run LIST --out DIR [options]     segments or maps every inp
 KEPT = {
     "segment-cloud": {"--json": "segments.json is in the folder of the result"},
     "segmenter": {"--out": "the files of the map are in the folder of the result",
-                  "--log": "PATH in the list is the log", "--save": "the files of the map are in the folder of the result",
-                  "--resume": "each input begins anew"},
+                  "--log": "PATH in the list is the log",
+                  "--save": "the files of the map are in the folder of the result", "--resume": "each input begins anew"},
     "mapper": {"--device": "PATH in the list is the device", "--store": "the log is in the folder of the result",
                "--resume": "each input begins anew", "--output-trajectory": "the path is in the folder of the result",
                "--timings": "they are in the folder of the result",
@@ -70,8 +70,8 @@ class RunParser(Parser):
     def __init__(self):
         super().__init__("scripts/fleet run", RUN_OPTIONS, usage="scripts/fleet run LIST [options]",
                          description=textwrap.fill(
-                             "Segments the clouds and logs of a list, and maps and segments its recordings, one task an "
-                             "input, with Slurm or on this machine. Writes results.csv and report.html into DIR.", 100))
+                             "Segments the clouds and logs of a list, and maps and segments its recordings, one task "
+                             "an input, with Slurm or on this machine. Writes results.csv and report.html into DIR.", 100))
         self.epilog = LIST_HELP
         self.formatter_class = argparse.RawDescriptionHelpFormatter  # the epilog has lines of its own
         self.may_be_empty = MAY_BE_EMPTY

@@ -21,7 +21,8 @@ figure { margin: 1rem 0 2rem; } svg { width: 100%; height: auto; }
 EXTREMES = 10  # rows in the tables of the slowest and the worst
 MOST_ROWS = 2000  # in the table of all: a page of some 100 KB; results.csv has all
 MOST_FAILED = 200
-CLASSES = {"reason": "long", "input": "long", **dict.fromkeys(("kind", "state", "step", "begun", "scheduler"), "text")}
+CLASSES = {"reason": "long", "input": "long",
+           **dict.fromkeys(("kind", "state", "step", "begun", "scheduler"), "text")}
 
 
 def page(title, rows, runs, settings):
@@ -39,14 +40,16 @@ def page(title, rows, runs, settings):
 
 def facts(rows, runs, settings):
     numbers = count(rows)
-    found = [("Inputs", f"{len(rows):,}: " + ", ".join(f"{number:,} {state}" for state, number in numbers.items() if number))]
+    states = ", ".join(f"{number:,} {state}" for state, number in numbers.items() if number)
+    found = [("Inputs", f"{len(rows):,}: {states}")]
     if numbers["done"]:
+        memory_MB = max(row["peak_memory_MB"] for row in with_values(rows, "peak_memory_MB"))
         found += [("Points", f"{total(rows, 'points'):,}"), ("Segments", f"{total(rows, 'segments'):,}"),
-                  ("Time", f"{duration(total(rows, 'wall_s'))} of all tasks, of them {duration(total(rows, 'cpu_s'))} of CPU"),
-                  ("Peak memory", f"{max(row['peak_memory_MB'] for row in with_values(rows, 'peak_memory_MB')):,.0f} MB")]
+                  ("Time", f"{duration(total(rows, 'wall_s'))} of all tasks; {duration(total(rows, 'cpu_s'))} of CPU"),
+                  ("Peak memory", f"{memory_MB:,.0f} MB")]
     for column, name in (("object_iou", "Mean best IoU, objects"), ("instance_iou", "Mean best IoU, all instances"),
-                         ("achievable_accuracy", "Achievable accuracy"), ("undersegmentation_error", "Under-segmentation error"),
-                         ("ate_m", "Error of the path (ATE), m")):
+                         ("achievable_accuracy", "Achievable accuracy"),
+                         ("undersegmentation_error", "Under-segmentation error"), ("ate_m", "Error of the path (ATE), m")):
         if (value := mean(rows, column)) is not None:
             found.append((name, f"{value:.3f}, mean over {len(with_values(rows, column)):,} inputs"))
     if objects := total(rows, "objects"):
@@ -83,13 +86,14 @@ def extremes(rows):
 def all_runs(runs):
     if not runs:
         return ""
-    return section("Runs") + table(("begun", "elapsed_s", "scheduler", "workers", "tasks", "failed", "task_s", "at_work"),
-                                   runs) + note(
-        "workers: tasks at a time, where that was limited; task s: time of all its tasks; at work: tasks at a time, mean.")
+    columns = ("begun", "elapsed_s", "scheduler", "workers", "tasks", "failed", "task_s", "at_work")
+    return section("Runs") + table(columns, runs) + note(
+        "workers: tasks at a time, where that was limited; task s: time of all tasks; at work: tasks at a time, mean.")
 
 
 def all_rows(rows):
-    columns = ("name", "kind", "state", "points", "segments", "segmented_s", "cpu_s", "peak_memory_MB", "object_iou", "ate_m")
+    columns = ("name", "kind", "state", "points", "segments", "segmented_s", "cpu_s", "peak_memory_MB", "object_iou",
+               "ate_m")
     more = remark(f"The first {MOST_ROWS}; results.csv has all {len(rows)}.") if len(rows) > MOST_ROWS else ""
     return (f"{section('All inputs')}<details>\n<summary>{len(rows):,} rows</summary>\n"
             f"{table(columns, rows[:MOST_ROWS])}</details>\n{more}")

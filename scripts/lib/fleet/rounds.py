@@ -55,7 +55,8 @@ class Rounds:
             self._scheduler.stop()
         for number, given in enumerate(left, 1):
             said = self._scheduler.last_words(number)
-            lost(self._folder, given, f"its worker ended {MAX_ROUNDS} times without a result" + (f": {said}" if said else ""))
+            reason = f"its worker ended {MAX_ROUNDS} times without a result"
+            lost(self._folder, given, f"{reason}: {said}" if said else reason)
         return True
 
     def _round(self, inputs):

@@ -35,7 +35,7 @@ class Slurm:
     def __init__(self, folder, jobs, cpus, words):
         """jobs 0: as many as Slurm starts; `words`: further options of sbatch."""
         if not answers():
-            raise Problem("no controller of Slurm answers (scontrol ping); --scheduler parallel works on this machine")
+            raise Problem("no controller of Slurm answers (scontrol ping); --scheduler parallel works without")
         self.workers = jobs
         self._folder = folder
         self._options = [f"--cpus-per-task={cpus}", "--job-name=kintsugi-fleet", *words]

@@ -10,7 +10,8 @@ STATES = ("done", "failed", "missing")
 
 
 def as_csv(rows):
-    """A line for each input; what is not known is empty."""
+    """A line for each input; what is not known is empty. An input that is done may have a reason, too: why a quality is
+    not known."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(COLUMNS)

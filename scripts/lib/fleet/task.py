@@ -80,10 +80,9 @@ class Task:
 
     def _do(self, step):
         """Runs it, and adds what it takes."""
-        begin = self.log.stat().st_size if self.log.exists() else 0
         with open(self.log, "a", encoding="utf-8", errors="surrogateescape") as log:
             log.write(f"$ {' '.join(map(str, step.command))}\n")
-            begin += log.tell() - begin
+            begin = log.tell()
         usage = measures.run_program(step.command, self.here, self.log, self.timeout_s)
         self.row["cpu_s"] = round(self.row["cpu_s"] + usage.cpu_s, 3)
         self.row["peak_memory_MB"] = max(self.row["peak_memory_MB"], round(usage.peak_memory_MB, 1))
@@ -124,7 +123,9 @@ class Task:
                 except StepFailed as error:
                     failed = error
         if failed and not tables:
-            raise failed
+            if self.given.path:
+                raise failed
+            self.row["reason"] = f"the path was not compared: {failed}"  # its truth was only found beside it
         return measures.path_quality(tables)
 
 

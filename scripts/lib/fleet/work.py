@@ -49,8 +49,8 @@ def kind_of(given):
                         ("recording", ending in RECORDINGS)):
         if given.kind == kind or (is_it and not given.kind):
             return kind
-    raise Problem(f"{given.device}: its name does not tell what it is; expected a cloud ({', '.join(CLOUDS)}), a log of "
-                  f"LCM, a recording ({', '.join(RECORDINGS)}, a folder), or kind= in the list")
+    raise Problem(f"{given.device}: its name does not tell what it is; expected a cloud ({', '.join(CLOUDS)}), a log "
+                  f"of LCM, a recording ({', '.join(RECORDINGS)}, a folder), or kind= in the list")
 
 
 def steps_of(given, kind, settings):
