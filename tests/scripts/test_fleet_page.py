@@ -87,6 +87,13 @@ class PageTest(FleetTest):
         for told in ("node1, node2", "preset paper; mapper: --resolution 0.01", "2,000", "4.0 s of all tasks", "Fleet &lt;1&gt;"):
             self.assertIn(told, text)
 
+    def test_recordings_with_frames_that_were_not_located_are_named_the_worst_first(self):
+        text = self.page([row("half", frames=100, located=50), row("all", frames=100, located=100),
+                          row("none", frames=100, located=1)])
+        lost = text[text.index("Frames that were not located"):text.index("The slowest")]
+        self.assertLess(lost.index("none"), lost.index("half"))
+        self.assertNotIn(">all<", lost)
+
     def test_of_very_many_rows_the_first_are_on_the_page(self):
         text = self.page([row(f"input{number}") for number in range(page.MOST_ROWS + 1)])
         self.assertNotIn(f"input{page.MOST_ROWS}<", text)

@@ -96,7 +96,8 @@ def progress(rows):
                [(0.0, 0), *ends]),
               ("working", f"axes x1y2 with histeps linecolor rgb '{CURVES[1]}' title 'tasks at work (right)'", busy)]
     most = max((number for _, number in busy), default=1.0)
-    return Figure("Progress", f"Results of the last run, and its tasks at work (mean of each {INTERVALS}th of the time).",
+    return Figure("Progress",
+                  f"Results of the last run, and its tasks at work (mean of each {INTERVALS}th of its time).",
                   "set xlabel 'time, s'\nset ylabel 'results'\nset y2label 'tasks at work'\nset border 11\nset y2tics\n"
                   f"set xrange [0:*]\nset yrange [0:*]\nset y2range [0:{1.5 * most:.6g}]\n" + plot(series))
 

@@ -33,7 +33,7 @@ def page(title, rows, runs, settings):
                                                              "Debian package gnuplot-nox.")
         body.append(f"{section(figure.title)}<figure>\n{picture}\n<figcaption>{escape(figure.caption)}</figcaption>\n"
                     "</figure>\n")
-    body += [extremes(rows), all_runs(runs), all_rows(rows)]
+    body += [lost_frames(rows), extremes(rows), all_runs(runs), all_rows(rows)]
     return (f'<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n<title>{escape(title)}</title>\n'
             f"<style>{STYLE}</style>\n</head>\n<body>\n<h1>{escape(title)}</h1>\n{''.join(body)}</body>\n</html>\n")
 
@@ -81,6 +81,16 @@ def extremes(rows):
             columns = ("name", "points", "segments", column)
             parts.append(section(title) + table(columns, found[:EXTREMES]))
     return "".join(parts)
+
+
+def lost_frames(rows):
+    """Recordings of which the camera was lost, those most of all first: they are done, and their maps have gaps."""
+    found = [row for row in with_values(rows, "frames", "located") if row["located"] < row["frames"]]
+    if not found:
+        return ""
+    found.sort(key=lambda row: row["located"] / row["frames"])
+    return section("Frames that were not located") + table(("name", "frames", "located", "parts", "points"),
+                                                           found[:EXTREMES])
 
 
 def all_runs(runs):
