@@ -31,9 +31,9 @@ install(DIRECTORY ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}/openni2/ DESTINATION ${KINTS
 # The scripts that run them, under names of their own.
 install(DIRECTORY scripts/lib DESTINATION ${KINTSUGI_SHARE}/scripts USE_SOURCE_PERMISSIONS
         PATTERN bench EXCLUDE PATTERN __pycache__ EXCLUDE)
-install(PROGRAMS scripts/trio scripts/replay scripts/check_host scripts/private_bus scripts/lcm-spy
+install(PROGRAMS scripts/trio scripts/replay scripts/fleet scripts/check_host scripts/private_bus scripts/lcm-spy
         DESTINATION ${KINTSUGI_SHARE}/scripts)
-foreach(script trio replay check_host lcm-spy)
+foreach(script trio replay fleet check_host lcm-spy)
   string(REPLACE _ - name kintsugi-${script})
   set(SCRIPT ${script})
   set(BIN ${CMAKE_INSTALL_FULL_BINDIR})
@@ -95,7 +95,7 @@ math(EXPR python_next_minor "${Python3_VERSION_MINOR} + 1")
 set(CPACK_DEBIAN_PACKAGE_DEPENDS "liblcm-bin, libopenni2-0, python3 (>= 3.${Python3_VERSION_MINOR}), python3 (<< 3.${python_next_minor}), \
 python3-numpy, iproute2, util-linux")
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "gnuplot-nox, nftables, python3-numpy, systemd")
-set(CPACK_DEBIAN_PACKAGE_SUGGESTS "libeigen3-dev")  # for programs with find_package(Kintsugi)
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "libeigen3-dev, parallel, slurm-client")  # find_package(Kintsugi); kintsugi-fleet
 set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA ${packaging}/postinst ${packaging}/postrm)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 set(CPACK_STRIP_FILES ON)

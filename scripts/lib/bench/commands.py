@@ -13,7 +13,7 @@ from typing import Callable
 from trio.messages import Problem, os_error_text, say
 from trio.programs import ROOT
 
-from . import battery, live, mapping, others, recordings, segmenting
+from . import battery, fleets, live, mapping, others, recordings, segmenting
 from .battery_cases import chosen_cases
 from .document import Document
 from .run import Run, recordings_under
@@ -71,6 +71,9 @@ SECTIONS = (
     Section("structure", "files, folders and includes of the source code", others.structure),
     Section("pictures", "paths of pictures of each map, from two sides (not in the default run)", mapping.pictures,
             TRIO, in_default_run=False),
+    Section("fleets", "200 generated clouds through scripts/fleet, with one task at a time and with more (not in the default "
+            "run: 15 minutes)", fleets.fleets, (*MAPPER, "kintsugi-ground-truth", "kintsugi-segment-cloud",
+                                                "kintsugi-segmenter"), in_default_run=False),
     Section("faults", "scripts/faults --all (not in the default run: takes about an hour)", others.faults, TRIO,
             in_default_run=False),
 )

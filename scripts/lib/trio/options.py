@@ -122,12 +122,13 @@ class Parser(argparse.ArgumentParser):
     def __init__(self, command, table, usage=None, description=None):
         super().__init__(prog=command, usage=usage or f"{command} [options]", description=description,
                          allow_abbrev=False)
+        self.may_be_empty = MAY_BE_EMPTY
         self._with_value = {flag for flag, metavar, *_ in table if metavar}
         for flag, metavar, kind, target, text in table:
             self._add(flag, metavar, kind, target, text)
 
     def parse(self, arguments):
-        options, rest = self.parse_known_args(self._join_values(arguments))
+        options, rest = self.parse_known_args(self.join_values(arguments))
         if rest:
             raise Problem(f"unknown option {rest[0]}; see {self.prog} --help", 2)
         for name in (*PROCESSES, DETECTOR):
@@ -148,7 +149,7 @@ class Parser(argparse.ArgumentParser):
         self.add_argument(flag, action=PassOn if kind == PASS_ON else Split, dest=target, default=None, help=text,
                           **value)
 
-    def _join_values(self, arguments):
+    def join_values(self, arguments):
         """FLAG VALUE as FLAG=VALUE: argparse takes a separate value that begins with a dash, as in
         `--mapper --session=7`, for another option."""
         joined = []
@@ -160,7 +161,7 @@ class Parser(argparse.ArgumentParser):
                 continue
             if not is_joined:
                 value = next(rest, None)
-            if value is None or (not value and flag not in MAY_BE_EMPTY):
+            if value is None or (not value and flag not in self.may_be_empty):
                 raise Problem(f"{flag} needs a value", 2)
             joined.append(f"{flag}={value}")
         return joined

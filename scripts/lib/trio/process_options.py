@@ -43,12 +43,14 @@ class ProcessOptions:
         flags = {flag for flag, _ in added} - {None}
         self._options = [option for option in self._options if option[0] not in flags] + added
 
-    def check(self, command):
-        """Raises Problem for an option that belongs to `command`, scripts/trio or scripts/replay, or that lets the
-        process end at once."""
-        kept = KEPT_BY_RUN[self.name]
+    def check(self, command, kept=None, where=None):
+        """Raises Problem for an option that belongs to `command`, or that lets the process end at once.
+
+        `kept`: options of the command, with the reason (None: those of scripts/trio and scripts/replay); `where`:
+        what the options were given by (None: the flag with the name of the process)."""
+        kept = KEPT_BY_RUN[self.name] if kept is None else kept
         for flag, words in self._options:
-            option = f"--{self.name} '{' '.join(words)}'"
+            option = f"{where or '--' + self.name} '{' '.join(words)}'"
             if flag in kept:
                 raise Problem(f"{option}: {command} sets {flag} itself: {kept[flag].format(command=command)}", 2)
             if flag in ENDS_AT_ONCE:

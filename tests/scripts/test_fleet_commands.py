@@ -1,0 +1,84 @@
+"""The command line of scripts/fleet: what is refused before anything is started, and the report of a folder."""
+
+from unittest import mock
+
+from fleet_fakes import FleetTest
+
+from fleet import commands, local, slurm
+from fleet.folder import FleetFolder
+from fleet.inputs import Input
+from fleet.options import RunParser
+from fleet.task import do_task
+from trio.messages import Problem
+
+SETTINGS = {"preset": "", "maps": True, "cloud": [], "segmenter": [], "mapper": []}
+
+
+class RefusedTest(FleetTest):
+    def refused(self, *arguments, told, code=2):
+        self.assertIn(told, self.fleet(*arguments, expect=code))
+        self.assertFalse(self.out.exists())
+
+    def test_wrong_command_lines_change_nothing(self):
+        self.write_list(a="")
+        run = ("run", "list.txt", "--out", self.out)
+        self.refused(told="usage: scripts/fleet run LIST")
+        self.refused("start", told="unknown command start; expected run or report")
+        self.refused("run", told="which list?")
+        self.refused("report", told="report of which folder?")
+        self.refused(*run, "--jobs", "two", told="--jobs two: expected a whole number, at least 0")
+        self.refused(*run, "--cpus", "0", told="--cpus 0: expected a whole number, at least 1")
+        self.refused(*run, "--scheduler", "pbs", told="--scheduler pbs: expected one of auto, slurm, parallel")
+        self.refused(*run, "--nonsense", told="unknown option --nonsense")
+        self.refused(*run, "--mapper", "'open", told="No closing quotation")
+        self.refused(*run, "--segmenter", "--log x", told="scripts/fleet sets --log itself: PATH in the list is the log")
+        self.refused("run", "none.txt", "--out", self.out, told="none.txt: No such file")
+        self.refused("report", self.out, told="is no folder of a fleet")
+
+    def test_programs_that_are_not_built_are_told(self):
+        self.write_list(a="")
+        (self.programs / "kintsugi-evaluate").unlink()
+        self.refused("run", "list.txt", "--out", self.out, told="there is no kintsugi-evaluate", code=1)
+
+    def test_help_says_what_a_list_is(self):
+        for arguments in (["--help"], ["run", "--help"]):
+            self.assertIn("PATH [name=NAME] [truth=FILE]", self.fleet(*arguments))
+
+
+class FlagsTest(FleetTest):
+    """Not through a scheduler, which may not be here."""
+
+    def check(self, given, **settings):
+        commands.check_flags(given, {**SETTINGS, **settings})
+
+    def test_a_flag_that_a_program_does_not_know_is_told_before_anything_runs(self):
+        self.check([Input("a", "/a.ply")], cloud=["--right"])
+        with self.assertRaisesRegex(Problem, "--cloud: --wrong: not known"):
+            self.check([Input("a", "/a.ply")], cloud=["--wrong"])
+        with self.assertRaisesRegex(Problem, "b in the list: --wrong: not known"):
+            self.check([Input("a", "/a.ply"), Input("b", "/b.ply", words={"cloud": ["--wrong"]})])
+
+    def test_values_that_begin_with_a_dash_belong_to_their_flag(self):
+        choice = RunParser().parse(["list.txt", "--mapper", "--resolution=0.02", "--sbatch", "--mem=4G -p long"])
+        self.assertEqual((choice.mapper, choice.sbatch), (["--resolution=0.02"], ["--mem=4G", "-p", "long"]))
+
+
+class SchedulerTest(FleetTest):
+    def test_without_any_scheduler_it_is_said_what_to_install(self):
+        with mock.patch("shutil.which", return_value=None):
+            self.assertFalse(slurm.answers())
+            with self.assertRaisesRegex(Problem, "apt-get install parallel"):
+                local.Local(None, 0, 1, [])
+            with self.assertRaisesRegex(Problem, "no controller of Slurm answers"):
+                slurm.Slurm(None, 0, 1, [])
+
+
+class ReportTest(FleetTest):
+    def test_the_report_of_what_there_is_so_far(self):
+        given = [Input(name, str(self.write(f"{name}.ply", ""))) for name in "ab"]
+        folder = FleetFolder(self.out)
+        folder.begin(given, SETTINGS)
+        do_task(folder, given, SETTINGS, "a")
+        self.assertIn("1 done, 1 missing of 2 inputs", self.fleet("report", self.out))
+        self.assertEqual([row["state"] for row in self.table().values()], ["done", "missing"])
+        self.assertIn("1 done, 1 missing", (self.out / "report.html").read_text())
