@@ -3,8 +3,11 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <utility>
+
+#include "segmenter/objects/process/cpu_budget.hpp"
 
 namespace kintsugi::segmenter {
 
@@ -18,17 +21,7 @@ struct Piece {
   std::vector<std::uint32_t> segment_ids;
 };
 
-}  // namespace
-
-std::vector<ObjectModel> models_of(const ObjectLibrary& library) {
-  std::vector<ObjectModel> models;
-  models.reserve(library.objects().size());
-  for (const KnownObject& object : library.objects()) models.push_back(object.model);
-  return models;
-}
-
-std::unique_ptr<Detector> detect_in(const ObservedMap& map, const ObjectLibrary& library) {
-  auto detector = std::make_unique<Detector>(models_of(library), map.resolution_m);
+void add_in_pieces(const ObservedMap& map, Detector& detector) {
   std::map<std::array<int, 3>, Piece> pieces;
   for (std::size_t i = 0; i < map.points_W.size(); ++i) {
     const CloudPoint& p = map.points_W[i];
@@ -39,13 +32,33 @@ std::unique_ptr<Detector> detect_in(const ObservedMap& map, const ObjectLibrary&
   }
   std::int32_t id = 0;
   for (auto& [cell, piece] : pieces) {
-    detector->set_piece(id++,
-                        std::make_shared<const std::vector<CloudPoint>>(std::move(piece.points_W)),
-                        std::move(piece.segment_ids), 0);
+    auto points_W = std::make_shared<const std::vector<CloudPoint>>(std::move(piece.points_W));
+    detector.set_piece(id++, std::move(points_W), std::move(piece.segment_ids), 0);
   }
-  detector->examine_all();
-  while (detector->num_waiting() > 0) detector->examine_next();
-  return detector;
+}
+
+}  // namespace
+
+std::vector<ObjectModel> models_of(const ObjectLibrary& library) {
+  std::vector<ObjectModel> models;
+  models.reserve(library.objects().size());
+  for (const KnownObject& object : library.objects()) models.push_back(object.model);
+  return models;
+}
+
+MapDetection detect_in(const ObservedMap& map, const ObjectLibrary& library) {
+  MapDetection found;
+  const double start_s = CpuBudget::cpu_s();
+  found.detector = std::make_unique<Detector>(models_of(library), map.resolution_m);
+  const double prepared_s = CpuBudget::cpu_s();
+  Detector& detector = *found.detector;
+  add_in_pieces(map, detector);
+  detector.examine_all();
+  found.cost.num_segments = detector.num_waiting();
+  while (detector.num_waiting() > 0) detector.examine_next();
+  found.cost.prepare_s = prepared_s - start_s;
+  found.cost.examine_s = CpuBudget::cpu_s() - prepared_s;
+  return found;
 }
 
 }  // namespace kintsugi::segmenter
