@@ -60,6 +60,7 @@ int run_for_objects(const QueryOptions& options) {
   }
   FoundObjects found = ask_detector(options.lcm_url, options.query.map_name,
                                     QueryClient::Seconds(options.timeout_s));
+  if (!found.dropped.empty()) std::cerr << "kintsugi-query: " << found.dropped << '\n';
   keep_named(options.object, found);
   std::cout << (options.json ? objects_json(found) : objects_table(found)) << std::flush;
   if (!std::cout) return 1;
