@@ -37,22 +37,20 @@ whole_run() {
   teach_scene
   found="$library.json"
   [[ -e "$found" ]] || {
-    run_to_end whole "${scene[@]}" --objects "$library" --detector "--json $PWD/found.json" || {
+    run_to_end whole "${scene[@]}" --objects "$library" || {
       say "$row_name: the run without a fault failed: $PWD/whole.txt"
       exit 1
     }
-    mv found.json "$found"
+    cp whole/objects.json "$found"
   }
   must "nothing was found without a fault" test "$(num_detections "$found")" -ge 3
 }
 num_detections() { grep -c '"detection":' "$1" || true; }
 
-start_with_objects() {
-  rm -f found.json
-  faulty_start --objects "$1" --detector "--json $PWD/found.json"
-}
+# same_detections FILE: the faulty run has to have found what is in the file.
 same_detections() {
-  must "other objects were found than without the fault" "$kintsugi_root/scripts/lib/same_detections.py" "$1" found.json
+  must "other objects were found than without the fault" "$kintsugi_root/scripts/lib/same_detections.py" "$1" \
+    faulty/objects.json
 }
 
 kill_detector_row() {
@@ -61,7 +59,7 @@ kill_detector_row() {
   whole_run
   for ((run = 1; run <= num_runs; ++run)); do
     moment="$(random_moment)"
-    start_with_objects "$library"
+    faulty_start --objects "$library"
     pid_of detector >/dev/null
     kill_at "$moment" detector
     faulty_wait
@@ -82,7 +80,7 @@ hostile_objects_row() {
   local hostile="${KINTSUGI_TEST_BIN:-$kintsugi_root/build/release/tests}/hostile_publisher" events query=0 sender
   [[ -x "$hostile" ]] || skip_row "hostile_publisher is not built (scripts/build)"
   whole_run
-  start_with_objects "$library"
+  faulty_start --objects "$library"
   pid_of detector >/dev/null
   "$KINTSUGI_BIN/kintsugi-segment-events" --exit-on-final --quiet >events.txt 2>events.err &
   events=$!
@@ -118,7 +116,7 @@ library_row() {
   cp -r "damaged/${names[3]}" "damaged/.${names[3]}.tmp" # what a killed program leaves: nobody reads it
   mkdir good
   for name in "${names[@]:3}"; do cp -r "damaged/$name" good/; done
-  start_with_objects "$PWD/damaged"
+  faulty_start --objects "$PWD/damaged"
   faulty_wait
   for name in "${bad[@]}"; do
     must "$name is not named as refused" grep -q "$name is not used: .*/$name" faulty/detector.log
