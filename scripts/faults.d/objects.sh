@@ -10,7 +10,7 @@ fault_row library "objects of the library damaged, foreign and half-written" lib
 teach_scene() {
   local id
   library="$runs/objects-$(basename "$reference")"
-  [[ ! -e "$library/done" ]] || return 0
+  [[ ! -e "$library.done" ]] || return 0
   rm -rf "$library"
   for id in $(middle_segments "$reference/segments.json" 6); do
     "$KINTSUGI_BIN/kintsugi-objects" teach --map "$reference/segmenter.map" --ids "$id" --name "thing_$id" \
@@ -19,7 +19,7 @@ teach_scene() {
       exit 1
     }
   done
-  : >"$library/done"
+  : >"$library.done"
 }
 
 # middle_segments SEGMENTS.json N: the ids of N segments of 60 points and more, without the largest three.
@@ -41,10 +41,12 @@ whole_run() {
       say "$row_name: the run without a fault failed: $PWD/whole.txt"
       exit 1
     }
+    must "a detector that was not killed counts as restarted" not_restarted whole.txt
     cp whole/objects.json "$found"
   }
   must "nothing was found without a fault" test "$(num_detections "$found")" -ge 3
 }
+not_restarted() { ! grep -q 'detector restarted' "$1"; }
 num_detections() { grep -c '"detection":' "$1" || true; }
 
 # same_detections FILE: the faulty run has to have found what is in the file.
@@ -107,7 +109,6 @@ library_row() {
   local names bad
   whole_run
   cp -r "$library" damaged
-  rm damaged/done
   mapfile -t names < <(ls damaged)
   bad=("${names[@]:0:3}")
   truncate --size=-100 "damaged/${bad[0]}/model.ply"
