@@ -267,7 +267,7 @@ class DetectorProcess {
   CpuShare share_;
   std::unique_ptr<Detector> detector_;  // null: no map is known yet
   DetectionSource source_{.map = "", .session = new_session()};
-  bool has_numbers_ = false;  // detections were numbered in the session
+  bool has_numbers_ = false;      // detections were numbered in the session
   std::set<std::int32_t> dirty_;  // pieces that the detector has not, or not as they are
   bool is_complete_pass_ = false;
   bool is_finished_ = false;
