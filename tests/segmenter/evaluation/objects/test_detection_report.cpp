@@ -31,6 +31,7 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 
 constexpr int kSide = 25;
+constexpr int kMiddle = kSide / 2;
 
 Pose at(double x, double y, double z) {
   Pose X = Pose::Identity();
@@ -43,8 +44,9 @@ std::vector<CloudPoint> plate(std::uint8_t red) {
   std::vector<CloudPoint> points;
   for (int i = 0; i < kSide * kSide; ++i) {
     CloudPoint& p = points.emplace_back();
-    p.x = 0.01F * static_cast<float>(i % kSide - kSide / 2);
-    p.y = 0.01F * static_cast<float>(i / kSide - kSide / 2);
+    const int row = i / kSide - kMiddle;
+    p.x = 0.01F * static_cast<float>(i % kSide - kMiddle);
+    p.y = 0.01F * static_cast<float>(row);
     p.nz = -1.0F;
     p.red = red;
     p.green = p.blue = 40;
@@ -192,8 +194,8 @@ TEST_F(DetectionReport, APictureOfEachFalseAndEachMissedOne) {
   // The map, the model and the segments, side by side.
   const cv::Mat3b picture = cv::imread((out / "false_7.png").string());
   ASSERT_EQ(picture.cols, 3 * 480);
-  const cv::Vec3b map_color = picture(picture.rows / 2, 240);
-  const cv::Vec3b model_color = picture(picture.rows / 2, 720);
+  const cv::Vec3b& map_color = picture(picture.rows / 2, 240);
+  const cv::Vec3b& model_color = picture(picture.rows / 2, 720);
   EXPECT_LT(map_color[2], 60);     // the toaster
   EXPECT_GT(model_color[2], 120);  // the mug
   EXPECT_EQ(picture(30, 250), cv::Vec3b(255, 255, 255));
