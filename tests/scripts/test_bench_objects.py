@@ -11,7 +11,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "scripts" / "lib"))
 
-from bench import object_libraries, objects, tables  # noqa: E402
+from bench import large_maps, object_libraries, objects, tables  # noqa: E402
 
 PLY = ("ply\nformat binary_little_endian 1.0\nelement vertex 2\nproperty float x\nproperty uint segment_id\n"
        "property uchar red\nend_header\n").encode()
@@ -36,6 +36,21 @@ class Taught(unittest.TestCase):
         known = [{"id_before": number, "key_before": key} for number, key in keys.items()]
         owned = {1: [[10, 11], 400], 2: [[12], 9000], 3: [[13], 299], 4: [[14], 9000], 5: [[15], 900]}
         self.assertEqual(object_libraries.lessons(owned, known), {"mug_red_134x90x105": [10, 11]})
+
+
+class LargeMaps(unittest.TestCase):
+    def test_floors_are_added_as_further_segments(self):
+        with tempfile.TemporaryDirectory() as folder:
+            small, large = Path(folder, "small.ply"), Path(folder, "large.ply")
+            small.write_bytes(PLY.replace(b"property float x", b"property float x\nproperty float z") +
+                              struct.pack("<ffIBffIB", 1.5, 0, 7, 200, -2.0, 0, 9, 100))
+            large_maps.add_floors(small, large, 260_000)
+            points = object_libraries.columns(large, "x", "segment_id")
+            self.assertEqual(len(points), 260_000)
+            self.assertEqual(points[:2], [(1.5, 7), (-2.0, 9)])
+            self.assertEqual({segment for _, segment in points[2:]}, {10, 11})
+            large_maps.add_floors(small, large, 1)
+            self.assertEqual(large.read_bytes(), small.read_bytes())
 
 
 class Grown(unittest.TestCase):
@@ -94,7 +109,9 @@ class Tables(unittest.TestCase):
         self.assertEqual(rows, ["0.90 / not measured", "0.17 (1 of 6)", 2, "0.90 / 0.50", "0.90 / 0.50", "1.25 / 3.00",
                                 "2.50 times"])
         self.assertEqual(objects.delay_text(None), "not measured")
-        self.assertEqual(objects.cost_rows(costs)[1], ["1,000", "7.00", 954, "25.0", "26.2"])
+        self.assertEqual(objects.cost_rows(costs)[1], ["1,000", "kitchen", "7.00", 954, "25.0", "26.2"])
+        large = {objects.LARGE_MAP: (0.3, 970, 10.0)}
+        self.assertEqual(objects.cost_rows(large)[0][:2], ["40", "kitchen, 4 million points"])
 
     def test_errors_are_of_the_objects_of_the_size(self):
         outcomes = [{"points": "900", "translation_cm": "1.00", "rotation_deg": "4.00"},

@@ -10,7 +10,7 @@
     battery       the section about synthetic rooms under many conditions; battery_cases, battery_picture
     accuracy      errors of the camera's path, also of a map of several parts
     segmenting    sections about the segmenter
-    objects       the section about changes and objects; object_libraries
+    objects       the section about changes and objects; object_libraries, large_maps
     others        sections about the viewer, the bus, the machine and the source code
     summary       the main results, out of the tables of the sections
 """

@@ -16,6 +16,7 @@ from trio.messages import Problem
 
 MIN_POINTS = 300  # to teach from: fewer show too little of the object
 CARRIED_MM = 1100  # the largest side of what a person may carry about; the others are furniture
+PROPERTY = re.compile(r"(?m)^property (\w+) (\w+)$")
 FORMATS = {"float": "f", "uchar": "B", "int": "i", "uint": "I"}
 
 
@@ -24,10 +25,14 @@ def read_ply(file):
     content = Path(file).read_bytes()
     header, _, body = content.partition(b"end_header\n")
     header = header.decode()
-    properties = re.findall(r"(?m)^property (\w+) (\w+)$", header)
-    layout = struct.Struct("<" + "".join(FORMATS[kind] for kind, _ in properties))
+    layout = layout_of(header)
     count = int(re.search(r"element vertex (\d+)", header)[1])
-    return [name for _, name in properties], layout.iter_unpack(body[:count * layout.size])
+    return [name for _, name in PROPERTY.findall(header)], layout.iter_unpack(body[:count * layout.size])
+
+
+def layout_of(header):
+    """Of a vertex."""
+    return struct.Struct("<" + "".join(FORMATS[kind] for kind, _ in PROPERTY.findall(header)))
 
 
 def columns(file, *names):
