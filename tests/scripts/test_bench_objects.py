@@ -11,7 +11,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "scripts" / "lib"))
 
-from bench import large_maps, object_libraries, objects, tables  # noqa: E402
+from bench import large_maps, object_libraries, objects, summary, tables  # noqa: E402
 
 PLY = ("ply\nformat binary_little_endian 1.0\nelement vertex 2\nproperty float x\nproperty uint segment_id\n"
        "property uchar red\nend_header\n").encode()
@@ -108,6 +108,9 @@ class Tables(unittest.TestCase):
         rows = [row[1] for row in objects.target_rows(changed, found, costs, told)]
         self.assertEqual(rows, ["0.90 / not measured", "0.17 (1 of 6)", 2, "0.90 / 0.50", "0.90 / 0.50", "1.25 / 3.00",
                                 "2.50 times"])
+        text = tables.markdown(["what", "measured", "target"], objects.target_rows(changed, found, costs, told))
+        self.assertIn("| office: 0.90 / not measured |", summary.summary({"objects": text}))
+        self.assertIn("| kitchen: 0.90 / 0.50 |", summary.summary({"objects": text}))
         self.assertEqual(objects.delay_text(None), "not measured")
         self.assertEqual(objects.cost_rows(costs)[1], ["1,000", "kitchen", "7.00", 954, "25.0", "26.2"])
         large = {objects.LARGE_MAP: (0.3, 970, 10.0)}
