@@ -22,12 +22,15 @@ teach_scene() {
   : >"$library.done"
 }
 
-# middle_segments SEGMENTS.json N: the ids of N segments of 60 points and more, without the largest three.
+# middle_segments SEGMENTS.json N: the ids of the N largest segments of 60 points and more that could be carried: at most
+# 0.6 m along each axis.
 middle_segments() {
   python3 -c '
 import json, sys
-segments = [s for s in json.load(open(sys.argv[1]))["segments"] if s["points"] >= 60]
-print(*[s["id"] for s in sorted(segments, key=lambda s: (-s["points"], s["id"]))[3:3 + int(sys.argv[2])]])' "$@"
+def is_carried(segment):
+    return all(high - low <= 0.6 for low, high in zip(segment["box_min"], segment["box_max"]))
+segments = [s for s in json.load(open(sys.argv[1]))["segments"] if s["points"] >= 60 and is_carried(s)]
+print(*[s["id"] for s in sorted(segments, key=lambda s: (-s["points"], s["id"]))[:int(sys.argv[2])]])' "$@"
 }
 
 # whole_run: a run without a fault, with the detector; sets $found, what it has found.
