@@ -95,6 +95,9 @@ class [[gnu::visibility("default")]] MapClient {
 
   /// The newest pose of the camera; nothing: none was received.
   [[nodiscard]] const std::optional<CameraPose>& camera() const;
+  /// The known objects that `kintsugi-objects detect` has found and that are not gone, by ascending
+  /// number. It repeats each about once a second: who has just connected may not know all.
+  [[nodiscard]] std::vector<ObjectDetection> objects() const;
 
   /// Asks the segmenters on the bus. An empty map_name asks for the map that is followed.
   /// @throws std::runtime_error when nobody answers within `timeout` or the map is from a log,

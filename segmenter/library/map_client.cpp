@@ -70,7 +70,8 @@ class MapClient::Implementation {
         log_ended_ = true;
         return;
       }
-      follower_.handle(event->channel, event->data);
+      log_time_s_ = std::max(log_time_s_, 1e-6 * static_cast<double>(event->utime));
+      follower_.handle(event->channel, event->data, log_time_s_);
     }
   }
 
@@ -97,6 +98,7 @@ class MapClient::Implementation {
   std::optional<Bus> bus_;  // after follower_, which it calls
   std::optional<LogReader> log_;
   bool log_ended_ = false;
+  double log_time_s_ = 0.0;
   mutable PatientClock clock_;
   double patient_until_s_ = 0.0;
   double next_request_s_ = 0.0;
@@ -159,6 +161,9 @@ std::vector<std::uint32_t> MapClient::labels(std::int32_t piece) const {
 }
 const std::optional<CameraPose>& MapClient::camera() const {
   return implementation_->follower().camera();
+}
+std::vector<ObjectDetection> MapClient::objects() const {
+  return implementation_->follower().objects();
 }
 SegmentAnswer MapClient::ask(SegmentQuery query, Seconds timeout) {
   return implementation_->ask(std::move(query), timeout);

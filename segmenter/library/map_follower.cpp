@@ -26,27 +26,26 @@ void MapFollower::subscribe(Bus& bus) {
   if (options_.with_points) slices_.subscribe(bus);
   kintsugi::subscribe<CameraPose>(bus, channels::kCameraPose,
                                   [this](const CameraPose& pose) { use(pose); });
+  kintsugi::subscribe<ObjectDetection>(
+      bus, channels::kObjectDetection,
+      [this](const ObjectDetection& detection) { use(detection); });
 }
 
 void MapFollower::ask(Bus& bus, double now_s) {
+  now_s_ = now_s;
   listener_.ask(bus, now_s);
   if (options_.with_points) slices_.ask(bus, now_s);
 }
 
-void MapFollower::handle(const std::string& channel, ByteView message) {
+void MapFollower::handle(const std::string& channel, ByteView message, double now_s) {
+  now_s_ = now_s;
   listener_.handle(channel, message);
   if (options_.with_points) slices_.handle(channel, message);
-  if (channel == channels::kCameraPose) use_pose(message);
-}
-
-void MapFollower::use_pose(ByteView message) {
-  CameraPose pose;
   try {
-    pose = decode<CameraPose>(message);
-  } catch (const DecodeError&) {
-    return;  // as one that was lost
+    if (channel == channels::kCameraPose) use(decode<CameraPose>(message));
+    if (channel == channels::kObjectDetection) use(decode<ObjectDetection>(message));
+  } catch (const DecodeError&) {  // as one that was lost
   }
-  use(pose);
 }
 
 /// 0: nothing was received.
@@ -84,6 +83,18 @@ void MapFollower::use(const CameraPose& pose) {
   if (pose.session != current_session() && current_session() != 0) return;
   camera_ = pose;
   changes_.poses.push_back(pose);
+}
+
+/// What comes before the first update, which tells the map, is repeated.
+void MapFollower::use(const ObjectDetection& detection) {
+  const SegmentUpdate* const newest = listener_.table().newest();
+  if (newest == nullptr || detection.map_name != newest->map_name) return;
+  objects_.apply(detection, now_s_);
+}
+
+std::vector<ObjectDetection> MapFollower::objects() const {
+  return objects_.map_session() == current_session() ? objects_.present()
+                                                     : std::vector<ObjectDetection>{};
 }
 
 /// Other maps, and earlier sessions of this one. A newer session has no segments yet.

@@ -6,14 +6,16 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <vector>
 
+#include "lcmtypes/client/event_table.hpp"
 #include "lcmtypes/client/segment_listener.hpp"
 #include "segmenter/library/bus.hpp"
 #include "segmenter/library/followed_pieces.hpp"
 
 namespace kintsugi::segmenter {
 
-/// Chooses the map, and applies its slices, updates and camera poses.
+/// Chooses the map, and applies its slices, updates, camera poses and detections of objects.
 class MapFollower {
  public:
   explicit MapFollower(const MapClientOptions& options);
@@ -24,8 +26,8 @@ class MapFollower {
   void subscribe(Bus& bus);
   /// Requests what is missing; `now_s` is the time of a PatientClock.
   void ask(Bus& bus, double now_s);
-  /// Handles one message of a log.
-  void handle(const std::string& channel, ByteView message);
+  /// Handles one message of a log, which was received at `now_s`; this never goes back.
+  void handle(const std::string& channel, ByteView message, double now_s);
 
   /// What has changed since the last call.
   MapChanges take_changes();
@@ -37,6 +39,8 @@ class MapFollower {
   /// Of the map that is followed; 0: no slice of it has come.
   [[nodiscard]] float resolution_m() const;
   [[nodiscard]] const std::optional<CameraPose>& camera() const { return camera_; }
+  /// Those that are in the map that is followed, by ascending number.
+  [[nodiscard]] std::vector<ObjectDetection> objects() const;
   /// No slice that is known of is missing, or it is not sent any more.
   [[nodiscard]] bool has_slices() const;
   [[nodiscard]] std::string dropped() const;
@@ -53,7 +57,7 @@ class MapFollower {
   void use(CloudSlice slice);
   void use(const SegmentUpdate& update);
   void use(const CameraPose& pose);
-  void use_pose(ByteView message);
+  void use(const ObjectDetection& detection);
   void forget_others();
 
   const MapClientOptions options_;
@@ -62,6 +66,8 @@ class MapFollower {
   /// Of the mapper. As long as no update has told which map it is: of every map.
   std::map<std::int64_t, Session> sessions_;
   std::optional<CameraPose> camera_;
+  ObjectTable objects_;
+  double now_s_ = 0.0;
   MapChanges changes_;
   std::set<std::int32_t> changed_pieces_;
 };

@@ -136,6 +136,11 @@ void add_map(py::class_<Self>& type) {
       },
       "(S,) of dtype SEGMENT: every segment, by ascending id; metres, W.");
   type.def(
+      "objects",
+      [](Self& self) { return self.with([](MapClient& client) { return client.objects(); }); },
+      "List of Object: the known objects that kintsugi-objects detect has found and that are not\n"
+      "gone. Each is repeated about once a second: just after connect() some may be missing.");
+  type.def(
       "birth",
       [](Self& self, std::uint32_t id) -> py::object {
         const auto birth = self.with([&](MapClient& client) { return client.birth(id); });

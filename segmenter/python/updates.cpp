@@ -1,9 +1,11 @@
-// kintsugi.Update, kintsugi.CameraPose, kintsugi.Changes
+// kintsugi.Update, kintsugi.CameraPose, kintsugi.Object, kintsugi.Changes
 
 #include <string>
 
 #include <pybind11/stl.h>
 
+#include "lcmtypes/client/object_text.hpp"
+#include "lcmtypes/object_messages.hpp"
 #include "segmenter/library/bus.hpp"
 #include "segmenter/python/arrays.hpp"
 #include "segmenter/python/bind.hpp"
@@ -65,6 +67,38 @@ void add_updates(py::module_& module) {
       .def_property_readonly(
           "X_WC", [](const CameraPose& pose) { return pose_array(pose.X_WC); },
           "(4, 4) float64: p_W = X_WC p_C; C: x right, y down, z forward; metres.");
+  py::class_<ObjectDetection>(module, "Object", "A known object that was found in the map.")
+      .def_readonly("name", &ObjectDetection::name, "In the library.")
+      .def_readonly("detection", &ObjectDetection::detection, "Its number; from 1.")
+      .def_readonly("utime", &ObjectDetection::utime,
+                    "Device time of the newest piece looked at, microseconds.")
+      .def_property_readonly(
+          "event",
+          [](const ObjectDetection& object) { return std::string(to_string(object.event)); },
+          "'found', 'confirmed' or 'moved'.")
+      .def_property_readonly(
+          "X_WO", [](const ObjectDetection& object) { return pose_array(object.X_WO); },
+          "(4, 4) float64: p_W = X_WO p_O; O: the frame of the object, z up; metres.")
+      .def_readonly("score", &ObjectDetection::score, "0 to 1.")
+      .def_readonly("points", &ObjectDetection::points, "Of the map that are its surface.")
+      .def_property_readonly(
+          "segments", [](const ObjectDetection& object) { return array_of(object.segment_ids); },
+          "(N,) uint32: the segments it consists of, ascending.")
+      .def_property_readonly(
+          "box_O",
+          [](const ObjectDetection& object) {
+            py::array_t<float> box({2, 3});
+            auto values = box.mutable_unchecked<2>();
+            for (int axis = 0; axis < 3; ++axis) {
+              values(0, axis) = object.box_min_O[axis];
+              values(1, axis) = object.box_max_O[axis];
+            }
+            return box;
+          },
+          "(2, 3) float32: smallest and largest coordinates of the model; metres, O.")
+      .def("__repr__", [](const ObjectDetection& object) {
+        return "<kintsugi.Object: " + object.name + " (" + std::to_string(object.detection) + ")>";
+      });
   py::class_<MapChanges>(module, "Changes", "What one wait() has received.")
       .def_readonly("updates", &MapChanges::updates, "List of Update.")
       .def_readonly("pieces", &MapChanges::pieces,

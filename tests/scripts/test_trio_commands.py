@@ -130,7 +130,7 @@ class Trio(CommandTest):
     def test_objects_are_found_by_a_fourth_process(self):
         self.program("objects", FINISHES)
         self.expect(0, "trio", "--out", "run", "--no-log", "--objects", "library", "--detector", "--speed=2")
-        words = ["--library=library", "--exit-on-final", "--map-name=map", "--speed=2"]
+        words = ["--library=library", "--exit-on-final", "--json=run/objects.json", "--map-name=map", "--speed=2"]
         self.assertEqual(self.call("kintsugi-objects"), ["detect", *words])
         self.assertEqual(self.call("checked-kintsugi-objects"), ["detect", "--check", "--library=library", "--speed=2"])
         self.assertTrue((self.work / "run/detector.log").exists())

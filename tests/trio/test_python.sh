@@ -26,6 +26,7 @@ end = time.monotonic() + 60
 while not client.has_ended and time.monotonic() < end:
     client.wait(timeout=2.0)
 assert client.is_complete and client.has_ended and not client.problem, client.problem
+assert client.objects() == []
 assert len(sys.argv) > 2 or len(counter) > 10, "wait() holds the interpreter's lock"
 saved = None
 while saved is None:

@@ -11,6 +11,7 @@
     accuracy      errors of the camera's path, also of a map of several parts
     segmenting    sections about the segmenter
     fleets        the section about many clouds at a time
+    objects       the section about changes and objects; object_libraries, large_maps
     others        sections about the viewer, the bus, the machine and the source code
     summary       the main results, out of the tables of the sections
 """

@@ -13,7 +13,7 @@ from typing import Callable
 from trio.messages import Problem, os_error_text, say
 from trio.programs import ROOT
 
-from . import battery, fleets, live, mapping, others, recordings, segmenting
+from . import battery, fleets, live, mapping, objects, others, recordings, segmenting
 from .battery_cases import chosen_cases
 from .document import Document
 from .run import Run, recordings_under
@@ -56,6 +56,8 @@ SECTIONS = (
             segmenting.maps, (*TRIO, "kintsugi-evaluate")),
     Section("quality", "segments against the true objects of the synthetic office, and a sweep of each parameter",
             segmenting.quality, (*MAPPER, "kintsugi-ground-truth")),
+    Section("objects", "changes between two maps of a room, and objects taught in one room and found in others",
+            objects.objects, (*TRIO, "kintsugi-diff", "kintsugi-evaluate", "kintsugi-ground-truth", "kintsugi-objects")),
     Section("segmenter", "batch, voting and neighbour search on generated maps", segmenting.segmenter,
             ("bench_segmenter",)),
     Section("exact", "mode exact slice by slice and under corrections, on a generated map of 4 million points",

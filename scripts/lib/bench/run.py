@@ -106,8 +106,8 @@ class Run:
             raise Problem(f"exit code {result.returncode} of {shlex.join(command)}\n{end}")
         return result.stdout
 
-    def kintsugi(self, name, *arguments, may_fail=False):
-        return self.execute([program(name), *arguments], may_fail=may_fail)
+    def kintsugi(self, name, *arguments, log=None, may_fail=False):
+        return self.execute([program(name), *arguments], name=log, may_fail=may_fail)
 
     def bench(self, name, *arguments, environment=None):
         return self.execute([os.path.join(BENCH_PROGRAMS, name), *arguments], environment=environment)

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from . import objects
 from .tables import markdown, parse_tables
 
 
@@ -40,6 +41,9 @@ RESULTS = (
     Result("Segmenting a slice of a map of 4 million points: average (p99), ms", "exact", 0, "{preset}",
            "{average, ms} ({p99, ms})"),
     Result("Objects of `office`: mean best IoU", "quality", 0, "{map}, {preset}", "{objects, mean best IoU}"),
+    Result("Changes of a room: precision / recall", "objects", 0, "office", "{measured}", ("what", objects.CHANGES)),
+    Result("Objects of one room found in another: precision / recall", "objects", 0, "kitchen", "{measured}",
+           ("what", objects.FOUND)),
 )
 
 

@@ -156,7 +156,8 @@ def viewer_process(choice, folder):
 
 def detector_process(choice, folder):
     """Exits when it has examined the whole map."""
-    own = [*library_option(options.DETECTOR, choice), "--exit-on-final", *map_option(map_name(choice), choice.detector)]
+    own = [*library_option(options.DETECTOR, choice), "--exit-on-final", f"--json={folder.file('objects.json')}",
+           *map_option(map_name(choice), choice.detector)]
     return Process("detector", [*command_of("detector"), *with_given(own, choice.detector)], folder)
 
 
@@ -188,7 +189,8 @@ def replay(arguments):
     check_options({name: [*library_option(name, choice), *getattr(choice, name)] for name in choice.only})
     folder.create()
     folder.lock()
-    for name in ("segmenter.log", "viewer.log", "detector.log", "player.log", "status.csv"):
+    for name in ("segmenter.log", "viewer.log", "detector.log", "player.log", "status.csv",
+                 "objects.json"):
         with contextlib.suppress(FileNotFoundError):
             os.remove(folder.file(name))
     network.tell_how_to_ask()
@@ -200,7 +202,8 @@ def run_replay(choice, folder):
     player = Process("player", ["lcm-logplayer", *(["-l", url] if url else []), "-s", choice.speed,
                                 "-e", REPLAYED_CHANNELS, choice.log], folder)
     own = {"segmenter": [f"--out={choice.out}", "--exit-on-final", f"--linger={UNTIL_TOLD}"],
-           "detector": [*library_option(options.DETECTOR, choice), "--exit-on-final"],
+           "detector": [*library_option(options.DETECTOR, choice), "--exit-on-final",
+                        f"--json={folder.file('objects.json')}"],
            "viewer": [f"--out={choice.out}", "--exit-on-final"]}
     listeners = [Process(name, [*command_of(name), *with_given(own[name], getattr(choice, name))], folder)
                  for name in choice.only]

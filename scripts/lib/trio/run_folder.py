@@ -16,7 +16,7 @@ RUN_FILES = (
     "mapper.lcm", "mapper.*.lcm", "segmenter.map", "segmenter.map.views", "run.lcm", "run.lcm.partial", "segments*.ply", "segments*.json",
     "segments*.csv", "final.png", "final.part*.png", "final_*.png", "map_final*.png", "segments_final*.png",
     "snapshot_*.png", "run.mp4", "trajectory.txt", "trajectory.part*.txt", "status.csv", "mapper.log",
-    "segmenter.log", "viewer.log", "detector.log", "logger.log", "trio.options")
+    "segmenter.log", "viewer.log", "detector.log", "objects.json", "logger.log", "trio.options")
 PROCESSES_WITH_PID_FILE = ("mapper", "segmenter", "viewer", "detector", "logger", "player")
 
 

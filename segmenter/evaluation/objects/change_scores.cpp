@@ -66,7 +66,8 @@ class Scorer {
     std::int64_t points = std::numeric_limits<std::int64_t>::max();
     if (object.id_before) points = std::min(points, count(before_, *object.id_before));
     if (object.id_after) points = std::min(points, count(after_, *object.id_after));
-    scores_.truth.push_back({.key = object.key, .kind = object.kind, .points = points});
+    scores_.truth.push_back(
+        {.key = object.key, .kind = object.kind, .points = points, .name = "", .reason = ""});
   }
 
   static std::int64_t count(const Truth& truth, std::uint32_t id) {

@@ -11,7 +11,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "segmenter/io/ply/ply_reader.hpp"
+#include "segmenter/evaluation/objects/taught_model.hpp"
 #include "segmenter/io/points/file_bytes.hpp"
 #include "segmenter/preprocess/nearest_neighbours.hpp"
 
@@ -36,6 +36,7 @@ void take(const Json& entry, std::map<std::int64_t, ToldDetection>& last) {
   detection.X_WO = pose_of(entry.at("X_WO").get<std::vector<double>>());
   detection.box_O = {vector_of(entry.at("box_min_O")), vector_of(entry.at("box_max_O"))};
   detection.points = entry.at("points").get<std::int64_t>();
+  if (entry.contains("score")) detection.score = entry.at("score").get<double>();
   if (!detection.found_utime && entry.contains("utime")) {
     detection.found_utime = entry.at("utime").get<std::int64_t>();
   }
@@ -43,7 +44,8 @@ void take(const Json& entry, std::map<std::int64_t, ToldDetection>& last) {
 
 /// An object of the scene that has a taught model.
 struct Expected {
-  std::set<std::string> names;  ///< any of which is right
+  /// Names in the library, any of which is right, and the object that was taught under each.
+  std::map<std::string, const TrueObject*> names;
   Eigen::Vector3d centre_W;
   double reach_m = 0.0;  ///< half of its largest extent
   std::vector<CloudPoint> points_W;
@@ -62,7 +64,7 @@ std::map<std::uint32_t, Expected> expected_objects(const TrueObjects& objects, c
     const std::string name = library_name(object.key);
     if (!object.id_after || !taught.contains(name)) continue;
     Expected& entry = expected[*object.id_after];
-    entry.names.insert(name);
+    entry.names.emplace(name, &object);
     entry.centre_W = objects.X_SW_after.inverse() * object.X_SG_after * object.symmetry.centre_G;
   }
   for (std::size_t i = 0; i < truth.points_W.size(); ++i) {
@@ -98,19 +100,59 @@ std::vector<Match> matches(const std::vector<ToldDetection>& told,
   return found;
 }
 
+using Models = std::map<std::string, TaughtModel>;
+
+Models read_models(const std::map<std::uint32_t, Expected>& expected,
+                   const std::filesystem::path& library) {
+  Models models;
+  if (library.empty()) return models;
+  for (const auto& [id, object] : expected) {
+    for (const auto& [name, taught] : object.names) {
+      if (!models.contains(name)) models.emplace(name, read_taught_model(library, name));
+    }
+  }
+  return models;
+}
+
+/// Of the taught model in the frame of the object, which the scene defines.
+std::optional<Pose> pose_in_object(const TaughtModel& model, const TrueObject& object,
+                                   const TrueObjects& objects) {
+  if (!model.X_WO || !object.id_before) return std::nullopt;
+  return object.X_SG_before.inverse() * objects.X_SW_before * *model.X_WO;
+}
+
+/// Where a model of the object truly is; nothing: the library does not tell of any.
+void add_true_pose(const Expected& expected, const TrueObjects& objects, const Models& models,
+                   TrueOutcome& outcome) {
+  outcome.name = expected.names.begin()->first;
+  for (const auto& [name, object] : expected.names) {
+    const auto model = models.find(name);
+    if (model == models.end()) continue;
+    const std::optional<Pose> X_GO = pose_in_object(model->second, *object, objects);
+    if (!X_GO) continue;
+    outcome.name = name;
+    outcome.X_WO = Pose(objects.X_SW_after.inverse() * object->X_SG_after * *X_GO);
+    return;
+  }
+}
+
+PoseError error_of(const ToldDetection& told, const TrueObject& object, const TrueObjects& objects,
+                   const Models& models, double distance_m) {
+  const auto model = models.find(told.name);
+  const std::optional<Pose> X_GO =
+      model == models.end() ? std::nullopt : pose_in_object(model->second, object, objects);
+  if (!X_GO) {
+    return {.translation_m = distance_m, .rotation_deg = std::numeric_limits<double>::quiet_NaN()};
+  }
+  return pose_error(Pose(told.X_WO * X_GO->inverse()),
+                    Pose(objects.X_SW_after.inverse() * object.X_SG_after), object.symmetry);
+}
+
 /// Mean distance of the true points from the model at the detected pose.
 double surface_distance_m(const ToldDetection& detection, const std::vector<CloudPoint>& points_W,
-                          const std::filesystem::path& library) {
-  std::vector<CloudPoint> model_W = read_ply(library / detection.name / "model.ply").points_W;
-  const Eigen::Isometry3f X_WO = detection.X_WO.cast<float>();
-  for (CloudPoint& p : model_W) {
-    const Eigen::Vector3f q = X_WO * Eigen::Vector3f(p.x, p.y, p.z);
-    p.x = q.x();
-    p.y = q.y();
-    p.z = q.z();
-  }
+                          const TaughtModel& model) {
   NearestNeighbours::Result nearest;
-  NearestNeighbours(model_W).find(points_W, 1, nearest);
+  NearestNeighbours(placed(model.points_O, detection.X_WO)).find(points_W, 1, nearest);
   double sum_m = 0.0;
   for (const float d : nearest.squared_distances) sum_m += std::sqrt(static_cast<double>(d));
   return sum_m / static_cast<double>(points_W.size());
@@ -135,11 +177,6 @@ std::vector<ToldDetection> read_told_detections(const std::filesystem::path& pat
   return detections;
 }
 
-std::string library_name(std::string key) {
-  std::ranges::replace(key, ' ', '_');
-  return key;
-}
-
 ObjectScores score_detections(const std::vector<ToldDetection>& told, const TrueObjects& objects,
                               const Truth& truth, const std::vector<std::string>& taught,
                               const std::filesystem::path& library) {
@@ -148,13 +185,19 @@ ObjectScores score_detections(const std::vector<ToldDetection>& told, const True
     for (const ToldDetection& detection : told) names.insert(detection.name);
   }
   const auto expected = expected_objects(objects, truth, names);
+  const Models models = read_models(expected, library);
   ObjectScores scores;
   std::map<std::uint32_t, std::size_t> outcome_of;
   for (const auto& [id, object] : expected) {
     outcome_of[id] = scores.truth.size();
-    scores.truth.push_back({.key = *object.names.begin() + " #" + std::to_string(id),
-                            .kind = "same object",
-                            .points = std::ssize(object.points_W)});
+    TrueOutcome outcome{.key = object.names.begin()->first + " #" + std::to_string(id),
+                        .kind = "same object",
+                        .points = std::ssize(object.points_W),
+                        .instance = id,
+                        .name = "",
+                        .reason = ""};
+    add_true_pose(object, objects, models, outcome);
+    scores.truth.push_back(std::move(outcome));
   }
   for (const ToldDetection& detection : told) {
     scores.claims.push_back({.id = detection.id,
@@ -162,6 +205,7 @@ ObjectScores score_detections(const std::vector<ToldDetection>& told, const True
                              .points = detection.points,
                              .key = "",
                              .reason = "no such object there",
+                             .score = detection.score,
                              .utime = detection.found_utime});
   }
   for (const Match& match : matches(told, expected)) {
@@ -175,10 +219,13 @@ ObjectScores score_detections(const std::vector<ToldDetection>& told, const True
     claim.is_right = outcome.is_found = outcome.is_found_as_kind = true;
     claim.key = outcome.key;
     claim.reason.clear();
-    outcome.error = PoseError{.translation_m = match.distance_m};
-    if (library.empty()) continue;
-    outcome.surface_m =
-        surface_distance_m(told[match.detection], expected.at(match.object).points_W, library);
+    const ToldDetection& detection = told[match.detection];
+    const Expected& object = expected.at(match.object);
+    outcome.error =
+        error_of(detection, *object.names.at(detection.name), objects, models, match.distance_m);
+    const auto model = models.find(detection.name);
+    if (model == models.end()) continue;
+    outcome.surface_m = surface_distance_m(detection, object.points_W, model->second);
   }
   return scores;
 }

@@ -21,6 +21,7 @@ struct ToldDetection {
   Pose X_WO = Pose::Identity();
   Eigen::AlignedBox3d box_O;
   std::int64_t points = 0;
+  std::optional<double> score{};
   std::optional<std::int64_t> found_utime{};  ///< when it was first told
 };
 
@@ -29,16 +30,15 @@ struct ToldDetection {
 /// @throws std::runtime_error naming the file and what is missing or of another type
 std::vector<ToldDetection> read_told_detections(const std::filesystem::path& path);
 
-/// The name in the library under which an object is expected: its key with '_' for blanks.
-std::string library_name(std::string key);
-
 /// Expected are the objects that are in the scene after, are of the same model as a taught one, and
 /// have 50 points and more in `truth`. A detection is right if its name is that of such an object,
 /// the middle of its box lies within half the object's largest extent of the object's middle, and
 /// no nearer detection claims the same object.
 /// @param truth in the W of the map in which was detected
 /// @param taught names in the library; empty: all names that `told` has
-/// @param library folder of objects/NAME/model.ply, for the distance of the surfaces; empty: none
+/// The error of the pose is that of the middle of the box, or, where the library tells how the
+/// object stood in the map BEFORE in which it was first taught, that of the pose.
+/// @param library folder of NAME/model.ply, for poses and the distance of the surfaces; empty: none
 /// @throws std::runtime_error when a model cannot be read
 ObjectScores score_detections(const std::vector<ToldDetection>& told, const TrueObjects& objects,
                               const Truth& truth, const std::vector<std::string>& taught,

@@ -20,6 +20,10 @@ struct TrueOutcome {
   bool is_found_as_kind = false;      ///< a moved object as moved, not as gone and new
   std::optional<PoseError> error{};   ///< of a motion or pose that was told
   std::optional<double> surface_m{};  ///< mean distance of the model's points from the true ones
+  std::uint32_t instance = 0;         ///< in the true cloud, of a detection
+  std::string name;                   ///< in the library, of a detection
+  std::optional<Pose> X_WO{};         ///< where the model of that name truly is
+  std::string reason;                 ///< why it was not found, as far as is known
 };
 
 /// A change or a detection that was told.
@@ -28,8 +32,9 @@ struct ClaimOutcome {
   std::string kind;         ///< of a change; name of a detection
   std::int64_t points = 0;  ///< as told
   bool is_right = false;
-  std::string key;     ///< the true object it belongs to; "" : to none
-  std::string reason;  ///< why it is not right
+  std::string key;                ///< the true object it belongs to; "" : to none
+  std::string reason;             ///< why it is not right
+  std::optional<double> score{};  ///< of a detection, as told
   std::optional<std::int64_t> utime{};
 };
 

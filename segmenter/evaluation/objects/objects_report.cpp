@@ -1,6 +1,7 @@
 #include "segmenter/evaluation/objects/objects_report.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -101,31 +102,31 @@ Table summary_table(const ObjectScores& scores) {
 
 Table truth_table(const ObjectScores& scores) {
   Table table{{"object", "kind", "points", "found", "as_kind", "translation_cm", "rotation_deg",
-               "surface_cm"},
+               "surface_cm", "reason"},
               {}};
   for (const TrueOutcome& object : scores.truth) {
     std::optional<double> translation_cm;
     std::optional<double> rotation_deg;
     if (object.error) {
       translation_cm = 100.0 * object.error->translation_m;
-      rotation_deg = object.error->rotation_deg;
+      if (std::isfinite(object.error->rotation_deg)) rotation_deg = object.error->rotation_deg;
     }
     std::optional<double> surface_cm;
     if (object.surface_m) surface_cm = 100.0 * *object.surface_m;
     table.rows.push_back({object.key, object.kind, std::to_string(object.points),
                           object.is_found ? "yes" : "no", object.is_found_as_kind ? "yes" : "no",
                           decimal(translation_cm, 2), decimal(rotation_deg, 2),
-                          decimal(surface_cm, 2)});
+                          decimal(surface_cm, 2), object.reason});
   }
   return table;
 }
 
 Table claims_table(const ObjectScores& scores) {
-  Table table{{"id", "told", "points", "right", "object", "reason", "utime"}, {}};
+  Table table{{"id", "told", "points", "score", "right", "object", "reason", "utime"}, {}};
   for (const ClaimOutcome& claim : scores.claims) {
     table.rows.push_back({std::to_string(claim.id), claim.kind, std::to_string(claim.points),
-                          claim.is_right ? "yes" : "no", claim.key, claim.reason,
-                          claim.utime ? std::to_string(*claim.utime) : ""});
+                          decimal(claim.score, 2), claim.is_right ? "yes" : "no", claim.key,
+                          claim.reason, claim.utime ? std::to_string(*claim.utime) : ""});
   }
   return table;
 }

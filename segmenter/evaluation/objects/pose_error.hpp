@@ -22,7 +22,8 @@ struct Symmetry {
 
 struct PoseError {
   double translation_m = 0.0;  ///< of the centre
-  double rotation_deg = 0.0;   ///< to the nearest of the poses that look alike
+  /// To the nearest of the poses that look alike; NaN: not known.
+  double rotation_deg = 0.0;
 };
 
 /// Of the estimated pose of a thing's frame G against the true one, both in one frame W.

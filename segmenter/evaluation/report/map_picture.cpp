@@ -4,7 +4,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <vector>
 
@@ -12,6 +11,8 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "lcmtypes/base/argument_check.hpp"
+#include "segmenter/evaluation/report/label_color.hpp"
+#include "segmenter/evaluation/report/splats.hpp"
 
 namespace kintsugi::segmenter {
 namespace {
@@ -29,26 +30,9 @@ Eigen::Matrix3f rotation_to_picture() {
   return (pitch * yaw).toRotationMatrix().cast<float>();
 }
 
-/// A colour that depends on the label only; neighbours in number are far apart in hue.
-cv::Vec3d color_of(std::uint32_t label) {
-  constexpr double kGoldenRatio = 0.6180339887498949;
-  const double turn = std::fmod(kGoldenRatio * (label + 1.0), 1.0);
-  const double level = 170.0 + 75.0 * std::fmod(3.0 * kGoldenRatio * (label + 1.0), 1.0);
-  const auto channel = [&](double shift) {
-    return level * (0.6 + 0.4 * std::cos(2.0 * std::numbers::pi * (turn + shift)));
-  };
-  return {channel(0.0), channel(1.0 / 3.0), channel(2.0 / 3.0)};
-}
-
 /// The share of points seen from the front below which nothing is known of front and back, as in a
 /// cloud whose normals were computed.
 constexpr double kLeastShareInFront = 0.2;
-
-/// A point that is drawn, in the picture's frame.
-struct Splat {
-  Eigen::Vector3f position;
-  cv::Vec3b color;
-};
 
 std::vector<Splat> splats_of(std::span<const CloudPoint> points_W,
                              std::span<const std::uint32_t> labels, bool from_behind_too) {
@@ -60,7 +44,7 @@ std::vector<Splat> splats_of(std::span<const CloudPoint> points_W,
     const float towards_viewer = -(R * Eigen::Vector3f(p.nx, p.ny, p.nz)).z();
     if (towards_viewer < 0.0F && !from_behind_too) continue;
     const double shade = kDarkest + (1.0 - kDarkest) * std::abs(towards_viewer);
-    splats.push_back({R * Eigen::Vector3f(p.x, p.y, p.z), shade * color_of(labels[i])});
+    splats.push_back({R * Eigen::Vector3f(p.x, p.y, p.z), shade * color_of_label(labels[i])});
   }
   return splats;
 }
@@ -73,26 +57,13 @@ cv::Mat3b draw(const std::vector<Splat>& splats, float resolution_m) {
   const auto side_px = [&](float m) {
     return static_cast<int>(std::ceil(m * px_per_m)) + 2 * kMargin_px;
   };
-  cv::Mat3b picture(side_px(extent_m.y()), side_px(extent_m.x()), cv::Vec3b(255, 255, 255));
-  cv::Mat1f depth(picture.size(), std::numeric_limits<float>::infinity());
   const int radius_px =
       std::clamp(static_cast<int>(std::ceil(0.6F * resolution_m * px_per_m)), 0, kMargin_px);
-  for (const Splat& splat : splats) {
-    const Eigen::Vector3f at_m = splat.position - box.min();
-    const int u = kMargin_px + static_cast<int>(at_m.x() * px_per_m);
-    const int v = kMargin_px + static_cast<int>(at_m.y() * px_per_m);
-    const cv::Rect square =
-        cv::Rect(u - radius_px, v - radius_px, 2 * radius_px + 1, 2 * radius_px + 1) &
-        cv::Rect({0, 0}, picture.size());
-    for (int y = square.y; y < square.br().y; ++y) {
-      for (int x = square.x; x < square.br().x; ++x) {
-        if (at_m.z() >= depth(y, x)) continue;
-        depth(y, x) = at_m.z();
-        picture(y, x) = splat.color;
-      }
-    }
-  }
-  return picture;
+  return draw_splats(splats, {.corner = box.min().head<2>(),
+                              .px_per_m = px_per_m,
+                              .size = {side_px(extent_m.x()), side_px(extent_m.y())},
+                              .margin_px = kMargin_px,
+                              .radius_px = radius_px});
 }
 
 }  // namespace

@@ -15,6 +15,7 @@
 #include <nlohmann/json.hpp>
 
 #include "lcmtypes/base/number_text.hpp"
+#include "lcmtypes/geometry.hpp"
 
 namespace kintsugi::segmenter {
 namespace {
@@ -169,7 +170,21 @@ OrderedJson lesson_json(const Lesson& lesson) {
   json["map"] = lesson.map_name;
   json["session"] = lesson.map_session;
   json["segments"] = lesson.segment_ids;
+  if (lesson.X_WO) json["X_WO"] = *lesson.X_WO;
   return json;
+}
+
+std::array<double, 12> rows_of_pose(const Json& json, const std::string& key) {
+  std::array<double, 12> rows{};
+  const std::string expected = "12 numbers, the rows of a 3 x 4 matrix";
+  if (!json.is_array() || json.size() != rows.size()) fail(key, expected);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (!json[i].is_number() || !(std::abs(json[i].get<double>()) <= kMaxPosition_m)) {
+      fail(key, expected);
+    }
+    rows[i] = json[i].get<double>();
+  }
+  return rows;
 }
 
 Lesson lesson_of(const Json& json) {
@@ -178,6 +193,7 @@ Lesson lesson_of(const Json& json) {
   lesson.map_name = text(json, "map");
   lesson.map_session =
       whole(at(json, "session"), "session", 0, std::numeric_limits<std::int64_t>::max());
+  if (json.contains("X_WO")) lesson.X_WO = rows_of_pose(json["X_WO"], "X_WO");
   const Json& ids = list(json, "segments");
   lesson.segment_ids.reserve(ids.size());
   for (const Json& id : ids) {

@@ -84,7 +84,8 @@ class DetectorProcess {
       }
     }
     for (const std::int32_t piece : changes.pieces) dirty_.insert(piece);
-    if (!dirty_.empty() && !detector_) make_detector();
+    // Points may come before the first update, which tells whose map it is.
+    if (!dirty_.empty() && !detector_ && source_.map_session != 0) make_detector();
     if (!detector_) return;
     for (const std::int32_t piece : dirty_) add_piece(piece);
     if (!dirty_.empty()) is_complete_pass_ = false;
@@ -92,17 +93,19 @@ class DetectorProcess {
   }
 
   void begin_map(const SegmentUpdate& newest) {
-    source_ = {.map = newest.map_name, .map_session = newest.map_session};
+    source_ = {
+        .map = newest.map_name, .map_session = newest.map_session, .session = source_.session};
     detector_.reset();
     dirty_.clear();
     for (const std::int32_t piece : client_.pieces()) dirty_.insert(piece);
   }
 
-  /// Of a new map, or with a new library: a new session, since the numbers of detections begin
+  /// Of another map, or with another library: a new session, since the numbers of detections begin
   /// again.
   void make_detector() {
     if (client_.resolution_m() <= 0.0F) return;
-    source_.session = std::max(new_session(), source_.session + 1);
+    if (has_numbers_) source_.session = std::max(new_session(), source_.session + 1);
+    has_numbers_ = true;
     detector_ = std::make_unique<Detector>(models_of(library_), client_.resolution_m());
     published_ = 0;
     is_complete_pass_ = false;
@@ -199,7 +202,7 @@ class DetectorProcess {
   void publish_status() {
     DetectorStatus status;
     status.utime = wall_clock_us();
-    status.session = std::max<std::int64_t>(source_.session, 1);
+    status.session = source_.session;
     status.map_session = source_.map_session;
     status.finished = is_finished_;
     status.library_objects = static_cast<std::int64_t>(library_.objects().size());
@@ -218,7 +221,9 @@ class DetectorProcess {
     status.worst_burst_ms = 1e3 * worst_burst_s_;
     status.map_name = source_.map;
     status.library = options_.library.string();
-    status.problem = problem_.empty() ? client_.problem() : problem_;
+    // That there is no map yet is told by map_session.
+    const bool has_map = source_.map_session != 0;
+    status.problem = problem_.empty() && has_map ? client_.problem() : problem_;
     bus_.publish(channels::kDetectorStatus, status);
   }
 
@@ -261,7 +266,8 @@ class DetectorProcess {
   CpuBudget budget_;
   CpuShare share_;
   std::unique_ptr<Detector> detector_;  // null: no map is known yet
-  DetectionSource source_;
+  DetectionSource source_{.map = "", .session = new_session()};
+  bool has_numbers_ = false;      // detections were numbered in the session
   std::set<std::int32_t> dirty_;  // pieces that the detector has not, or not as they are
   bool is_complete_pass_ = false;
   bool is_finished_ = false;

@@ -1,7 +1,8 @@
 #include "segmenter/objects/process/map_detection.hpp"
 
 #include <memory>
-#include <vector>
+
+#include "segmenter/objects/process/cpu_budget.hpp"
 
 namespace kintsugi::segmenter {
 
@@ -12,14 +13,21 @@ std::vector<ObjectModel> models_of(const ObjectLibrary& library) {
   return models;
 }
 
-std::unique_ptr<Detector> detect_in(const ObservedMap& map, const ObjectLibrary& library) {
-  auto detector = std::make_unique<Detector>(models_of(library), map.resolution_m);
-  detector->set_piece(0, std::make_shared<const std::vector<CloudPoint>>(map.points_W),
-                      map.segment_ids, 0);
-  detector->set_views(map.views);
-  detector->examine_all();
-  while (detector->num_waiting() > 0) detector->examine_next();
-  return detector;
+MapDetection detect_in(const ObservedMap& map, const ObjectLibrary& library) {
+  MapDetection found;
+  const double start_s = CpuBudget::cpu_s();
+  found.detector = std::make_unique<Detector>(models_of(library), map.resolution_m);
+  const double prepared_s = CpuBudget::cpu_s();
+  Detector& detector = *found.detector;
+  detector.set_piece(0, std::make_shared<const std::vector<CloudPoint>>(map.points_W),
+                     map.segment_ids, 0);
+  detector.set_views(map.views);
+  detector.examine_all();
+  found.cost.num_segments = detector.num_waiting();
+  while (detector.num_waiting() > 0) detector.examine_next();
+  found.cost.prepare_s = prepared_s - start_s;
+  found.cost.examine_s = CpuBudget::cpu_s() - prepared_s;
+  return found;
 }
 
 }  // namespace kintsugi::segmenter

@@ -171,12 +171,16 @@ class FitSearch {
 
 std::string percent(double share) { return std::to_string(std::lround(100.0 * share)) + " %"; }
 
-void add_lesson(KnownObject& object, const KnownObject& lesson) {
+/// @param X_OL of the lesson's frame in the object's
+void add_lesson(KnownObject& object, const KnownObject& lesson, const Pose& X_OL) {
   if (lesson.wholeness > object.wholeness) {
     object.model.parameters = lesson.model.parameters;
     object.wholeness = lesson.wholeness;
   }
-  object.lessons.insert(object.lessons.end(), lesson.lessons.begin(), lesson.lessons.end());
+  for (Lesson added : lesson.lessons) {
+    if (added.X_WO) added.X_WO = rows_of(pose_of(*added.X_WO) * X_OL.inverse());
+    object.lessons.push_back(std::move(added));
+  }
   const std::int64_t times = std::int64_t{object.model.times_taught} + lesson.model.times_taught;
   object.model.times_taught = static_cast<std::int32_t>(
       std::min<std::int64_t>(times, std::numeric_limits<std::int32_t>::max()));
@@ -228,7 +232,7 @@ Refinement refined(const KnownObject& known, const KnownObject& lesson) {
   merge_directions(model.views_O, views_O);
   model.empty_O =
       merged(model.points_O, known.model.empty_O, lesson.model.empty_O, refinement.fit.X_OL);
-  add_lesson(refinement.object, lesson);
+  add_lesson(refinement.object, lesson, refinement.fit.X_OL);
   check_object(refinement.object);
   return refinement;
 }

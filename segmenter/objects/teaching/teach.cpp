@@ -55,7 +55,8 @@ KnownObject taught_object(const std::string& name, const ObservedMap& map,
   object.lessons = {{.map_name = map.map_name,
                      .map_session = map.map_session,
                      .segment_ids = surface.segment_ids,
-                     .time_s = time_s}};
+                     .time_s = time_s,
+                     .X_WO = rows_of(made.X_WO)}};
   check_object(object);
   return object;
 }

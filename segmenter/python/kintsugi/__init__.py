@@ -11,12 +11,12 @@ z forward), P a piece; X_AB is the pose of B in A, p_A = X_AB p_B. Arrays of rec
 """
 
 from ._kintsugi import (CONTACT, DESCRIBED_SEGMENT, EVENT, POINT, RUN, SEGMENT, Answer, CameraPose, Changes,
-                        MapClient, SavedMap, Segmenter, Update, __version__, connect, estimate_normals,
+                        MapClient, Object, SavedMap, Segmenter, Update, __version__, connect, estimate_normals,
                         load_map, open_log, read_log)
 
 # Types of events (EVENT["type"]).
 CREATED, GROWN, MERGED, SPLIT, RETIRED = range(5)
 
 __all__ = ["CONTACT", "CREATED", "DESCRIBED_SEGMENT", "EVENT", "GROWN", "MERGED", "POINT", "RETIRED", "RUN",
-           "SEGMENT", "SPLIT", "Answer", "CameraPose", "Changes", "MapClient", "SavedMap", "Segmenter",
+           "SEGMENT", "SPLIT", "Answer", "CameraPose", "Changes", "MapClient", "Object", "SavedMap", "Segmenter",
            "Update", "__version__", "connect", "estimate_normals", "load_map", "open_log", "read_log"]

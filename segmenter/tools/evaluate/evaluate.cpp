@@ -44,7 +44,8 @@ struct EvaluateOptions {
   ObjectsOptions objects;
 
   bool has_objects() const {
-    return !objects.changes_folder.empty() || !objects.detections_file.empty();
+    return !objects.changes_folder.empty() || !objects.detections_file.empty() ||
+           !objects.times_log.empty();
   }
 };
 
@@ -56,14 +57,17 @@ void require_task(const EvaluateOptions& options) {
   if (has_live && !options.input.empty()) throw CLI::ExcludesError("--live", "IN");
   if (has_live && has_path) throw CLI::ExcludesError("--live", "--trajectory");
   if (options.has_objects() && (!options.input.empty() || has_live || has_path)) {
-    throw CLI::ExcludesError("--changes or --objects", "IN, --live or --trajectory");
+    throw CLI::ExcludesError("--changes, --objects or --detection-times",
+                             "IN, --live or --trajectory");
   }
-  if (has_path || has_live || options.has_objects()) return;
+  if (has_path || has_live || !options.objects.times_log.empty()) return;
   if (!options.trajectory.json_file.empty()) {
-    throw CLI::RequiresError("--json", "--trajectory or --live");
+    throw CLI::RequiresError("--json", "--trajectory, --live or --detection-times");
   }
-  if (options.input.empty())
-    throw CLI::RequiredError("IN, --trajectory, --live, --changes or --objects");
+  if (options.has_objects()) return;
+  if (options.input.empty()) {
+    throw CLI::RequiredError("IN, --trajectory, --live, --changes, --objects or --detection-times");
+  }
   if (options.folder.empty()) throw CLI::RequiredError("--out");
 }
 
@@ -155,9 +159,8 @@ int main(int argc, char** argv) {
     CLI::App app{
         "Segments a recorded map slice by slice and writes the paper's tables and figures; or, "
         "with --ground-truth, scores its segments; or, with --trajectory, computes the errors of a "
-        "camera path; or, with --live, measures a live run; or, with --changes or --objects, "
-        "scores "
-        "what was told of objects."};
+        "camera path; or, with --live or --detection-times, measures a live run; or, with "
+        "--changes or --objects, scores what was told of objects."};
     EvaluateOptions options;
     add_options(app, options);
     kintsugi::add_version_flag(app);
@@ -169,6 +172,9 @@ int main(int argc, char** argv) {
     }
     if (!options.live_log.empty()) {
       return evaluate_live(options.live_log, options.trajectory.json_file);
+    }
+    if (!options.objects.times_log.empty()) {
+      return evaluate_detection_times(options.objects.times_log, options.trajectory.json_file);
     }
     if (options.has_objects()) {
       evaluate_objects(options.objects, options.folder);

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include <CLI/CLI.hpp>
+#include <spdlog/spdlog.h>
 
 #include "lcmtypes/base/atomic_file.hpp"
 #include "lcmtypes/base/stop_signal.hpp"
@@ -39,8 +40,11 @@ int detect_in_map(const DetectOptions& options) {
   const ObjectLibrary library = read_library(options.live.library);
   warn_of_refusals(library);
   const ObservedMap map = read_taught_map(*options.map);
-  const std::unique_ptr<Detector> detector = detect_in(map, library);
-  std::cout << detections_text(*detector);
+  const auto [detector, cost] = detect_in(map, library);
+  std::cout << detections_text(*detector) << std::flush;
+  spdlog::info(
+      "{} objects prepared in {:.2f} s, {} segments examined in {:.2f} s of processor time",
+      library.objects().size(), cost.prepare_s, cost.num_segments, cost.examine_s);
   if (options.live.json.empty()) return 0;
   AtomicFile file(options.live.json);
   file.stream() << detections_json(*detector, {.map = options.map->string()});

@@ -1,6 +1,7 @@
 #include "segmenter/tools/objects/map_difference.hpp"
 
 #include <algorithm>
+#include <array>
 #include <stdexcept>
 #include <string_view>
 
@@ -10,6 +11,8 @@
 #include "segmenter/io/points/file_bytes.hpp"
 #include "segmenter/io/points/file_cloud.hpp"
 #include "segmenter/io/points/point_roles.hpp"
+#include "segmenter/objects/library/known_object.hpp"
+#include "segmenter/objects/model/make_model.hpp"
 
 namespace kintsugi::segmenter {
 namespace {
@@ -21,7 +24,7 @@ bool shows_object(const std::string& kind) {
   return kind == "new" || kind == "gone" || kind == "moved";
 }
 
-/// Points that are there as before, or as now.
+/// Points that are there as before, or as now, in the W of the map after.
 std::vector<CloudPoint> read_points(const fs::path& path, bool before) {
   const std::string bytes = read_file_bytes(path);
   const std::string name = path.string();
@@ -31,19 +34,32 @@ std::vector<CloudPoint> read_points(const fs::path& path, bool before) {
   if (!was.has_value()) {
     throw std::runtime_error(name + ": has no property 'was', as kintsugi-diff writes it");
   }
-  std::vector<CloudPoint> points_W;
+  std::vector<CloudPoint> points_A;
   for (std::size_t i = 0; i < all.size(); ++i) {
-    if ((table.value(i, *was) != 0.0) == before) points_W.push_back(all[i]);
+    if ((table.value(i, *was) != 0.0) == before) points_A.push_back(all[i]);
   }
-  if (points_W.empty()) {
+  if (points_A.empty()) {
     throw std::runtime_error(name + ": has no points with 'was' = " + (before ? "1" : "0"));
   }
-  return points_W;
+  return points_A;
 }
 
 /// A path in changes.json is that of the one who ran kintsugi-diff, or relative to its output.
 fs::path found_map(const std::string& path, const fs::path& folder) {
   return fs::exists(path) || !fs::exists(folder / path) ? fs::path(path) : folder / path;
+}
+
+/// Of the W of the map before in that of the map after; what an older kintsugi-diff wrote lacks it.
+Pose alignment_of(const Json& root) {
+  if (!root.contains("X_AB")) return Pose::Identity();
+  const auto numbers = root.at("X_AB").get<std::vector<double>>();
+  std::array<double, 12> rows{};
+  if (numbers.size() != rows.size()) {
+    throw std::runtime_error("'X_AB' has " + std::to_string(numbers.size()) +
+                             " numbers, expected 12: the rows of a 3 x 4 matrix");
+  }
+  std::ranges::copy(numbers, rows.begin());
+  return pose_of(rows);
 }
 
 ShownChange change_of(const Json& root, const Json& entry, const fs::path& folder) {
@@ -54,6 +70,7 @@ ShownChange change_of(const Json& root, const Json& entry, const fs::path& folde
   change.segment_ids =
       entry.at(before ? "before_segments" : "after_segments").get<std::vector<std::uint32_t>>();
   std::sort(change.segment_ids.begin(), change.segment_ids.end());
+  if (before) change.X_WA = alignment_of(root).inverse();
   change.map = found_map(root.at(before ? "before" : "after").get<std::string>(), folder);
   return change;
 }
@@ -95,8 +112,10 @@ std::vector<ShownChange> read_changes(const fs::path& folder, std::optional<std:
     throw std::runtime_error(path.string() + ": " + error.what());
   }
   for (ShownChange& change : changes) {
-    change.points_W = read_points(folder / ("change_" + std::to_string(change.id) + ".ply"),
-                                  change.kind == "gone");
+    const fs::path file = folder / ("change_" + std::to_string(change.id) + ".ply");
+    for (const CloudPoint& p_A : read_points(file, change.kind == "gone")) {
+      change.points_W.push_back(transformed(p_A, change.X_WA));
+    }
   }
   return changes;
 }

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "lcmtypes/geometry.hpp"
 #include "lcmtypes/messages.hpp"
 
 namespace kintsugi::segmenter {
@@ -18,6 +19,7 @@ struct ShownChange {
   std::string kind;                        ///< "new", "gone" or "moved"
   std::vector<CloudPoint> points_W;        ///< of the object there
   std::vector<std::uint32_t> segment_ids;  ///< of that map, ascending
+  Pose X_WA = Pose::Identity();            ///< of the W of the map after in that of `map`
   std::filesystem::path map;
 };
 

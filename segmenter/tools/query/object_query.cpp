@@ -42,7 +42,8 @@ FoundObjects found_by(const ObjectListener& listener) {
                      .map_session = objects.map_session(),
                      .session = objects.session(),
                      .newest_utime = 0,
-                     .detections = {}};
+                     .detections = {},
+                     .dropped = listener.dropped()};
   for (const auto& [number, entry] : objects.entries()) {
     found.detections.push_back(entry.message);
     found.newest_utime = std::max(found.newest_utime, entry.message.utime);

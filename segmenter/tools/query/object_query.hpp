@@ -16,6 +16,7 @@ struct FoundObjects {
   std::int64_t session = 0;       ///< of the detector
   std::int64_t newest_utime = 0;  ///< device time of the newest slice that it has looked at
   std::vector<ObjectDetection> detections;  ///< also those that are gone; by ascending number
+  std::string dropped;  ///< which messages were not valid, for a person; empty: all were
 };
 
 /// Listens until all detections were heard, which takes about a second.

@@ -56,10 +56,12 @@ int exit_code(const SegmentAnswer& answer, QueryPlace place) {
 int run_for_objects(const QueryOptions& options) {
   if (!options.map.empty()) {
     throw std::invalid_argument(
-        "--object asks the detector on the bus; a saved map has no objects");
+        "--object asks the detector on the bus; kintsugi-objects detect finds objects in a saved "
+        "map");
   }
   FoundObjects found = ask_detector(options.lcm_url, options.query.map_name,
                                     QueryClient::Seconds(options.timeout_s));
+  if (!found.dropped.empty()) std::cerr << "kintsugi-query: " << found.dropped << '\n';
   keep_named(options.object, found);
   std::cout << (options.json ? objects_json(found) : objects_table(found)) << std::flush;
   if (!std::cout) return 1;

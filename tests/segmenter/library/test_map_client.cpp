@@ -7,6 +7,7 @@
 #include <random>
 #include <set>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -173,8 +174,8 @@ void append(LogWriter& log, const std::string& channel, const Message& message,
 
 class MapClientOfALog : public ::testing::Test {
  protected:
-  /// Each slice, the camera at it, and its update.
-  void write(const Played& played) {
+  /// Each slice, the camera at it, and its update; then messages about objects.
+  void write(const Played& played, const std::vector<Bytes>& objects = {}) {
     LogWriter log = LogWriter::create(path_);
     for (std::size_t i = 0; i < played.slices.size(); ++i) {
       const auto sequence = static_cast<std::int64_t>(i);
@@ -185,6 +186,7 @@ class MapClientOfALog : public ::testing::Test {
       log.append(1, channels::kCameraPose, encode(pose));
       append(log, channels::kSegmentUpdate, played.updates[i], sequence);
     }
+    for (const Bytes& message : objects) log.append(1, channels::kObjectDetection, message);
   }
 
   testing::TemporaryFolder folder_;
@@ -227,6 +229,34 @@ TEST_F(MapClientOfALog, TellsOfEachChange) {
   EXPECT_EQ(num_poses, played.slices.size());
   EXPECT_TRUE(has_moved);
   EXPECT_TRUE(client.wait(MapClient::Seconds(0.0)).is_empty());
+}
+
+ObjectDetection detected(std::int32_t number, const std::string& name, DetectionEvent event) {
+  ObjectDetection detection;
+  detection.session = 3;
+  detection.map_session = kMapSession;
+  detection.map_name = "map";
+  detection.detection = number;
+  detection.num_detections = 3;
+  detection.event_number = number;
+  detection.event = event;
+  detection.name = name;
+  return detection;
+}
+
+TEST_F(MapClientOfALog, HasTheObjectsThatAreInTheMap) {
+  ObjectDetection of_another_map = detected(3, "chair", DetectionEvent::kFound);
+  of_another_map.map_name = "cellar";
+  of_another_map.event_number = 9;
+  write(Played(),
+        {encode(detected(1, "mug", DetectionEvent::kConfirmed)),
+         encode(detected(2, "globe", DetectionEvent::kGone)),
+         encode(detected(3, "mug", DetectionEvent::kFound)), encode(of_another_map), Bytes(40, 1)});
+  const std::vector<ObjectDetection> objects = read_log(path_).objects();
+  ASSERT_EQ(objects.size(), 2U);
+  EXPECT_EQ(objects[0].detection, 1);
+  EXPECT_EQ(objects[1].detection, 3);
+  EXPECT_EQ(objects[1].name, "mug");
 }
 
 TEST_F(MapClientOfALog, CanLeaveThePointsAway) {

@@ -77,6 +77,7 @@ TEST_F(ObjectQuery, HasAllDetectionsOfTheName) {
       {});
   FoundObjects found = ask_detector(url, "", kTimeout);
   EXPECT_EQ(found.detections.size(), 3U);
+  EXPECT_EQ(found.dropped, "");
   keep_named("mug", found);
   ASSERT_EQ(found.detections.size(), 2U);
   EXPECT_TRUE(any_present(found));
@@ -86,6 +87,25 @@ TEST_F(ObjectQuery, HasAllDetectionsOfTheName) {
   keep_named("spoon", found);
   EXPECT_FALSE(any_present(found));
   EXPECT_THAT(objects_table(found), HasSubstr("no such object found"));
+}
+
+TEST_F(ObjectQuery, TellsOfInvalidMessages) {
+  const std::string url = kintsugi::testing::kPrivateBusUrl;
+  const Repeater repeater(url, {detected(1, "mug", DetectionEvent::kConfirmed)}, {});
+  std::atomic<bool> is_done = false;
+  std::thread hostile([&] {
+    Bus bus(url);
+    while (!is_done) {
+      bus.publish(channels::kObjectDetection, Bytes(40, 0xFF));
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+  });
+  // It listens for some time, because the detection says that there are three.
+  const FoundObjects found = ask_detector(url, "", kTimeout);
+  is_done = true;
+  hostile.join();
+  EXPECT_EQ(found.detections.size(), 1U);
+  EXPECT_THAT(found.dropped, HasSubstr("messages of objects dropped: "));
 }
 
 TEST_F(ObjectQuery, ADetectorThatHasFoundNothingAnswers) {
@@ -119,7 +139,8 @@ TEST(ObjectReport, JsonHasThePoseAsTranslationAndQuaternion) {
                            .map_session = 42,
                            .session = 47,
                            .newest_utime = detection.utime + 1'500'000,
-                           .detections = {detection}};
+                           .detections = {detection},
+                           .dropped = ""};
   const auto json = nlohmann::json::parse(objects_json(found));
   EXPECT_EQ(json["map"]["name"], "office");
   const auto& object = json["objects"][0];

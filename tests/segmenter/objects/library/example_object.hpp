@@ -38,9 +38,12 @@ inline KnownObject example_object(const std::string& name) {
   object.model.parameters.scale = 0.0013;
   object.model.times_taught = 2;
   object.wholeness = 0.875;
-  object.lessons = {
-      {.map_name = "hall", .map_session = 77, .segment_ids = {12, 34}, .time_s = 1'700'000'000},
-      {.map_name = "", .map_session = 0, .segment_ids = {}, .time_s = 0}};
+  object.lessons = {{.map_name = "hall",
+                     .map_session = 77,
+                     .segment_ids = {12, 34},
+                     .time_s = 1'700'000'000,
+                     .X_WO = {{0.6, -0.8, 0, 1.25, 0.8, 0.6, 0, -2, 0, 0, 1, 0.1}}},
+                    {.map_name = "", .map_session = 0, .segment_ids = {}, .time_s = 0}};
   return object;
 }
 

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <numbers>
 #include <sstream>
 #include <string>
 
@@ -12,6 +13,7 @@
 #include "lcmtypes/base/ply_writer.hpp"
 #include "segmenter/io/ply/labelled_ply_writer.hpp"
 #include "segmenter/objects/library/object_library.hpp"
+#include "segmenter/objects/model/make_model.hpp"
 #include "tests/segmenter/objects/box_on_table.hpp"
 #include "tests/segmenter/tools/program.hpp"
 #include "tests/support/file_size_limit.hpp"
@@ -65,12 +67,13 @@ class Objects : public ::testing::Test {
   ObjectLibrary library() const { return ObjectLibrary::read(folder_ / "objects"); }
 
   /// What kintsugi-diff writes: the box came, the ball went.
-  void write_difference() const {
+  void write_difference(const Pose& X_AB = Pose::Identity()) const {
     const fs::path diff = folder_ / "diff";
     fs::create_directory(diff);
     const json root = {
         {"before", (folder_ / "hall.ply").string()},
         {"after", (folder_ / "room.ply").string()},
+        {"X_AB", rows_of(X_AB)},
         {"changes",
          {{{"id", 1}, {"kind", "new"}, {"before_segments", json::array()}, {"after_segments", {2}}},
           {{"id", 2},
@@ -81,7 +84,9 @@ class Objects : public ::testing::Test {
     write_text(diff / "changes.json", root.dump());
     write_change(diff / "change_1.ply", box_on_table({"z", "-y", "-x"}, {-0.15F, 0.1F, 0.0F}, 0.7F),
                  testing::kBox, 0);
-    write_change(diff / "change_2.ply", box_on_table(), testing::kBall, 1);
+    ObservedMap before = box_on_table();
+    for (CloudPoint& p : before.points_W) p = transformed(p, X_AB);
+    write_change(diff / "change_2.ply", before, testing::kBall, 1);
   }
   static void write_change(const fs::path& path, const ObservedMap& map, std::uint32_t id,
                            std::uint8_t was) {
@@ -159,6 +164,24 @@ TEST_F(Objects, AreTaughtFromADifference) {
   expect_error("teach --from-diff FOLDER/none", "changes.json: no such file");
   write_text(folder_ / "diff" / "changes.json", "{}");
   expect_error("teach --from-diff FOLDER/diff", "changes.json: ");
+}
+
+TEST_F(Objects, WhatIsGoneIsTaughtWhereItStoodInTheMapBefore) {
+  // The map after begins 2 m aside and turned by a quarter about z; changes are told in its W.
+  Pose X_AB = Pose(Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitZ()));
+  X_AB.translation() = Eigen::Vector3d(2, 0, 0);
+  write_difference(X_AB);
+  expect_success("teach --from-diff FOLDER/diff --change 2 --name gone");
+  expect_success("teach --map FOLDER/hall.ply --ids 3 --name ball");
+  const Pose X_WO = pose_of(*library().find("gone")->lessons[0].X_WO);
+  const Pose expected = pose_of(*library().find("ball")->lessons[0].X_WO);
+  EXPECT_LT((X_WO.matrix() - expected.matrix()).norm(), 1e-3);
+  const fs::path path = folder_ / "diff" / "changes.json";
+  std::ifstream file(path);
+  json root = json::parse(file);
+  root["X_AB"] = {1, 2};
+  write_text(path, root.dump());
+  expect_error("teach --from-diff FOLDER/diff --change 2", "'X_AB' has 2 numbers, expected 12");
 }
 
 TEST_F(Objects, WhatCannotBeTaughtSaysWhy) {

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -6,6 +7,7 @@
 #include <gmock/gmock.h>
 
 #include "segmenter/core/parameters/presets.hpp"
+#include "segmenter/objects/model/make_model.hpp"
 #include "segmenter/objects/teaching/learned_parameters.hpp"
 #include "segmenter/objects/teaching/refine.hpp"
 #include "segmenter/objects/teaching/taught_surface.hpp"
@@ -92,8 +94,17 @@ TEST(Teach, GivesAnObjectWithItsLesson) {
   EXPECT_TRUE(object.model.views_O.empty());  // the map has no views
   EXPECT_EQ(object.model.times_taught, 1);
   ASSERT_EQ(object.lessons.size(), 1U);
+  Lesson lesson = object.lessons[0];
+  ASSERT_TRUE(lesson.X_WO);
+  const CloudPoint& first_O = object.model.points_O[0];
+  const CloudPoint first_W = transformed(first_O, pose_of(*lesson.X_WO));
+  const ObservedMap map = box_on_table();
+  EXPECT_TRUE(std::ranges::any_of(map.points_W, [&](const CloudPoint& p) {
+    return std::hypot(p.x - first_W.x, p.y - first_W.y, p.z - first_W.z) < 1e-3F;
+  }));
+  lesson.X_WO.reset();
   EXPECT_EQ(
-      object.lessons[0],
+      lesson,
       (Lesson{
           .map_name = "hall", .map_session = 7, .segment_ids = {kBox}, .time_s = 1'700'000'000}));
 }
@@ -137,7 +148,13 @@ TEST(Refine, AveragesTheSameSidesAndAddsTheOthers) {
   const Refinement again = refined(same.known, same.lesson);
   EXPECT_LT(again.num_added, same.known.model.points_O.size() / 50);
   EXPECT_EQ(again.object.model.times_taught, 2);
-  EXPECT_EQ(again.object.lessons.size(), 2U);
+  ASSERT_EQ(again.object.lessons.size(), 2U);
+  // Where the same point of the object lay in the second map.
+  const Pose X_WO = pose_of(*again.object.lessons[1].X_WO);
+  const Pose X_WL = pose_of(*same.lesson.lessons[0].X_WO);
+  EXPECT_LT((X_WO * again.fit.X_OL * Eigen::Vector3d(0.1, 0, 0) - X_WL * Eigen::Vector3d(0.1, 0, 0))
+                .norm(),
+            1e-9);
 
   const TwoLessons other({"z", "-y", "-x"});
   const Refinement more = refined(other.known, other.lesson);
