@@ -33,13 +33,16 @@ constexpr double kLeastAlikeColors = 0.5;
 constexpr double kReach_vox = 6.0;
 constexpr int kRounds = 3;  // of adding segments and refining
 // At the right motion all agree but for edges and noise, which are a tenth.
-constexpr double kLeastScore = 0.85;
+constexpr double kLeastScore = 0.9;
 constexpr double kLeastBegin = 0.6;  // before what moves with it is added
 // Of the side of which less is known: the rest of it is hidden where the thing was or is.
 constexpr double kLeastFound = 0.7;
+// Of the other: a small part of a thing, a flat one above all, is found on many things.
+constexpr double kLeastFoundOfBoth = 0.3;
 constexpr double kLeastShift_vox = 2.0;    // less is the same place, see changes_of()
 constexpr double kBetterThanBefore = 0.05;
 constexpr double kMostShared = 0.2;
+constexpr double kLeastOfWhole = 0.5;
 
 /// The things of one map that may have moved, and a recogniser that knows them.
 class Candidates {
@@ -248,6 +251,7 @@ class Motions {
     const double least_points = kLeastPoints * std::pow(0.01 / before_.map.voxel_m(), 2);
     const bool is_seen =
         std::max(now.found, then.found) >= kLeastFound &&
+        std::min(now.found, then.found) >= kLeastFoundOfBoth &&
         static_cast<double>(std::min(moved.before.points.size(), moved.after.points.size())) >=
             least_points;
     const bool is_elsewhere = shift_m(moved) > kLeastShift_vox * before_.map.voxel_m() &&
@@ -281,6 +285,18 @@ bool share_much(const Thing& a, const Thing& b) {
   return static_cast<double>(common.size()) > kMostShared * static_cast<double>(smaller);
 }
 
+/// Whether a good part of the thing is a small part of something that has changed as a whole.
+bool is_torn_off(const Thing& thing, std::span<const ChangeGroup> groups) {
+  return std::ranges::any_of(groups, [&](const ChangeGroup& group) {
+    if (!group.is_thing) return false;
+    std::vector<std::size_t> common;
+    std::ranges::set_intersection(thing.points, group.points, std::back_inserter(common));
+    const auto count = static_cast<double>(common.size());
+    return count > kMostShared * static_cast<double>(thing.points.size()) &&
+           count < kLeastOfWhole * static_cast<double>(group.points.size());
+  });
+}
+
 }  // namespace
 
 std::vector<CloudPoint> whole_surface(const MovedThing& moved, const MapSide& before,
@@ -311,7 +327,9 @@ std::vector<MovedThing> find_moved(const ChangedSide& before, const ChangedSide&
     const bool is_taken = std::ranges::any_of(chosen, [&](const MovedThing& other) {
       return share_much(other.before, moved.before) || share_much(other.after, moved.after);
     });
-    if (!is_taken) chosen.push_back(std::move(moved));
+    const bool is_part = is_torn_off(moved.before, before.groups) ||
+                         is_torn_off(moved.after, after.groups);
+    if (!is_taken && !is_part) chosen.push_back(std::move(moved));
   }
   return chosen;
 }

@@ -20,7 +20,7 @@ constexpr double kLeastOfSegment = 0.1;
 constexpr double kLeastOfGroup = 0.2;
 // Of what moves nine of ten points agree: the others are edges and shades. Many may be hidden.
 constexpr double kMostContradicted = 0.2;
-constexpr double kLeastFound = 0.3;
+constexpr double kLeastFound = 0.15;
 constexpr double kBetter = 0.03;
 constexpr double kInRoom = 0.8;
 constexpr double kAside_vox = 6.0;  // what is pushed farther has left its room
