@@ -188,10 +188,11 @@ class Motions {
     for (const Pose& X : motions) {
       MovedThing moved{.before = before, .after = after, .X_after_before = X};
       refine(moved, kReach_vox);
+      leave_what_stays(moved);
       if (!may_be(moved)) continue;
       complete(moved);
       assess(moved);
-      if (moved.score < kLeastScore || (best && moved.score <= best->score)) continue;
+      if (moved.score < kLeastScore || (best && moved.points <= best->points)) continue;
       best = std::move(moved);
     }
     return best;
@@ -211,6 +212,15 @@ class Motions {
                                           after_.map.points_at(moved.after.points),
                                           moved.X_after_before, up_, before_.map.voxel_m(),
                                           reach_vox * before_.map.voxel_m());
+  }
+
+  void leave_what_stays(MovedThing& moved) const {
+    const std::size_t count = moved.before.points.size() + moved.after.points.size();
+    const Pose& X = moved.X_after_before;
+    drop_what_stays(moved.before, before_.map, X, after_.map);
+    drop_what_stays(moved.after, after_.map, X.inverse(Eigen::Isometry), before_.map);
+    const bool is_less = moved.before.points.size() + moved.after.points.size() < count;
+    if (is_less) refine(moved, kReach_vox);
   }
 
   /// Whether what is to be seen of the smaller one mostly agrees: the other may have more.
@@ -257,6 +267,8 @@ class Motions {
     const bool is_elsewhere = shift_m(moved) > kLeastShift_vox * before_.map.voxel_m() &&
                               gain >= 2.0 * kBetterThanBefore;
     moved.score = is_seen && is_elsewhere ? agreement : 0.0;
+    moved.points = now.found * static_cast<double>(moved.before.points.size()) +
+                   then.found * static_cast<double>(moved.after.points.size());
   }
 
   /// Of the point that moves farthest.
@@ -317,11 +329,8 @@ std::vector<MovedThing> find_moved(const ChangedSide& before, const ChangedSide&
   for (auto& moved : tries) {
     if (moved) found.push_back(std::move(*moved));
   }
-  // The larger ones first: a part of a thing moves as it does.
-  std::ranges::stable_sort(found, std::ranges::greater{}, [](const MovedThing& moved) {
-    return moved.score *
-           static_cast<double>(moved.before.points.size() + moved.after.points.size());
-  });
+  // A part of a thing moves as it does, and a part of it may be like a part of another.
+  std::ranges::stable_sort(found, std::ranges::greater{}, &MovedThing::points);
   std::vector<MovedThing> chosen;
   for (MovedThing& moved : found) {
     const bool is_taken = std::ranges::any_of(chosen, [&](const MovedThing& other) {

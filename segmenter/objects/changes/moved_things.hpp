@@ -24,14 +24,15 @@ struct MovedThing {
   Thing before;
   Thing after;
   Pose X_after_before = Pose::Identity();  ///< maps its points before to where they are now
-  double score = 0.0;  ///< 0 to 1: how much of all that is to be seen of it agrees
+  double score = 0.0;   ///< 0 to 1: how much of all that is to be seen of it agrees
+  double points = 0.0;  ///< of both maps that the other has, too
 };
 
 /// What both maps have of it, where it is now.
 std::vector<CloudPoint> whole_surface(const MovedThing& moved, const MapSide& before,
                                       const MapSide& after);
 
-/// Things that still stand upright, the surest first; no two share more than a little.
+/// Things that still stand upright, those first of which most is found again; no two share more than a little.
 ///
 /// Each group of changed points with the segments that are its own is looked for in the other map,
 /// by ObjectRecognizer, at the groups there that may be of its size and colours; and where it was,

@@ -20,8 +20,8 @@ constexpr int kNeighbours = 4;     // of two faces of an edge, some are on each
 constexpr std::size_t kMost = 1'500;  // points of a side that are matched
 constexpr int kLeastMatches = 12;
 // Of a residual along the surface beside one across: there a point has no counterpart of its own,
-// only one within half a voxel.
-constexpr double kAlong = 0.1;
+// only one within half a voxel. It decides only where nothing else holds the thing.
+constexpr double kAlong = 0.02;
 constexpr double kSettled = 1e-5;
 
 using Vector4 = Eigen::Matrix<double, 4, 1>;

@@ -1,8 +1,9 @@
 #include "segmenter/objects/changes/whole_thing.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <iterator>
 #include <map>
+#include <utility>
 
 #include "segmenter/objects/changes/motion_evidence.hpp"
 #include "segmenter/objects/maps/surface_samples.hpp"
@@ -12,8 +13,6 @@ namespace {
 
 // Of two grids and of edges that segments leave out.
 constexpr double kTouch_vox = 3.0;
-constexpr std::size_t kTouchSamples = 600;
-constexpr int kTouchNeighbours = 16;
 // A thing that is turned about its middle has changed at its ends only.
 constexpr double kMostSizeRatio = 4.0;
 constexpr double kLeastOfSegment = 0.1;
@@ -22,6 +21,7 @@ constexpr double kLeastOfGroup = 0.2;
 constexpr double kMostContradicted = 0.2;
 constexpr double kLeastFound = 0.15;
 constexpr double kBetter = 0.03;
+constexpr std::size_t kLeastToDrop = 20;  // of fewer points the shares say nothing
 constexpr double kInRoom = 0.8;
 constexpr double kAside_vox = 6.0;  // what is pushed farther has left its room
 
@@ -39,22 +39,30 @@ void add_segment(Thing& thing, std::uint32_t id, const MapSide& map) {
   thing.segments.insert(id);
 }
 
+Eigen::AlignedBox3f box_of(std::span<const CloudPoint> points) {
+  Eigen::AlignedBox3f box;
+  for (const CloudPoint& p : points) box.extend(position_of(p));
+  return box;
+}
+
 std::set<std::uint32_t> touching(const Thing& thing, const MapSide& map) {
-  std::vector<std::size_t> some;
-  const std::size_t count = std::min(thing.points.size(), kTouchSamples);
-  some.reserve(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    some.push_back(thing.points[i * thing.points.size() / count]);
-  }
-  NearestNeighbours::Result near;
-  map.tree().find(map.points_at(some), kTouchNeighbours, near);
-  const auto reach_m2 = static_cast<float>(std::pow(kTouch_vox * map.voxel_m(), 2));
+  const std::vector<CloudPoint> own = map.points_at(thing.points);
+  const auto reach_m = static_cast<float>(kTouch_vox * map.voxel_m());
+  const Eigen::AlignedBox3f box = box_of(own);
+  std::vector<std::size_t> around =
+      map.points_in({box.min().array() - reach_m, box.max().array() + reach_m});
+  std::erase_if(around, [&](std::size_t i) {
+    const std::uint32_t id = map.segment_ids()[i];
+    return id == 0 || thing.segments.contains(id);
+  });
+  NearestNeighbours::Result nearest;
+  NearestNeighbours(own).find(map.points_at(around), 1, nearest);
   std::set<std::uint32_t> ids;
-  for (std::size_t k = 0; k < near.indices.size(); ++k) {
-    if (near.squared_distances[k] <= reach_m2) ids.insert(map.segment_ids()[near.indices[k]]);
+  for (std::size_t k = 0; k < around.size(); ++k) {
+    if (nearest.squared_distances[k] <= reach_m * reach_m) {
+      ids.insert(map.segment_ids()[around[k]]);
+    }
   }
-  ids.erase(0);
-  for (const std::uint32_t id : thing.segments) ids.erase(id);
   return ids;
 }
 
@@ -75,12 +83,6 @@ std::set<std::uint32_t> segments_in(const FilledSpace& room, double margin_vox,
     if (count >= kInRoom * static_cast<double>(map.points_of(id).size())) ids.insert(id);
   }
   return ids;
-}
-
-Eigen::AlignedBox3f box_of(std::span<const CloudPoint> points) {
-  Eigen::AlignedBox3f box;
-  for (const CloudPoint& p : points) box.extend(position_of(p));
-  return box;
 }
 
 /// Whether what is to be seen of the points is there after the motion, and better than without it.
@@ -147,6 +149,28 @@ bool is_part_of(std::span<const std::size_t> points, const MapSide& map, const F
   });
   return static_cast<double>(num_inside) >= kInRoom * static_cast<double>(points.size()) &&
          evidence_of(map, points, X, other).contradicted <= kMostContradicted;
+}
+
+void drop_what_stays(Thing& thing, const MapSide& map, const Pose& X, const MapSide& other) {
+  const auto stays = [&](std::uint32_t id) {
+    const std::vector<std::size_t>& segment = map.points_of(id);
+    if (segment.size() < kLeastToDrop) return false;
+    const Evidence here = evidence_of(map, segment, Pose::Identity(), other);
+    const Evidence there = evidence_of(map, segment, X, other);
+    return here.found >= kLeastFound && here.agreement() >= there.agreement() + kBetter;
+  };
+  std::set<std::uint32_t> dropped;
+  for (const std::uint32_t id : thing.segments) {
+    if (stays(id)) dropped.insert(id);
+  }
+  if (dropped.empty()) return;
+  std::vector<std::size_t> rest;
+  std::ranges::copy_if(thing.points, std::back_inserter(rest), [&](std::size_t i) {
+    return !dropped.contains(map.segment_ids()[i]);
+  });
+  if (rest.empty()) return;
+  thing.points = std::move(rest);
+  for (const std::uint32_t id : dropped) thing.segments.erase(id);
 }
 
 Eigen::Vector3d size_of(std::span<const CloudPoint> points, const Eigen::Vector3d& up) {

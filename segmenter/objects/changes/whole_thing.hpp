@@ -36,6 +36,10 @@ Thing what_is_there(std::span<const CloudPoint> thing, const MapSide& map,
 bool add_what_follows(Thing& thing, const MapSide& map, const Pose& X, const MapSide& other,
                       std::span<const CloudPoint> all, const Eigen::Vector3d& up);
 
+/// Takes the segments away that stay where they are better than they move with the thing, as a
+/// part of the table does that is in one segment with what lies on it; but never all points.
+void drop_what_stays(Thing& thing, const MapSide& map, const Pose& X, const MapSide& other);
+
 /// Whether the points are in the room of a thing, and nothing speaks against that they moved with it.
 /// @param room, X as above
 bool is_part_of(std::span<const std::size_t> points, const MapSide& map, const FilledSpace& room,
