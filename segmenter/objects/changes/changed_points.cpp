@@ -50,9 +50,9 @@ std::vector<PointChange> look_up_all(const MapSide& map, const MapSide& other) {
         const auto count = static_cast<std::size_t>(result.count);
         for (std::size_t i = range.begin(); i < range.end(); ++i) {
           const std::size_t at = (i - range.begin()) * count;
-          changes[i] =
-              look_up(points[i], map.colors()[i], other, std::span(result.indices).subspan(at, count),
-                      std::span(result.squared_distances).subspan(at, count));
+          changes[i] = look_up(points[i], map.colors()[i], other,
+                               std::span(result.indices).subspan(at, count),
+                               std::span(result.squared_distances).subspan(at, count));
         }
       });
   return changes;

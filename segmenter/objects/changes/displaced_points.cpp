@@ -10,7 +10,7 @@
 namespace kintsugi::segmenter {
 namespace {
 
-constexpr double kMargin_vox = 2.0;  // as in changes_of(): nearer it may be the same surface
+constexpr double kMargin_vox = 2.0;       // as in changes_of(): nearer it may be the same surface
 constexpr double kLeastOfSegment = 0.25;  // less is what rooms are larger than things
 
 }  // namespace

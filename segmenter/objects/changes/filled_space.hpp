@@ -9,8 +9,8 @@
 
 namespace kintsugi::segmenter {
 
-/// The convex hull of a thing's surface, as planes of 49 evenly spread directions bound it, among them
-/// the vertical and horizontal ones: most things stand upright.
+/// The convex hull of a thing's surface, as planes of 49 evenly spread directions bound it, among
+/// them the vertical and horizontal ones: most things stand upright.
 class FilledSpace {
  public:
   /// @param up unit vector

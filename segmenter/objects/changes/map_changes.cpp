@@ -92,9 +92,7 @@ struct Side {
   std::vector<PointChange> changes;
   std::vector<ChangeGroup> groups;
 
-  void group() {
-    groups = group_changes(map.points(), map.segment_ids(), changes, map.voxel_m());
-  }
+  void group() { groups = group_changes(map.points(), map.segment_ids(), changes, map.voxel_m()); }
 };
 
 /// Both maps, decided by what their cameras saw, and then by what takes the places of what.
@@ -142,10 +140,10 @@ MapChanges find_changes(const ObservedMap& before, const ObservedMap& after, con
   const std::vector<CloudPoint> before_A = transformed(X_AB, before.points_W);
   std::vector<CloudPoint> relit_A = before_A;
   relight(relit_A, gains_of(before_A, after.points_W, voxel_m));
-  Side was{.map = {std::move(relit_A), before.segment_ids, space_of(before, X_AB, voxel_m),
-                   voxel_m},
-           .changes = {},
-           .groups = {}};
+  Side was{
+      .map = {std::move(relit_A), before.segment_ids, space_of(before, X_AB, voxel_m), voxel_m},
+      .changes = {},
+      .groups = {}};
   Side is{.map = {after.points_W, after.segment_ids, space_of(after, Pose::Identity(), voxel_m),
                   voxel_m},
           .changes = {},
@@ -153,8 +151,8 @@ MapChanges find_changes(const ObservedMap& before, const ObservedMap& after, con
   UpDirection up;
   up.add(after.points_W);
   find_changed(was, is, up.up_W());
-  const std::vector<MovedThing> moved = find_moved(
-      {was.map, was.changes, was.groups}, {is.map, is.changes, is.groups}, up.up_W());
+  const std::vector<MovedThing> moved =
+      find_moved({was.map, was.changes, was.groups}, {is.map, is.changes, is.groups}, up.up_W());
   MapChanges result;
   result.not_seen_again = num_unknown(was.changes);
   result.not_seen_before = num_unknown(is.changes);

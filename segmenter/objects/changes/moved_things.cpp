@@ -25,7 +25,7 @@
 namespace kintsugi::segmenter {
 namespace {
 
-constexpr double kSlack_vox = 3.0;  // of sizes: of both grids, and of edges
+constexpr double kSlack_vox = 3.0;   // of sizes: of both grids, and of edges
 constexpr double kMostLarger = 1.3;  // a part of which more is seen than of the whole
 constexpr std::size_t kColorSamples = 60;
 constexpr double kLeastAlikeColors = 0.5;
@@ -39,7 +39,7 @@ constexpr double kLeastBegin = 0.6;  // before what moves with it is added
 constexpr double kLeastFound = 0.7;
 // Of the other: a small part of a thing, a flat one above all, is found on many things.
 constexpr double kLeastFoundOfBoth = 0.3;
-constexpr double kLeastShift_vox = 2.0;    // less is the same place, see changes_of()
+constexpr double kLeastShift_vox = 2.0;  // less is the same place, see changes_of()
 constexpr double kBetterThanBefore = 0.05;
 constexpr double kMostShared = 0.2;
 constexpr double kLeastOfWhole = 0.5;
@@ -208,10 +208,9 @@ class Motions {
   }
 
   void refine(MovedThing& moved, double reach_vox) const {
-    moved.X_after_before = refined_motion(before_.map.points_at(moved.before.points),
-                                          after_.map.points_at(moved.after.points),
-                                          moved.X_after_before, up_, before_.map.voxel_m(),
-                                          reach_vox * before_.map.voxel_m());
+    moved.X_after_before = refined_motion(
+        before_.map.points_at(moved.before.points), after_.map.points_at(moved.after.points),
+        moved.X_after_before, up_, before_.map.voxel_m(), reach_vox * before_.map.voxel_m());
   }
 
   void leave_what_stays(MovedThing& moved) const {
@@ -238,8 +237,8 @@ class Motions {
       const Pose& X = moved.X_after_before;
       const Pose X_back = X.inverse(Eigen::Isometry);
       const std::vector<CloudPoint> all = whole_surface(moved, before_.map, after_.map);
-      const bool has_more_before = add_what_follows(moved.before, before_.map, X, after_.map,
-                                                    transformed(X_back, all), up_);
+      const bool has_more_before =
+          add_what_follows(moved.before, before_.map, X, after_.map, transformed(X_back, all), up_);
       const bool has_more_after =
           add_what_follows(moved.after, after_.map, X_back, before_.map, all, up_);
       if (!has_more_before && !has_more_after) return;
@@ -250,8 +249,8 @@ class Motions {
   void assess(MovedThing& moved) const {
     const Pose& X = moved.X_after_before;
     const Evidence now = evidence_of(before_.map, moved.before.points, X, after_.map);
-    const Evidence then = evidence_of(after_.map, moved.after.points,
-                                      X.inverse(Eigen::Isometry), before_.map);
+    const Evidence then =
+        evidence_of(after_.map, moved.after.points, X.inverse(Eigen::Isometry), before_.map);
     const Evidence stays =
         evidence_of(before_.map, moved.before.points, Pose::Identity(), after_.map);
     const Evidence stayed =
@@ -259,13 +258,12 @@ class Motions {
     const double agreement = std::min(now.agreement(), then.agreement());
     const double gain = now.agreement() + then.agreement() - stays.agreement() - stayed.agreement();
     const double least_points = kLeastPoints * std::pow(0.01 / before_.map.voxel_m(), 2);
-    const bool is_seen =
-        std::max(now.found, then.found) >= kLeastFound &&
-        std::min(now.found, then.found) >= kLeastFoundOfBoth &&
-        static_cast<double>(std::min(moved.before.points.size(), moved.after.points.size())) >=
-            least_points;
-    const bool is_elsewhere = shift_m(moved) > kLeastShift_vox * before_.map.voxel_m() &&
-                              gain >= 2.0 * kBetterThanBefore;
+    const bool is_seen = std::max(now.found, then.found) >= kLeastFound &&
+                         std::min(now.found, then.found) >= kLeastFoundOfBoth &&
+                         static_cast<double>(std::min(moved.before.points.size(),
+                                                      moved.after.points.size())) >= least_points;
+    const bool is_elsewhere =
+        shift_m(moved) > kLeastShift_vox * before_.map.voxel_m() && gain >= 2.0 * kBetterThanBefore;
     moved.score = is_seen && is_elsewhere ? agreement : 0.0;
     moved.points = now.found * static_cast<double>(moved.before.points.size()) +
                    then.found * static_cast<double>(moved.after.points.size());
@@ -336,8 +334,8 @@ std::vector<MovedThing> find_moved(const ChangedSide& before, const ChangedSide&
     const bool is_taken = std::ranges::any_of(chosen, [&](const MovedThing& other) {
       return share_much(other.before, moved.before) || share_much(other.after, moved.after);
     });
-    const bool is_part = is_torn_off(moved.before, before.groups) ||
-                         is_torn_off(moved.after, after.groups);
+    const bool is_part =
+        is_torn_off(moved.before, before.groups) || is_torn_off(moved.after, after.groups);
     if (!is_taken && !is_part) chosen.push_back(std::move(moved));
   }
   return chosen;

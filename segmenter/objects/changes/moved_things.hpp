@@ -32,7 +32,8 @@ struct MovedThing {
 std::vector<CloudPoint> whole_surface(const MovedThing& moved, const MapSide& before,
                                       const MapSide& after);
 
-/// Things that still stand upright, those first of which most is found again; no two share more than a little.
+/// Things that still stand upright, those first of which most is found again; no two share more
+/// than a little.
 ///
 /// Each group of changed points with the segments that are its own is looked for in the other map,
 /// by ObjectRecognizer, at the groups there that may be of its size and colours; and where it was,

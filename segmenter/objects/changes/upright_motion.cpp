@@ -13,10 +13,10 @@ namespace kintsugi::segmenter {
 namespace {
 
 constexpr int kIterations = 30;
-constexpr double kShrink = 0.85;   // of the reach, in each iteration
+constexpr double kShrink = 0.85;  // of the reach, in each iteration
 constexpr double kLeastReach_vox = 2.0;
-constexpr float kAlike = 0.7F;     // cosine between normals: 45 degrees
-constexpr int kNeighbours = 4;     // of two faces of an edge, some are on each
+constexpr float kAlike = 0.7F;        // cosine between normals: 45 degrees
+constexpr int kNeighbours = 4;        // of two faces of an edge, some are on each
 constexpr std::size_t kMost = 1'500;  // points of a side that are matched
 constexpr int kLeastMatches = 12;
 // Of a residual along the surface beside one across: there a point has no counterpart of its own,

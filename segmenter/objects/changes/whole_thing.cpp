@@ -71,8 +71,8 @@ std::set<std::uint32_t> segments_in(const FilledSpace& room, double margin_vox,
                                     const Eigen::AlignedBox3f& box, const MapSide& map) {
   const auto margin_m = static_cast<float>(margin_vox * map.voxel_m());
   std::map<std::uint32_t, double> counts;
-  for (const std::size_t i : map.points_in(
-           {box.min().array() - margin_m, box.max().array() + margin_m})) {
+  for (const std::size_t i :
+       map.points_in({box.min().array() - margin_m, box.max().array() + margin_m})) {
     if (room.contains(position_of(map.points()[i]), -margin_m)) {
       counts[map.segment_ids()[i]] += 1.0;
     }
@@ -144,9 +144,8 @@ bool add_what_follows(Thing& thing, const MapSide& map, const Pose& X, const Map
 bool is_part_of(std::span<const std::size_t> points, const MapSide& map, const FilledSpace& room,
                 const Pose& X, const MapSide& other) {
   const auto margin_m = static_cast<float>(-kTouch_vox * map.voxel_m());
-  const auto num_inside = std::ranges::count_if(points, [&](std::size_t i) {
-    return room.contains(position_of(map.points()[i]), margin_m);
-  });
+  const auto num_inside = std::ranges::count_if(
+      points, [&](std::size_t i) { return room.contains(position_of(map.points()[i]), margin_m); });
   return static_cast<double>(num_inside) >= kInRoom * static_cast<double>(points.size()) &&
          evidence_of(map, points, X, other).contradicted <= kMostContradicted;
 }
@@ -165,17 +164,15 @@ void drop_what_stays(Thing& thing, const MapSide& map, const Pose& X, const MapS
   }
   if (dropped.empty()) return;
   std::vector<std::size_t> rest;
-  std::ranges::copy_if(thing.points, std::back_inserter(rest), [&](std::size_t i) {
-    return !dropped.contains(map.segment_ids()[i]);
-  });
+  std::ranges::copy_if(thing.points, std::back_inserter(rest),
+                       [&](std::size_t i) { return !dropped.contains(map.segment_ids()[i]); });
   if (rest.empty()) return;
   thing.points = std::move(rest);
   for (const std::uint32_t id : dropped) thing.segments.erase(id);
 }
 
 Eigen::Vector3d size_of(std::span<const CloudPoint> points, const Eigen::Vector3d& up) {
-  const Eigen::Quaterniond R_UW =
-      Eigen::Quaterniond::FromTwoVectors(up, Eigen::Vector3d::UnitZ());
+  const Eigen::Quaterniond R_UW = Eigen::Quaterniond::FromTwoVectors(up, Eigen::Vector3d::UnitZ());
   Eigen::AlignedBox3d box_U;
   for (const CloudPoint& point : points) {
     box_U.extend(Eigen::Vector3d(R_UW * position_of(point).cast<double>()));

@@ -27,9 +27,9 @@ Thing thing_of(const ChangeGroup& group, const MapSide& map);
 Thing what_is_there(std::span<const CloudPoint> thing, const MapSide& map,
                     const Eigen::Vector3d& up);
 
-/// Adds the segments that touch the thing, or are in its room, and move with it: what is to be seen of them in the other
-/// map is there after the motion, and either not as well without it, or they are in the room that
-/// the thing takes.
+/// Adds the segments that touch the thing, or are in its room, and move with it: what is to be seen
+/// of them in the other map is there after the motion, and either not as well without it, or they
+/// are in the room that the thing takes.
 /// @param X moves the thing to where it is in `other`
 /// @param all surface of the thing as it is in `map`, as far as both maps have it
 /// @return whether there were any
@@ -40,7 +40,8 @@ bool add_what_follows(Thing& thing, const MapSide& map, const Pose& X, const Map
 /// part of the table does that is in one segment with what lies on it; but never all points.
 void drop_what_stays(Thing& thing, const MapSide& map, const Pose& X, const MapSide& other);
 
-/// Whether the points are in the room of a thing, and nothing speaks against that they moved with it.
+/// Whether the points are in the room of a thing, and nothing speaks against that they moved with
+/// it.
 /// @param room, X as above
 bool is_part_of(std::span<const std::size_t> points, const MapSide& map, const FilledSpace& room,
                 const Pose& X, const MapSide& other);

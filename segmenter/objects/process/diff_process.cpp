@@ -50,8 +50,7 @@ Comparison compare(const ObservedMap& before, const ObservedMap& now, ComparedMa
   const MapDifference difference{.before = before.source,
                                  .after = now.source,
                                  .alignment = *aligned.alignment,
-                                 .changes =
-                                     find_changes(before, now, aligned.alignment->X_AB)};
+                                 .changes = find_changes(before, now, aligned.alignment->X_AB)};
   write_changes(difference, now, out);
   comparison.changes = difference.changes;
   return comparison;
@@ -140,9 +139,8 @@ class DiffProcess {
     last_begin_ = Clock::now();
     has_news_ = false;
     running_ = std::async(
-        std::launch::async,
-        [this, now = snapshot(), map = map_,
-         is_complete = client_.is_complete() && client_.has_ended()]() mutable {
+        std::launch::async, [this, now = snapshot(), map = map_,
+                             is_complete = client_.is_complete() && client_.has_ended()]() mutable {
           lower_priority_of_thread();
           Comparison comparison = compare(before_, now, std::move(map), options_.out);
           comparison.is_of_complete_map = is_complete;

@@ -53,9 +53,9 @@ TEST(RefinedMotion, IsExactToAFractionOfAVoxel) {
   X.translation() = Eigen::Vector3d(0.3, -0.2, 0.1);
   const std::vector<CloudPoint> after = transformed(X, before);
   Pose rough = X;
-  rough.linear() = rough.linear() *
-                   Eigen::AngleAxisd(0.1, Eigen::Vector3d(0.3, 0.2, 0.9).normalized())
-                       .toRotationMatrix();
+  rough.linear() =
+      rough.linear() *
+      Eigen::AngleAxisd(0.1, Eigen::Vector3d(0.3, 0.2, 0.9).normalized()).toRotationMatrix();
   rough.translation() =
       X * kBox.center_S + Eigen::Vector3d(0.04, -0.03, 0.02) - rough.linear() * kBox.center_S;
   const Pose found =
@@ -88,7 +88,7 @@ MapSide wall(double y_m, const std::vector<std::uint32_t>& ids, const Eigen::Vec
 TEST(SurfaceBehind, IsFartherThanTheErrorOfTheMapsAndNearerThanThatOfAView) {
   const std::vector<std::uint32_t> ids(10'000, 1);
   const MapSide map = wall(2.0, ids, {200, 200, 200});
-  const auto is_behind = [&](double y_m, const Eigen::Vector3f& normal) {
+  const auto is_behind = [&](double y_m, const Eigen::Vector3f& normal) -> bool {
     CloudPoint point = map.points()[1275];  // in the middle
     point.y = static_cast<float>(y_m);
     point.nx = normal.x();
