@@ -50,8 +50,12 @@ void add_options(CLI::App& app, DiffOptions& options) {
       ->capture_default_str()
       ->excludes(after);
   app.add_flag("--exit-on-final", options.live.exit_on_final,
-               "on the bus: exit when the final slice is segmented and compared")
-      ->excludes(after);
+               "on the bus: exit when the final slice is segmented and compared");
+  app.callback([&options] {
+    if (!options.after.empty() && options.live.exit_on_final) {
+      throw CLI::ExcludesError("--exit-on-final", "AFTER");
+    }
+  });
 }
 
 ObservedMap read(const std::filesystem::path& path) {

@@ -70,6 +70,9 @@ TEST_F(DiffProgram, RefusesByNameAndWritesNothing) {
   std::ofstream(folder_ / "room.views") << "KVIEWS cut";
   EXPECT_THAT(refusal(path("other") + " " + path("room")), HasSubstr(path("room") + ".views"));
   EXPECT_GE(run(path("room")).exit_code, 100);
+  for (const char* live : {"--exit-on-final", "--every 5", "--map-name map"}) {
+    EXPECT_GE(run(path("room") + " " + path("room") + " --out x " + live).exit_code, 100) << live;
+  }
 }
 
 }  // namespace
