@@ -19,24 +19,31 @@ constexpr double kReach_vox = 1.5;
 enum class Finding : std::uint8_t { kFound, kEdge, kOther, kNothing };
 
 Finding look_at(const MapSide& map, const CloudPoint& point, const SurfacePoint& color,
-                std::span<const std::uint32_t> indices, std::span<const float> squared_m2) {
+                std::span<const std::uint32_t> indices, std::span<const float> squared_m2,
+                std::span<const std::size_t> counterpart) {
   const auto reach_m = static_cast<float>(kReach_vox * map.voxel_m());
+  const auto counts = [counterpart](std::size_t i) {
+    return counterpart.empty() || std::ranges::binary_search(counterpart, i);
+  };
   bool is_near = false;
+  bool is_on_another = false;
   bool is_facing = false;
   for (std::size_t k = 0; k < indices.size() && squared_m2[k] <= reach_m * reach_m; ++k) {
     is_near = true;
     if (normal_of(point).dot(normal_of(map.points()[indices[k]])) < kAlike) continue;
     is_facing = true;
-    if (are_alike_in_color(color, map.colors()[indices[k]])) return Finding::kFound;
+    if (!are_alike_in_color(color, map.colors()[indices[k]])) continue;
+    if (counts(indices[k])) return Finding::kFound;
+    is_on_another = true;
   }
-  if (is_facing) return Finding::kOther;
+  if (is_facing && !is_on_another) return Finding::kOther;
   return is_near ? Finding::kEdge : Finding::kNothing;
 }
 
 }  // namespace
 
 Evidence evidence_of(const MapSide& from, std::span<const std::size_t> points, const Pose& X,
-                     const MapSide& map) {
+                     const MapSide& map, std::span<const std::size_t> counterpart) {
   const std::size_t count = std::min(points.size(), kSamples);
   if (count == 0) return {};
   std::vector<std::size_t> chosen;
@@ -52,7 +59,7 @@ Evidence evidence_of(const MapSide& from, std::span<const std::size_t> points, c
     const std::size_t at = i * neighbours;
     switch (look_at(map, moved[i], from.colors()[chosen[i]],
                     std::span(result.indices).subspan(at, neighbours),
-                    std::span(result.squared_distances).subspan(at, neighbours))) {
+                    std::span(result.squared_distances).subspan(at, neighbours), counterpart)) {
       case Finding::kFound:
         sum.found += 1.0;
         break;

@@ -23,7 +23,9 @@ struct Evidence {
 
 /// @param points of `from`
 /// @param X moves them to where they are looked for in `map`
+/// @param counterpart ascending indices of points of `map`: only these count as found; what is on
+///   others says nothing. Empty: all points of `map` count
 Evidence evidence_of(const MapSide& from, std::span<const std::size_t> points, const Pose& X,
-                     const MapSide& map);
+                     const MapSide& map, std::span<const std::size_t> counterpart = {});
 
 }  // namespace kintsugi::segmenter

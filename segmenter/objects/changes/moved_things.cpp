@@ -248,9 +248,10 @@ class Motions {
 
   void assess(MovedThing& moved) const {
     const Pose& X = moved.X_after_before;
-    const Evidence now = evidence_of(before_.map, moved.before.points, X, after_.map);
-    const Evidence then =
-        evidence_of(after_.map, moved.after.points, X.inverse(Eigen::Isometry), before_.map);
+    const Evidence now =
+        evidence_of(before_.map, moved.before.points, X, after_.map, moved.after.points);
+    const Evidence then = evidence_of(after_.map, moved.after.points, X.inverse(Eigen::Isometry),
+                                      before_.map, moved.before.points);
     const Evidence stays =
         evidence_of(before_.map, moved.before.points, Pose::Identity(), after_.map);
     const Evidence stayed =
