@@ -29,6 +29,10 @@ struct Tally {
   double all = 0.0;
 };
 
+bool is_changed(PointChange change) {
+  return change == PointChange::kChanged || change == PointChange::kRecolored;
+}
+
 std::map<std::uint32_t, Tally> tallies_of(std::span<const std::uint32_t> segment_ids,
                                           std::span<const PointChange> changes) {
   std::map<std::uint32_t, Tally> tallies;
@@ -36,7 +40,7 @@ std::map<std::uint32_t, Tally> tallies_of(std::span<const std::uint32_t> segment
     Tally& tally = tallies[segment_ids[i]];
     tally.all += 1.0;
     tally.same += changes[i] == PointChange::kSame ? 1.0 : 0.0;
-    tally.changed += changes[i] == PointChange::kChanged ? 1.0 : 0.0;
+    tally.changed += is_changed(changes[i]) ? 1.0 : 0.0;
   }
   return tallies;
 }
@@ -168,6 +172,37 @@ std::map<std::size_t, Gathered> gather(const Cells& cells) {
   return groups;
 }
 
+struct Limits {
+  double least_changed = 0.0;  // points
+  int least_wide_cells = 0;
+};
+
+std::vector<ChangeGroup> groups_of(std::span<const CloudPoint> points,
+                                   std::span<const std::uint32_t> segment_ids,
+                                   std::span<const PointChange> changes,
+                                   const std::vector<bool>& is_member, double voxel_m,
+                                   const Limits& limits) {
+  std::vector<ChangeGroup> groups;
+  for (auto& [number, gathered] :
+       gather(cells_of(points, segment_ids, is_member, kCell_vox * voxel_m))) {
+    const auto num_changed = static_cast<double>(std::ranges::count_if(
+        gathered.points, [&](std::size_t i) { return is_changed(changes[i]); }));
+    if (num_changed < limits.least_changed || gathered.wide_cells < limits.least_wide_cells) {
+      continue;
+    }
+    ChangeGroup group;
+    group.share_changed = num_changed / static_cast<double>(gathered.points.size());
+    group.points = std::move(gathered.points);
+    std::ranges::sort(group.points);
+    std::set<std::uint32_t> ids;
+    for (const std::size_t i : group.points) ids.insert(segment_ids[i]);
+    ids.erase(0);
+    group.segment_ids.assign(ids.begin(), ids.end());
+    groups.push_back(std::move(group));
+  }
+  return groups;
+}
+
 }  // namespace
 
 std::vector<ChangeGroup> group_changes(std::span<const CloudPoint> points,
@@ -178,26 +213,20 @@ std::vector<ChangeGroup> group_changes(std::span<const CloudPoint> points,
   for (const auto& [id, tally] : tallies) {
     if (id != 0 && is_changed_as_a_whole(tally)) whole.insert(id);
   }
-  std::vector<bool> is_member(points.size());
+  std::vector<bool> is_thing(points.size());
+  std::vector<bool> is_trace(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
-    is_member[i] = changes[i] == PointChange::kChanged || whole.contains(segment_ids[i]);
+    is_thing[i] = changes[i] == PointChange::kChanged || whole.contains(segment_ids[i]);
+    is_trace[i] = is_changed(changes[i]) && !whole.contains(segment_ids[i]);
   }
-  const double least = kLeastPoints * std::pow(0.01 / voxel_m, 2);
-  std::vector<ChangeGroup> groups;
-  for (auto& [number, gathered] :
-       gather(cells_of(points, segment_ids, is_member, kCell_vox * voxel_m))) {
-    const auto num_changed = static_cast<double>(std::ranges::count_if(
-        gathered.points, [&](std::size_t i) { return changes[i] == PointChange::kChanged; }));
-    if (num_changed < least || gathered.wide_cells < kLeastWideCells) continue;
-    ChangeGroup group;
-    group.share_changed = num_changed / static_cast<double>(gathered.points.size());
-    group.points = std::move(gathered.points);
-    std::ranges::sort(group.points);
-    std::set<std::uint32_t> ids;
-    for (const std::size_t i : group.points) ids.insert(segment_ids[i]);
-    ids.erase(0);
-    group.segment_ids.assign(ids.begin(), ids.end());
-    groups.push_back(std::move(group));
+  const double area = std::pow(0.01 / voxel_m, 2);
+  std::vector<ChangeGroup> groups =
+      groups_of(points, segment_ids, changes, is_thing, voxel_m,
+                {.least_changed = kLeastPoints * area, .least_wide_cells = kLeastWideCells});
+  for (ChangeGroup& trace : groups_of(points, segment_ids, changes, is_trace, voxel_m,
+                                      {.least_changed = kLeastTrace * area})) {
+    trace.is_thing = false;
+    groups.push_back(std::move(trace));
   }
   return groups;
 }

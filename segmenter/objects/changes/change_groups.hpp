@@ -16,6 +16,9 @@ struct ChangeGroup {
   std::vector<std::size_t> points;         ///< indices, ascending
   std::vector<std::uint32_t> segment_ids;  ///< of the segments they are of, ascending
   double share_changed = 0.0;              ///< of its points, those that are certainly changed
+  /// Otherwise only a trace of one that may have moved: too small, or of another colour but no
+  /// segment of its own, as the ground on which something stood, too, may be.
+  bool is_thing = true;
 };
 
 /// A segment most of whose points have changed, as far as that is known, is changed as a whole; of
@@ -29,5 +32,6 @@ std::vector<ChangeGroup> group_changes(std::span<const CloudPoint> points,
                                        std::span<const PointChange> changes, double voxel_m);
 
 inline constexpr double kLeastPoints = 50.0;
+inline constexpr double kLeastTrace = 15.0;
 
 }  // namespace kintsugi::segmenter

@@ -5,14 +5,17 @@
 #include <cmath>
 #include <cstddef>
 #include <functional>
-#include <optional>
+#include <set>
 #include <span>
 #include <utility>
 
 #include "lcmtypes/scene/up_direction.hpp"
 #include "segmenter/objects/changes/change_groups.hpp"
 #include "segmenter/objects/changes/changed_points.hpp"
-#include "segmenter/objects/changes/motion_between.hpp"
+#include "segmenter/objects/changes/displaced_points.hpp"
+#include "segmenter/objects/changes/filled_space.hpp"
+#include "segmenter/objects/changes/map_side.hpp"
+#include "segmenter/objects/changes/moved_things.hpp"
 #include "segmenter/objects/maps/surface_samples.hpp"
 #include "segmenter/preprocess/nearest_neighbours.hpp"
 #include "segmenter/views/observed_space.hpp"
@@ -83,52 +86,51 @@ std::int64_t num_unknown(const std::vector<PointChange>& changes) {
   return std::ranges::count(changes, PointChange::kUnknown);
 }
 
-struct Match {
-  std::size_t gone = 0;
-  std::size_t come = 0;
-  ObjectMotion motion;
+/// A map with what is changed in it.
+struct Side {
+  MapSide map;
+  std::vector<PointChange> changes;
+  std::vector<ChangeGroup> groups;
+
+  void group() { groups = group_changes(map.points(), map.segment_ids(), changes, map.voxel_m()); }
 };
 
-/// Pairs of things that are one, the surest first; each thing is in one pair at most.
-std::vector<Match> matches_of(const std::vector<MapChange>& gone,
-                              const std::vector<MapChange>& come, const Eigen::Vector3d& up_W,
-                              double voxel_m) {
-  std::vector<Match> all;
-  for (std::size_t g = 0; g < gone.size(); ++g) {
-    for (std::size_t c = 0; c < come.size(); ++c) {
-      const auto motion = motion_between(gone[g].before, come[c].after, up_W, voxel_m);
-      if (motion) all.push_back({g, c, *motion});
-    }
-  }
-  std::ranges::stable_sort(all, std::ranges::greater{},
-                           [](const Match& match) { return match.motion.score; });
-  std::vector<Match> chosen;
-  for (const Match& match : all) {
-    const bool is_taken = std::ranges::any_of(chosen, [&](const Match& other) {
-      return other.gone == match.gone || other.come == match.come;
-    });
-    if (!is_taken) chosen.push_back(match);
-  }
-  return chosen;
+/// Both maps, decided by what their cameras saw, and then by what takes the places of what.
+void find_changed(Side& before, Side& after, const Eigen::Vector3d& up) {
+  before.changes = changes_of(before.map, after.map);
+  after.changes = changes_of(after.map, before.map);
+  before.group();
+  after.group();
+  mark_displaced(before.map, before.changes, after.map, after.groups, up);
+  mark_displaced(after.map, after.changes, before.map, before.groups, up);
+  before.group();
+  after.group();
 }
 
-/// Makes one change of each pair: the thing that has come becomes one that has moved.
-void join_moved(std::vector<MapChange>& gone, std::vector<MapChange>& come,
-                const std::vector<Match>& matches) {
-  std::vector<bool> is_joined(gone.size(), false);
-  for (const Match& match : matches) {
-    MapChange& from = gone[match.gone];
-    MapChange& to = come[match.come];
-    is_joined[match.gone] = true;
-    to.kind = ChangeKind::kMoved;
-    to.before = std::move(from.before);
-    to.before_segments = std::move(from.before_segments);
-    to.X_after_before = match.motion.X_after_before;
-    to.score = match.motion.score;
+/// Whether the group is a piece of something that moved, and not a thing of its own.
+bool has_moved(const ChangeGroup& group, const MapSide& map, const std::vector<FilledSpace>& rooms,
+               const std::vector<Pose>& motions, const MapSide& other) {
+  for (std::size_t i = 0; i < rooms.size(); ++i) {
+    if (is_part_of(group.points, map, rooms[i], motions[i], other)) return true;
   }
-  for (std::size_t i = 0; i < gone.size(); ++i) {
-    if (!is_joined[i]) come.push_back(std::move(gone[i]));
-  }
+  return false;
+}
+
+std::vector<std::uint32_t> ids_of(const std::set<std::uint32_t>& segments) {
+  return {segments.begin(), segments.end()};
+}
+
+MapChange change_of(const MovedThing& moved, std::span<const CloudPoint> before,
+                    std::span<const CloudPoint> after) {
+  MapChange change;
+  change.kind = ChangeKind::kMoved;
+  change.before = chosen(before, moved.before.points);
+  change.after = chosen(after, moved.after.points);
+  change.before_segments = ids_of(moved.before.segments);
+  change.after_segments = ids_of(moved.after.segments);
+  change.X_after_before = moved.X_after_before;
+  change.score = moved.score;
+  return change;
 }
 
 }  // namespace
@@ -136,41 +138,56 @@ void join_moved(std::vector<MapChange>& gone, std::vector<MapChange>& come,
 MapChanges find_changes(const ObservedMap& before, const ObservedMap& after, const Pose& X_AB) {
   const double voxel_m = std::max(before.resolution_m, after.resolution_m);
   const std::vector<CloudPoint> before_A = transformed(X_AB, before.points_W);
-  const auto gone_points =
-      changes_of(before_A, after.points_W, space_of(after, Pose::Identity(), voxel_m), voxel_m);
-  const auto new_points =
-      changes_of(after.points_W, before_A, space_of(before, X_AB, voxel_m), voxel_m);
+  std::vector<CloudPoint> relit_A = before_A;
+  relight(relit_A, gains_of(before_A, after.points_W, voxel_m));
+  Side was{
+      .map = {std::move(relit_A), before.segment_ids, space_of(before, X_AB, voxel_m), voxel_m},
+      .changes = {},
+      .groups = {}};
+  Side is{.map = {after.points_W, after.segment_ids, space_of(after, Pose::Identity(), voxel_m),
+                  voxel_m},
+          .changes = {},
+          .groups = {}};
+  UpDirection up;
+  up.add(after.points_W);
+  find_changed(was, is, up.up_W());
+  const std::vector<MovedThing> moved =
+      find_moved({was.map, was.changes, was.groups}, {is.map, is.changes, is.groups}, up.up_W());
   MapChanges result;
-  result.not_seen_again = num_unknown(gone_points);
-  result.not_seen_before = num_unknown(new_points);
-  const auto gains = gains_of(before_A, after.points_W, voxel_m);
-  std::vector<MapChange> gone;
-  for (const ChangeGroup& group :
-       group_changes(before_A, before.segment_ids, gone_points, voxel_m)) {
-    MapChange& change = gone.emplace_back();
+  result.not_seen_again = num_unknown(was.changes);
+  result.not_seen_before = num_unknown(is.changes);
+  std::vector<FilledSpace> rooms_before;
+  std::vector<FilledSpace> rooms_after;
+  std::vector<Pose> motions;
+  std::vector<Pose> motions_back;
+  for (const MovedThing& thing : moved) {
+    result.changes.push_back(change_of(thing, before_A, after.points_W));
+    const std::vector<CloudPoint> all = whole_surface(thing, was.map, is.map);
+    motions.push_back(thing.X_after_before);
+    motions_back.push_back(thing.X_after_before.inverse(Eigen::Isometry));
+    rooms_after.emplace_back(all, up.up_W());
+    rooms_before.emplace_back(transformed(motions_back.back(), all), up.up_W());
+  }
+  for (const ChangeGroup& group : was.groups) {
+    if (!group.is_thing || has_moved(group, was.map, rooms_before, motions, is.map)) continue;
+    MapChange& change = result.changes.emplace_back();
     change.kind = ChangeKind::kGone;
     change.before = chosen(before_A, group.points);
     change.before_segments = group.segment_ids;
     change.score = group.share_changed;
   }
-  std::vector<MapChange>& come = result.changes;
-  for (const ChangeGroup& group :
-       group_changes(after.points_W, after.segment_ids, new_points, voxel_m)) {
-    MapChange& change = come.emplace_back();
+  for (const ChangeGroup& group : is.groups) {
+    if (!group.is_thing || has_moved(group, is.map, rooms_after, motions_back, was.map)) continue;
+    MapChange& change = result.changes.emplace_back();
     change.kind = ChangeKind::kNew;
     change.after = chosen(after.points_W, group.points);
     change.after_segments = group.segment_ids;
     change.score = group.share_changed;
   }
-  UpDirection up;
-  up.add(after.points_W);
-  std::vector<MapChange> relit = gone;
-  for (MapChange& change : relit) relight(change.before, gains);
-  join_moved(gone, come, matches_of(relit, come, up.up_W(), voxel_m));
-  std::ranges::stable_sort(come, std::ranges::greater{},
+  std::ranges::stable_sort(result.changes, std::ranges::greater{},
                            [](const MapChange& change) { return change.points().size(); });
   std::int32_t id = 0;
-  for (MapChange& change : come) change.id = ++id;
+  for (MapChange& change : result.changes) change.id = ++id;
   return result;
 }
 

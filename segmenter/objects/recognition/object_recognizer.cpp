@@ -57,7 +57,8 @@ const PreparedModel& ObjectRecognizer::prepared(std::size_t model) const {
 std::vector<Recognition> ObjectRecognizer::recognize(const Candidate& candidate,
                                                      const Scene& scene) const {
   if (!index_) return {};
-  if (scene.surface_W(candidate).empty()) return {};
+  const Surface candidate_W = scene.surface_W(candidate);
+  if (candidate_W.empty()) return {};
   const SizeAndColors beginning = scene.size_and_colors(candidate);
   // Few objects do not tell how much the elements of descriptions vary; all of them are tried.
   const bool is_choice = models_.size() > kTried;
@@ -66,18 +67,17 @@ std::vector<Recognition> ObjectRecognizer::recognize(const Candidate& candidate,
   std::vector<Recognition> found;
   for (const ModelMatch& match : index_->nearest(descriptor, kTried)) {
     if (is_choice && match.distance > kLargestDistance) break;
-    std::optional<Placement> placement = place(match.model, candidate, scene);
+    std::optional<Placement> placement = place(match.model, candidate_W, scene);
     if (!placement || !is_recognized(*placement)) continue;
     found.push_back({match.model, std::move(*placement)});
   }
   return found;
 }
 
-std::optional<Placement> ObjectRecognizer::place(std::size_t model, const Candidate& candidate,
+std::optional<Placement> ObjectRecognizer::place(std::size_t model, const Surface& part_W,
                                                  const Scene& scene) const {
   const PreparedModel& object = prepared(model);
-  std::vector<PoseHypothesis> poses =
-      upright_poses(object, scene.surface_W(candidate), scene.map().up_W(), kPoses);
+  std::vector<PoseHypothesis> poses = upright_poses(object, part_W, scene.map().up_W(), kPoses);
   std::erase_if(poses, [](const PoseHypothesis& pose) { return pose.agreement < kLeastAgreement; });
   if (poses.empty()) return std::nullopt;
   std::optional<Placement> best;

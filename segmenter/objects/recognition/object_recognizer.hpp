@@ -37,8 +37,9 @@ class ObjectRecognizer {
   [[nodiscard]] std::vector<Recognition> recognize(const Candidate& candidate,
                                                    const Scene& scene) const;
 
-  /// The best place of one object on the candidate, however good it is; nothing if there is none.
-  [[nodiscard]] std::optional<Placement> place(std::size_t model, const Candidate& candidate,
+  /// The best place of one object on a part of the scene's surface, however good it is; nothing if
+  /// there is none.
+  [[nodiscard]] std::optional<Placement> place(std::size_t model, const Surface& part_W,
                                                const Scene& scene) const;
 
  private:

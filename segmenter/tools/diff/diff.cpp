@@ -12,28 +12,50 @@
 
 #include "lcmtypes/base/command_line.hpp"
 #include "lcmtypes/base/run_main.hpp"
+#include "lcmtypes/base/stop_signal.hpp"
 #include "lcmtypes/client/object_text.hpp"
 #include "segmenter/objects/changes/change_files.hpp"
 #include "segmenter/objects/maps/observed_map_file.hpp"
 #include "segmenter/objects/maps/surface_samples.hpp"
+#include "segmenter/objects/process/diff_process.hpp"
 
 namespace kintsugi::segmenter {
 namespace {
 
 struct DiffOptions {
   std::filesystem::path before;
-  std::filesystem::path after;
-  std::filesystem::path out;
+  std::filesystem::path after;  ///< empty: the map on the bus
+  DiffProcessOptions live;
 };
 
 void add_options(CLI::App& app, DiffOptions& options) {
   app.add_option("BEFORE", options.before,
                  "the map before: a saved map (kintsugi-segmenter --save), or an LCM log")
       ->required();
-  app.add_option("AFTER", options.after, "the map after, the same")->required();
-  app.add_option("--out", options.out,
+  CLI::Option* const after = app.add_option(
+      "AFTER", options.after,
+      "the map after, the same; without it the map on the bus is followed until a stop signal, and "
+      "its changes are published");
+  app.add_option("--out", options.live.out,
                  "folder for changes.json, change_ID.ply and changes.png, made when absent")
       ->required();
+  app.add_option("--map-name", options.live.map_name,
+                 "on the bus: the map of this name (default: the first one it hears of)")
+      ->excludes(after);
+  app.add_option("--lcm-url", options.live.lcm_url, "the bus (default: LCM_DEFAULT_URL)")
+      ->excludes(after);
+  app.add_option("--every", options.live.every_s,
+                 "on the bus: seconds from one comparison to the next while the map grows")
+      ->check(CLI::Range(1.0, 86'400.0))
+      ->capture_default_str()
+      ->excludes(after);
+  app.add_flag("--exit-on-final", options.live.exit_on_final,
+               "on the bus: exit when the final slice is segmented and compared");
+  app.callback([&options] {
+    if (!options.after.empty() && options.live.exit_on_final) {
+      throw CLI::ExcludesError("--exit-on-final", "AFTER");
+    }
+  });
 }
 
 ObservedMap read(const std::filesystem::path& path) {
@@ -83,8 +105,9 @@ void print(const MapDifference& difference) {
   }
 }
 
-void run(const DiffOptions& options) {
+int run(const DiffOptions& options) {
   const ObservedMap before = read(options.before);
+  if (options.after.empty()) return run_diff(before, options.live);
   const ObservedMap after = read(options.after);
   const AlignmentResult aligned = align_maps(before, after);
   if (!aligned.alignment) {
@@ -95,8 +118,9 @@ void run(const DiffOptions& options) {
                            .after = options.after.string(),
                            .alignment = *aligned.alignment,
                            .changes = find_changes(before, after, aligned.alignment->X_AB)};
-  write_changes(difference, after, options.out);
+  write_changes(difference, after, options.live.out);
   print(difference);
+  return 0;
 }
 
 }  // namespace
@@ -115,7 +139,7 @@ int main(int argc, char** argv) {
     kintsugi::add_version_flag(app);
     CLI11_PARSE(app, argc, argv);
     if (is_verbose) spdlog::set_level(spdlog::level::debug);
-    run(options);
-    return 0;
+    kintsugi::install_stop_signals();
+    return run(options);
   });
 }

@@ -1,21 +1,13 @@
 // kintsugi-diff, as a user runs it.
 
-#include <cstddef>
-#include <cstdint>
 #include <filesystem>
 #include <fstream>
-#include <memory>
 #include <string>
-#include <vector>
 
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
-#include "segmenter/core/parameters/presets.hpp"
-#include "segmenter/io/saved_map.hpp"
-#include "segmenter/io/views_file.hpp"
-#include "segmenter/map/segment_map.hpp"
-#include "segmenter/views/packed_depth.hpp"
+#include "tests/segmenter/objects/saved_room.hpp"
 #include "tests/segmenter/objects/toy_room.hpp"
 #include "tests/segmenter/tools/program.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -25,36 +17,8 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
+using testing::save;
 using testing::ToyRoom;
-
-constexpr double kVoxel_m = 0.03;
-
-/// A saved map of the room, and its views.
-void save(const ToyRoom& room, const std::vector<Pose>& path_S, const std::filesystem::path& file) {
-  const ObservedMap map = testing::observe(room, path_S, kVoxel_m);
-  CloudSlice slice;
-  slice.session = 5;
-  slice.map_name = "map";
-  slice.resolution_m = static_cast<float>(kVoxel_m);
-  slice.points_W = map.points_W;
-  SegmentMapConfig config;
-  config.engine = preset("objects");
-  SegmentMap segments(config, 1, slice);
-  (void)segments.add({&slice, 1});
-  write_map_state(segments.state(), file);
-  ViewSet views;
-  views.map_session = 5;
-  views.map_name = "map";
-  for (const MapView& view : map.views) {
-    KeptView& kept = views.views.emplace_back();
-    kept.utime = view.utime;
-    kept.X_WC = kept.X_PC = view.X_WC;
-    kept.intrinsics = view.intrinsics;
-    kept.packed_depth = std::make_shared<const std::vector<std::uint8_t>>(
-        pack_depth(view.depth_mm, static_cast<std::size_t>(view.intrinsics.width)));
-  }
-  write_views(views, views_file_of(file));
-}
 
 class DiffProgram : public ::testing::Test {
  protected:
@@ -106,6 +70,9 @@ TEST_F(DiffProgram, RefusesByNameAndWritesNothing) {
   std::ofstream(folder_ / "room.views") << "KVIEWS cut";
   EXPECT_THAT(refusal(path("other") + " " + path("room")), HasSubstr(path("room") + ".views"));
   EXPECT_GE(run(path("room")).exit_code, 100);
+  for (const char* live : {"--exit-on-final", "--every 5", "--map-name map"}) {
+    EXPECT_GE(run(path("room") + " " + path("room") + " --out x " + live).exit_code, 100) << live;
+  }
 }
 
 }  // namespace

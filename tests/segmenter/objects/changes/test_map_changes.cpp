@@ -162,12 +162,104 @@ TEST(MapChanges, WhatWasNotLookedAtIsNotSeenThisTime) {
 TEST(MapChanges, WhatStandsBehindAnotherThingIsNotGone) {
   ToyRoom was = furnished_room();
   ToyRoom is = was;
-  was.boxes.push_back(kOnTable);
-  is.boxes.push_back({.center_S = {1.6, 1.2, 1.0}, .size_m = {0.6, 0.5, 0.5}});  // it covers all
+  was.boxes.push_back(kOnBench);
+  is.boxes.push_back({.center_S = {2.8, 2.4, 1.2}, .size_m = {2.0, 0.1, 2.4}});  // a screen
   const MapChanges result = Twice(was, is).changes();
   ASSERT_EQ(result.changes.size(), 1U);
   EXPECT_EQ(result.changes[0].kind, ChangeKind::kNew);
   EXPECT_GT(result.not_seen_again, 200);
+}
+
+TEST(MapChanges, WhatStoodWhereAnotherThingStandsIsGone) {
+  ToyRoom was = furnished_room();
+  ToyRoom is = was;
+  was.boxes.push_back(kOnTable);
+  Box large{.center_S = {1.6, 1.2, 1.0}, .size_m = {0.6, 0.5, 0.5}, .color = {60, 60, 200}};
+  is.boxes.push_back(large);
+  const MapChanges result = Twice(was, is).changes();
+  ASSERT_EQ(result.changes.size(), 2U);
+  EXPECT_EQ(result.changes[0].kind, ChangeKind::kNew);
+  EXPECT_EQ(result.changes[1].kind, ChangeKind::kGone);
+  EXPECT_THAT(result.changes[1].before_segments, ElementsAre(11));
+}
+
+/// What the only change says of a box that is elsewhere now.
+void expect_moved(const Box& from, const Box& to) {
+  ToyRoom was = furnished_room();
+  ToyRoom is = was;
+  was.boxes.push_back(from);
+  is.boxes.push_back(to);
+  Twice twice(was, is);
+  testing::relight(twice.after, 0.8, 0.9, 1.0);
+  const MapChanges result = twice.changes();
+  ASSERT_EQ(result.changes.size(), 1U);
+  const MapChange& change = result.changes[0];
+  ASSERT_EQ(change.kind, ChangeKind::kMoved);
+  EXPECT_THAT(change.before_segments, ElementsAre(11));
+  EXPECT_THAT(change.after_segments, ElementsAre(11));
+  const Pose X_AS = twice.path_after.front().inverse(Eigen::Isometry);
+  const Pose X = X_AS * to.X_SB() * from.X_SB().inverse(Eigen::Isometry) * X_AS.inverse();
+  const Eigen::Vector3d middle = twice.in_after(from.center_S);
+  EXPECT_LT((change.X_after_before * middle - X * middle).norm(), 0.01);
+  const Eigen::Matrix3d turn = change.X_after_before.linear().transpose() * X.linear();
+  EXPECT_LT(Eigen::AngleAxisd(turn).angle(), 0.05);
+  EXPECT_GT(change.score, 0.9);
+}
+
+TEST(MapChanges, AThingThatWasTurnedWhereItStands) {
+  Box turned = kOnTable;
+  turned.yaw_rad = 0.4;
+  expect_moved(kOnTable, turned);
+}
+
+TEST(MapChanges, AThingThatWasPushedByLessThanItsSize) {
+  Box pushed = kOnTable;
+  pushed.center_S.x() -= 0.12;
+  expect_moved(kOnTable, pushed);
+}
+
+TEST(MapChanges, AThingAsFlatAsTheErrorOfTheMaps) {
+  // Nothing is looked through: its colour alone tells where it lay, and where it lies.
+  const Box flat{.center_S = {1.3, 1.2, 0.76}, .size_m = {0.4, 0.24, 0.02}, .color = {20, 20, 60}};
+  Box turned = flat;
+  turned.yaw_rad = 0.7;
+  expect_moved(flat, turned);
+}
+
+TEST(MapChanges, AShadowIsNone) {
+  const ToyRoom room = furnished_room();
+  Twice twice(room, room);
+  for (CloudPoint& point : twice.after.points_W) {
+    if (point.x < 0.0F) continue;  // the half of the room to the right of the first camera
+    for (auto* const channel : {&point.red, &point.green, &point.blue}) {
+      *channel = static_cast<std::uint8_t>(0.85 * *channel);
+    }
+  }
+  EXPECT_THAT(twice.changes().changes, IsEmpty());
+}
+
+TEST(MapChanges, AThingOfAnotherColorAtTheSamePlaceIsAnother) {
+  ToyRoom was = furnished_room();
+  ToyRoom is = was;
+  was.boxes.push_back(kOnTable);
+  is.boxes.push_back(kOnTable);
+  is.boxes.back().color = {200, 30, 160};
+  const MapChanges result = Twice(was, is).changes();
+  ASSERT_EQ(result.changes.size(), 2U);
+  EXPECT_NE(result.changes[0].kind, result.changes[1].kind);
+  EXPECT_NE(result.changes[0].kind, ChangeKind::kMoved);
+  EXPECT_NE(result.changes[1].kind, ChangeKind::kMoved);
+}
+
+TEST(MapChanges, APartOfALargerThingThatCameHasNotMoved) {
+  ToyRoom was = furnished_room();
+  ToyRoom is = was;
+  was.boxes.push_back({.center_S = {1.6, 1.2, 0.81}, .size_m = {0.2, 0.12, 0.12}});
+  is.boxes.push_back({.center_S = {2.7, 2.75, 0.8}, .size_m = {0.7, 0.4, 0.6}});  // of its colour
+  const MapChanges result = Twice(was, is).changes();
+  ASSERT_EQ(result.changes.size(), 2U);
+  EXPECT_NE(result.changes[0].kind, ChangeKind::kMoved);
+  EXPECT_NE(result.changes[1].kind, ChangeKind::kMoved);
 }
 
 TEST(ChangeFiles, SayWhatWasFound) {
