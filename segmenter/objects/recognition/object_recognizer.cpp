@@ -91,8 +91,8 @@ std::optional<Placement> ObjectRecognizer::place(std::size_t model, const Surfac
 }
 
 bool is_recognized(const Placement& placement) {
-  return placement.score() >= kLeastScore && placement.seen >= kLeastSeen &&
-         placement.own >= kLeastOwn;
+  return placement.is_distinct && placement.score() >= kLeastScore &&
+         placement.seen >= kLeastSeen && placement.own >= kLeastOwn;
 }
 
 }  // namespace kintsugi::segmenter

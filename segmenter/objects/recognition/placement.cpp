@@ -1,5 +1,6 @@
 #include "segmenter/objects/recognition/placement.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cstddef>
 #include <map>
@@ -13,6 +14,11 @@ namespace {
 // Enough for stable shares, as in the search.
 constexpr std::size_t kModelSamples = 300;
 constexpr std::size_t kSeenNormals = 100;
+
+// The normals of a flat patch deviate less than this from their axis: sine of 9 degrees.
+constexpr float kFlat = 0.16F;
+// And the colours of a plain one from their mean (CIELAB), by shades and noise.
+constexpr float kPlain = kSameColor / 3;
 
 /// Where points of the map may be surface of the object.
 Eigen::AlignedBox3f box_around(const PreparedModel& model, const Pose& X_WO) {
@@ -62,10 +68,8 @@ bool speaks_against(const PreparedModel& model, const Eigen::Vector3f& p_O,
 
 /// Whether a face with this normal is in view where the object is: something of it is in the map
 /// that faces nearly the same way.
-bool is_in_view(const std::vector<Eigen::Vector3f>& seen_normals_W,
-                const Eigen::Vector3f& normal_W) {
-  return std::any_of(seen_normals_W.begin(), seen_normals_W.end(),
-                     [&](const auto& seen_W) { return seen_W.dot(normal_W) >= kSameNormal; });
+bool is_in_view(const Surface& seen_W, const Eigen::Vector3f& normal_W) {
+  return std::ranges::any_of(seen_W, facing(normal_W));
 }
 
 enum class Evidence : std::uint8_t { kSeen, kContradicted, kUnknown };
@@ -97,8 +101,8 @@ struct Counts {
 
 struct SeenSurface {
   std::map<std::uint32_t, Counts> by_segment;
-  std::int32_t explained = 0;
-  std::vector<Eigen::Vector3f> normals_W;  // of what is explained
+  Surface explained_W;
+  std::vector<std::uint32_t> segments;  // of each point of `explained_W`
 };
 
 SeenSurface seen_surface(const PreparedModel& model, const Scene& scene, const Pose& X_WO,
@@ -114,20 +118,42 @@ SeenSurface seen_surface(const PreparedModel& model, const Scene& scene, const P
         const Relation relation = relation_of(model, seen, X_OW, lit);
         if (relation == Relation::kSurface) {
           ++counts->explained;
-          ++result.explained;
-          result.normals_W.push_back(seen.normal);
+          result.explained_W.push_back(seen);
+          result.segments.push_back(segment);
         } else if (relation == Relation::kOther &&
                    !speaks_against(model, X_OW * seen.position, X_OW.linear() * seen.normal)) {
           ++counts->new_side;
         }
       });
-  if (result.normals_W.size() > kSeenNormals) {
-    for (std::size_t i = 0; i < kSeenNormals; ++i) {
-      result.normals_W[i] = result.normals_W[i * result.normals_W.size() / kSeenNormals];
-    }
-    result.normals_W.resize(kSeenNormals);
-  }
   return result;
+}
+
+/// What belongs to these segments.
+Surface explained_of(const SeenSurface& seen, const std::vector<std::uint32_t>& segments) {
+  Surface surface;
+  for (std::size_t i = 0; i < seen.explained_W.size(); ++i) {
+    if (std::ranges::binary_search(segments, seen.segments[i])) {
+      surface.push_back(seen.explained_W[i]);
+    }
+  }
+  return surface;
+}
+
+bool is_flat(const Surface& surface) {
+  Eigen::Matrix3f sum = Eigen::Matrix3f::Zero();
+  for (const SurfacePoint& point : surface) sum += point.normal * point.normal.transpose();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> axes(sum, Eigen::EigenvaluesOnly);
+  return axes.eigenvalues()[1] < kFlat * kFlat * static_cast<float>(surface.size());
+}
+
+bool is_plain(Surface surface) {
+  std::erase_if(surface, [](const SurfacePoint& point) { return !point.has_color; });
+  const auto count = static_cast<float>(std::max<std::size_t>(1, surface.size()));
+  Eigen::Vector3f mean = Eigen::Vector3f::Zero();
+  for (const SurfacePoint& point : surface) mean += point.lab / count;
+  float squares = 0.0F;
+  for (const SurfacePoint& point : surface) squares += (point.lab - mean).squaredNorm();
+  return squares < kPlain * kPlain * count;
 }
 
 /// The segments most of whose points are explained, and what is said of them.
@@ -147,9 +173,9 @@ void add_segments(const SeenSurface& seen, const LabelledMap& map, Placement& pl
 }
 
 /// Shares of the model's surface that are in the map, and that should be.
-void add_evidence(const PreparedModel& model, const Scene& scene,
-                  const std::vector<Eigen::Vector3f>& seen_normals_W, LitModel& lit,
-                  Placement& placement) {
+void add_evidence(const PreparedModel& model, const Scene& scene, const Surface& explained_W,
+                  LitModel& lit, Placement& placement) {
+  const Surface seen_W = every_few(explained_W, kSeenNormals);
   const Eigen::Isometry3f X_WO = placement.X_WO.cast<float>();
   const std::size_t samples = std::min(kModelSamples, model.surface_O.size());
   float seen = 0.0F;
@@ -167,7 +193,7 @@ void add_evidence(const PreparedModel& model, const Scene& scene,
         contradicted += 1.0F;
         break;
       case Evidence::kUnknown:
-        if (scene.observed() == nullptr && is_in_view(seen_normals_W, point_W.normal)) {
+        if (scene.observed() == nullptr && is_in_view(seen_W, point_W.normal)) {
           contradicted += 0.5F;
         }
         break;
@@ -192,9 +218,11 @@ Placement placement_of(const PreparedModel& model, const Scene& scene,
   placement.light = hypothesis.light;
   LitModel lit(model.surface_O, hypothesis.light);
   const SeenSurface seen = seen_surface(model, scene, hypothesis.X_WO, lit);
-  placement.points = seen.explained;
+  placement.points = static_cast<std::int32_t>(seen.explained_W.size());
   add_segments(seen, scene.map(), placement);
-  add_evidence(model, scene, seen.normals_W, lit, placement);
+  const Surface own_W = explained_of(seen, placement.segment_ids);
+  placement.is_distinct = !own_W.empty() && !(is_flat(own_W) && is_plain(own_W));
+  add_evidence(model, scene, seen.explained_W, lit, placement);
   return placement;
 }
 

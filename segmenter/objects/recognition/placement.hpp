@@ -25,6 +25,8 @@ struct Placement {
   float own = 0.0F;
   /// How well `light` agrees with that of the map, from 0 to 1; see SceneLight.
   float light_agreement = 1.0F;
+  /// What is seen of it is more than one flat patch of one colour, which many things have.
+  bool is_distinct = false;
   std::int32_t points = 0;                 ///< of the map that are surface of the object
   std::vector<std::uint32_t> segment_ids;  ///< most of whose points are; ascending
 

@@ -10,7 +10,7 @@ namespace {
 // Of logarithms. Brightness: shadows and exposure. Tint: light from coloured walls, and the
 // camera's white balance.
 constexpr float kBrightnessDeviation = 0.3F;
-constexpr float kTintDeviation = 0.1F;
+constexpr float kTintDeviation = 0.2F;
 constexpr std::size_t kFewest = 3;  // two wrong ones may agree by chance
 
 }  // namespace

@@ -148,6 +148,27 @@ TEST(ObjectRecognizer, RecognisesAnObjectInOtherLight) {
   EXPECT_NEAR(found[0].placement.light.log_gain.z(), 2.2 * std::log(0.66), 0.35);
 }
 
+TEST(ObjectRecognizer, DoesNotKnowAFlatPatchOfOneColour) {
+  const Eigen::Vector3f corner(0.0F, 0.0F, 0.1F);
+  const Eigen::Vector3f x(0.2F, 0.0F, 0.0F);
+  const Eigen::Vector3f half_y(0.0F, 0.1F, 0.0F);
+  const Eigen::Vector3i tan(200, 170, 120);
+  const auto board_with = [&](const Eigen::Vector3i& other_half, float rim_m) {
+    MapOfThings things;
+    things.add_face(corner, x, half_y, tan, kBox);
+    things.add_face(corner + half_y, x, half_y, other_half, kBox);
+    if (rim_m > 0.0F) things.add_face(corner, -rim_m * Eigen::Vector3f::UnitZ(), x, tan, kBox);
+    return things.take();
+  };
+  const auto is_known = [](const ObservedMap& map) {
+    const ObjectRecognizer recognizer({taught(map, kBox, "board").model}, map.resolution_m);
+    return !recognized(recognizer, map, {kBox}).empty();
+  };
+  EXPECT_FALSE(is_known(board_with(tan, 0.0F)));
+  EXPECT_TRUE(is_known(board_with({60, 80, 160}, 0.0F)));
+  EXPECT_TRUE(is_known(board_with(tan, 0.04F)));
+}
+
 TEST(ObjectRecognizer, FindsNothingWithoutObjectsOrSurface) {
   const ObservedMap map = box_on_table();
   const ObjectRecognizer none({}, map.resolution_m);
@@ -316,7 +337,7 @@ TEST(SceneLight, IsThatOfMostPlacements) {
   EXPECT_LT(light.agreement(placements[1].light), 0.01F);
   // A thing in the shadow, and one that is lit in another colour.
   EXPECT_GT(light.agreement(with_light({-0.42F, -0.62F, -0.98F}).light), 0.7F);
-  EXPECT_LT(light.agreement(with_light({-0.02F, -0.42F, -0.98F}).light), 0.2F);
+  EXPECT_LT(light.agreement(with_light({-0.02F, -0.42F, -0.98F}).light), 0.5F);
   EXPECT_EQ(light_of_scene(std::span(all).first(2)).log_gain, Eigen::Vector3f::Zero());
 }
 
