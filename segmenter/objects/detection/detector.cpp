@@ -37,7 +37,13 @@ void Detector::set_piece(std::int32_t id, LabelledMap::Points points_W,
   const std::set<std::uint32_t> changed =
       scene_.set_piece(id, std::move(points_W), std::move(segment_ids));
   changed_.insert(changed.begin(), changed.end());
-  for (const std::uint32_t segment : changed) wait_for(segment);
+  std::set<std::uint32_t> changed_much;
+  for (const std::uint32_t segment : changed) {
+    if (waiting_.has_changed_much(segment, map().num_points(segment))) changed_much.insert(segment);
+    wait_for(segment);
+  }
+  // What was recognised depends on all of its segments.
+  for (const std::uint32_t seed : recognitions_.seeds_of(changed_much)) wait_for(seed, true);
   for (const std::uint32_t seed : recognitions_.seeds_of(changed)) wait_for(seed);
 }
 
@@ -56,7 +62,6 @@ void Detector::examine_all() {
 
 void Detector::wait_for_all() {
   waiting_.clear();
-  is_waiting_.clear();
   for (const std::uint32_t segment : map().segments()) {
     changed_.insert(segment);
     wait_for(segment);
@@ -77,13 +82,8 @@ void Detector::settle_light() {
   wait_for_all();
 }
 
-std::optional<std::int64_t> Detector::waiting_since_us() const {
-  if (waiting_.empty()) return std::nullopt;
-  return waiting_.front().since_us;
-}
-
-void Detector::wait_for(std::uint32_t segment) {
-  if (is_waiting_.insert(segment).second) waiting_.push_back({segment, utime_});
+void Detector::wait_for(std::uint32_t segment, bool is_urgent) {
+  waiting_.add(segment, map().num_points(segment), utime_, is_urgent);
 }
 
 void Detector::examine_next() {
@@ -92,9 +92,7 @@ void Detector::examine_next() {
     recognitions_.forget(changed_);
     changed_.clear();
   }
-  const std::uint32_t segment = waiting_.front().segment;
-  waiting_.pop_front();
-  is_waiting_.erase(segment);
+  const std::uint32_t segment = waiting_.pop();
   const bool may_change = recognitions_.examine(segment);
   if (waiting_.empty()) settle_light();
   if (may_change) update_detections();
@@ -172,7 +170,7 @@ Detection* Detector::vanished(std::size_t model, const std::set<std::int32_t>& k
 bool Detector::is_undecided(const Detection& detection) const {
   const std::vector<std::uint32_t>& ids = detection.recognition.placement.segment_ids;
   return std::any_of(ids.begin(), ids.end(),
-                     [this](std::uint32_t id) { return is_waiting_.contains(id); });
+                     [this](std::uint32_t id) { return waiting_.contains(id); });
 }
 
 void Detector::tell(Detection& detection, DetectionEvent event) {

@@ -2,7 +2,6 @@
 // Finds the objects of a library in a map while it grows, and tells what becomes of them.
 
 #include <cstdint>
-#include <deque>
 #include <optional>
 #include <set>
 #include <span>
@@ -11,6 +10,7 @@
 
 #include "lcmtypes/object_messages.hpp"
 #include "segmenter/objects/detection/recognitions.hpp"
+#include "segmenter/objects/detection/waiting_segments.hpp"
 #include "segmenter/objects/recognition/object_recognizer.hpp"
 #include "segmenter/objects/recognition/scene.hpp"
 #include "segmenter/views/map_view.hpp"
@@ -29,7 +29,7 @@ struct Detection {
 };
 
 /// Pieces of the map come with set_piece(); segments that changed wait until examine_next() has
-/// looked at them, the one that has waited longest first. When none waits, the detections that are
+/// looked at them, in the order of WaitingSegments. When none waits, the detections that are
 /// not gone are a function of the map and the library alone if examine_all() was called after the
 /// last change.
 class Detector {
@@ -51,8 +51,8 @@ class Detector {
   /// Examines one segment, if one waits, and updates the detections.
   void examine_next();
   [[nodiscard]] std::size_t num_waiting() const { return waiting_.size(); }
-  /// Device time at which the segment that has waited longest changed; nothing: none waits.
-  [[nodiscard]] std::optional<std::int64_t> waiting_since_us() const;
+  /// Device time since which the segment waits that is examined next; nothing: none waits.
+  [[nodiscard]] std::optional<std::int64_t> waiting_since_us() const { return waiting_.since_us(); }
 
   /// All detections, by number, gone ones included.
   [[nodiscard]] const std::vector<Detection>& detections() const { return detections_; }
@@ -62,7 +62,7 @@ class Detector {
   [[nodiscard]] const LabelledMap& map() const { return scene_.map(); }
 
  private:
-  void wait_for(std::uint32_t segment);
+  void wait_for(std::uint32_t segment, bool is_urgent = false);
   void wait_for_all();
   void settle_light();
   void update_detections();
@@ -78,12 +78,7 @@ class Detector {
   ObservedSpace observed_;
   bool is_light_settled_ = false;
   Recognitions recognitions_;
-  struct Waiting {
-    std::uint32_t segment;
-    std::int64_t since_us;
-  };
-  std::deque<Waiting> waiting_;
-  std::set<std::uint32_t> is_waiting_;
+  WaitingSegments waiting_;
   std::set<std::uint32_t> changed_;  // since the segment examined last
   std::vector<Detection> detections_;
   std::int64_t num_events_ = 0;

@@ -66,10 +66,7 @@ EmptySpace::EmptySpace(const Eigen::Vector3f& low_O, float cell_m, const Eigen::
     throw std::invalid_argument("a grid of empty space needs 1 to " + std::to_string(kMostCells) +
                                 " cells along each axis, and a value for each");
   }
-}
-
-bool EmptySpace::is_unknown() const {
-  return std::find(is_empty_.begin(), is_empty_.end(), true) == is_empty_.end();
+  is_unknown_ = std::find(is_empty_.begin(), is_empty_.end(), true) == is_empty_.end();
 }
 
 bool EmptySpace::contains(const Eigen::Vector3f& p_O) const {
@@ -80,7 +77,8 @@ bool EmptySpace::contains(const Eigen::Vector3f& p_O) const {
     return false;
   }
   const Eigen::Vector3i at = cell.cast<int>();
-  return is_empty_[static_cast<std::size_t>((at.z() * size_.y() + at.y()) * size_.x() + at.x())];
+  const int index = (at.z() * size_.y() + at.y()) * size_.x() + at.x();
+  return is_empty_[static_cast<std::size_t>(index)];
 }
 
 EmptySpace empty_space(std::span<const CloudPoint> points_O, const Pose& X_WO,

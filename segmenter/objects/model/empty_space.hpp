@@ -27,7 +27,7 @@ class EmptySpace {
              std::vector<bool> is_empty);
 
   /// No cell was seen to be empty.
-  [[nodiscard]] bool is_unknown() const;
+  [[nodiscard]] bool is_unknown() const { return is_unknown_; }
   /// Whether the place is in an empty cell.
   [[nodiscard]] bool contains(const Eigen::Vector3f& p_O) const;
 
@@ -43,6 +43,7 @@ class EmptySpace {
   float cell_m_ = 0.0F;
   Eigen::Vector3i size_ = Eigen::Vector3i::Zero();
   std::vector<bool> is_empty_;
+  bool is_unknown_ = true;
 };
 
 /// What the cameras saw around an object that stands at X_WO. Without views nothing is known.

@@ -10,9 +10,11 @@ namespace kintsugi::segmenter {
 
 namespace {
 
-// So many of the objects that look like a candidate are tried. Alike ones are few in a library: the
-// others of one shape have other colours.
-constexpr std::size_t kTried = 8;
+// So many of the objects that look like a candidate are tried: the one it is was among the first
+// two whenever it was among the first eight.
+constexpr std::size_t kTried = 2;
+// So few objects do not tell how much the elements of descriptions vary; all of them are tried.
+constexpr std::size_t kFew = 8;
 // In standard deviations between views of one object, on average over all elements. Candidates are
 // cut by occlusions and by segments that join other things, which simulated views are not.
 constexpr float kLargestDistance = 1.25F;
@@ -60,12 +62,11 @@ std::vector<Recognition> ObjectRecognizer::recognize(const Candidate& candidate,
   const Surface candidate_W = scene.surface_W(candidate);
   if (candidate_W.empty()) return {};
   const SizeAndColors beginning = scene.size_and_colors(candidate);
-  // Few objects do not tell how much the elements of descriptions vary; all of them are tried.
-  const bool is_choice = models_.size() > kTried;
+  const bool is_choice = models_.size() > kFew;
   if (is_choice && !index_->has_near(beginning, kLargestDistance)) return {};
   const ViewDescriptor descriptor = view_descriptor(beginning, scene.shape(candidate));
   std::vector<Recognition> found;
-  for (const ModelMatch& match : index_->nearest(descriptor, kTried)) {
+  for (const ModelMatch& match : index_->nearest(descriptor, is_choice ? kTried : kFew)) {
     if (is_choice && match.distance > kLargestDistance) break;
     std::optional<Placement> placement = place(match.model, candidate_W, scene);
     if (!placement || !is_recognized(*placement)) continue;

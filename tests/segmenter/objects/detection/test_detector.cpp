@@ -218,6 +218,38 @@ TEST(Detector, ComparesColoursInTheLightThatMostObjectsTell) {
   EXPECT_LT(largest_change(detector), 0.1F);
 }
 
+TEST(WaitingSegments, ComeFirstWhenTheyHaveChangedMuch) {
+  WaitingSegments waiting;
+  EXPECT_FALSE(waiting.since_us().has_value());
+  waiting.add(7, 100, 1);
+  waiting.add(8, 100, 2);
+  waiting.add(7, 110, 3);  // waits already
+  EXPECT_EQ(waiting.size(), 2U);
+  EXPECT_EQ(waiting.since_us(), 1);
+  EXPECT_EQ(waiting.pop(), 7U);
+  EXPECT_EQ(waiting.pop(), 8U);
+
+  waiting.add(7, 120, 4);  // a tenth more than when it was examined
+  waiting.add(8, 140, 5);
+  EXPECT_EQ(waiting.pop(), 8U);
+  waiting.add(8, 150, 6);
+  waiting.add(8, 70, 7);  // now it has lost half
+  EXPECT_EQ(waiting.pop(), 8U);
+  EXPECT_EQ(waiting.since_us(), 4);
+  waiting.add(8, 71, 8);
+  waiting.add(8, 71, 9, true);
+  EXPECT_EQ(waiting.pop(), 8U);
+  EXPECT_EQ(waiting.pop(), 7U);
+  EXPECT_TRUE(waiting.empty());
+
+  waiting.add(7, 0, 10);  // gone
+  waiting.add(9, 50, 11);
+  EXPECT_EQ(waiting.pop(), 7U);
+  waiting.clear();
+  EXPECT_FALSE(waiting.contains(9));
+  EXPECT_TRUE(waiting.has_changed_much(7, 1));
+}
+
 TEST(Detector, WaitsWithTheSegmentThatChangedFirst) {
   Detector detector(box_and_ball(), 0.01F);
   EXPECT_FALSE(detector.waiting_since_us().has_value());

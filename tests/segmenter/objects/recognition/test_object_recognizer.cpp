@@ -276,8 +276,8 @@ TEST(SurfaceGrid, FindsTheNearestOfManyPoints) {
     surface.push_back(point);
   }
   const SurfaceGrid grid(surface, 0.1F);
-  for (int i = 0; i < 50; ++i) {
-    const Eigen::Vector3f p = 1.2F * surface[static_cast<std::size_t>(7 * i)].position;
+  for (std::size_t i = 0; i < 50; ++i) {
+    const Eigen::Vector3f p = 1.2F * surface[7 * i].position;
     constexpr float kWithin_m = 0.3F;
     std::int32_t nearest = -1;
     float least = kWithin_m * kWithin_m;

@@ -1,0 +1,59 @@
+#include "segmenter/objects/detection/waiting_segments.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+
+namespace kintsugi::segmenter {
+
+namespace {
+
+// Of the points: a segment that grows from a tenth of an object to all of it is examined ten times.
+constexpr double kMuch = 0.25;
+
+}  // namespace
+
+bool WaitingSegments::has_changed_much(std::uint32_t segment, std::int64_t num_points) const {
+  const auto known = examined_.find(segment);
+  if (known == examined_.end()) return true;
+  const std::int64_t difference = std::abs(num_points - known->second);
+  return static_cast<double>(difference) > kMuch * static_cast<double>(known->second);
+}
+
+void WaitingSegments::add(std::uint32_t segment, std::int64_t num_points, std::int64_t utime,
+                          bool is_urgent) {
+  const auto [at, is_new] = waiting_.try_emplace(segment, Waiting{.since_us = utime});
+  Waiting& waiting = at->second;
+  waiting.num_points = num_points;
+  const bool was_urgent = waiting.is_urgent;
+  waiting.is_urgent = was_urgent || is_urgent || has_changed_much(segment, num_points);
+  if (!is_new && waiting.is_urgent == was_urgent) return;
+  if (!is_new) std::erase(others_, segment);
+  (waiting.is_urgent ? urgent_ : others_).push_back(segment);
+}
+
+std::uint32_t WaitingSegments::pop() {
+  std::deque<std::uint32_t>& from = urgent_.empty() ? others_ : urgent_;
+  const std::uint32_t segment = from.front();
+  from.pop_front();
+  const auto at = waiting_.find(segment);
+  if (at->second.num_points > 0) {
+    examined_[segment] = at->second.num_points;
+  } else {
+    examined_.erase(segment);
+  }
+  waiting_.erase(at);
+  return segment;
+}
+
+void WaitingSegments::clear() {
+  waiting_.clear();
+  urgent_.clear();
+  others_.clear();
+}
+
+std::optional<std::int64_t> WaitingSegments::since_us() const {
+  if (empty()) return std::nullopt;
+  return waiting_.at(next().front()).since_us;
+}
+
+}  // namespace kintsugi::segmenter

@@ -1,0 +1,51 @@
+#pragma once
+// Which segment is examined next.
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <optional>
+
+namespace kintsugi::segmenter {
+
+/// Segments that have changed. Those that have changed much since they were last examined come
+/// first, since little changes when a few points come or go; else the one that has waited longest.
+class WaitingSegments {
+ public:
+  /// A segment that has changed, or on which something that has changed may depend.
+  /// @param num_points of the segment now
+  /// @param utime device time of the map, microseconds
+  /// @param is_urgent whatever its number of points
+  void add(std::uint32_t segment, std::int64_t num_points, std::int64_t utime,
+           bool is_urgent = false);
+  /// Takes out the next one. There must be one.
+  std::uint32_t pop();
+  void clear();
+
+  /// Whether so many points are another segment than was examined last.
+  [[nodiscard]] bool has_changed_much(std::uint32_t segment, std::int64_t num_points) const;
+  [[nodiscard]] bool contains(std::uint32_t segment) const { return waiting_.contains(segment); }
+  [[nodiscard]] bool empty() const { return waiting_.empty(); }
+  [[nodiscard]] std::size_t size() const { return waiting_.size(); }
+  /// Since when the next one waits; nothing: none waits.
+  [[nodiscard]] std::optional<std::int64_t> since_us() const;
+
+ private:
+  struct Waiting {
+    std::int64_t since_us = 0;
+    std::int64_t num_points = 0;
+    bool is_urgent = false;
+  };
+
+  [[nodiscard]] const std::deque<std::uint32_t>& next() const {
+    return urgent_.empty() ? others_ : urgent_;
+  }
+
+  std::map<std::uint32_t, Waiting> waiting_;
+  std::deque<std::uint32_t> urgent_;
+  std::deque<std::uint32_t> others_;
+  std::map<std::uint32_t, std::int64_t> examined_;  // its points then
+};
+
+}  // namespace kintsugi::segmenter
