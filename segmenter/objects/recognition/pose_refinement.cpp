@@ -82,25 +82,39 @@ void keep_colors(std::vector<Match>& matches, LitModel& lit) {
   });
 }
 
+/// [v]x: its product with another vector is v x that.
+Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
+  Eigen::Matrix3d matrix;
+  matrix << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
+  return matrix;
+}
+
 /// The small motion of the points seen, in O, that brings them onto the model.
 Vector6d step_O(const std::vector<Match>& matches) {
   Matrix6d H = Matrix6d::Zero();
   Vector6d b = Vector6d::Zero();
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d products = Eigen::Matrix3d::Zero();
   for (const Match& match : matches) {
     const Eigen::Vector3d p = match.seen_O.cast<double>();
     const Eigen::Vector3d difference = match.model->position.cast<double>() - p;
     const Eigen::Vector3d n = match.model->normal.cast<double>();
     Vector6d J;
     J << n, p.cross(n);
-    H += J * J.transpose();
+    H.noalias() += J * J.transpose();
     b += J * n.dot(difference);
-    for (int k = 0; k < 3; ++k) {
-      const Eigen::Vector3d axis = Eigen::Vector3d::Unit(k);
-      J << axis, p.cross(axis);
-      H += kPointWeight * J * J.transpose();
-      b += kPointWeight * J * difference[k];
-    }
+    // To the point: the rows of J are those of (I, -[p]x).
+    b.head<3>() += kPointWeight * difference;
+    b.tail<3>() += kPointWeight * p.cross(difference);
+    sum += p;
+    products.noalias() += p * p.transpose();
   }
+  const Eigen::Matrix3d sum_x = cross_matrix(kPointWeight * sum);
+  const Eigen::Matrix3d identity = Eigen::Matrix3d::Identity();
+  H.topLeftCorner<3, 3>() += kPointWeight * static_cast<double>(matches.size()) * identity;
+  H.topRightCorner<3, 3>() -= sum_x;
+  H.bottomLeftCorner<3, 3>() += sum_x;
+  H.bottomRightCorner<3, 3>() += kPointWeight * (products.trace() * identity - products);
   H.diagonal().array() += 1e-9;
   return H.ldlt().solve(b);
 }

@@ -18,6 +18,7 @@ namespace {
 constexpr std::size_t kVotersSeen = 60;
 constexpr std::size_t kVotersOfModel = 150;
 constexpr std::size_t kRefined = 8;    // hypotheses that are refined
+constexpr float kLeastRough = 0.4F;    // agreement of those that are refined further
 constexpr std::size_t kSamples = 150;  // points by which hypotheses are compared
 // Below, noise of the normal is most of its direction around the vertical: sine of 60 degrees.
 constexpr float kUpright = 0.87F;
@@ -215,6 +216,7 @@ std::vector<PoseHypothesis> upright_poses(const PreparedModel& model, const Surf
   for (std::size_t i = 0; i < tried; ++i) {
     rough.push_back(roughly_refined_pose(model, samples_W, votes[i].X_WO));
   }
+  std::erase_if(rough, [](const PoseHypothesis& pose) { return pose.agreement < kLeastRough; });
   std::vector<PoseHypothesis> poses = best_of(std::move(rough), model, count);
   for (PoseHypothesis& pose : poses) pose = finely_refined_pose(model, samples_W, pose.X_WO);
   return best_of(std::move(poses), model, count);
