@@ -23,6 +23,10 @@ bool share_segments(const Recognition& a, const Recognition& b) {
       [&ids](std::uint32_t id) { return std::binary_search(ids.begin(), ids.end(), id); });
 }
 
+bool is_same(const Placement& a, const Placement& b) {
+  return a.X_WO.matrix() == b.X_WO.matrix() && a.segment_ids == b.segment_ids;
+}
+
 }  // namespace
 
 Detector::Detector(std::vector<ObjectModel> models, float resolution_m)
@@ -55,13 +59,16 @@ void Detector::set_views(std::span<const MapView> views) {
 
 void Detector::examine_all() {
   is_light_settled_ = false;
-  scene_.set_light({});
-  recognitions_.forget_all();
-  wait_for_all();
+  begin_again({});
 }
 
-void Detector::wait_for_all() {
+/// Where something was recognised comes first: it is there still, most often.
+void Detector::begin_again(const LightChange& light) {
+  const std::set<std::uint32_t> seeds = recognitions_.seeds();
+  scene_.set_light(light);
+  recognitions_.forget_all();
   waiting_.clear();
+  for (const std::uint32_t seed : seeds) wait_for(seed, true);
   for (const std::uint32_t segment : map().segments()) {
     changed_.insert(segment);
     wait_for(segment);
@@ -77,9 +84,7 @@ void Detector::settle_light() {
   if (change->log_gain.cwiseAbs().maxCoeff() < kSameLight) return;
   LightChange light;
   light.log_gain = scene_.light().log_gain + change->log_gain;
-  scene_.set_light(light);
-  recognitions_.forget_all();
-  wait_for_all();
+  begin_again(light);
 }
 
 void Detector::wait_for(std::uint32_t segment, bool is_urgent) {
@@ -107,6 +112,9 @@ void Detector::update_detections() {
     if (detection == nullptr) {
       others.push_back(std::move(recognition));
       continue;
+    }
+    if (!is_same(detection->recognition.placement, recognition.placement)) {
+      detection->change_number = ++num_changes_;
     }
     detection->recognition = std::move(recognition);
     kept.insert(detection->number);
@@ -176,6 +184,7 @@ bool Detector::is_undecided(const Detection& detection) const {
 void Detector::tell(Detection& detection, DetectionEvent event) {
   detection.event = event;
   detection.event_number = ++num_events_;
+  detection.change_number = ++num_changes_;
   detection.event_utime = utime_;
 }
 

@@ -24,8 +24,9 @@ struct Detection {
   Recognition recognition;                        ///< when gone, the last one
   DetectionEvent event = DetectionEvent::kFound;  ///< the last one
   std::int64_t event_number = 0;                  ///< ascending over all detections, from 1
-  std::int64_t event_utime = 0;  ///< device time of the map at the event, microseconds
-  std::int64_t found_utime = 0;  ///< the same when it was found where it is
+  std::int64_t change_number = 0;  ///< the same, also of new poses and segments without an event
+  std::int64_t event_utime = 0;    ///< device time of the map at the event, microseconds
+  std::int64_t found_utime = 0;    ///< the same when it was found where it is
 };
 
 /// Pieces of the map come with set_piece(); segments that changed wait until examine_next() has
@@ -58,12 +59,13 @@ class Detector {
   [[nodiscard]] const std::vector<Detection>& detections() const { return detections_; }
   [[nodiscard]] const std::vector<ObjectModel>& models() const { return recognizer_.models(); }
   [[nodiscard]] std::int64_t num_events() const { return num_events_; }
+  [[nodiscard]] std::int64_t num_changes() const { return num_changes_; }
   [[nodiscard]] std::int64_t num_candidates() const { return recognitions_.num_candidates(); }
   [[nodiscard]] const LabelledMap& map() const { return scene_.map(); }
 
  private:
   void wait_for(std::uint32_t segment, bool is_urgent = false);
-  void wait_for_all();
+  void begin_again(const LightChange& light);
   void settle_light();
   void update_detections();
   void confirm_old_ones();
@@ -82,6 +84,7 @@ class Detector {
   std::set<std::uint32_t> changed_;  // since the segment examined last
   std::vector<Detection> detections_;
   std::int64_t num_events_ = 0;
+  std::int64_t num_changes_ = 0;
   std::int64_t utime_ = 0;
 };
 

@@ -76,6 +76,12 @@ bool Recognitions::examine(std::uint32_t segment) {
   return true;
 }
 
+std::set<std::uint32_t> Recognitions::seeds() const {
+  std::set<std::uint32_t> seeds;
+  for (const auto& [seed, recognitions] : by_segment_) seeds.insert(seed);
+  return seeds;
+}
+
 std::set<std::uint32_t> Recognitions::seeds_of(const std::set<std::uint32_t>& parts) const {
   std::set<std::uint32_t> seeds;
   const auto is_part = [&parts](std::uint32_t id) { return parts.contains(id); };

@@ -24,7 +24,9 @@ class Recognitions {
   /// forgotten. @return whether something may be recognised there now, or was before
   bool examine(std::uint32_t segment);
 
-  /// The segments at which something was recognised that has one of these as part.
+  /// The segments at which something was recognised.
+  [[nodiscard]] std::set<std::uint32_t> seeds() const;
+  /// Those of which what was recognised has one of these as part.
   [[nodiscard]] std::set<std::uint32_t> seeds_of(const std::set<std::uint32_t>& parts) const;
 
   /// Recognitions that do not contradict each other: where two explain the same surface, the one

@@ -151,7 +151,7 @@ class DetectorProcess {
 
   void publish() {
     const Clock::time_point now = Clock::now();
-    if (detector_ && detector_->num_events() > published_) publish_events();
+    if (detector_ && detector_->num_changes() > published_) publish_changes();
     if (now - last_repeat_ >= kRepeatPeriod) {
       last_repeat_ = now;
       publish_all();
@@ -163,18 +163,18 @@ class DetectorProcess {
     }
   }
 
-  void publish_events() {
-    std::vector<const Detection*> events;
+  void publish_changes() {
+    std::vector<const Detection*> changed;
     for (const Detection& detection : detector_->detections()) {
-      if (detection.event_number > published_) events.push_back(&detection);
+      if (detection.change_number > published_) changed.push_back(&detection);
     }
-    std::sort(events.begin(), events.end(), [](const Detection* a, const Detection* b) {
+    std::sort(changed.begin(), changed.end(), [](const Detection* a, const Detection* b) {
       return a->event_number < b->event_number;
     });
-    for (const Detection* detection : events) {
+    for (const Detection* detection : changed) {
       bus_.publish(channels::kObjectDetection, message_of(*detection, *detector_, source_));
     }
-    published_ = detector_->num_events();
+    published_ = detector_->num_changes();
   }
 
   void publish_all() {

@@ -135,11 +135,16 @@ TEST(Detector, KeepsTheNumberOfAnObjectThatComesIntoViewBitByBit) {
   examine(detector);
   ASSERT_THAT(names_of(detector), ElementsAre("ball", "box"));
   const std::int32_t number = detection_of(detector, "box").number;
+  const std::int64_t num_changes = detector.num_changes();
+  const std::int64_t num_events = detector.num_events();
   give(detector, box_on_table(), 2 * kSecond_us);
   examine(detector);
   EXPECT_EQ(detector.detections().size(), 2U);
   EXPECT_EQ(detection_of(detector, "box").number, number);
   EXPECT_GT(detection_of(detector, "box").recognition.placement.seen, 0.85F);
+  // The better pose is told, though nothing has happened to the box.
+  EXPECT_GT(detector.num_changes(), num_changes);
+  EXPECT_EQ(detector.num_events(), num_events);
 }
 
 TEST(Detector, TellsWhenAnObjectIsGoneAndWhenItComesBackElsewhere) {
