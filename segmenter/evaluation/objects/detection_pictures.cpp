@@ -13,6 +13,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include "lcmtypes/scene/up_direction.hpp"
+#include "segmenter/core/points/transformed_points.hpp"
 #include "segmenter/evaluation/objects/taught_model.hpp"
 #include "segmenter/evaluation/report/label_color.hpp"
 #include "segmenter/evaluation/report/page_parts.hpp"
@@ -144,7 +145,7 @@ std::vector<Subject> subjects_of(const std::vector<ToldDetection>& told, const O
         {.file = fmt::format("false_{}.png", claim.id),
          .caption = fmt::format("false: {} ({}), score {:.2f}, {} points: {}", claim.kind, claim.id,
                                 claim.score.value_or(0.0), claim.points, claim.reason),
-         .points_W = placed(read_taught_model(library, claim.kind).points_O, told[i].X_WO)});
+         .points_W = transformed(told[i].X_WO, read_taught_model(library, claim.kind).points_O)});
   }
   for (const TrueOutcome& object : scores.truth) {
     if (object.is_found) continue;
@@ -152,9 +153,9 @@ std::vector<Subject> subjects_of(const std::vector<ToldDetection>& told, const O
         {.file = fmt::format("missed_{}.png", object.instance),
          .caption =
              fmt::format("missed: {}, {} points: {}", object.key, object.points, object.reason),
-         .points_W = object.X_WO
-                         ? placed(read_taught_model(library, object.name).points_O, *object.X_WO)
-                         : points_of_instance(object.instance, map, truth)});
+         .points_W = object.X_WO ? transformed(*object.X_WO,
+                                               read_taught_model(library, object.name).points_O)
+                                 : points_of_instance(object.instance, map, truth)});
   }
   return subjects;
 }

@@ -11,6 +11,7 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include "segmenter/core/points/transformed_points.hpp"
 #include "segmenter/evaluation/objects/taught_model.hpp"
 #include "segmenter/io/ply/ply_reader.hpp"
 #include "segmenter/preprocess/nearest_neighbours.hpp"
@@ -71,7 +72,7 @@ class Explainer {
 
   Seen seen_of(const std::string& name, const Pose& X_WO) const {
     const std::vector<CloudPoint> model_W =
-        placed(read_taught_model(library_, name).points_O, X_WO);
+        transformed(X_WO, read_taught_model(library_, name).points_O);
     NearestNeighbours::Result nearest;
     map_tree_.find(model_W, 1, nearest);
     Seen seen;

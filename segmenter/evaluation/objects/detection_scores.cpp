@@ -11,6 +11,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "segmenter/core/points/transformed_points.hpp"
 #include "segmenter/evaluation/objects/taught_model.hpp"
 #include "segmenter/io/points/file_bytes.hpp"
 #include "segmenter/preprocess/nearest_neighbours.hpp"
@@ -152,7 +153,7 @@ PoseError error_of(const ToldDetection& told, const TrueObject& object, const Tr
 double surface_distance_m(const ToldDetection& detection, const std::vector<CloudPoint>& points_W,
                           const TaughtModel& model) {
   NearestNeighbours::Result nearest;
-  NearestNeighbours(placed(model.points_O, detection.X_WO)).find(points_W, 1, nearest);
+  NearestNeighbours(transformed(detection.X_WO, model.points_O)).find(points_W, 1, nearest);
   double sum_m = 0.0;
   for (const float d : nearest.squared_distances) sum_m += std::sqrt(static_cast<double>(d));
   return sum_m / static_cast<double>(points_W.size());

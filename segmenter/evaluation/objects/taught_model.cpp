@@ -40,19 +40,4 @@ TaughtModel read_taught_model(const std::filesystem::path& library, const std::s
           .X_WO = first_pose(folder / "object.json")};
 }
 
-std::vector<CloudPoint> placed(std::vector<CloudPoint> points_O, const Pose& X_WO) {
-  const Eigen::Isometry3f X = X_WO.cast<float>();
-  for (CloudPoint& p : points_O) {
-    const Eigen::Vector3f position = X * Eigen::Vector3f(p.x, p.y, p.z);
-    const Eigen::Vector3f normal = X.linear() * Eigen::Vector3f(p.nx, p.ny, p.nz);
-    p.x = position.x();
-    p.y = position.y();
-    p.z = position.z();
-    p.nx = normal.x();
-    p.ny = normal.y();
-    p.nz = normal.z();
-  }
-  return points_O;
-}
-
 }  // namespace kintsugi::segmenter

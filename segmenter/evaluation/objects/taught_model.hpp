@@ -24,7 +24,4 @@ std::string library_name(std::string key);
 /// @throws std::runtime_error naming the file that cannot be read
 TaughtModel read_taught_model(const std::filesystem::path& library, const std::string& name);
 
-/// The points where the pose puts them.
-std::vector<CloudPoint> placed(std::vector<CloudPoint> points_O, const Pose& X_WO);
-
 }  // namespace kintsugi::segmenter

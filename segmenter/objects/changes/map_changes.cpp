@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "lcmtypes/scene/up_direction.hpp"
+#include "segmenter/core/points/transformed_points.hpp"
 #include "segmenter/objects/changes/change_groups.hpp"
 #include "segmenter/objects/changes/changed_points.hpp"
 #include "segmenter/objects/changes/displaced_points.hpp"

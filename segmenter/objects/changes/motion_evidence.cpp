@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "segmenter/core/points/transformed_points.hpp"
 #include "segmenter/objects/changes/alike_colors.hpp"
 #include "segmenter/objects/changes/surface_behind.hpp"
 #include "segmenter/objects/maps/surface_samples.hpp"

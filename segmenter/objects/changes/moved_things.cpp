@@ -15,6 +15,7 @@
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/parallel_invoke.h>
 
+#include "segmenter/core/points/transformed_points.hpp"
 #include "segmenter/objects/changes/alike_colors.hpp"
 #include "segmenter/objects/changes/motion_evidence.hpp"
 #include "segmenter/objects/changes/upright_motion.hpp"

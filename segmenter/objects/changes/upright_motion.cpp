@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "segmenter/core/points/transformed_points.hpp"
 #include "segmenter/objects/maps/surface_samples.hpp"
 #include "segmenter/preprocess/nearest_neighbours.hpp"
 

@@ -7,6 +7,7 @@
 #include <span>
 #include <utility>
 
+#include "segmenter/core/points/transformed_points.hpp"
 #include "segmenter/objects/maps/surface_samples.hpp"
 
 namespace kintsugi::segmenter {

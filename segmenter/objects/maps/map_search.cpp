@@ -10,6 +10,7 @@
 
 #include <opencv2/core.hpp>
 
+#include "segmenter/core/points/transformed_points.hpp"
 #include "segmenter/objects/maps/surface_samples.hpp"
 
 namespace kintsugi::segmenter {

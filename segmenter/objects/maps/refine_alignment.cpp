@@ -10,6 +10,7 @@
 #include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/parallel_for.h>
 
+#include "segmenter/core/points/transformed_points.hpp"
 #include "segmenter/objects/maps/surface_samples.hpp"
 
 namespace kintsugi::segmenter {

@@ -82,19 +82,4 @@ std::vector<CloudPoint> surface_samples(std::span<const CloudPoint> points, doub
   return samples;
 }
 
-std::vector<CloudPoint> transformed(const Pose& X_AB, std::span<const CloudPoint> points_B) {
-  std::vector<CloudPoint> points_A(points_B.begin(), points_B.end());
-  for (CloudPoint& point : points_A) {
-    const Eigen::Vector3f p = (X_AB * position_of(point).cast<double>()).cast<float>();
-    const Eigen::Vector3f n = (X_AB.linear() * normal_of(point).cast<double>()).cast<float>();
-    point.x = p.x();
-    point.y = p.y();
-    point.z = p.z();
-    point.nx = n.x();
-    point.ny = n.y();
-    point.nz = n.z();
-  }
-  return points_A;
-}
-
 }  // namespace kintsugi::segmenter

@@ -21,7 +21,4 @@ inline bool has_color(const CloudPoint& point) {
   return point.red != 0 || point.green != 0 || point.blue != 0;
 }
 
-/// The points in another frame.
-std::vector<CloudPoint> transformed(const Pose& X_AB, std::span<const CloudPoint> points_B);
-
 }  // namespace kintsugi::segmenter

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "segmenter/core/points/transformed_points.hpp"
 #include "segmenter/objects/model/merged_points.hpp"
 
 namespace kintsugi::segmenter {
@@ -37,20 +38,6 @@ Eigen::Vector3d mean_of(const std::vector<CloudPoint>& points) {
 }
 
 }  // namespace
-
-CloudPoint transformed(const CloudPoint& point_A, const Pose& X_BA) {
-  CloudPoint point_B = point_A;
-  const Eigen::Vector3f p = (X_BA * Eigen::Vector3d(point_A.x, point_A.y, point_A.z)).cast<float>();
-  const Eigen::Vector3f n =
-      (X_BA.linear() * Eigen::Vector3d(point_A.nx, point_A.ny, point_A.nz)).cast<float>();
-  point_B.x = p.x();
-  point_B.y = p.y();
-  point_B.z = p.z();
-  point_B.nx = n.x();
-  point_B.ny = n.y();
-  point_B.nz = n.z();
-  return point_B;
-}
 
 MadeModel make_model(const std::string& name, std::span<const CloudPoint> points_W,
                      float resolution_m, const std::optional<Eigen::Vector3d>& up_W) {

@@ -27,7 +27,4 @@ struct MadeModel {
 MadeModel make_model(const std::string& name, std::span<const CloudPoint> points_W,
                      float resolution_m, const std::optional<Eigen::Vector3d>& up_W);
 
-/// The point where `X_BA` puts it.
-CloudPoint transformed(const CloudPoint& point_A, const Pose& X_BA);
-
 }  // namespace kintsugi::segmenter

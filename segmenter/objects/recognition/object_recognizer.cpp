@@ -10,8 +10,8 @@ namespace kintsugi::segmenter {
 
 namespace {
 
-// So many of the objects that look like a candidate are tried: the one it is was among the first
-// two whenever it was among the first eight.
+// So many of the objects that look like a candidate are tried: in the synthetic rooms two find what
+// eight find.
 constexpr std::size_t kTried = 2;
 // So few objects do not tell how much the elements of descriptions vary; all of them are tried.
 constexpr std::size_t kFew = 8;

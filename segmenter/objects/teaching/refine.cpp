@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "segmenter/core/points/transformed_points.hpp"
 #include "segmenter/objects/library/object_check.hpp"
 #include "segmenter/objects/model/empty_space.hpp"
 #include "segmenter/objects/model/make_model.hpp"

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "segmenter/core/points/transformed_points.hpp"
 #include "segmenter/objects/model/make_model.hpp"
 #include "segmenter/objects/recognition/lit_model.hpp"
 #include "segmenter/objects/recognition/surface.hpp"

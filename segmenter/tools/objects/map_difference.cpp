@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "segmenter/core/points/transformed_points.hpp"
 #include "segmenter/io/ply/ply_table.hpp"
 #include "segmenter/io/points/file_bytes.hpp"
 #include "segmenter/io/points/file_cloud.hpp"

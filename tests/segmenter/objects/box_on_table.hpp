@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "segmenter/core/points/transformed_points.hpp"
 #include "segmenter/objects/model/make_model.hpp"
 #include "segmenter/views/observed_map.hpp"
 

@@ -15,6 +15,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "lcmtypes/base/ply_writer.hpp"
+#include "segmenter/core/points/transformed_points.hpp"
 #include "segmenter/evaluation/objects/detection_pictures.hpp"
 #include "segmenter/evaluation/objects/detection_reasons.hpp"
 #include "segmenter/evaluation/objects/objects_report.hpp"
@@ -79,7 +80,7 @@ class DetectionReport : public ::testing::Test {
   }
 
   void add(std::uint32_t instance, std::uint32_t segment, const Pose& X_WO, std::uint8_t red) {
-    for (const CloudPoint& p : placed(plate(red), X_WO)) {
+    for (const CloudPoint& p : transformed(X_WO, plate(red))) {
       truth_.points_W.push_back(p);
       truth_.instance_ids.push_back(instance);
       map_.points_W.push_back(p);

@@ -5,6 +5,7 @@
 
 #include <gmock/gmock.h>
 
+#include "segmenter/core/points/transformed_points.hpp"
 #include "segmenter/objects/changes/filled_space.hpp"
 #include "segmenter/objects/changes/map_side.hpp"
 #include "segmenter/objects/changes/motion_evidence.hpp"

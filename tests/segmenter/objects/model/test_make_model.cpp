@@ -5,6 +5,7 @@
 
 #include <gmock/gmock.h>
 
+#include "segmenter/core/points/transformed_points.hpp"
 #include "segmenter/objects/model/make_model.hpp"
 #include "segmenter/objects/model/merged_points.hpp"
 #include "segmenter/objects/model/object_views.hpp"

@@ -11,6 +11,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "lcmtypes/base/ply_writer.hpp"
+#include "segmenter/core/points/transformed_points.hpp"
 #include "segmenter/io/ply/labelled_ply_writer.hpp"
 #include "segmenter/objects/library/object_library.hpp"
 #include "segmenter/objects/model/make_model.hpp"

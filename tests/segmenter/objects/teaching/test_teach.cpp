@@ -7,6 +7,7 @@
 #include <gmock/gmock.h>
 
 #include "segmenter/core/parameters/presets.hpp"
+#include "segmenter/core/points/transformed_points.hpp"
 #include "segmenter/objects/model/make_model.hpp"
 #include "segmenter/objects/teaching/learned_parameters.hpp"
 #include "segmenter/objects/teaching/refine.hpp"
