@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "lcmtypes/messages.hpp"
-#include "lcmtypes/stream/sequence_set.hpp"
+#include "lcmtypes/sequence_set.hpp"
 
 namespace kintsugi {
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <span>
 
-#include "lcmtypes/stream/sequence_set.hpp"
+#include "lcmtypes/sequence_set.hpp"
 
 namespace kintsugi {
 

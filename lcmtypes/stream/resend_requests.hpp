@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "lcmtypes/stream/sequence_set.hpp"
+#include "lcmtypes/sequence_set.hpp"
 
 namespace kintsugi {
 

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "lcmtypes/messages.hpp"
+#include "lcmtypes/sequence_set.hpp"
 #include "lcmtypes/stream/resend_requests.hpp"
-#include "lcmtypes/stream/sequence_set.hpp"
 
 namespace kintsugi {
 

@@ -10,7 +10,7 @@
 
 #include "lcmtypes/messages.hpp"
 #include "lcmtypes/patch_motions.hpp"
-#include "lcmtypes/stream/sequence_set.hpp"
+#include "lcmtypes/sequence_set.hpp"
 #include "segmenter/core/engine/engine.hpp"
 #include "segmenter/core/ids/segment_ids.hpp"
 #include "segmenter/core/points/point_cloud.hpp"

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "lcmtypes/stream/sequence_set.hpp"
+#include "lcmtypes/sequence_set.hpp"
 
 namespace kintsugi {
 namespace {

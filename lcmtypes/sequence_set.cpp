@@ -1,4 +1,4 @@
-#include "lcmtypes/stream/sequence_set.hpp"
+#include "lcmtypes/sequence_set.hpp"
 
 #include <algorithm>
 #include <iterator>
