@@ -64,6 +64,9 @@ struct MapperStatus {
   std::int64_t patches_superseded = 0;
   std::int64_t chunks_resent = 0;
   std::int64_t requests_received = 0;
+  std::int64_t messages_unsigned = 0;
+  std::int64_t messages_forged = 0;
+  std::int64_t messages_replayed = 0;
   std::int64_t store_bytes = 0;
   std::int64_t store_waiting_bytes = 0;
   std::int64_t store_lost_chunks = 0;
@@ -126,6 +129,9 @@ struct MapperStatus {
     visit("patches_superseded", s.patches_superseded...);
     visit("chunks_resent", s.chunks_resent...);
     visit("requests_received", s.requests_received...);
+    visit("messages_unsigned", s.messages_unsigned...);
+    visit("messages_forged", s.messages_forged...);
+    visit("messages_replayed", s.messages_replayed...);
     visit("store_bytes", s.store_bytes...);
     visit("store_waiting_bytes", s.store_waiting_bytes...);
     visit("store_lost_chunks", s.store_lost_chunks...);
@@ -187,6 +193,9 @@ struct SegmenterStatus {
   std::int64_t states_sent = 0;
   std::int64_t state_bytes = 0;
   std::int64_t messages_bad = 0;
+  std::int64_t messages_unsigned = 0;
+  std::int64_t messages_forged = 0;
+  std::int64_t messages_replayed = 0;
   std::int64_t memory_bytes = 0;
   double slice_ms = 0.0;
   double slice_mean_ms = 0.0;
@@ -227,6 +236,9 @@ struct SegmenterStatus {
     visit("states_sent", s.states_sent...);
     visit("state_bytes", s.state_bytes...);
     visit("messages_bad", s.messages_bad...);
+    visit("messages_unsigned", s.messages_unsigned...);
+    visit("messages_forged", s.messages_forged...);
+    visit("messages_replayed", s.messages_replayed...);
     visit("memory_bytes", s.memory_bytes...);
     visit("slice_ms", s.slice_ms...);
     visit("slice_mean_ms", s.slice_mean_ms...);
@@ -257,6 +269,9 @@ struct ViewerStatus {
   std::int64_t chunks_given_up = 0;
   std::int64_t requests_sent = 0;
   std::int64_t messages_bad = 0;
+  std::int64_t messages_unsigned = 0;
+  std::int64_t messages_forged = 0;
+  std::int64_t messages_replayed = 0;
   std::int64_t memory_bytes = 0;
   double render_ms = 0.0;
   std::string map_name;
@@ -284,6 +299,9 @@ struct ViewerStatus {
     visit("chunks_given_up", s.chunks_given_up...);
     visit("requests_sent", s.requests_sent...);
     visit("messages_bad", s.messages_bad...);
+    visit("messages_unsigned", s.messages_unsigned...);
+    visit("messages_forged", s.messages_forged...);
+    visit("messages_replayed", s.messages_replayed...);
     visit("memory_bytes", s.memory_bytes...);
     visit("render_ms", s.render_ms...);
     visit("map_name", s.map_name...);
@@ -317,6 +335,9 @@ struct DetectorStatus {
   std::int64_t chunks_given_up = 0;
   std::int64_t requests_sent = 0;
   std::int64_t messages_bad = 0;
+  std::int64_t messages_unsigned = 0;
+  std::int64_t messages_forged = 0;
+  std::int64_t messages_replayed = 0;
   std::int64_t memory_bytes = 0;
   double lag_p50_ms = 0.0;
   double lag_max_ms = 0.0;
@@ -354,6 +375,9 @@ struct DetectorStatus {
     visit("chunks_given_up", s.chunks_given_up...);
     visit("requests_sent", s.requests_sent...);
     visit("messages_bad", s.messages_bad...);
+    visit("messages_unsigned", s.messages_unsigned...);
+    visit("messages_forged", s.messages_forged...);
+    visit("messages_replayed", s.messages_replayed...);
     visit("memory_bytes", s.memory_bytes...);
     visit("lag_p50_ms", s.lag_p50_ms...);
     visit("lag_max_ms", s.lag_max_ms...);

@@ -33,7 +33,8 @@ def print_updates(changes, options):
 
 def read_log(kintsugi, options):
     """The map of the log, read up to its end or first damage."""
-    client = kintsugi.open_log(options.log, options.map_name, with_points=False)
+    client = kintsugi.open_log(options.log, options.map_name, with_points=False, bus_key=options.bus_key,
+                               trust_log=options.trust_log)
     while not client.has_ended:
         print_updates(client.wait(), options)
     return client
@@ -44,7 +45,7 @@ def listen(kintsugi, options):
     stops = []
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: stops.append(1))
-    client = kintsugi.connect(options.lcm_url or "", options.map_name, with_points=False)
+    client = kintsugi.connect(options.lcm_url or "", options.map_name, with_points=False, bus_key=options.bus_key)
     say("listening")
     while not stops and not (options.exit_on_final and client.has_ended):
         print_updates(client.wait(timeout=0.1), options)
@@ -69,6 +70,9 @@ def parse_options():
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--log", help="read this LCM log instead of the bus")
     parser.add_argument("--lcm-url", help="bus; default: LCM_DEFAULT_URL, or multicast on this host")
+    parser.add_argument("--bus-key", default="", help="key of a signed bus; default: KINTSUGI_BUS_KEY, or none")
+    parser.add_argument("--trust-log", action="store_true",
+                        help="read the log whether or not it is signed, and verify nothing in it")
     parser.add_argument("--map-name", default="",
                         help="follow the map with this name (default: the first that is received)")
     parser.add_argument("--exit-on-final", action="store_true",

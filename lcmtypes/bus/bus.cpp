@@ -14,6 +14,8 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include "lcmtypes/signing/process_key.hpp"
+
 namespace kintsugi {
 namespace {
 
@@ -23,6 +25,7 @@ constexpr char kGroup[] = "239.255.76.67";
 constexpr char kReceiveBufferLimit[] = "/proc/sys/net/core/rmem_max";
 
 bool is_datagrams(const std::string& url) { return url.starts_with("udpm://"); }
+bool is_log(const std::string& url) { return url.starts_with("file://"); }
 
 /// Checked before LCM is opened, which without a route prints pages of text and fails without a
 /// reason. Connecting a datagram socket sends nothing, and fails exactly when there is no route.
@@ -64,17 +67,32 @@ bool leaves_host(const std::string& url) {
 
 }  // namespace
 
-struct Bus::Subscriber {
+/// One subscription of LCM: a message is verified once, however many handlers there are.
+struct Bus::Channel {
+  Channel(Bus& its_bus, std::string its_name) : bus(its_bus), name(std::move(its_name)) {}
+
   Bus& bus;
-  Handler handler;
+  std::string name;
+  std::vector<Handler> handlers;
 
   // Called by C code, through which no exception may pass: handle() throws it afterwards.
   static void on_message(const lcm_recv_buf_t* buffer, const char* /*channel*/, void* user) {
-    auto* self = static_cast<Subscriber*>(user);
+    auto* self = static_cast<Channel*>(user);
     try {
-      self->handler({static_cast<const std::uint8_t*>(buffer->data), buffer->data_size});
+      const ByteView data(static_cast<const std::uint8_t*>(buffer->data), buffer->data_size);
+      if (const auto message = self->bus.guard_.open(self->name, data)) self->pass(*message);
     } catch (...) {
-      if (!self->bus.failure_) self->bus.failure_ = std::current_exception();
+      self->bus.keep_failure();
+    }
+  }
+
+  void pass(ByteView message) {
+    for (std::size_t i = 0; i < handlers.size(); ++i) {  // a handler may subscribe another one
+      try {
+        handlers[i](message);
+      } catch (...) {
+        bus.keep_failure();
+      }
     }
   }
 };
@@ -100,7 +118,14 @@ std::optional<std::string> receive_buffer_advice() {
          " are wanted: bursts may be lost. Raise the limit: sysctl -w net.core.rmem_max=" + wanted;
 }
 
-Bus::Bus(const std::string& url) : url_(complete_url(url)), lcm_(nullptr, lcm_destroy) {
+Bus::Bus(const std::string& url)
+    : Bus(url, is_log(url) ? log_trust() : MessageTrust{.key = bus_key()}) {}
+
+Bus::Bus(const std::string& url, const MessageTrust& trust)
+    : url_(complete_url(url)),
+      guard_(trust, is_log(url_) ? MessageGuard::Source::kLog : MessageGuard::Source::kBus, url_),
+      lcm_(nullptr, lcm_destroy) {
+  if (trust.key) signer_.emplace(trust.key);
   if (is_datagrams(url_) && !has_multicast_route()) {
     throw std::runtime_error("cannot open the bus " + url_ +
                              ": no route for 224.0.0.0/4. Add one: "
@@ -116,6 +141,11 @@ Bus::Bus(const std::string& url) : url_(complete_url(url)), lcm_(nullptr, lcm_de
 Bus::~Bus() = default;
 
 void Bus::publish(const std::string& channel, ByteView message) {
+  Bytes signed_bytes;
+  if (signer_) {
+    signed_bytes = signer_->sign(channel, message);
+    message = signed_bytes;
+  }
   const auto size = static_cast<unsigned>(message.size());
   errno = 0;
   if (lcm_publish(lcm_.get(), channel.c_str(), message.data(), size) == 0) return;
@@ -129,14 +159,22 @@ std::size_t Bus::max_message_bytes() const {
 }
 
 void Bus::subscribe(const std::string& channel, Handler handler) {
-  subscribers_.push_back(std::make_unique<Subscriber>(Subscriber{*this, std::move(handler)}));
-  lcm_subscription_t* subscription = lcm_subscribe(
-      lcm_.get(), channel.c_str(), &Subscriber::on_message, subscribers_.back().get());
+  std::unique_ptr<Channel>& known = channels_[channel];
+  const bool is_new = known == nullptr;
+  if (is_new) known = std::make_unique<Channel>(*this, channel);
+  known->handlers.push_back(std::move(handler));
+  if (!is_new) return;
+  lcm_subscription_t* subscription =
+      lcm_subscribe(lcm_.get(), channel.c_str(), &Channel::on_message, known.get());
   if (subscription == nullptr) {
     throw std::runtime_error("cannot subscribe to " + channel + " of the bus " + url_);
   }
   // No limit: by default LCM silently drops messages beyond 30.
   lcm_subscription_set_queue_capacity(subscription, 0);
+}
+
+void Bus::keep_failure() {
+  if (!failure_) failure_ = std::current_exception();
 }
 
 bool Bus::handle(std::chrono::milliseconds timeout) {

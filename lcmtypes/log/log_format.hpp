@@ -12,5 +12,7 @@ namespace kintsugi::log_format {
 inline constexpr std::int64_t kEventHeaderBytes = 28;
 inline constexpr std::int64_t kMaxChannelBytes = 63;  ///< LCM's limit
 inline constexpr std::uint64_t kSyncWord = 0xEDA1DA01;
+/// LCM publishes on it, unsigned, when a program opens a bus, and lcm-logger records that.
+inline constexpr char kSelfTestChannel[] = "LCM_SELF_TEST";
 
 }  // namespace kintsugi::log_format

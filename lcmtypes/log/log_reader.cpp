@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "lcmtypes/log/log_format.hpp"
+#include "lcmtypes/signing/process_key.hpp"
 
 namespace kintsugi {
 namespace {
@@ -34,7 +35,12 @@ bool read(std::ifstream& file, Bytes& bytes) {
 
 }  // namespace
 
-LogReader::LogReader(const std::filesystem::path& path) : path_(path) {
+LogReader::LogReader(const std::filesystem::path& path) : LogReader(path, log_trust()) {}
+
+LogReader::LogReader(const std::filesystem::path& path, const MessageTrust& trust)
+    : path_(path),
+      has_key_(trust.key != nullptr),
+      guard_(trust, MessageGuard::Source::kLog, path.string()) {
   std::error_code error;
   if (std::filesystem::is_directory(path_, error)) fail(path_, "is a folder, expected an LCM log");
   const auto size = std::filesystem::file_size(path_, error);
@@ -47,10 +53,56 @@ LogReader::LogReader(const std::filesystem::path& path) : path_(path) {
   if (!read(file_, header) || big_endian(header, 0, 4) != kSyncWord) {
     fail(path_, "is no LCM log: it does not begin with an event");
   }
+  rewind();
+  check_signatures(trust);
+}
+
+/// Throws now what would otherwise be an empty map, or refused by every decoder, much later.
+void LogReader::check_signatures(const MessageTrust& trust) {
+  if (trust.trusts_all) return;
+  std::int64_t num_unsigned = 0;
+  std::int64_t num_forged = 0;
+  while (const auto event = read_event()) {
+    if (!trust.key) (void)guard_.open(event->channel, event->data);
+    if (event->channel == log_format::kSelfTestChannel) continue;
+    const auto parts = signed_message::split(event->data);
+    const bool is_readable =
+        !trust.key || (parts && signed_message::is_genuine(*trust.key, event->channel, *parts));
+    if (is_readable) return rewind();
+    ++(parts ? num_forged : num_unsigned);
+  }
+  if (num_unsigned + num_forged > 0) {
+    fail(path_, "has no message that is signed with the key of --bus-key: " +
+                    std::to_string(num_unsigned) + " are not signed, " +
+                    std::to_string(num_forged) +
+                    " are signed otherwise; --trust-log reads it without verification");
+  }
+  rewind();
+}
+
+/// Back to the first event.
+void LogReader::rewind() {
+  file_.clear();
   file_.seekg(0);
+  position_ = 0;
+  index_ = 0;
+  damage_.reset();
+  is_cut_off_ = false;
 }
 
 std::optional<LogEvent> LogReader::next() {
+  while (auto event = read_event()) {
+    if (has_key_ && event->channel == log_format::kSelfTestChannel) continue;
+    if (const auto message = guard_.open(event->channel, event->data)) {
+      event->data = *message;
+      return event;
+    }
+  }
+  return {};
+}
+
+/// The next event as it is in the file.
+std::optional<LogEvent> LogReader::read_event() {
   if (damage_ || position_ == size_) return {};
   EventHeader header{};
   if (!read(file_, header)) {

@@ -20,6 +20,7 @@
 #include "lcmtypes/client/segment_listener.hpp"
 #include "lcmtypes/client/segment_table_text.hpp"
 #include "lcmtypes/log/log_reader.hpp"
+#include "lcmtypes/signing/process_key.hpp"
 
 namespace kintsugi {
 namespace {
@@ -119,6 +120,7 @@ int main(int argc, char** argv) {
   auto* url = app.add_option("--lcm-url", options.url,
                              "URL of the bus; default: LCM_DEFAULT_URL, or multicast on this host");
   app.add_option("--log", options.log, "Read this LCM log instead of the bus")->excludes(url);
+  kintsugi::add_log_trust_flags(app);
   app.add_option("--map-name", options.map_name,
                  "Follow the map with this name (default: the first that is received)");
   app.add_flag("--exit-on-final", options.exit_on_final,

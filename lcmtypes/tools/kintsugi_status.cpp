@@ -16,6 +16,7 @@
 #include "lcmtypes/bus/bus.hpp"
 #include "lcmtypes/bus/message_subscriber.hpp"
 #include "lcmtypes/channels.hpp"
+#include "lcmtypes/signing/process_key.hpp"
 #include "lcmtypes/tools/progress.hpp"
 #include "lcmtypes/tools/status_log.hpp"
 
@@ -165,6 +166,7 @@ int main(int argc, char** argv) {
   CLI::App app("Shows the progress of mapper, segmenter, viewer and detector, one line a second.");
   app.add_option("--lcm-url", options.url,
                  "URL of the bus; default: LCM_DEFAULT_URL, or multicast on this host");
+  kintsugi::add_bus_key_flag(app);
   app.add_option("--map-name", options.map_name,
                  "Watch the map with this name (default: the first that is received)");
   auto* once = app.add_flag("--once", options.once, "Print one line and exit");

@@ -26,13 +26,21 @@ std::string some(std::int64_t value, const char* what) {
   return value > 0 ? ", " + count(value) + " " + what : std::string();
 }
 
+/// What a process has refused because of its key.
+template <class Status>
+std::string refused_text(const Status& status) {
+  return some(status.messages_unsigned, "messages not signed") +
+         some(status.messages_forged, "messages FORGED") +
+         some(status.messages_replayed, "messages replayed");
+}
+
 /// What a receiver still lacks.
 template <class Status>
 std::string reception_text(const Status& status) {
   constexpr std::int64_t kNoticeable = 10'000'000;  // bytes
   std::string text = some(status.chunks_missing - status.chunks_given_up, "chunks asked for") +
                      some(status.chunks_given_up, "chunks MISSING") +
-                     some(status.messages_bad, "bad messages");
+                     some(status.messages_bad, "bad messages") + refused_text(status);
   if (status.queue_bytes > kNoticeable) text += ", " + megabytes(status.queue_bytes) + " waiting";
   return text;
 }
@@ -68,7 +76,7 @@ std::string text_of(const MapperStatus& status) {
     text += " (" + megabytes(status.store_waiting_bytes) + " NOT ON DISK)";
   }
   return text + some(status.store_lost_chunks, "chunks LOST") +
-         some(status.chunks_resent, "resent");
+         some(status.chunks_resent, "resent") + refused_text(status);
 }
 
 std::string text_of(const SegmenterStatus& status) {

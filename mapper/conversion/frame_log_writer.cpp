@@ -1,10 +1,12 @@
 #include <atomic>
 #include <chrono>
+#include <optional>
 #include <string>
 #include <utility>
 
 #include "lcmtypes/channels.hpp"
 #include "lcmtypes/log/log_writer.hpp"
+#include "lcmtypes/signing/process_key.hpp"
 #include "lcmtypes/stream/stream_publisher.hpp"
 #include "mapper/conversion/writers.hpp"
 #include "mapper/source/bus/rgbd_frame_encoder.hpp"
@@ -27,9 +29,10 @@ class FrameLogWriter : public RecordingWriter {
         options_(options),
         session_(session_of_now()),
         log_(make_log(partial_)),
-        stream_([this](const std::string& channel,
-                       ByteView message) { (void)log_.append(utime_, channel, message); },
-                channels::kRgbdFrame, session_, unlimited()) {}
+        stream_([this](const std::string& channel, ByteView message) { append(channel, message); },
+                channels::kRgbdFrame, session_, unlimited()) {
+    if (const auto key = bus_key()) signer_.emplace(key);
+  }
 
   ~FrameLogWriter() override {
     std::error_code ignored;
@@ -46,10 +49,16 @@ class FrameLogWriter : public RecordingWriter {
 
   void finish(const Trajectory& /*poses*/) override {
     stream_.flush();
+    log_.sync();
     fs::rename(partial_, path_);
   }
 
  private:
+  void append(const std::string& channel, ByteView message) {
+    const Bytes bytes = signer_ ? signer_->sign(channel, message) : Bytes();
+    (void)log_.append(utime_, channel, signer_ ? ByteView(bytes) : message);
+  }
+
   static LogWriter make_log(const fs::path& file) {
     fs::remove(file);  // of a conversion that was killed
     return LogWriter::create(file);
@@ -70,6 +79,7 @@ class FrameLogWriter : public RecordingWriter {
   std::int64_t session_;
   std::atomic<std::int64_t> utime_ = 0;  ///< read by the stream's thread
   LogWriter log_;
+  std::optional<MessageSigner> signer_;  ///< with a key
   StreamPublisher stream_;
 };
 

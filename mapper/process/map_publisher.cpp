@@ -136,6 +136,7 @@ void MapPublisher::publish_status(MapperStatus status) {
     status.requests_received += counts.requests_received;
     status.patches_superseded += counts.messages_superseded;
   }
+  report_refused(status);
   const BufferedLog::Report report = store_.report();
   status.store_bytes = report.size_bytes;
   status.store_waiting_bytes = report.waiting_bytes;

@@ -10,6 +10,7 @@
 #include "lcmtypes/base/command_line.hpp"
 #include "lcmtypes/base/run_main.hpp"
 #include "lcmtypes/base/stop_signal.hpp"
+#include "lcmtypes/signing/process_key.hpp"
 #include "mapper/conversion/recording_writer.hpp"
 #include "mapper/source/open_source.hpp"
 #include "mapper/source/recorded_poses.hpp"
@@ -78,6 +79,7 @@ int main(int argc, char** argv) {
                    "of colour in .klg and .lcm files, 1 to 100; 0: without loss");
     app.add_option("--max-frames", options.max_frames, "stop after N frames; 0: all")
         ->check(CLI::NonNegativeNumber);
+    kintsugi::add_bus_key_flag(app);
     kintsugi::add_version_flag(app);
     CLI11_PARSE(app, argc, argv);
     return convert(options);

@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "lcmtypes/signing/process_key.hpp"
 #include "mapper/openni2_driver/recording/recording_uri.hpp"
 #include "mapper/output/cloud_reader.hpp"
 #include "mapper/synthetic/render/sequence.hpp"
@@ -14,6 +15,7 @@ namespace kintsugi::mapper {
 void add_cloud(CLI::App& app, MapOfSceneOptions& options) {
   app.add_option("CLOUD", options.cloud, "PLY file of kintsugi-mapper --cloud, or an LCM log")
       ->required();
+  add_log_trust_flags(app);
 }
 
 void add_scene(CLI::App& app, MapOfSceneOptions& options) {

@@ -1,6 +1,8 @@
-# A publisher of random bytes and of mutated valid messages on every channel, 1,000 a second.
+# Publishers of messages that nobody on the bus should believe.
 
 fault_row hostile "random and mutated messages on every channel, 1,000 a second for 60 s" hostile_row
+fault_row forged "a signed bus: forged and repeated messages about the map, 500 a second for 30 s, without the key" forged_row
+fault_row forged-keyless "the same without a key: what whoever is on the bus may do" forged_keyless_row
 
 hostile_row() {
   local seconds=60 allowed_mb=32 since
@@ -41,10 +43,11 @@ status_says() {
   done
 }
 
-# sent CHANNEL...: how many hostile messages were sent on these channels.
+# sent CHANNEL...: how many messages the report $sent_report tells of on these channels.
+sent_report=hostile.json
 sent() {
   local channel sum=0
-  for channel in "$@"; do sum=$((sum + $(json_number hostile.json "$channel"))); done
+  for channel in "$@"; do sum=$((sum + $(json_number "$sent_report" "$channel"))); done
   echo "$sum"
 }
 
@@ -66,3 +69,75 @@ no_growth() {
   note "$1: $growth MB more than without"
   must "$1 took $growth MB more than without" test "$growth" -le "$2"
 }
+
+# choose_forged: a map of patches that takes about twice as long as the lies about it.
+choose_forged() {
+  seconds=30
+  choose_played
+  played=(--session=7 --points=1000000 --batch=5 --speed=2)
+  if_quick && { seconds=5; played=(--session=7 --points=60000 --slice-points=2000 --batch=5 --speed=3); }
+  return 0
+}
+# forge: lies about the map, without a key. From when all listen: who has not heard a message cannot tell that it is repeated.
+forge() {
+  must "nothing was published" wait_for_points 1
+  process_start forger env -u KINTSUGI_BUS_KEY "${player%/*}/forging_publisher" --seconds="$seconds" --report=forged.json
+  process_wait forger || failures+=("forging_publisher failed, see forger.log")
+}
+
+forged_row() {
+  local since
+  "$KINTSUGI_BIN/kintsugi-keygen" "$PWD/bus.key" >keygen.txt
+  choose_forged
+  played_reference
+  out="$PWD/faulty" viewer_ends=() since="$EPOCHREALTIME"
+  export KINTSUGI_BUS_KEY="$PWD/bus.key"
+  start_played log segmenter viewer mapper
+  forge
+  must "the map was not drawn" status_says viewer finished 120
+  sleep 1 # until the last statuses have come
+  figure[lost]="$(datagrams_lost)"
+  process_stop 60 viewer
+  finish_played 10
+  figure[seconds]="$(since_s "$since")"
+  must "nothing was repeated" test "$(json_number forged.json repeated)" -gt 0
+  refused mapper RESEND_REQUEST
+  refused segmenter CLOUD_SLICE HEARTBEAT RESEND_REQUEST SEGMENT_QUERY
+  refused viewer CLOUD_SLICE SEGMENT_UPDATE SEGMENT_ANSWER CAMERA_POSE SEGMENTER_STATUS HEARTBEAT
+  must "a query was answered" test "$(json_number forged.json answered)" -eq 0
+  same_map
+}
+
+# refused PROCESS CHANNEL...: the process has dropped each lie on these channels, and no decoder has seen one.
+refused() {
+  local process="$1" kind counts=() sum=0 sent
+  shift
+  sent="$(sent_report=forged.json sent "$@")"
+  for kind in unsigned forged replayed; do
+    counts+=("$(status_last faulty "$process" "messages_$kind")")
+    sum=$((sum + counts[-1]))
+  done
+  note "$process: $sum of $sent refused (${counts[0]} unsigned, ${counts[1]} forged, ${counts[2]} replayed)"
+  must "$process refused $sum messages of $sent" test "$sum" -le "$sent" -a "$sum" -ge "$((sent - figure[lost]))"
+  must "a decoder of the $process saw a lie" test "$(status_last faulty "$process" messages_bad)" -eq 0
+}
+
+# Without a key every well-made lie is believed: the map may become another one, queries are answered, and chunks sent
+# again. But no message ends a process, and none makes it write anything but its own files.
+forged_keyless_row() {
+  local name since="$EPOCHREALTIME"
+  choose_forged
+  played_reference
+  out="$PWD/faulty" viewer_ends=()
+  start_played log segmenter viewer mapper
+  forge
+  for name in mapper segmenter viewer; do must "a message has ended the $name" process_alive "$name"; done
+  figure[lost]="$(datagrams_lost)"
+  for name in viewer segmenter mapper log; do process_stop 60 "$name" || failures+=("$name did not stop"); done
+  figure[seconds]="$(since_s "$since")"
+  must "no query was answered" test "$(json_number forged.json answered)" -gt 0
+  must "the mapper sent nothing again" test "$(status_last faulty mapper requests_received)" -gt 0
+  must "the map is the true one" is_other_map
+  note "the map is another one, $(json_number forged.json answered) queries were answered"
+}
+is_other_map() { ! "$kintsugi_root/scripts/lib/same_partition.py" "$reference/segments.ply" faulty/segments.ply >/dev/null 2>&1; }

@@ -18,6 +18,10 @@ struct MapClientOptions {
   std::string map_name{};  ///< empty: the map of the first segment update that is received
   /// Also receive the points of the map. Without them there are segments, updates and poses only.
   bool with_points = true;
+  /// File of the key with which messages and logs are signed; empty: KINTSUGI_BUS_KEY, or none.
+  std::string bus_key{};
+  /// open_log(), read_log(): read the log whether or not it is signed, and verify nothing.
+  bool trust_log = false;
 };
 
 /// What one MapClient::wait() has received.
@@ -47,10 +51,12 @@ class [[gnu::visibility("default")]] MapClient {
   using Seconds = std::chrono::duration<double>;
 
   /// Connects to the bus.
-  /// @throws std::runtime_error when the bus cannot be opened, with what to do about it
+  /// @throws std::runtime_error when the bus cannot be opened or the key cannot be read, with what
+  ///   to do about it
   static MapClient connect(const MapClientOptions& options = {});
   /// Opens an LCM log; wait() reads on in it. MapClientOptions::url is not used.
-  /// @throws std::runtime_error when the file cannot be read, is empty or is not an LCM log
+  /// @throws std::runtime_error when the file cannot be read, is empty or is not an LCM log; when
+  ///   there is a key and it is not signed with it, or it is signed and there is no key
   static MapClient open_log(const std::filesystem::path& path,
                             const MapClientOptions& options = {});
   ~MapClient();

@@ -4,6 +4,7 @@
 
 #include "lcmtypes/base/patient_clock.hpp"
 #include "lcmtypes/log/log_reader.hpp"
+#include "lcmtypes/signing/process_key.hpp"
 #include "segmenter/library/bus.hpp"
 #include "segmenter/library/map_follower.hpp"
 #include "segmenter/tools/query/query_client.hpp"
@@ -29,10 +30,12 @@ class MapClient::Implementation {
       : options_(options), follower_(options) {}
 
   void connect() {
-    bus_.emplace(options_.url);
+    bus_.emplace(options_.url, MessageTrust{.key = bus_key(options_.bus_key)});
     follower_.subscribe(*bus_);
   }
-  void open(const std::filesystem::path& path) { log_.emplace(path); }
+  void open(const std::filesystem::path& path) {
+    log_.emplace(path, MessageTrust{bus_key(options_.bus_key), options_.trust_log});
+  }
 
   MapChanges wait(Seconds timeout) {
     if (log_) {
@@ -56,7 +59,9 @@ class MapClient::Implementation {
     if (query.map_name.empty()) {
       query.map_name = newest != nullptr ? newest->map_name : options_.map_name;
     }
-    if (!queries_) queries_ = std::make_unique<segmenter::QueryClient>(options_.url);
+    if (!queries_) {
+      queries_ = std::make_unique<segmenter::QueryClient>(options_.url, bus_key(options_.bus_key));
+    }
     return queries_->ask(std::move(query), timeout);
   }
 

@@ -14,6 +14,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include "lcmtypes/base/command_line.hpp"
+#include "lcmtypes/signing/process_key.hpp"
 #include "segmenter/core/parameters/presets.hpp"
 
 namespace kintsugi::segmenter {
@@ -132,6 +133,7 @@ void add_slice_flags(CLI::App& app, Options& options) {
 void add_bus_flags(CLI::App& app, Options& options) {
   app.add_option("--lcm-url", options.process.lcm_url,
                  "the bus (default: LCM_DEFAULT_URL); with --log, publish the results there");
+  add_log_trust_flags(app);
   app.add_option("--rate", options.rate_mb_per_s, "MB/s of updates on the bus, > 0")
       ->check(CLI::Range(1e-3, 1e6))
       ->capture_default_str();

@@ -48,9 +48,19 @@ MapChanges wait(Self& self, double timeout_s) {
   }
 }
 
+std::unique_ptr<Self> open_log_of(const std::filesystem::path& file, const std::string& map_name,
+                                  bool with_points, const std::filesystem::path& bus_key,
+                                  bool trust_log) {
+  return std::make_unique<Self>(MapClient::open_log(file, {.map_name = map_name,
+                                                           .with_points = with_points,
+                                                           .bus_key = bus_key.string(),
+                                                           .trust_log = trust_log}));
+}
+
 std::unique_ptr<Self> read_log_of(const std::filesystem::path& file, const std::string& map_name,
-                                  bool with_points) {
-  auto self = std::make_unique<Self>(MapClient::open_log(file, {"", map_name, with_points}));
+                                  bool with_points, const std::filesystem::path& bus_key,
+                                  bool trust_log) {
+  auto self = open_log_of(file, map_name, with_points, bus_key, trust_log);
   while (!self->with([](MapClient& client) {
     for (int i = 0; i < 1000 && !client.has_ended(); ++i) client.wait(Seconds(0.0));
     return client.has_ended();
@@ -167,28 +177,32 @@ void add_map_client(py::module_& module) {
 
   module.def(
       "connect",
-      [](const std::string& url, const std::string& map_name, bool with_points) {
-        return std::make_unique<Self>(MapClient::connect({url, map_name, with_points}));
+      [](const std::string& url, const std::string& map_name, bool with_points,
+         const std::filesystem::path& bus_key) {
+        return std::make_unique<Self>(MapClient::connect({.url = url,
+                                                          .map_name = map_name,
+                                                          .with_points = with_points,
+                                                          .bus_key = bus_key.string()}));
       },
       py::arg("url") = "", py::arg("map_name") = "", py::arg("with_points") = true,
+      py::arg("bus_key") = "",
       "Follow a map on the bus; return a MapClient.\n\n"
       "url          of LCM; empty: LCM_DEFAULT_URL, or multicast on this host\n"
       "map_name     empty: the map of the first segment update that is received\n"
-      "with_points  False: without points and labels, with less memory and traffic\n\n"
-      "Raises RuntimeError when the bus cannot be opened.");
+      "with_points  False: without points and labels, with less memory and traffic\n"
+      "bus_key      file of the key of a signed bus; empty: KINTSUGI_BUS_KEY, or none\n\n"
+      "Raises RuntimeError when the bus cannot be opened, or the key cannot be read.");
   module.def(
-      "open_log",
-      [](const std::filesystem::path& file, const std::string& map_name, bool with_points) {
-        return std::make_unique<Self>(MapClient::open_log(file, {"", map_name, with_points}));
-      },
-      py::arg("file"), py::arg("map_name") = "", py::arg("with_points") = true,
-      "Open an LCM log, in which wait() reads on; return a MapClient. Arguments as connect().\n"
-      "Raises RuntimeError when it cannot be read or is no LCM log.");
+      "open_log", &open_log_of, py::arg("file"), py::arg("map_name") = "",
+      py::arg("with_points") = true, py::arg("bus_key") = "", py::arg("trust_log") = false,
+      "Open an LCM log, in which wait() reads on; return a MapClient. Arguments as connect();\n"
+      "trust_log=True reads it whether or not it is signed, and verifies nothing.\n"
+      "Raises RuntimeError when it cannot be read, is no LCM log, or is not signed with the key.");
   module.def(
       "read_log", &read_log_of, py::arg("file"), py::arg("map_name") = "",
-      py::arg("with_points") = true,
-      "Read an LCM log to its end or first damage; return a MapClient. Arguments as connect().\n"
-      "Raises RuntimeError when it cannot be read or is no LCM log.");
+      py::arg("with_points") = true, py::arg("bus_key") = "", py::arg("trust_log") = false,
+      "Read an LCM log to its end or first damage; return a MapClient. Arguments and errors as\n"
+      "open_log().");
 }
 
 }  // namespace kintsugi::python

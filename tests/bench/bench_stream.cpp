@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdio>
 #include <exception>
+#include <memory>
 #include <new>
 #include <random>
 #include <stdexcept>
@@ -45,6 +46,12 @@ struct Options {
 struct Case {
   std::size_t chunk_bytes = 0;
   double loss = 0.0;  ///< share of the chunks that the receiver drops unread
+  bool is_signed = false;
+
+  MessageTrust trust() const {
+    if (!is_signed) return {};
+    return {.key = std::make_shared<const BusKey>(BusKey::Secret{1})};
+  }
 };
 
 /// Results of the receiver, in memory shared with the process that started it.
@@ -79,7 +86,7 @@ CloudSlice slice_of(int id) {
 
 /// Receives until every slice is complete.
 void receive(const Options& options, const Case& which, Received& received) {
-  Bus bus(options.url());
+  Bus bus(options.url(), which.trust());
   PatientClock clock;
   int num_complete = 0;
   StreamSubscriber<CloudSlice> stream(channels::kCloudSlice,
@@ -113,7 +120,7 @@ void receive(const Options& options, const Case& which, Received& received) {
 
 /// Publishes all slices, answers requests until `receiver` has ended, and prints a row.
 void publish(const Options& options, const Case& which, pid_t receiver, const Received& received) {
-  Bus bus(options.url());
+  Bus bus(options.url(), which.trust());
   RecentChunks store(std::size_t{4} << 30U);
   StreamPublisher::Config config;
   config.rate_bytes_per_s = options.rate_bytes_per_s;
@@ -136,8 +143,9 @@ void publish(const Options& options, const Case& which, pid_t receiver, const Re
   answering.stop();
   const StreamPublisherCounts counts = stream.counts();
   std::printf(
-      "| %zu | %.0f | %.2f | %.1f | %.1f | %lld | %lld | %lld | %lld | %lld |\n", which.chunk_bytes,
-      100.0 * which.loss, 1e-6 * received.bytes_per_s, 100.0 * cpu, 100.0 * received.cpu,
+      "| %zu | %s | %.0f | %.2f | %.1f | %.1f | %lld | %lld | %lld | %lld | %lld |\n",
+      which.chunk_bytes, which.is_signed ? "yes" : "no", 100.0 * which.loss,
+      1e-6 * received.bytes_per_s, 100.0 * cpu, 100.0 * received.cpu,
       static_cast<long long>(counts.chunks_sent), static_cast<long long>(received.chunks_lost),
       static_cast<long long>(counts.chunks_resent),
       static_cast<long long>(received.chunks_duplicate), static_cast<long long>(received.requests));
@@ -168,10 +176,11 @@ int run(int argc, char** argv) {
   CLI11_PARSE(app, argc, argv);
   if (const auto why_not = testing::enter_private_bus()) throw std::runtime_error(*why_not);
   std::printf(
-      "| largest chunk, bytes | dropped, %% | MB/s of points | sender, %% of a core | "
+      "| largest chunk, bytes | signed | dropped, %% | MB/s of points | sender, %% of a core | "
       "receiver, %% | chunks sent | dropped | resent | received twice | requests |\n"
-      "|---|---|---|---|---|---|---|---|---|---|\n");
+      "|---|---|---|---|---|---|---|---|---|---|---|\n");
   for (const std::size_t chunk_bytes : {kDefaultMaxChunkBytes, kMinMaxChunkBytes}) {
+    measure(options, {chunk_bytes, 0.0, true});
     for (const double loss : {0.0, 0.01, 0.05, 0.1}) measure(options, {chunk_bytes, loss});
   }
   return 0;

@@ -23,6 +23,7 @@ void write(const fs::path& folder, const Seeds& seeds) {
 
 void write_all(const fs::path& folder) {
   write(folder / "message", message_seeds());
+  write(folder / "signed_message", signed_message_seeds());
   for (const char* target : {"join", "log", "stream"}) write(folder / target, log_seeds());
   write(folder / "requests", request_seeds());
   write(folder / "stored_sessions", stored_session_seeds());

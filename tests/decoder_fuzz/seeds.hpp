@@ -14,7 +14,8 @@ using Seeds = std::map<std::string, Bytes>;
 
 /// Seeds that several targets use.
 Seeds message_seeds();  ///< one LCM message of each type
-Seeds log_seeds();      ///< logs of chunked messages and heartbeats
+Seeds signed_message_seeds();
+Seeds log_seeds();  ///< logs of chunked messages and heartbeats
 Seeds request_seeds();
 Seeds stored_session_seeds();
 Seeds rgbd_frame_seeds();

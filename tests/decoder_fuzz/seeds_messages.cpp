@@ -4,6 +4,7 @@
 #include "mapper/session/stored_sessions.hpp"
 #include "tests/decoder_fuzz/log_events.hpp"
 #include "tests/decoder_fuzz/seeds.hpp"
+#include "tests/decoder_fuzz/signed_key.hpp"
 #include "tests/support/example_messages.hpp"
 
 namespace kintsugi::fuzzing {
@@ -52,6 +53,16 @@ Seeds message_seeds() {
           {"rgbd_frame", encode_chunk(example_frame(40, 30), 0, 0, kDefaultMaxChunkBytes)},
           {"view", encode_chunk(example_view(50), 0, 0, kDefaultMaxChunkBytes)},
           {"snapshot", encode_chunk(example_snapshot(50), 0, 0, kDefaultMaxChunkBytes)}};
+}
+
+Seeds signed_message_seeds() {
+  const auto signed_one = [](std::uint64_t session, std::int64_t sequence, const Bytes& message) {
+    return signed_message::sign(signed_key(), kSignedChannel, session, sequence, message);
+  };
+  const Bytes pose = encode(testing::example_camera_pose());
+  return {{"unsigned", pose},
+          {"signed", signed_one(signed_message::new_session(), 1, pose)},
+          {"empty", signed_one(std::uint64_t{1} << 32U, 2, {})}};
 }
 
 Seeds log_seeds() {

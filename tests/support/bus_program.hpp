@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "lcmtypes/base/stop_signal.hpp"
+#include "lcmtypes/signing/process_key.hpp"
 
 namespace kintsugi::testing {
 
@@ -22,6 +23,7 @@ int run_bus_program(int argc, char** argv, const std::string& description,
   CLI::App app(description);
   Options options;
   add_flags(app, options);
+  add_bus_key_flag(app);
   CLI11_PARSE(app, argc, argv);
   install_stop_signals();
   try {

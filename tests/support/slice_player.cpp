@@ -248,6 +248,7 @@ class SlicePlayer {
     status.store_waiting_bytes = store.waiting_bytes;
     status.store_lost_chunks = store.lost_chunks;
     status.store_problem = store.problem;
+    report_refused(status);
     bus_.publish(channels::kMapperStatus, status);
   }
 

@@ -11,6 +11,7 @@
 
 #include "lcmtypes/base/argument_check.hpp"
 #include "lcmtypes/base/command_line.hpp"
+#include "lcmtypes/signing/process_key.hpp"
 
 namespace kintsugi::viewer {
 namespace {
@@ -43,6 +44,7 @@ struct Flags {
 void add_input_flags(CLI::App& app, Flags& flags) {
   Options& options = flags.options;
   app.add_option("--lcm-url", options.lcm_url, "LCM URL; empty: LCM's default");
+  add_log_trust_flags(app);
   app.add_option("--log", flags.log, "Read this LCM log as fast as possible instead of the bus");
   app.add_option("--map-name", options.map_name,
                  "Draw the map with this name (default: the first one received)");

@@ -129,6 +129,7 @@ void Receiver::add_to(ViewerStatus& status) const {
   status.queue_bytes +=
       static_cast<std::int64_t>(slices_.pending_bytes() + updates_.pending_bytes());
   status.messages_bad = bad_;
+  report_refused(status);
   if (status.problem.empty()) status.problem = choice_.problem();
 }
 

@@ -21,6 +21,7 @@ LABELLED, SEGMENTS, LOG, TRAJECTORY, TIMINGS = ("labelled.ply", "segments.json",
 QUALITY = "quality"
 # Every frame, and nobody to wait for: 1 GB/s is more than the log takes. The session is part of the map.
 MAPPER_DEFAULTS = ("--replay", "--linger=0", "--rate=1000", "--session=1")
+OWN_LOG = ("--trust-log",)  # what the mapper stores is not signed, whatever KINTSUGI_BUS_KEY says
 TRUE_INSTANCES, SCENE = "truth.ply", "scene"
 MAPS = ("*.ply", "*.lcm")  # the large files
 
@@ -63,12 +64,12 @@ def steps_of(given, kind, settings):
         return [segment_log(given.device, given, settings), *quality_steps("segments.ply", given.truth)]
     return [Step("map", (program("mapper"), *own_mapper(given),
                          *with_given(MAPPER_DEFAULTS, words_of("mapper", given, settings)))),
-            segment_log(LOG, given, settings), *true_instances(given),
+            segment_log(LOG, given, settings, *OWN_LOG), *true_instances(given),
             *quality_steps("segments.ply", given.truth or (TRUE_INSTANCES if is_scene(given) else ""))]
 
 
-def segment_log(log, given, settings):
-    return Step("segment", (program("segmenter"), f"--log={log}", "--out=.",
+def segment_log(log, given, settings, *options):
+    return Step("segment", (program("segmenter"), f"--log={log}", "--out=.", *options,
                             *words_of("segmenter", given, settings)))
 
 
@@ -95,7 +96,7 @@ def is_scene(given):
 def true_instances(given):
     if not is_scene(given) or given.truth:
         return []
-    return [Step("truth", (program("ground-truth"), given.device, LOG, TRUE_INSTANCES))]
+    return [Step("truth", (program("ground-truth"), given.device, LOG, TRUE_INSTANCES, *OWN_LOG))]
 
 
 def quality_steps(cloud, truth):

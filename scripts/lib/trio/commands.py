@@ -12,6 +12,7 @@ from .messages import Problem, os_error_text, say
 from .process import Process, stop
 from .process_options import with_given
 from .programs import check_programs, command_of, program
+from .recording import Recording
 from .run_folder import RunFolder
 from .status import Status
 from .summary import show_summary
@@ -48,6 +49,7 @@ def trio(arguments):
     choice.started_in = None  # here
     if choice.resume:
         choice = recalled(choice.out, arguments)
+    use_bus_key(choice.bus_key, choice.started_in)
     check_programs([*choice.only, "status"], ["setpriv"] if choice.no_log else ["setpriv", "lcm-logger"])
     network.choose_network(choice.private, this_command())
     if "mapper" in choice.only and not choice.private:  # nobody else is in a private network
@@ -60,10 +62,16 @@ def trio(arguments):
     if choice.resume:
         os.chdir(choice.started_in)
     else:
-        folder.keep_earlier_run()
-        folder.remember_options(arguments)
+        folder.begin_run(arguments, choice.durable)
     network.tell_how_to_ask()
     return run_trio(choice, folder)
+
+
+def use_bus_key(file, folder=None):
+    """For every process of the run, and for the questions to them: they read the file. `folder`: for a relative
+    path; None: the current one."""
+    if file:
+        os.environ["KINTSUGI_BUS_KEY"] = os.path.abspath(os.path.join(folder or os.curdir, file))
 
 
 def words_to_check(name, choice, folder):
@@ -92,15 +100,17 @@ def run_trio(choice, folder):
     make = {"mapper": mapper_process, "segmenter": segmenter_process, "viewer": viewer_process,
             "detector": detector_process}
     watched = [make[name](choice, folder) for name in choice.only]
-    logger = None if choice.no_log else logger_process(folder)
+    recording = None if choice.no_log else Recording(folder.path, choice.durable)
+    logger = logger_process(folder, recording) if recording else None
     with supervised(folder, watched, logger, map_name(choice)) as supervisor:
         if logger:
+            recording.begin()
             logger.start()
         for process in [*watched[1:], watched[0]] if "mapper" in choice.only else watched:
             process.start()
         good = supervisor.watch()
         if logger:
-            good = end_recording(logger, folder) and good
+            good = end_recording(logger, recording) and good
         show_summary(folder, watched)
         tell_what_matters(supervisor, choice, watched[0])
     return 0 if good else 1
@@ -133,7 +143,8 @@ def mapper_process(choice, folder):
     def command(resume):
         log_option = "--resume" if resume and folder.has("mapper.lcm") else "--store"
         own = ["--output-trajectory=" + folder.file("trajectory.txt"), f"--linger={linger_s(choice)}",
-               f"{log_option}={folder.file('mapper.lcm')}", *map_option(choice.map_name, choice.mapper)]
+               f"{log_option}={folder.file('mapper.lcm')}", *(["--durable"] if choice.durable else []),
+               *map_option(choice.map_name, choice.mapper)]
         return [program("mapper"), *with_given(own, choice.mapper)]
 
     # A mapper that gets SIGTERM finishes its session, and answers requests until it gets another one. When this
@@ -161,25 +172,26 @@ def detector_process(choice, folder):
     return Process("detector", [*command_of("detector"), *with_given(own, choice.detector)], folder)
 
 
-def logger_process(folder):
+def logger_process(folder, recording):
     url = os.environ.get("LCM_DEFAULT_URL")
     return Process("logger", ["lcm-logger", "-q", "-a", *([f"--lcm-url={url}"] if url else []),
-                              folder.file("run.lcm.partial")], folder)
+                              str(recording.partial)], folder)
 
 
-def end_recording(logger, folder):
+def end_recording(logger, recording):
     """Stops the logger; the log of the bus gets its name when it is complete. Returns whether that worked."""
     stop([logger], signal.SIGINT, 10)
     try:
-        os.replace(folder.file("run.lcm.partial"), folder.file("run.lcm"))
+        recording.end()
     except OSError as error:
-        say(f"{folder.file('run.lcm')} is not written: {error.strerror}")
+        say(f"{recording.file} is not written: {error.strerror}")
         return False
     return True
 
 
 def replay(arguments):
     choice = options.parse_replay(arguments)
+    use_bus_key(choice.bus_key)
     if not (os.access(choice.log, os.R_OK) and os.path.getsize(choice.log)):
         raise Problem(f"{choice.log}: no such log, or it is empty")
     check_programs([*choice.only, "status"], ["setpriv", "lcm-logplayer"])

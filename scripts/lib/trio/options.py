@@ -14,6 +14,9 @@ PASS_ON = "pass on"  # FLAG or FLAG=VALUE is passed to one process
 SPLIT = "split"  # the value is split into further options for one process
 STORE = "store"  # for the command itself
 
+BUS_KEY_HELP = ("sign every message with the key in this file (kintsugi-keygen), and take only what is signed with it "
+                "(default: KINTSUGI_BUS_KEY, or unsigned)")
+
 # Flag, metavar (None: a switch), what is done with it, for which process or with which default, help.
 TRIO_OPTIONS = (
     ("--device", "URI", PASS_ON, "mapper",
@@ -41,11 +44,15 @@ TRIO_OPTIONS = (
     ("--publish-frames", None, PASS_ON, "mapper",
      "publish the raw frames too, so that the log can be replayed into a mapper"),
     ("--no-log", None, STORE, False, "do not record the bus"),
+    ("--durable", None, STORE, False,
+     "a power cut takes at most the last second of the run: go on with --resume (kintsugi-mapper --durable, and the "
+     "files of the run are synced)"),
     ("--map-name", "NAME", STORE, None,
      "name of the map (default: map). Several runs on one bus need a name each; segmenter and viewer then use only "
      "this map"),
     ("--objects", "DIR", STORE, None,
      "find the objects of this library (kintsugi-objects teach) in the map: a fourth process, kintsugi-objects detect"),
+    ("--bus-key", "FILE", STORE, None, BUS_KEY_HELP),
     ("--only", "NAMES", STORE, ",".join(PROCESSES),
      "run only these of %(default)s; the others run on other hosts"),
     ("--private", None, STORE, False, "run in a private network that no other program hears"),
@@ -61,6 +68,7 @@ REPLAY_OPTIONS = (
     ("--mode", "MODE", PASS_ON, "segmenter", "segmentation mode (default: the segmenter's own)"),
     ("--preset", "NAME", PASS_ON, "segmenter", "parameters of the segmenter: objects (default) or paper"),
     ("--every", "S", PASS_ON, "viewer", "write a snapshot every S seconds of the recording (default 10)"),
+    ("--bus-key", "FILE", STORE, None, BUS_KEY_HELP),
     ("--private", None, STORE, False, "run in a private network that no other program hears"),
     ("--segmenter", "'ARGS'", SPLIT, "segmenter", "further options of kintsugi-segmenter, quoted as in a shell"),
     ("--viewer", "'ARGS'", SPLIT, "viewer", "further options of kintsugi-viewer"),

@@ -14,6 +14,7 @@
 #include "lcmtypes/base/run_main.hpp"
 #include "lcmtypes/base/stop_signal.hpp"
 #include "lcmtypes/client/object_text.hpp"
+#include "lcmtypes/signing/process_key.hpp"
 #include "segmenter/objects/changes/change_files.hpp"
 #include "segmenter/objects/maps/observed_map_file.hpp"
 #include "segmenter/objects/maps/surface_samples.hpp"
@@ -44,6 +45,7 @@ void add_options(CLI::App& app, DiffOptions& options) {
       ->excludes(after);
   app.add_option("--lcm-url", options.live.lcm_url, "the bus (default: LCM_DEFAULT_URL)")
       ->excludes(after);
+  add_log_trust_flags(app);
   app.add_option("--every", options.live.every_s,
                  "on the bus: seconds from one comparison to the next while the map grows")
       ->check(CLI::Range(1.0, 86'400.0))

@@ -16,6 +16,7 @@
 #include "lcmtypes/base/command_line.hpp"
 #include "lcmtypes/base/run_main.hpp"
 #include "lcmtypes/base/version.hpp"
+#include "lcmtypes/signing/process_key.hpp"
 #include "segmenter/evaluation/report/plot.hpp"
 #include "segmenter/evaluation/session/session_cloud.hpp"
 #include "segmenter/evaluation/session/session_log.hpp"
@@ -94,6 +95,7 @@ void add_options(CLI::App& app, EvaluateOptions& options) {
       ->delimiter(',')
       ->allow_extra_args(false)
       ->capture_default_str();
+  add_log_trust_flags(app);
   add_segmentation_options(app, options.map, options.preset);
   app.remove_option(app.get_option("--mode"));
   auto* const group = app.add_option_group("Point clouds");

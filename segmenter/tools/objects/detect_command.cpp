@@ -11,6 +11,7 @@
 
 #include "lcmtypes/base/atomic_file.hpp"
 #include "lcmtypes/base/stop_signal.hpp"
+#include "lcmtypes/signing/process_key.hpp"
 #include "segmenter/objects/library/object_library.hpp"
 #include "segmenter/objects/process/detection_messages.hpp"
 #include "segmenter/objects/process/detector_process.hpp"
@@ -78,6 +79,7 @@ void add_detect_command(CLI::App& app, ObjectsAction& action) {
   command.add_option("--map-name", options->live.map_name,
                      "on the bus: the map of this name (default: the first one it hears of)");
   command.add_option("--lcm-url", options->live.lcm_url, "the bus (default: LCM_DEFAULT_URL)");
+  add_log_trust_flags(command);
   command
       .add_option(
           "--cpu-share", options->live.cpu_share,

@@ -14,6 +14,7 @@
 #include <CLI/CLI.hpp>
 #include <spdlog/spdlog.h>
 
+#include "lcmtypes/signing/process_key.hpp"
 #include "segmenter/objects/library/library_lock.hpp"
 #include "segmenter/objects/library/object_files.hpp"
 #include "segmenter/objects/library/object_name.hpp"
@@ -159,6 +160,7 @@ void add_teach_command(CLI::App& app, ObjectsAction& action) {
                          "the map in which it is: a saved map (kintsugi-segmenter --save) or an "
                          "LCM log, with what the "
                          "camera saw, or a labelled PLY file");
+  add_log_trust_flags(command);
   command.add_option("--ids", options->ids, "ID,...: the segments of that map that are the object")
       ->delimiter(',')
       ->needs(map);

@@ -26,8 +26,8 @@ std::int64_t random_client() {
 
 }  // namespace
 
-QueryClient::QueryClient(const std::string& lcm_url)
-    : bus_(lcm_url),
+QueryClient::QueryClient(const std::string& lcm_url, std::shared_ptr<const BusKey> key)
+    : bus_(lcm_url, MessageTrust{.key = std::move(key)}),
       client_(random_client()),
       answers_(channels::kSegmentAnswer,
                [this](SegmentAnswer answer) { take(std::move(answer)); }) {

@@ -3,10 +3,12 @@
 
 #include <chrono>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 
 #include "lcmtypes/bus/bus.hpp"
+#include "lcmtypes/signing/process_key.hpp"
 #include "lcmtypes/stream/stream_subscriber.hpp"
 
 namespace kintsugi::segmenter {
@@ -18,7 +20,7 @@ class QueryClient {
 
   /// Opens the bus; empty: the default one.
   /// @throws std::runtime_error when it cannot be opened
-  explicit QueryClient(const std::string& lcm_url);
+  explicit QueryClient(const std::string& lcm_url, std::shared_ptr<const BusKey> key = bus_key());
 
   /// Sends the query, and repeats it until an answer arrives, because queries and answers may be
   /// lost. Of several segmenters the first useful answer is returned; when there is none,

@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 
 #include "lcmtypes/codec/codec.hpp"
+#include "lcmtypes/signing/process_key.hpp"
 #include "segmenter/query/pixel_ray.hpp"
 
 namespace kintsugi::segmenter {
@@ -130,6 +131,7 @@ void add_options(CLI::App& app, QueryOptions& options) {
                  "mapper session of the map, when there are several")
       ->check(CLI::NonNegativeNumber);
   app.add_option("--lcm-url", options.lcm_url, "the bus (default: LCM_DEFAULT_URL)");
+  add_bus_key_flag(app);
   app.add_option("--timeout", options.timeout_s, "seconds to wait for an answer, > 0")
       ->check(CLI::Range(0.001, 1e6))
       ->capture_default_str();

@@ -71,6 +71,23 @@ TEST(Progress, ReportsLosses) {
                     HasSubstr("5 chunks MISSING"), HasSubstr("2 bad messages")));
 }
 
+TEST(Progress, TellsWhatWasRefusedOnASignedBus) {
+  Progress progress;
+  MapperStatus status = mapper(250, false);
+  progress.update(status, 0);
+  SegmenterStatus listening = segmenter(0, false);
+  progress.update(listening, 0);
+  EXPECT_THAT(progress.line(0), Not(HasSubstr("messages")));
+  status.messages_unsigned = 3;
+  listening.messages_forged = 4;
+  listening.messages_replayed = 5;
+  progress.update(status, 0);
+  progress.update(listening, 0);
+  EXPECT_THAT(progress.line(0),
+              AllOf(HasSubstr("3 messages not signed"), HasSubstr("4 messages FORGED"),
+                    HasSubstr("5 messages replayed")));
+}
+
 TEST(Progress, NamesThePartsUntilTheyAreJoined) {
   Progress progress;
   MapperStatus status = mapper(250, false);
