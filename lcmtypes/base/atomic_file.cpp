@@ -10,6 +10,8 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include "lcmtypes/base/file_sync.hpp"
+
 namespace kintsugi {
 namespace {
 
@@ -53,14 +55,6 @@ fs::path partial_name(const fs::path& path) {
   // The extension stays at the end: libraries choose the format by it.
   partial.replace_filename(path.stem().string() + ".partial" + path.extension().string());
   return partial;
-}
-
-/// The entry in the directory must be on disk, too: without it the file is lost.
-void sync_directory(const fs::path& path) {
-  const fs::path parent = path.has_parent_path() ? path.parent_path() : fs::path(".");
-  const Descriptor directory(parent, O_RDONLY | O_DIRECTORY, quoted(parent));
-  // EINVAL: the file system cannot sync a directory. The file itself is on disk.
-  if (fsync(directory.get()) != 0 && errno != EINVAL) fail("sync", quoted(parent), errno);
 }
 
 }  // namespace
@@ -130,12 +124,12 @@ void AtomicFile::commit() {
   const std::string names = both_names(path_, partial_path_);
   {
     Descriptor file(partial_path_, O_WRONLY, names);
-    if (fsync(file.get()) != 0 && errno != EINVAL) fail("sync", names, errno);
+    sync_file(file.get(), names);
     if (file.close() != 0) fail("close", names, errno);
   }
   if (std::rename(partial_path_.c_str(), path_.c_str()) != 0) fail("rename", names, errno);
   committed_ = true;
-  sync_directory(path_);
+  sync_folder(path_.parent_path());  // without its entry in the folder the file is lost
 }
 
 }  // namespace kintsugi

@@ -3,6 +3,7 @@
 #include <array>
 #include <cassert>
 #include <cerrno>
+#include <cstdio>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
@@ -11,6 +12,7 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include "lcmtypes/base/file_sync.hpp"
 #include "lcmtypes/log/log_format.hpp"
 
 namespace kintsugi {
@@ -58,6 +60,12 @@ int write_all(int descriptor, ByteView bytes, std::int64_t place) {
 
 LogWriter LogWriter::create(const std::filesystem::path& path) { return {path, O_CREAT | O_EXCL}; }
 
+LogWriter LogWriter::create_anew(const std::filesystem::path& path) {
+  LogWriter log(path, O_CREAT);
+  log.continue_after({});
+  return log;
+}
+
 LogWriter LogWriter::open(const std::filesystem::path& path) { return {path, 0}; }
 
 LogWriter LogWriter::temporary(const std::filesystem::path& folder) { return {folder, O_TMPFILE}; }
@@ -86,10 +94,11 @@ LogWriter::LogWriter(LogWriter&& other) noexcept
       size_(other.size_),
       num_events_(other.num_events_) {}
 
-void LogWriter::continue_after(std::int64_t bytes, std::int64_t events) {
-  if (bytes < size_ && ftruncate(descriptor_, bytes) != 0) fail("shorten", path_, errno);
-  size_ = bytes;
-  num_events_ = events;
+void LogWriter::continue_after(const End& end) {
+  const bool is_longer = end.bytes < size_;
+  size_ = end.bytes;
+  num_events_ = end.events;
+  if (is_longer && ftruncate(descriptor_, end.bytes) != 0) fail("shorten", path_, errno);
 }
 
 std::int64_t LogWriter::append(std::int64_t utime, const std::string& channel, ByteView data) {
@@ -104,6 +113,17 @@ std::int64_t LogWriter::append(std::int64_t utime, const std::string& channel, B
   size_ += static_cast<std::int64_t>(event.size());
   ++num_events_;
   return size_ - static_cast<std::int64_t>(data.size());
+}
+
+void LogWriter::sync() { sync_file(descriptor_, "log '" + path_.string() + "'"); }
+
+void LogWriter::rename(const std::filesystem::path& path) {
+  int result = renameat2(AT_FDCWD, path_.c_str(), AT_FDCWD, path.c_str(), RENAME_NOREPLACE);
+  if (result != 0 && (errno == EINVAL || errno == ENOSYS)) {  // a file system without it
+    result = std::rename(path_.c_str(), path.c_str());
+  }
+  if (result != 0) fail("rename to", path, errno);
+  path_ = path;
 }
 
 Bytes LogWriter::read(std::int64_t place, std::size_t size) const {

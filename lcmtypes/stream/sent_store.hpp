@@ -28,6 +28,9 @@ class SentStore {
   virtual std::int64_t first_sequence() const = 0;
   /// One past the highest sequence number that was added.
   virtual std::int64_t next_sequence() const = 0;
+  /// Whether a chunk that was added may be sent: not before the store has it where it promises to
+  /// keep it.
+  virtual bool is_safe(std::int64_t /*sequence*/) const { return true; }
 };
 
 /// Keeps the newest chunks in memory.

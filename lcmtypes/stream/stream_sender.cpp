@@ -21,6 +21,10 @@ constexpr double kMinWait_s = 0.001;
 // for a datagram than it has.
 constexpr std::size_t kLeastCost_bytes = 8'000;
 
+// How often the sender asks whether a chunk is safe in the store: little against the time that a
+// disk needs.
+constexpr double kStoreWait_s = 0.005;
+
 double cost_of(const Bytes& chunk) {
   return static_cast<double>(std::max(chunk.size(), kLeastCost_bytes));
 }
@@ -63,7 +67,7 @@ void StreamSender::push(Job job) {
 /// so a sender that makes the same messages again finds each of them there.
 void StreamSender::supersede(std::int64_t key) {
   if (sequence_ < resumed_end_) return;  // those that wait may have been sent already
-  const std::size_t first = next_index_ > 0 || prepared_ ? 1 : 0;
+  const std::size_t first = next_index_ > 0 ? 1 : 0;
   for (std::size_t i = first; i < jobs_.size(); ++i) {
     Job& job = jobs_[i];
     if (job.key != key) continue;
@@ -91,7 +95,7 @@ void StreamSender::request(const ResendRequest& request, double now_s) {
 }
 
 double StreamSender::step(double now_s) {
-  const bool has_news = announce_ && jobs_.empty() && announced_ != next_sequence();
+  const bool has_news = announce_ && !has_new_chunks() && announced_ != next_sequence();
   if (has_news || now_s >= next_heartbeat_s_) {
     send_heartbeat(now_s);
   } else if (!jobs_.empty() && sequence_ < resumed_end_) {
@@ -99,8 +103,10 @@ double StreamSender::step(double now_s) {
   } else {
     if (!prepared_) prepare();
     if (!prepared_) {
-      const bool is_idle = jobs_.empty() && resends_.empty();
-      return is_idle ? next_heartbeat_s_ - now_s : 0.0;
+      const double idle_s = next_heartbeat_s_ - now_s;
+      if (!resends_.empty()) return 0.0;
+      if (waits_for_store()) return std::min(kStoreWait_s, idle_s);
+      return has_new_chunks() ? 0.0 : idle_s;
     }
     const double wait_s = bucket_.delay_s(cost_of(prepared_->chunk), now_s);
     if (wait_s > 0.0) return std::min(std::max(wait_s, min_wait_s_), next_heartbeat_s_ - now_s);
@@ -109,10 +115,18 @@ double StreamSender::step(double now_s) {
   return 0.0;
 }
 
-std::int64_t StreamSender::next_sequence() const { return std::max(sequence_, resumed_end_); }
+std::int64_t StreamSender::next_sequence() const { return std::max(sent_end_, resumed_end_); }
 
-/// The lowest number that can be resent. The store may have one chunk more than was sent, the
-/// prepared one.
+/// That were pushed and not sent.
+bool StreamSender::has_new_chunks() const {
+  return !jobs_.empty() || !stored_.empty() || (prepared_ && !prepared_->is_resend);
+}
+
+bool StreamSender::waits_for_store() const {
+  return !stored_.empty() && store_ != nullptr && !store_->is_safe(stored_.front().sequence);
+}
+
+/// The lowest number that can be resent. The store may have more chunks than were sent.
 std::int64_t StreamSender::first_sequence() const {
   return store_ != nullptr ? std::min(store_->first_sequence(), next_sequence()) : next_sequence();
 }
@@ -130,20 +144,44 @@ void StreamSender::compare_with_store() {
                              "and options");
   }
   ++counts_.chunks_compared;
-  finish_chunk();
+  if (job.starts_state && next_index_ == 0) state_sequence_ = sequence_;
+  sent_end_ = sequence_ + 1;
+  queued_bytes_ -= advance();
 }
 
-/// Sets prepared_ to the next chunk, and stores it if it is new. Sets nothing if there is none, or
-/// if the requested one is no longer in the store.
+/// Sets prepared_ to the next chunk, and stores new ones. Sets nothing if there is none, if it is
+/// not safe in the store yet, or if the requested one is no longer in the store.
 void StreamSender::prepare() {
-  if (const auto sequence = resends_.next(!jobs_.empty())) {
+  const bool has_new = stored_.empty() ? !jobs_.empty() : !waits_for_store();
+  if (const auto sequence = resends_.next(has_new)) {
     auto chunk = store_->find(*sequence);
-    if (chunk) prepared_ = {*sequence, true, *std::move(chunk)};
+    if (chunk) prepared_ = {.sequence = *sequence, .is_resend = true, .chunk = *std::move(chunk)};
     return;
   }
-  if (jobs_.empty()) return;
-  prepared_ = {sequence_, false, encode_next()};
-  if (store_ != nullptr) store_->add(sequence_, prepared_->chunk);
+  store_ahead();
+  if (stored_.empty() || waits_for_store()) return;
+  stored_bytes_ -= stored_.front().chunk.size();
+  prepared_ = std::move(stored_.front());
+  stored_.pop_front();
+}
+
+/// One chunk, and more only while it is not safe: what is stored cannot be superseded any more.
+void StreamSender::store_ahead() {
+  const auto is_enough = [this] {
+    return static_cast<double>(stored_bytes_) >= config_.rate_bytes_per_s || !waits_for_store();
+  };
+  while (!jobs_.empty() && (stored_.empty() || !is_enough())) store_next();
+}
+
+void StreamSender::store_next() {
+  Next next{.sequence = sequence_,
+            .is_resend = false,
+            .chunk = encode_next(),
+            .starts_state = jobs_.front().starts_state && next_index_ == 0};
+  if (store_ != nullptr) store_->add(sequence_, next.chunk);
+  next.job_bytes = advance();
+  stored_bytes_ += next.chunk.size();
+  stored_.push_back(std::move(next));
 }
 
 void StreamSender::send_prepared(double now_s) {
@@ -154,17 +192,20 @@ void StreamSender::send_prepared(double now_s) {
   resends_.sent(next.sequence, now_s);
   (next.is_resend ? counts_.chunks_resent : counts_.chunks_sent) += 1;
   (next.is_resend ? counts_.bytes_resent : counts_.bytes_sent) += static_cast<std::int64_t>(size);
-  if (!next.is_resend) finish_chunk();
+  if (next.is_resend) return;
+  if (next.starts_state) state_sequence_ = next.sequence;
+  sent_end_ = next.sequence + 1;
+  queued_bytes_ -= next.job_bytes;
 }
 
-void StreamSender::finish_chunk() {
-  const Job& job = jobs_.front();
-  if (job.starts_state && next_index_ == 0) state_sequence_ = sequence_;
+/// Goes on to the next chunk of the jobs. Returns the bytes of the message that ends here, else 0.
+std::size_t StreamSender::advance() {
   ++sequence_;
-  if (++next_index_ < job.num_chunks) return;
+  if (++next_index_ < jobs_.front().num_chunks) return 0;
+  const std::size_t bytes = jobs_.front().bytes;
   next_index_ = 0;
-  queued_bytes_ -= job.bytes;
   jobs_.pop_front();
+  return bytes;
 }
 
 void StreamSender::send_heartbeat(double now_s) {

@@ -47,8 +47,9 @@ struct StreamPublisherCounts {
 };
 
 /// Sends the chunks of queued messages in order, resends requested chunks, and sends heartbeats
-/// that tell which chunks exist; one token bucket limits the rate of all. Only one thread may use
-/// it. Time is an argument: seconds that never decrease.
+/// that tell which chunks exist; one token bucket limits the rate of all. A chunk is in the store
+/// before it is sent, and safe there; chunks of one second are stored ahead while the store needs
+/// time for that. Only one thread may use it. Time is an argument: seconds that never decrease.
 class StreamSender {
  public:
   using Config = StreamPublisherConfig;
@@ -84,26 +85,32 @@ class StreamSender {
   double step(double now_s);
 
   /// Everything that was pushed and a heartbeat after it have been sent.
-  bool is_done() const { return jobs_.empty() && announced_ == next_sequence(); }
+  bool is_done() const { return !has_new_chunks() && announced_ == next_sequence(); }
   /// One past the newest chunk that was sent, in this run or an earlier one of the session.
   std::int64_t next_sequence() const;
   std::size_t queued_bytes() const { return queued_bytes_; }
   const StreamPublisherCounts& counts() const { return counts_; }
 
  private:
-  struct Next {  // the message that waits for the token bucket
+  struct Next {  // a chunk that waits to be sent
     std::int64_t sequence = 0;
     bool is_resend = false;
     Bytes chunk;
+    bool starts_state = false;
+    std::size_t job_bytes = 0;  // of the message, if this is its last chunk
   };
 
   std::int64_t first_sequence() const;
+  bool has_new_chunks() const;
+  bool waits_for_store() const;
   Bytes encode_next() const;
   void supersede(std::int64_t key);
   void compare_with_store();
   void prepare();
+  void store_ahead();
+  void store_next();
   void send_prepared(double now_s);
-  void finish_chunk();
+  std::size_t advance();
   void send_heartbeat(double now_s);
 
   const Transmit transmit_;
@@ -116,10 +123,13 @@ class StreamSender {
   TokenBucket bucket_;
   ResendQueue resends_;
   std::deque<Job> jobs_;
-  std::int32_t next_index_ = 0;  // of the chunk of the first job
-  std::optional<Next> prepared_;
+  std::int32_t next_index_ = 0;   // of the chunk of the first job
+  std::deque<Next> stored_;       // of earlier jobs or chunks
+  std::size_t stored_bytes_ = 0;  // of their chunks
+  std::optional<Next> prepared_;  // waits for the token bucket
   std::size_t queued_bytes_ = 0;
   std::int64_t sequence_ = 0;  // of the next chunk of the jobs
+  std::int64_t sent_end_ = 0;  // one past the last chunk that was sent or compared
   std::int64_t state_sequence_ = 0;
   std::int64_t announced_ = -1;  // next_sequence of the last heartbeat
   double next_heartbeat_s_ = 0.0;

@@ -118,7 +118,7 @@ OptionGroup output_options(Options& o) {
 
 OptionGroup bus_options(Options& o) {
   return {
-      "The bus",
+      kBusGroup,
       {{"--publish-frames", &o.publish_frames, kMayDiffer, "publish RGBD_FRAME, too"},
        {"--view-rate",
         &o.view_rate_hz,
@@ -161,6 +161,10 @@ OptionGroup store_options(Options& o) {
         "the log continues in FILE.1.lcm and so on above this size",
         "MB",
         {1, 1e9}},
+       {"--durable", &o.durable, kMayDiffer,
+        "with --store or --resume: a power cut takes at most the last second of the log, and "
+        "nothing "
+        "that was sent of the map"},
        {"--store-frames", &o.store_frames, kMayDiffer,
         "store all frames in the log, lossless, so that the session of a camera can be "
         "resumed"},

@@ -43,6 +43,7 @@ struct Options {
   std::string store_file;    ///< LCM log of all published messages; empty: an unnamed one
   std::string resume_file;   ///< log to continue, instead of store_file; empty: a new session
   double store_file_size_mb = 1000.0;  ///< above it another file begins
+  bool durable = false;                ///< a power cut takes at most the last second of the log
   bool store_frames = false;  ///< raw frames, too, so that a camera's session can be resumed
   double linger_s = 2.0;      ///< time without requests after which to exit; < 0: never
   int threads = 0;            ///< of the parallel stages; 0: one per core
@@ -91,6 +92,9 @@ class MapperOption {
   std::string unit_;
   Bounds bounds_;
 };
+
+/// The title of the options of the bus.
+inline constexpr char kBusGroup[] = "The bus";
 
 struct OptionGroup {
   std::string title;  ///< in --help

@@ -12,6 +12,7 @@
 #include "lcmtypes/base/argument_check.hpp"
 #include "lcmtypes/base/command_line.hpp"
 #include "lcmtypes/codec/codec.hpp"
+#include "lcmtypes/signing/process_key.hpp"
 #include "mapper/core/frame/sensors.hpp"
 #include "mapper/source/open_source.hpp"
 #include "mapper/source/openni2/device_listing.hpp"
@@ -38,6 +39,7 @@ void add_flags(CLI::App& app, Options& options) {
   for (const OptionGroup& group : option_table(options)) {
     app.option_defaults()->group(group.title);
     for (const MapperOption& option : group.options) add_flag(app, option);
+    if (group.title == kBusGroup) add_log_trust_flags(app);
   }
 }
 
@@ -86,6 +88,9 @@ void validate(const Options& options) {
     throw std::invalid_argument("--store is '" + options.store_file + "' and --resume is '" +
                                 options.resume_file +
                                 "': a resumed session is continued in the same log");
+  }
+  if (options.durable && options.store_file.empty() && options.resume_file.empty()) {
+    throw std::invalid_argument("--durable needs --store FILE or --resume FILE");
   }
   if (!options.cloud_file.empty() && options.cloud_file == options.mesh_file) {
     throw std::invalid_argument("--cloud and --mesh are both '" + options.cloud_file + "'");

@@ -23,6 +23,7 @@ SessionStore::Config store_config(const Options& options) {
   SessionStore::Config config;
   config.resume = !options.resume_file.empty();
   config.path = config.resume ? options.resume_file : options.store_file;
+  config.durable = options.durable;
   config.max_file_bytes = static_cast<std::int64_t>(1e6 * options.store_file_size_mb);
   return config;
 }
@@ -67,7 +68,7 @@ void run(const Options& options) {
     claim.reset();  // from now on its heartbeats tell that it runs
     process.run();
   }
-  store.retry();
+  store.finish();
   if (!options.store_file.empty() || !options.resume_file.empty()) expect_complete(store);
 }
 

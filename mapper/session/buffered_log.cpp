@@ -12,19 +12,34 @@
 
 namespace kintsugi::mapper {
 
+namespace {
+
+/// A durable log promises to lose no more than this, and chunks do not wait longer for the disk.
+constexpr std::chrono::seconds kMaxBehind{1};
+
+}  // namespace
+
 void BufferedLog::Config::validate() const {
   check_range<std::int64_t>("max_file_bytes", max_file_bytes, 1'000'000, INT64_MAX);
   check_range<std::size_t>("max_waiting_bytes", max_waiting_bytes, 1, SIZE_MAX);
   check_range<std::int64_t>("retry_period", retry_period.count(), 1, INT64_MAX);
+  check_range<std::int64_t>("sync_period", sync_period.count(), 1, INT64_MAX);
+  require(!durable || !path.empty(), "durable", durable, "false for a log without a name");
 }
 
 BufferedLog::BufferedLog(const Config& config, const LogFiles::OnEvent& on_event)
-    : config_(config), files_(open(config, on_event)) {}
+    : config_(config), files_(open(config, on_event)), size_bytes_(files_.size_bytes()) {
+  if (config_.durable) thread_ = std::thread([this] { write_batches(); });
+}
+
+BufferedLog::~BufferedLog() { finish(); }
 
 LogFiles BufferedLog::open(const Config& config, const LogFiles::OnEvent& on_event) {
   config.validate();
-  if (!config.resume) return {config.path, config.max_file_bytes};
-  LogFiles files(config.path, config.max_file_bytes, on_event);
+  const LogFiles::Config files_config{
+      .path = config.path, .max_file_bytes = config.max_file_bytes, .durable = config.durable};
+  if (!config.resume) return LogFiles(files_config);
+  LogFiles files(files_config, on_event);
   if (!files.cut_off().empty()) spdlog::warn("{}", files.cut_off());
   return files;
 }
@@ -36,12 +51,21 @@ void BufferedLog::begin(const std::string& channel, ByteView data) {
     return;
   }
   try {
-    files_.append(wall_clock_us(), channel, data);
+    begin_new(channel, data);
   } catch (...) {
-    std::error_code ignored;
-    if (!config_.path.empty()) std::filesystem::remove(config_.path, ignored);
+    files_.remove();
     throw;
   }
+}
+
+void BufferedLog::begin_new(const std::string& channel, ByteView data) {
+  const std::int64_t utime = wall_clock_us();
+  files_.append(utime, channel, data);
+  if (config_.durable) {
+    files_.begin_batch(utime);  // by it a durable log is known, also when it ends here
+    files_.sync();
+  }
+  size_bytes_ = files_.size_bytes();
 }
 
 void BufferedLog::append(const std::string& channel, ByteView data) {
@@ -60,11 +84,15 @@ std::optional<Bytes> BufferedLog::find(const ChunkIndex& index, std::int64_t seq
   const ChunkIndex::State state = index.state(sequence);
   if (state == ChunkIndex::State::kMissing) return {};
   if (state == ChunkIndex::State::kWaiting) {
-    const auto waiting = std::ranges::find_if(waiting_, [&](const Event& event) {
+    const auto is_wanted = [&](const Event& event) {
       return event.index == &index && event.sequence == sequence;
-    });
-    if (waiting == waiting_.end()) return {};
-    return waiting->data;
+    };
+    for (const std::list<Event>* events : {&waiting_, batch_ ? &batch_->events : nullptr}) {
+      if (events == nullptr) continue;
+      const auto waiting = std::ranges::find_if(*events, is_wanted);
+      if (waiting != events->end()) return waiting->data;
+    }
+    return {};
   }
   const LogPlace place = index.place(sequence);
   const LogWriter& file = files_.file_of(place);
@@ -76,24 +104,48 @@ std::optional<Bytes> BufferedLog::find(const ChunkIndex& index, std::int64_t seq
   }
 }
 
+bool BufferedLog::is_safe(const ChunkIndex& index, std::int64_t sequence) const {
+  if (!config_.durable || index.state(sequence) != ChunkIndex::State::kWaiting) return true;
+  const std::scoped_lock lock(mutex_);
+  return behind() > kMaxBehind;
+}
+
 void BufferedLog::retry() {
   const std::scoped_lock lock(mutex_);
-  write_waiting();
+  if (!config_.durable) return write_waiting();
+  if (!problem_.empty() || (behind() > kMaxBehind) == is_behind_) return;
+  is_behind_ = !is_behind_;
+  if (is_behind_) {
+    spdlog::warn("{}: mapping continues; the log waits in memory", behind_text());
+  } else {
+    spdlog::info("the disk keeps up with the log again");
+  }
+}
+
+void BufferedLog::finish() {
+  if (!config_.durable) return retry();
+  {
+    const std::scoped_lock lock(mutex_);
+    stopping_ = true;
+  }
+  wake_.notify_all();
+  if (thread_.joinable()) thread_.join();
 }
 
 BufferedLog::Report BufferedLog::report() const {
   const std::scoped_lock lock(mutex_);
-  return {.size_bytes = files_.size_bytes(),
+  const bool is_behind = config_.durable && problem_.empty() && behind() > kMaxBehind;
+  return {.size_bytes = size_bytes_,
           .waiting_bytes = static_cast<std::int64_t>(waiting_bytes_),
           .lost_chunks = lost_chunks_,
-          .problem = problem_};
+          .problem = is_behind ? behind_text() : problem_};
 }
 
 void BufferedLog::append(const std::string& channel, ByteView data, ChunkIndex* index,
                          std::int64_t sequence) {
   const std::int64_t utime = wall_clock_us();
-  write_waiting();
-  if (waiting_.empty()) {
+  if (!config_.durable) write_waiting();
+  if (!config_.durable && waiting_.empty()) {
     try {
       write(utime, channel, data, index, sequence);
       return;
@@ -101,13 +153,14 @@ void BufferedLog::append(const std::string& channel, ByteView data, ChunkIndex* 
       note_failure(error.what());
     }
   }
-  keep_waiting({utime, channel, Bytes(data.begin(), data.end()), index, sequence});
+  keep_waiting({utime, channel, Bytes(data.begin(), data.end()), index, sequence, Clock::now()});
 }
 
 void BufferedLog::write(std::int64_t utime, const std::string& channel, ByteView data,
                         ChunkIndex* index, std::int64_t sequence) {
   const LogPlace place = files_.append(utime, channel, data);
   if (index != nullptr) index->set_written(sequence, place);
+  size_bytes_ = files_.size_bytes();
 }
 
 void BufferedLog::write_waiting() {
@@ -119,11 +172,7 @@ void BufferedLog::write_waiting() {
       waiting_bytes_ -= event.data.size();
       waiting_.pop_front();
     }
-    problem_.clear();
-    spdlog::info(
-        "the log can be written again and contains the events that waited; {} chunks were "
-        "dropped",
-        lost_chunks_);
+    note_success();
   } catch (const std::exception& error) {
     note_failure(error.what());
   }
@@ -162,6 +211,15 @@ void BufferedLog::note_failure(const std::string& problem) {
                   problem);
   }
   problem_ = problem;
+}
+
+void BufferedLog::note_success() {
+  if (problem_.empty()) return;
+  problem_.clear();
+  spdlog::info(
+      "the log can be written again and contains the events that waited; {} chunks were "
+      "dropped",
+      lost_chunks_);
 }
 
 }  // namespace kintsugi::mapper

@@ -41,6 +41,8 @@ class SessionStore {
 
   /// Tries to write what could not be written before. To be called regularly.
   void retry() { log_.retry(); }
+  /// Tries a last time. Nothing may be added any more.
+  void finish() { log_.finish(); }
 
   BufferedLog::Report report() const { return log_.report(); }
 

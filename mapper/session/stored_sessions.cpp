@@ -56,6 +56,11 @@ std::optional<StoredChunk> StoredSessionReader::read(const LogEvent& event) {
   } else if (event.channel == channels::kMapperStatus) {
     auto status = decode<MapperStatus>(event.data);
     session(status.session).last_status = std::move(status);
+  } else if (event.channel == channels::kHeartbeat) {
+    (void)decode<Heartbeat>(event.data);
+  } else {
+    throw std::runtime_error("a message on channel '" + event.channel +
+                             "', on which a mapper stores none");
   }
   return {};
 }

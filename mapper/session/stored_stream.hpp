@@ -22,6 +22,7 @@ class StoredStream : public SentStore {
   std::optional<Bytes> find(std::int64_t sequence) const override;
   std::int64_t first_sequence() const override;
   std::int64_t next_sequence() const override;
+  bool is_safe(std::int64_t sequence) const override { return log_.is_safe(index_, sequence); }
 
   ChunkIndex& index() { return index_; }
 

@@ -5,6 +5,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include "lcmtypes/base/file_sync.hpp"
 #include "segmenter/io/map_files.hpp"
 #include "segmenter/io/saved_map.hpp"
 #include "segmenter/io/views_file.hpp"
@@ -17,9 +18,7 @@ constexpr char kSaved[] = "";  // the action that writes the saved map; no stem 
 
 void save_state(const SegmentMapState& state, const MapWriter::Views& views,
                 const std::filesystem::path& file) {
-  if (file.has_parent_path()) {
-    std::filesystem::create_directories(file.parent_path());
-  }
+  make_folder(file.parent_path());
   if (views) write_views(*views, views_file_of(file));
   write_map_state(state, file);
   spdlog::info("saved {}: {} slices, {} views", file.string(), state.slices.size(),

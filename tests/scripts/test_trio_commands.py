@@ -105,6 +105,25 @@ class Trio(CommandTest):
             self.assertEqual(segmenter.count(flag), 1, segmenter)
         self.assertEqual(" ".join(self.call("kintsugi-viewer")).count("--video"), 1)
 
+    def test_a_key_of_the_bus_is_that_of_all_processes_also_when_the_run_goes_on(self):
+        key = 'echo "$KINTSUGI_BUS_KEY" >"$CALLS/key-$(basename "$0")"; '
+        for name, script in (("mapper", FINISHES), ("segmenter", FINISHES), ("viewer", FINISHES), ("status", STATUS)):
+            self.program(name, CHECK + key + script)
+
+        def keys():
+            found = {file.name: file.read_text().strip() for file in self.calls.glob("key-*")}
+            for name in found:
+                (self.calls / name).unlink()
+            return found
+
+        names = [f"key-kintsugi-{name}" for name in ("mapper", "segmenter", "viewer", "status")]
+        self.expect(0, "trio", "--out", "run", "--no-log", "--bus-key", "my.key")
+        self.assertEqual(keys(), {name: str(self.work / "my.key") for name in names})
+        self.expect(0, "trio", "--out", "run", "--no-log", "--resume")
+        self.assertEqual(keys(), {name: str(self.work / "my.key") for name in names})
+        self.expect(0, "trio", "--out", "run", "--no-log")
+        self.assertEqual(keys(), {name: "" for name in names})
+
     def test_a_name_of_the_map_is_that_of_all_processes(self):
         for number, options in enumerate((["--map-name", "attic"], ["--mapper", "--map-name attic"],
                                           ["--mapper=--map-name=attic", "--segmenter", "--map-name attic"])):
@@ -245,7 +264,7 @@ class Trio(CommandTest):
     def test_a_full_disk_is_named(self):
         (self.work / "run").mkdir()
         os.symlink("/dev/full", self.work / "run/trio.options.partial")
-        self.assertIn("trio: run/trio.options: No space left on device", self.expect(1, "trio", "--out", "run"))
+        self.assertIn("trio: run/trio.options.partial: No space left on device", self.expect(1, "trio", "--out", "run"))
         self.expect(0, "trio", "--out", "run")
 
     def test_nothing_to_resume_is_told(self):

@@ -68,18 +68,48 @@ class RunFolderTest(FolderTest):
 
     def test_options_are_remembered_word_for_word(self):
         arguments = ["--device", "folder:///a b/c", "--mapper", "", "--viewer", "--view 'x\ny'", "\udcff"]
-        self.folder.remember_options(arguments)
+        self.folder.begin_run(arguments)
         self.assertEqual(self.folder.recall_options(), (os.getcwd(), arguments))
+
+    def test_a_power_cut_finds_no_new_options_beside_files_of_an_earlier_run(self):
+        self.folder.begin_run(["--device", "first"])
+        (self.folder.path / "mapper.lcm").write_text("slices")
+        found = []
+
+        def note(path):
+            found.append((os.path.basename(path), sorted(file.name for file in self.folder.path.iterdir())))
+
+        with mock.patch.object(run_folder, "sync_file", note), mock.patch.object(run_folder, "sync_folder", note):
+            self.folder.begin_run(["--device", "second"], durable=True)
+        names = [name for name, _ in found]
+        moved = names.index("run")
+        self.assertEqual(names[0], "trio.options.partial")
+        self.assertEqual(found[0][1], ["mapper.lcm", "trio.options", "trio.options.partial"])
+        self.assertEqual(found[moved][1], ["earlier", "trio.options.partial"])
+        self.assertIn("earlier", names[:moved])
+        self.assertEqual(found[moved + 1][1], ["earlier", "trio.options"])
 
     def test_without_a_run_there_is_nothing_to_recall(self):
         with self.assertRaisesRegex(Problem, "holds no run to go on with"):
             self.folder.recall_options()
 
-    def test_a_full_disk_is_named_with_the_file(self):
-        os.symlink("/dev/full", self.folder.file("trio.options.partial"))
-        with self.assertRaisesRegex(Problem, "trio.options: No space left on device"):
-            self.folder.remember_options([])
-        self.assertFalse(os.path.lexists(self.folder.file("trio.options.partial")))
+    def test_on_a_full_disk_the_file_is_named_and_the_earlier_run_stays_as_it_is(self):
+        self.folder.begin_run(["--device", "first"])
+        (self.folder.path / "mapper.lcm").write_text("slices")
+        partial = self.folder.path / "trio.options.partial"
+        partial.symlink_to("/dev/full")
+        with self.assertRaisesRegex(Problem, "trio.options.partial: No space left on device"):
+            self.folder.begin_run(["--device", "second"])
+        self.assertEqual(sorted(path.name for path in self.folder.path.iterdir()), ["mapper.lcm", "trio.options"])
+        self.assertEqual(self.folder.recall_options()[1], ["--device", "first"])
+
+    def test_an_earlier_run_that_cannot_be_moved_leaves_no_half_written_options(self):
+        self.folder.begin_run(["--device", "first"])
+        (self.folder.path / "earlier").touch()  # where a folder should be
+        with self.assertRaises(OSError):
+            self.folder.begin_run(["--device", "second"])
+        self.assertEqual(sorted(path.name for path in self.folder.path.iterdir()), ["earlier", "trio.options"])
+        self.assertEqual(self.folder.recall_options()[1], ["--device", "first"])
 
 
 if __name__ == "__main__":

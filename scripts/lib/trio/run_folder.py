@@ -7,6 +7,7 @@ import os
 import time
 from pathlib import Path
 
+from .durable import sync_file, sync_folder
 from .messages import Problem, command_name, say
 
 LOCK_TIMEOUT_S = 3.0  # the processes of a supervisor that was killed end soon
@@ -69,8 +70,9 @@ class RunFolder:
         return (f"another scripts/{command_name()} is at work in {self.path}{holder}; "
                 "choose another folder with --out")
 
-    def keep_earlier_run(self):
-        """Moves the files of a run that is there into earlier/DATE."""
+    def keep_earlier_run(self, durable=False):
+        """Moves the files of a run that is there into earlier/DATE. `durable`: after a power cut, too, they are either
+        here or there."""
         found = [file for pattern in RUN_FILES for file in sorted(self.path.glob(pattern))]
         if not found:
             return
@@ -81,27 +83,34 @@ class RunFolder:
         kept.mkdir(parents=True)
         for file in found:
             file.rename(kept / file.name)
+        if durable:
+            for folder in (kept, kept.parent, self.path):
+                sync_folder(folder)
         say(f"{self.path} held an earlier run; it is now in {kept}")
 
-    def remember_options(self, arguments):
-        """Writes the current folder, for relative paths among the arguments, and the arguments, each with a zero
-        byte at its end. The file gets its name when it is complete."""
-        text = "".join(word + "\0" for word in (os.getcwd(), *arguments))
-        file = self.path / "trio.options"
+    def begin_run(self, arguments, durable=False):
+        """Makes the folder that of a new run with these arguments. On a full disk the earlier run stays where it is.
+        `durable`: a power cut finds the folder of the earlier run or of the new one, and not a new one with old files."""
         partial = self.path / "trio.options.partial"
         try:
-            partial.write_bytes(os.fsencode(text))
-            partial.rename(file)
-        except OSError as error:  # write() does not name the file
+            write_words(partial, [os.getcwd(), *arguments])
+            if durable:
+                sync_file(partial)
+            self.keep_earlier_run(durable)
+            partial.rename(self.path / "trio.options")
+            if durable:
+                for folder in (self.path, self.path.absolute().parent):  # it may be a new one
+                    sync_folder(folder)
+        except BaseException:
             partial.unlink(missing_ok=True)
-            raise Problem(f"{file}: {error.strerror}") from error
+            raise
 
     def recall_options(self):
-        """What remember_options wrote: the folder in which the run was started, and its arguments."""
+        """What begin_run wrote: the folder in which the run was started, and its arguments."""
         if not self.has("trio.options"):
             raise Problem(f"{self.path} holds no run to go on with")
-        words = os.fsdecode((self.path / "trio.options").read_bytes()).split("\0")[:-1]
-        return words[0], words[1:]
+        started_in, *arguments = read_words(self.path / "trio.options")
+        return started_in, arguments
 
     def write_pid(self, name, pid):
         """For people and tests; the run does not depend on it, so a full disk is no error."""
@@ -126,6 +135,18 @@ class RunFolder:
         except OSError:
             return False
         return disk.f_bavail * disk.f_frsize < 1_000_000
+
+
+def write_words(file, words):
+    """Each with a zero byte at its end, because a word may hold any other one."""
+    try:
+        file.write_bytes(os.fsencode("".join(word + "\0" for word in words)))
+    except OSError as error:  # write() does not name the file
+        raise Problem(f"{file}: {error.strerror}") from error
+
+
+def read_words(file):
+    return os.fsdecode(file.read_bytes()).split("\0")[:-1]
 
 
 def try_lock(descriptor):

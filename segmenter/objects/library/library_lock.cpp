@@ -7,12 +7,12 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include "lcmtypes/base/file_sync.hpp"
+
 namespace kintsugi::segmenter {
 
 LibraryLock::LibraryLock(const std::filesystem::path& library) {
-  std::error_code error;
-  std::filesystem::create_directories(library, error);
-  if (error) throw std::system_error(error, "cannot make the folder '" + library.string() + "'");
+  make_folder(library);
   descriptor_ = open(library.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (descriptor_ < 0) {
     throw std::system_error(errno, std::generic_category(),

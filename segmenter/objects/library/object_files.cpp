@@ -8,10 +8,10 @@
 #include <vector>
 
 #include <fcntl.h>
-#include <unistd.h>
 #include <zlib.h>
 
 #include "lcmtypes/base/atomic_file.hpp"
+#include "lcmtypes/base/file_sync.hpp"
 #include "lcmtypes/base/ply_writer.hpp"
 #include "segmenter/io/ply/ply_reader.hpp"
 #include "segmenter/io/points/file_bytes.hpp"
@@ -79,16 +79,6 @@ void write_text(const std::string& text, const fs::path& path) {
                           "cannot " + what + " '" + path.string() + "'");
 }
 
-/// The entries of a folder must be on disk, too.
-void sync_folder(const fs::path& folder) {
-  const int descriptor = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor < 0) fail("open", folder, errno);
-  const int result = fsync(descriptor);
-  const int error = errno;
-  close(descriptor);
-  if (result != 0 && error != EINVAL) fail("sync", folder, error);
-}
-
 void rename_folder(const fs::path& from, const fs::path& to) {
   if (std::rename(from.c_str(), to.c_str()) != 0) fail("rename to", to, errno);
 }
@@ -106,12 +96,6 @@ void exchange(const fs::path& beside, const fs::path& path) {
   rename_folder(path, older);
   rename_folder(beside, path);
   rename_folder(older, beside);
-}
-
-void make_folder(const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) fail("make the folder", folder, error.value());
 }
 
 /// A folder beside the object's that is removed with all that is in it.

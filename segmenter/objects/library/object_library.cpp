@@ -59,7 +59,19 @@ std::vector<EntryStamp> entries_of(const fs::path& folder) {
 
 }  // namespace
 
-void ObjectLibrary::read_entry(const EntryStamp& entry) {
+/// nullptr when it was not used, or has changed.
+const KnownObject* ObjectLibrary::as_it_was(const EntryStamp& entry) const {
+  const auto known = std::ranges::lower_bound(entries_, entry.name, {}, &EntryStamp::name);
+  return known != entries_.end() && *known == entry ? find(entry.name) : nullptr;
+}
+
+void ObjectLibrary::read_entry(const EntryStamp& entry, const ObjectLibrary& earlier) {
+  if (earlier.folder_ == folder_) {
+    if (const KnownObject* const known = earlier.as_it_was(entry)) {
+      objects_.push_back(*known);
+      return;
+    }
+  }
   const fs::path path = folder_ / entry.name;
   try {
     if (!fs::is_directory(path)) {
@@ -74,7 +86,7 @@ void ObjectLibrary::read_entry(const EntryStamp& entry) {
   }
 }
 
-ObjectLibrary ObjectLibrary::read(const fs::path& folder) {
+ObjectLibrary ObjectLibrary::read(const fs::path& folder, const ObjectLibrary& earlier) {
   // An object that is replaced between the reading of its two files would be refused. So what
   // changes meanwhile is read again; somebody who changes it all the time is not waited for.
   constexpr int kAttempts = 3;
@@ -83,17 +95,18 @@ ObjectLibrary ObjectLibrary::read(const fs::path& folder) {
     library = {};
     library.folder_ = folder;
     library.entries_ = entries_of(folder);
-    for (const EntryStamp& entry : library.entries_) library.read_entry(entry);
+    for (const EntryStamp& entry : library.entries_) library.read_entry(entry, earlier);
     if (library.refusals_.empty() || !library.has_changed()) break;
   }
   return library;
 }
 
 const KnownObject* ObjectLibrary::find(std::string_view name) const {
-  const auto found = std::find_if(objects_.begin(), objects_.end(), [&](const KnownObject& object) {
-    return object.model.name == name;
-  });
-  return found == objects_.end() ? nullptr : &*found;
+  const auto name_of = [](const KnownObject& object) -> const std::string& {
+    return object.model.name;
+  };
+  const auto found = std::ranges::lower_bound(objects_, name, {}, name_of);
+  return found == objects_.end() || found->model.name != name ? nullptr : &*found;
 }
 
 bool ObjectLibrary::has_changed() const { return entries_of(folder_) != entries_; }

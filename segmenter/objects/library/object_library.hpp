@@ -22,8 +22,11 @@ class ObjectLibrary {
   /// Reads all objects of a library, in any number of programs, also while objects are taught. What
   /// is no whole object is refused, and the others are used. Names that begin with '.' do not
   /// count. A folder that does not exist is a library without objects.
+  /// @param earlier what was read of the folder before: objects whose files have not changed since
+  ///   are taken over
   /// @throws std::runtime_error naming the folder when it cannot be read, or is none
-  static ObjectLibrary read(const std::filesystem::path& folder);
+  static ObjectLibrary read(const std::filesystem::path& folder, const ObjectLibrary& earlier);
+  static ObjectLibrary read(const std::filesystem::path& folder) { return read(folder, {}); }
 
   /// By name.
   [[nodiscard]] const std::vector<KnownObject>& objects() const { return objects_; }
@@ -57,7 +60,8 @@ class ObjectLibrary {
   };
 
  private:
-  void read_entry(const EntryStamp& entry);
+  void read_entry(const EntryStamp& entry, const ObjectLibrary& earlier);
+  [[nodiscard]] const KnownObject* as_it_was(const EntryStamp& entry) const;
 
   std::filesystem::path folder_;
   std::vector<EntryStamp> entries_;  ///< as they were when they were read; by name

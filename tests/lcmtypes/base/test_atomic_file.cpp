@@ -1,10 +1,15 @@
+#include <cstdlib>
 #include <fstream>
+#include <random>
+#include <span>
 #include <system_error>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "lcmtypes/base/atomic_file.hpp"
+#include "lcmtypes/base/file_sync.hpp"
+#include "tests/support/power_cut.hpp"
 #include "tests/support/small_disk.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -24,6 +29,46 @@ std::string content(const fs::path& path) {
 std::size_t num_files(const fs::path& folder) {
   return static_cast<std::size_t>(
       std::distance(fs::directory_iterator(folder), fs::directory_iterator{}));
+}
+
+/// The content of a file that is written for the nth time.
+std::string nth_content(int n) {
+  return std::string(static_cast<std::size_t>(3'000 * n), static_cast<char>('a' + n));
+}
+
+constexpr int kNumWritten = 10;
+
+/// Run by the test below.
+TEST(AtomicFile, DISABLED_WritesAgainAndAgain) {
+  const fs::path folder = fs::path(std::getenv("FORGETFUL_DISK")) / "a" / "b";
+  make_folder(folder);
+  for (int i = 1; i <= kNumWritten; ++i) {
+    AtomicFile file(folder / "map");
+    file.stream() << nth_content(i);
+    file.commit();
+    testing::tell_others(i);
+  }
+}
+
+TEST(AtomicFile, IsLeftByAPowerCutAsItWasCommittedLastOrAsTheNextOne) {
+  const TemporaryFolder folder;
+  fs::create_directory(folder / "disk");
+  ASSERT_EQ(testing::run_on_forgetful_disk("AtomicFile.DISABLED_WritesAgainAndAgain",
+                                           folder / "disk", folder / "journal"),
+            0);
+  const testing::DiskJournal journal(folder / "journal");
+  const std::span events = journal.events();
+  ASSERT_EQ(testing::last_told(events), kNumWritten);
+  std::mt19937 random(3);
+  for (int i = 0; i < 200; ++i) {
+    const std::size_t num_events = random() % (events.size() + 1);
+    testing::cut_power(events.first(num_events), {}, random(), folder / "left");
+    const int told = testing::last_told(events.first(num_events));
+    const fs::path file = folder / "left" / "a" / "b" / "map";
+    if (told == 0 && !fs::exists(file)) continue;
+    ASSERT_TRUE(content(file) == nth_content(told) || content(file) == nth_content(told + 1))
+        << "after event " << num_events << ", told " << told;
+  }
 }
 
 TEST(AtomicFile, HasItsNameAfterCommit) {

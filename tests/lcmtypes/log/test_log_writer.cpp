@@ -106,7 +106,7 @@ TEST(LogWriter, ContinuesAfterAnIncompleteEvent) {
     EXPECT_EQ(events, 2);
     EXPECT_TRUE(reader.is_cut_off());
     LogWriter writer = LogWriter::open(path);
-    writer.continue_after(reader.bytes_read(), events);
+    writer.continue_after({reader.bytes_read(), events});
     writer.append(7, "C", example_bytes(500));
     EXPECT_EQ(count_events(path), 3);
     EXPECT_EQ(std::filesystem::file_size(path), whole);

@@ -81,6 +81,49 @@ struct Sending {
   }
 };
 
+/// A store that needs time.
+struct SlowStore : RecentChunks {
+  SlowStore() : RecentChunks(1'000'000) {}
+  bool is_safe(std::int64_t sequence) const override { return sequence < safe_end; }
+  std::int64_t safe_end = 0;
+};
+
+TEST(StreamSender, SendsAndAnnouncesNothingThatIsNotSafeInTheStore) {
+  SlowStore store;
+  Sending sending(&store);
+  sending.push(3, true);
+  sending.push(2);
+  sending.sender.announce();
+  sending.run_until(0.5);
+  EXPECT_EQ(store.next_sequence(), 5) << "all are on the way to where they are safe";
+  EXPECT_THAT(sending.sequences, IsEmpty());
+  EXPECT_EQ(sending.heartbeats.back().next_sequence, 0);
+  EXPECT_EQ(sending.sender.queued_bytes(), 5 * kChunkBytes);
+  EXPECT_FALSE(sending.sender.is_done());
+  sending.ask({{0, 4}});
+  sending.run_until(0.6);
+  EXPECT_THAT(sending.sequences, IsEmpty()) << "on request neither";
+  store.safe_end = 4;
+  sending.run_until(1.0);
+  EXPECT_THAT(sending.sequences, ElementsAre(0, 1, 2, 3));
+  EXPECT_EQ(sending.heartbeats.back().next_sequence, 4);
+  EXPECT_EQ(sending.sender.queued_bytes(), 2 * kChunkBytes) << "until the whole message is sent";
+  store.safe_end = 5;
+  sending.run_until(1.5);
+  EXPECT_THAT(sending.sequences, ElementsAre(0, 1, 2, 3, 4));
+  EXPECT_TRUE(sending.sender.is_done());
+}
+
+TEST(StreamSender, StoresNoMoreThanASecondAhead) {
+  SlowStore store;
+  StreamPublisherConfig config;
+  config.rate_bytes_per_s = 10.0 * kChunkBytes;
+  Sending sending(&store, config);
+  for (int i = 0; i < 20; ++i) sending.push(1);
+  sending.run_until(0.5);
+  EXPECT_EQ(store.next_sequence(), 10);
+}
+
 TEST(StreamSender, SendsNumberedChunksAndHeartbeatsFiveTimesASecond) {
   RecentChunks store(1'000'000);
   Sending sending(&store);

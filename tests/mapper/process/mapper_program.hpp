@@ -36,7 +36,6 @@ class MapperProgram : public kintsugi::testing::ChildProgram {
     return wait() == -SIGKILL;
   }
 
- private:
   static std::string path() {
     const auto here = std::filesystem::read_symlink("/proc/self/exe").parent_path();
     return here.parent_path() / "bin" / "kintsugi-mapper";
@@ -81,10 +80,11 @@ class Listener {
 
   /// Waits, long enough for a machine that has other things to do.
   template <typename Condition>
-  static bool wait_until(const Condition& condition) {
+  static bool wait_until(const Condition& condition,
+                         std::chrono::milliseconds period = std::chrono::milliseconds(20)) {
     const auto deadline = std::chrono::steady_clock::now() + std::chrono::minutes(2);
     while (!condition() && std::chrono::steady_clock::now() < deadline) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+      std::this_thread::sleep_for(period);
     }
     return condition();
   }

@@ -24,6 +24,8 @@ struct StoredRun {
   std::vector<std::int64_t> pose_utimes;
   std::vector<MapperStatus> statuses;
   std::int64_t events = 0;
+  std::vector<std::int64_t> event_utimes;  ///< when each was appended
+  std::string damage;                      ///< what is wrong behind the last event; empty: nothing
   bool has_final_slice = false;
 };
 
@@ -33,6 +35,7 @@ inline StoredRun read_stored_run(const std::filesystem::path& path) {
   LogReader reader(path);
   while (const auto event = reader.next()) {
     ++run.events;
+    run.event_utimes.push_back(event->utime);
     if (event->channel == channels::kCloudSlice) {
       const auto chunk = decode_chunk<CloudSlice>(event->data);
       run.has_final_slice |= chunk.header.kind == SliceKind::kFinal;
@@ -47,6 +50,7 @@ inline StoredRun read_stored_run(const std::filesystem::path& path) {
       run.statuses.push_back(decode<MapperStatus>(event->data));
     }
   }
+  run.damage = reader.damage().value_or("");
   return run;
 }
 

@@ -1,6 +1,8 @@
 // The built program, killed and resumed: in the end the log holds what a run without faults leaves.
 
 #include <algorithm>
+#include <chrono>
+#include <optional>
 #include <random>
 
 #include <gmock/gmock.h>
@@ -46,6 +48,13 @@ class Resume : public ::testing::Test {
   int run(const Flags& flags) const { return MapperProgram(flags, folder_ / "said.txt").wait(); }
   std::string said() const { return text_of(folder_ / "said.txt"); }
 
+  /// In bytes; nothing where there is no log.
+  std::optional<std::uintmax_t> log_size() const {
+    std::error_code error;
+    const std::uintmax_t bytes = std::filesystem::file_size(log_, error);
+    return error ? std::nullopt : std::optional(bytes);
+  }
+
   /// What a run without faults leaves.
   StoredRun undisturbed() const {
     const std::filesystem::path log = folder_ / "undisturbed.lcm";
@@ -63,9 +72,7 @@ class Resume : public ::testing::Test {
     flags.insert(flags.end(), {"--rate", "0.01"});
     MapperProgram mapper(flags, folder_ / "said.txt");
     EXPECT_TRUE(Listener::wait_until([&] {
-      std::error_code ignored;
-      return std::filesystem::file_size(log_, ignored) > 0 && !ignored &&
-             read_stored_run(log_).slice_chunks.size() >= num_chunks;
+      return log_size().value_or(0) > 0 && read_stored_run(log_).slice_chunks.size() >= num_chunks;
     }));
     EXPECT_TRUE(mapper.crash());
   }
@@ -77,18 +84,22 @@ class Resume : public ::testing::Test {
 TEST_F(Resume, KilledAtAnyMomentsTheSessionIsThatOfARunWithoutFaults) {
   const StoredRun expected = undisturbed();
   std::mt19937 random(5);
-  std::uniform_int_distribution<int> early_ms(20, 300);  // before any machine has mapped 40 frames
-  std::uniform_int_distribution<int> any_ms(20, 1'500);
-  int kills = 0;
+  // A moment is a size of the log, which grows from the first event on: the same moments on any
+  // machine. The first kill comes as soon as the log is there, perhaps before its first event.
+  std::uniform_int_distribution<std::uintmax_t> growth_bytes(1, 30'000);
   for (int i = 0; i < 8; ++i) {
-    const bool begun = std::filesystem::exists(log_);
-    MapperProgram mapper(flags(begun ? "--resume" : "--store", {"--replay", "--rate", "0.002"}),
-                         folder_ / "said.txt");
-    const int delay_ms = i < 5 ? early_ms(random) : any_ms(random);
-    std::this_thread::sleep_for(std::chrono::milliseconds(delay_ms));
-    kills += mapper.crash() ? 1 : 0;
+    const std::uintmax_t begin = log_size().value_or(0);
+    const std::uintmax_t end = i == 0 ? 0 : begin + growth_bytes(random);
+    MapperProgram mapper(
+        flags(log_size() ? "--resume" : "--store", {"--replay", "--rate", "0.002"}),
+        folder_ / "said.txt");
+    EXPECT_TRUE(Listener::wait_until([&] { return log_size() && *log_size() >= end; },
+                                     std::chrono::milliseconds(1)))
+        << said();
+    EXPECT_TRUE(mapper.crash()) << "it was not killed: " << said();
   }
-  EXPECT_GE(kills, 4) << said();
+  EXPECT_GT(read_stored_run(log_).slice_chunks.size(), 0U) << "something was mapped";
+  EXPECT_FALSE(read_stored_run(log_).has_final_slice) << "something is left to map";
   EXPECT_EQ(run(flags("--resume")), 0) << said();
   const StoredRun resumed = read_stored_run(log_);
   EXPECT_EQ(resumed.slice_chunks, expected.slice_chunks);

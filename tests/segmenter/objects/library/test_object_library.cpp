@@ -231,6 +231,28 @@ TEST_F(Library, HasChangedWhenAnObjectCameWentOrChanged) {
   EXPECT_FALSE(read().has_changed());
 }
 
+TEST_F(Library, IsReadAgainAsItIsNow) {
+  overwrite(folder_ / "bottle" / kModelFile, "damaged");
+  const ObjectLibrary before = read();
+  ASSERT_EQ(before.objects().size(), 2U);
+  write("plate");
+  write("bottle");
+  KnownObject cup = example_object("cup");
+  cup.model.times_taught = 7;
+  write_object(cup, folder_.path());
+  remove_object("mug", folder_.path());
+  const ObjectLibrary now = ObjectLibrary::read(folder_.path(), before);
+  EXPECT_FALSE(now.has_changed());
+  EXPECT_TRUE(now.refusals().empty());
+  ASSERT_EQ(now.objects().size(), 3U);
+  expect_equal(*now.find("bottle"), example_object("bottle"));
+  expect_equal(*now.find("cup"), cup);
+  expect_equal(*now.find("plate"), example_object("plate"));
+  const ObjectLibrary same = ObjectLibrary::read(folder_.path(), now);
+  ASSERT_EQ(same.objects().size(), 3U);
+  expect_equal(*same.find("cup"), cup);
+}
+
 TEST_F(Library, AFullDiskLeavesTheOlderObjectAndNothingElse) {
   const std::string before = contents(cup() / kModelFile);
   KnownObject larger = example_object("cup");
