@@ -3,9 +3,12 @@
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
+#include <fstream>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <system_error>
 
 namespace kintsugi {
 namespace {
@@ -25,23 +28,41 @@ std::string csv_text(std::int64_t value) { return std::to_string(value); }
 
 }  // namespace
 
-StatusLog::StatusLog(const std::filesystem::path& path) : out_(path, std::ios::app) {
-  if (out_ && out_.tellp() == 0) out_ << "utime_us,process,field,value" << std::endl;
-  if (!out_) {
+StatusLog::StatusLog(const std::filesystem::path& path) : path_(path) {
+  std::error_code ignored;
+  const bool is_new = std::filesystem::file_size(path, ignored) == 0 || ignored;
+  if (!write(is_new ? "utime_us,process,field,value\n" : "")) {
     throw std::runtime_error(path.string() + ": cannot be written: " + std::strerror(errno));
   }
 }
 
 template <class Status>
 void StatusLog::append(const Status& status) {
+  std::ostringstream text;
   Status::visit_fields(
       [&](const StatusField& field, const auto& value) {
         if (field.name == std::string_view("utime")) return;  // has its own column
-        out_ << status.utime << ',' << Status::kProcess << ',' << field.name << ','
+        text << status.utime << ',' << Status::kProcess << ',' << field.name << ','
              << csv_text(value) << '\n';
       },
       status);
-  out_.flush();
+  write(text.str());
+}
+
+/// Appends all of the text or nothing; false: nothing, and errno says why.
+bool StatusLog::write(const std::string& text) const {
+  // Opened anew each time: a stream keeps what it could not write, and writes it later.
+  std::ofstream out(path_, std::ios::app);
+  if (!out) return false;
+  const auto size = static_cast<std::uintmax_t>(out.tellp());
+  out << text;
+  out.close();
+  if (out) return true;
+  const int reason = errno;
+  std::error_code ignored;
+  std::filesystem::resize_file(path_, size, ignored);
+  errno = reason;
+  return false;
 }
 
 template void StatusLog::append(const MapperStatus&);

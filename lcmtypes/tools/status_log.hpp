@@ -2,14 +2,15 @@
 // All statuses of a run in a CSV file, for programs that compare runs.
 
 #include <filesystem>
-#include <fstream>
+#include <string>
 
 #include "lcmtypes/statuses.hpp"
 
 namespace kintsugi {
 
 /// A CSV file `utime_us,process,field,value` with a line for each field of each status. The field
-/// has its name on the bus; a boolean is 1 or 0, a text is between double quotes.
+/// has its name on the bus; a boolean is 1 or 0, a text is between double quotes. While the disk is
+/// full statuses are left out: each one is in the file completely, or not at all.
 class StatusLog {
  public:
   /// Appends to the file if it exists. @throws std::runtime_error when it cannot be written
@@ -20,7 +21,9 @@ class StatusLog {
   void append(const Status& status);
 
  private:
-  std::ofstream out_;
+  bool write(const std::string& text) const;
+
+  std::filesystem::path path_;
 };
 
 }  // namespace kintsugi

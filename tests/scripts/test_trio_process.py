@@ -90,6 +90,16 @@ class ProcessTest(FolderTest):
         process.show_last_words()
         self.assertIn("nothing is in its log", self.said)
 
+    def test_what_a_full_disk_has_swallowed_is_told(self):
+        (self.folder.path / "one.log").write_text("kintsugi-one: an error of an earlier run\n")
+        process = self.shell("one", "echo up; exit 1")
+        self.run_to_end(process)
+        self.assertEqual(process.reason(), ["up"])
+        self.folder.is_disk_full = lambda: True
+        process.show_last_words()
+        self.assertEqual(self.said, "  one: up\n  one: its log may lack what it said: no space left on device\n")
+        self.assertIn("no space left on device", process.reason()[0])
+
     def test_runs_without_a_log_that_cannot_be_written(self):
         os.mkdir(self.folder.file("one.log"))
         self.assertEqual(self.run_to_end(self.shell("one", "echo lost; exit 4")), 4)

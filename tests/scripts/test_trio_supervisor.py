@@ -223,6 +223,13 @@ class SupervisorTest(FolderTest):
         self.assertIn("viewer ended with an error (exit code 1): kintsugi-viewer: no space", first)
         self.assertIn("scripts/trio --resume --out", second)
 
+    def test_a_replay_on_a_full_disk_is_not_to_be_resumed(self):
+        self.folder.is_disk_full = lambda: True
+        supervisor = self.supervisor(self.shell("player", UNTIL_TERM), self.shell("viewer", "exit 1"))
+        self.assertFalse(supervisor.watch())
+        self.assertIn("when there is space, play the log again", self.said)
+        self.assertNotIn("--resume", self.said)
+
     def test_a_full_disk_is_told_once(self):
         viewer = self.shell("viewer", "sleep 0.3")
         supervisor = self.supervisor(self.shell("mapper", UNTIL_TERM), viewer)
@@ -250,7 +257,7 @@ class StatusTest(FolderTest):
         return status
 
     def result(self, status):
-        status.show_progress(60)
+        status.show_progress(7)
         self.assertTrue(wait_until(lambda: not status.shows_progress))
         return status.take_result()
 
@@ -264,11 +271,14 @@ class StatusTest(FolderTest):
         self.assertIsNone(status.take_result())
 
     def test_statuses_that_cannot_be_recorded_are_shown_all_the_same(self):
-        status = self.status_of('case "$*" in *--log*) exit 1 ;; *) exit 0 ;; esac')
+        calls = self.folder.path / "calls"
+        status = self.status_of(f'echo "$*" >>{calls}; case "$*" in *--log*) exit 1 ;; *) exit 0 ;; esac')
         self.assertIsNone(self.result(status))
         self.assertIn("status.csv: the statuses are no longer recorded", self.said)
         self.assertTrue(wait_until(lambda: not status.shows_progress))
         self.assertIs(status.take_result(), True)
+        for call in calls.read_text().splitlines():
+            self.assertIn("--timeout 7", call)
 
     def test_the_newest_value_of_this_run_counts(self):
         file = self.folder.path / "status.csv"

@@ -121,18 +121,25 @@ class Process:
 
     def show_last_words(self):
         """The end of its log, on standard error."""
-        lines = last_lines(self.log_file)[-LAST_LINES:]
-        for line in lines:
+        words = self._words()
+        for line in words[-LAST_LINES:]:
             write(STDERR, f"  {self.name}: {line}\n")
-        if not lines:
+        if not words:
             write(STDERR, f"  nothing is in its log, {self.log_file}\n")
+        if self._folder.is_disk_full():
+            write(STDERR, f"  {self.name}: its log may lack what it said: no space left on device\n")
 
     def reason(self):
-        """[the last line of its log that tells an error], or [the last one]; [] if nothing is in it. Of this run only:
-        one that is resumed goes on in the same log."""
-        lines = last_lines(self.log_file, self._log_start or 0)
-        errors = [line for line in lines if line.startswith("kintsugi-") or ERROR_LEVEL.search(line)]
-        return (errors or lines)[-1:]
+        """[the last line of its log that tells an error], or [the last one]; [] if nothing is in it."""
+        words = self._words()
+        errors = [line for line in words if line.startswith("kintsugi-") or ERROR_LEVEL.search(line)]
+        if not errors and self._folder.is_disk_full():
+            return ["no space left on device, not even for the reason in its log"]
+        return (errors or words)[-1:]
+
+    def _words(self):
+        """The last lines of its log, of this run only: one that is resumed goes on in the same log."""
+        return [] if self._log_start is None else last_lines(self.log_file, self._log_start)
 
     def has_said(self, text):
         """Whether the text is in its log, since its first start here."""

@@ -25,10 +25,12 @@ class Status:
         self._csv_start = os.path.getsize(csv_file) if csv_file and os.path.exists(csv_file) else 0
         self._records = True
         self._display = None
+        self._idle_s = 0  # of the display
 
     def show_progress(self, idle_s):
         """Until mapper, segmenter and viewer have finished, or there has been no progress for `idle_s` seconds."""
         self.end()
+        self._idle_s = idle_s
         log = ["--log", self._csv_file] if self._records else []
         self._display = spawn([program("status"), "--until-finished", "--viewer", "--timeout", str(idle_s), *self._of_map,
                                *log])
@@ -49,7 +51,7 @@ class Status:
         if code == FAILED:
             say(f"{self._csv_file}: the statuses are no longer recorded, see the message above")
             self._records = False
-            self.show_progress(60)
+            self.show_progress(self._idle_s)
             return None
         return code == 0
 

@@ -103,10 +103,14 @@ class Supervisor:
         process.show_last_words()
         self.failures.append(": ".join([f"{process.name} {how}", *process.reason()]))
         if self.folder.is_disk_full():
-            self.advice = [f"{self.folder.path}: no space left on device; when there is space, "
-                           f"scripts/trio --resume --out {self.folder.path} goes on with the run"]
+            self.advice = [f"{self.folder.path}: no space left on device; when there is space, {self._how_to_go_on()}"]
             say(*self.advice)
         self.status.show_progress(IDLE_AFTER_ERROR_S)
+
+    def _how_to_go_on(self):
+        if self.leader.name == "player":
+            return "play the log again"
+        return f"scripts/trio --resume --out {self.folder.path} goes on with the run"
 
     def _check_logger(self):
         """Without the logger the run goes on, but it has failed."""

@@ -7,12 +7,15 @@
 #include <gtest/gtest.h>
 
 #include "lcmtypes/tools/status_log.hpp"
+#include "tests/support/file_size_limit.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace kintsugi {
 namespace {
 
 using ::testing::Contains;
+using ::testing::Not;
+using ::testing::SizeIs;
 
 std::vector<std::string> lines_of(const std::filesystem::path& file) {
   std::vector<std::string> lines;
@@ -57,6 +60,27 @@ TEST(StatusLog, HasALineForEachField) {
 
 TEST(StatusLog, ThrowsWhenTheFileCannotBeWritten) {
   EXPECT_THROW(StatusLog("/nonexistent/status.csv"), std::runtime_error);
+}
+
+TEST(StatusLog, LeavesOutWhatAFullDiskDoesNotTakeAndGoesOnAfterwards) {
+  const testing::TemporaryFolder folder;
+  const auto file = folder.path() / "status.csv";
+  StatusLog log(file);
+  MapperStatus mapper;
+  mapper.utime = 1;
+  log.append(mapper);
+  const auto lines = lines_of(file);
+  mapper.utime = 2;
+  {
+    const testing::FileSizeLimit limit(std::filesystem::file_size(file) + 100);
+    log.append(mapper);
+    EXPECT_EQ(lines_of(file), lines) << "no half status";
+  }
+  mapper.utime = 3;
+  log.append(mapper);
+  EXPECT_THAT(lines_of(file), SizeIs(2 * lines.size() - 1)) << "the header once";
+  EXPECT_THAT(lines_of(file), Contains("3,mapper,finished,0"));
+  EXPECT_THAT(lines_of(file), Not(Contains("2,mapper,finished,0")));
 }
 
 }  // namespace
