@@ -10,7 +10,7 @@
 namespace kintsugi {
 namespace {
 
-constexpr std::size_t kHugePageBytes = std::size_t{1} << 21;
+constexpr std::size_t kHugePageBytes = ReservedMemory::kPageBytes;
 
 std::size_t round_up(std::size_t bytes) {
   return (bytes + kHugePageBytes - 1) / kHugePageBytes * kHugePageBytes;
@@ -61,6 +61,12 @@ void ReservedMemory::commit(std::size_t bytes) {
   const std::size_t usable = std::min(round_up(bytes), reserved_bytes_);
   if (::mprotect(data_, usable, PROT_READ | PROT_WRITE) != 0) throw std::bad_alloc();
   committed_bytes_ = usable;
+}
+
+void ReservedMemory::discard_page(std::size_t page) {
+  const std::size_t first = page * kHugePageBytes;
+  if (first >= committed_bytes_) return;
+  ::madvise(data_ + first, std::min(kHugePageBytes, committed_bytes_ - first), MADV_DONTNEED);
 }
 
 void ReservedMemory::release() {

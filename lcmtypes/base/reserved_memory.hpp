@@ -14,6 +14,8 @@ class ReservedMemory {
   /// kNowhere is for an array of which only pages here and there are used.
   enum class HugePages { kEverywhere, kAfterTheFirst, kNowhere };
 
+  static constexpr std::size_t kPageBytes = std::size_t{1} << 21;  ///< of a huge page
+
   /// Reserves nothing.
   ReservedMemory() = default;
   /// Takes no memory yet. @throws std::bad_alloc when the address space is limited
@@ -32,6 +34,10 @@ class ReservedMemory {
   /// Makes at least the first `bytes` usable; new ones are zero.
   /// @throws std::bad_alloc, and changes nothing, when memory or the range is exhausted
   void commit(std::size_t bytes);
+
+  /// Gives the memory of a huge page back, which stays usable and is zero then; of the first one,
+  /// page 0, and those after it.
+  void discard_page(std::size_t page);
 
   /// Gives all memory back; then no byte is usable.
   void release();

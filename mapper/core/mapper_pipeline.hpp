@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -17,19 +18,14 @@
 #include "mapper/core/fusion/integrator.hpp"
 #include "mapper/core/fusion/raycaster.hpp"
 #include "mapper/core/guests/guests.hpp"
+#include "mapper/core/local_map/local_map.hpp"
 #include "mapper/core/loop_closure/loop_closure.hpp"
 #include "mapper/core/loop_closure/map_part.hpp"
-#include "mapper/core/reactivation/covered_surface.hpp"
-#include "mapper/core/reactivation/reactivation.hpp"
 #include "mapper/core/relocalization/relocalizer.hpp"
-#include "mapper/core/slices/patch_schedule.hpp"
-#include "mapper/core/slices/slice_worker.hpp"
-#include "mapper/core/slices/tile.hpp"
 #include "mapper/core/stage_times.hpp"
 #include "mapper/core/tracking/noise_estimator.hpp"
 #include "mapper/core/tracking/restart_rule.hpp"
 #include "mapper/core/tracking/tracker.hpp"
-#include "mapper/core/volume/tsdf_volume.hpp"
 
 namespace kintsugi::mapper {
 
@@ -69,26 +65,15 @@ struct FrameResult {
 /// With given poses there is no Starting and no Tracking: each frame is Given, or Lost.
 class MapperPipeline {
  public:
-  struct Config {
-    TsdfVolume::Config volume;
+  struct Config : LocalMap::Config {
     Integrator::Config integrator;
     Raycaster::Config raycaster;
     Tracker::Config tracker;
     Relocalizer::Config relocalizer;
-    LoopClosure::Config loops;  ///< its lengths in voxels and its reach follow from the volume
+    LoopClosure::Config loops;  ///< but for what follows from the rest, see loop_closure()
     /// The map is corrected where the camera comes back to a place. For patches, and without a
     /// given path.
     bool close_loops = true;
-    /// Where the camera comes back to a place, what it sees is the surface that is there.
-    SameSurface same_surface;  ///< its weight threshold follows from the extractor
-    /// Of surface that has left and may come back, 1e6 bytes; above that what left longest ago is
-    /// forgotten. A metre of a walk through rooms takes 5 MB.
-    double max_kept_mb = 1000.0;
-    SliceWorker::Config slices;  ///< its `tiles` follow from what is below
-    /// The map comes in patches of about this size, m, while its surface is in the volume; 0: in
-    /// slices, when it leaves the volume.
-    double patch_side_m = 0.0;
-    PatchSchedule::Config patch_schedule;
     std::optional<DepthNoise> noise;  ///< of the camera's depth; none: typical_noise()
     bool learn_noise = true;          ///< `noise` is only where the estimate starts
     /// Depth farther than where the noise asks for the largest truncation distance is not used.
@@ -102,6 +87,10 @@ class MapperPipeline {
     /// Makes volume, fusion and raycast as large as depth up to `max_range_m` asks for; 0: as the
     /// noise allows, within what the volume and images of 16 bits can hold. For a ball.
     void set_max_range(double max_range_m);
+
+    bool closes_loops() const { return close_loops && patch_side_m > 0.0 && given_path.empty(); }
+    /// `loops` with the lengths in voxels, the reach, the drift and the speed of the rest.
+    LoopClosure::Config loop_closure() const;
 
     /// @throws std::invalid_argument naming field, value and bound
     void validate() const;
@@ -131,29 +120,27 @@ class MapperPipeline {
   /// afterwards.
   std::vector<CloudSlice> finish();
 
-  std::int64_t num_blocks() const { return static_cast<std::int64_t>(volume_.num_blocks()); }
+  std::int64_t num_blocks() const { return static_cast<std::int64_t>(map_.volume().num_blocks()); }
   int num_keyframes() const { return relocalizer_.num_keyframes(); }
   /// None where loops are not closed.
-  const LoopClosure* loops() const { return loops_ ? &*loops_ : nullptr; }
+  const LoopClosure* loops() const { return loops_.get(); }
   /// Where a patch is in the corrected map, by its number in PatchRun; nothing: its points were
   /// replaced. After finish().
-  std::optional<PatchPlace> place_of_patch(int patch) const {
-    return slice_worker_.place_of_patch(patch);
-  }
+  std::optional<PatchPlace> place_of_patch(int patch) const { return map_.place_of_patch(patch); }
 
   /// How many parts of the map no loop has joined.
-  int num_parts() const { return loops_ ? loops_->num_parts() : part_ + 1; }
+  int num_parts() const { return loops_ ? loops_->num_parts() : map_.part() + 1; }
 
   /// Of the frames whose pose is known, as corrected by the loops that were closed so far; by part
   /// of the map.
   std::map<int, Trajectory> corrected_paths() const;
-  std::int64_t volume_bytes() const { return static_cast<std::int64_t>(volume_.memory_bytes()); }
+  std::int64_t volume_bytes() const {
+    return static_cast<std::int64_t>(map_.volume().memory_bytes());
+  }
   const DepthNoise& noise() const { return noise_.noise(); }
   /// Of what has left and may come back.
-  std::int64_t kept_bytes() const {
-    return reactivation_ ? static_cast<std::int64_t>(reactivation_->bytes()) : 0;
-  }
-  double extraction_ms() const { return slice_worker_.busy_ms(); }
+  std::int64_t kept_bytes() const { return static_cast<std::int64_t>(map_.kept_bytes()); }
+  double extraction_ms() const { return map_.extraction_ms(); }
 
  private:
   /// The frame without depths that are no surface.
@@ -164,32 +151,12 @@ class MapperPipeline {
   TrackingResult start(const TrackingInput& input);
   void learn_noise(const TrackingInput& input, const Pose& X_WC);
   PartBegun begin_part(TrackingResult lost);
-  int seen_at() const { return loops_ ? loops_->keyframe() : part_; }
-  MapDeformation::Place place_of(int seen_at) const;
-  int part() const { return place_of(seen_at()).part; }
-  int shift(const Eigen::Vector3d& camera_W);
-  int let_go_of_far_surface();
-  void take_left(DetachedBlocks left);
-  void clear_known(const std::vector<BlockSlot>& leaving);
-  /// By keyframe: where what it saw is compared with what leaves.
-  Reactivation::PlaceOfKeyframe places_of_far_keyframes() const;
-  std::vector<BlockSlot> slots_of(const std::function<bool(BlockSlot)>& is_chosen) const;
-  void submit_patches(const RgbdFrame& frame);
-  void submit_patches(PatchBatch batch);
-  void depart_all_patches();
-  void take_in_guests(std::size_t max_waiting);
-  /// Moves the patches; returns what it was given.
   std::optional<MapCorrection> correct(std::optional<MapCorrection> correction);
-  Pose corrected(const Pose& X_UC) const;
-  SliceCamera camera_now() const {
-    return {utime_, corrected(X_WC_), {seen_at(), place_of(seen_at())}};
-  }
   std::optional<TrackingResult> find_again(const TrackingInput& input);
+  void move_to(const TrackingResult& located, const TrackingInput& input);
   void update_model(const RgbdFrame& frame, const TrackingInput& input, TrackingResult& located);
-  void bring_back_visible(const TrackingInput& input);
   bool go_over_to_known_surface(const TrackingInput& input);
   void go_over_to(int keyframe, const Pose& X_NC, const TrackingInput& input);
-  void restore(const Reactivation::Returned& returned);
   /// After a lost frame: the model for the next one is the map as seen from where the camera should
   /// be.
   void look_where_expected(const TrackingInput& input);
@@ -198,28 +165,23 @@ class MapperPipeline {
                    const cv::Mat_<float>& guide_depth_m) const;
   int halvings(const Intrinsics& intrinsics) const;
 
+  StampedPose camera() const { return {utime_, X_WC_}; }
+
   Config config_;
-  TsdfVolume volume_;
   Integrator integrator_;
   Raycaster raycaster_;
   Tracker tracker_;
   NoiseEstimator noise_;
   LocalNoiseEstimator local_noise_;
   Relocalizer relocalizer_;
-  std::optional<LoopClosure> loops_;  ///< none: the map is not corrected
+  std::unique_ptr<LoopClosure> loops_;  ///< none: the map is not corrected
   Guests guests_;
   std::optional<int> told_keyframe_;  ///< the last one that take_keyframe() gave
   RestartRule restart_rule_;
-  int part_ = 0;                     ///< of the map, in which the camera is tracked
   std::map<int, Trajectory> paths_;  ///< by part, where loops are not closed
-  const TileGrid tiles_;
-  std::optional<PatchSchedule> patch_schedule_;  ///< none: slices
-  std::optional<Reactivation> reactivation_;     ///< none: what has left does not come back
-  /// By TsdfVolume::num_moves(): at which keyframe the camera was.
-  std::vector<int> keyframe_at_move_;
-  SliceWorker slice_worker_;
+  LocalMap map_;
   std::optional<Model> model_;     ///< none before the first fused frame of a part
-  Pose X_WC_ = origin_of_part(0);  ///< of the last fused frame, as tracked
+  Pose X_WC_ = origin_of_part(0);  ///< of the last fused frame, as tracked; W is U here
   bool has_frames_ = false;
   std::int64_t utime_ = 0;  ///< of the last frame
 };

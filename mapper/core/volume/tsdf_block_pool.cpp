@@ -7,6 +7,12 @@
 #include "lcmtypes/base/reserved_memory.hpp"
 
 namespace kintsugi::mapper {
+namespace {
+
+constexpr std::size_t kBlocksOfPage = ReservedMemory::kPageBytes / sizeof(VoxelBlock);
+static_assert(sizeof(VoxelBlock) == sizeof(ColorBlock));
+
+}  // namespace
 
 struct TsdfBlockPool::Memory {
   ReservedMemory voxels{kMaxBlocks * sizeof(VoxelBlock)};
@@ -56,7 +62,21 @@ void TsdfBlockPool::hold(BlockSlot slot) {
 
 void TsdfBlockPool::give_back(BlockSlot slot) {
   assert(holders_[slot] > 0);
-  if (--holders_[slot] == 0) free_.push_back(slot);
+  if (--holders_[slot] > 0) return;
+  free_.push(slot);
+  --pages_[slot / kBlocksOfPage].num_blocks;
+}
+
+void TsdfBlockPool::tidy() {
+  collect_returns();
+  for (std::size_t i = 0; i < pages_.size(); ++i) {
+    Page& page = pages_[i];
+    if (page.num_blocks > 0 || !page.has_memory) continue;
+    memory_->voxels.discard_page(i);
+    memory_->colors.discard_page(i);
+    page.has_memory = false;
+    ++num_without_memory_;
+  }
 }
 
 std::shared_ptr<const void> TsdfBlockPool::lend(std::vector<BlockSlot> slots) const {
@@ -68,18 +88,23 @@ std::shared_ptr<const void> TsdfBlockPool::lend(std::vector<BlockSlot> slots) co
 }
 
 std::size_t TsdfBlockPool::memory_bytes() const {
-  return memory_->voxels.committed_bytes() + memory_->colors.committed_bytes() +
+  return memory_->voxels.committed_bytes() + memory_->colors.committed_bytes() -
+         2 * num_without_memory_ * ReservedMemory::kPageBytes +
          coords_.capacity() * sizeof(BlockCoord) + holders_.capacity() +
-         free_.capacity() * sizeof(BlockSlot);
+         free_.size() * sizeof(BlockSlot);
 }
 
 BlockSlot TsdfBlockPool::take_unset(BlockCoord coord) {
   if (free_.empty()) collect_returns();
   if (free_.empty()) grow();
-  const BlockSlot slot = free_.back();
-  free_.pop_back();
+  const BlockSlot slot = free_.top();
+  free_.pop();
   coords_[slot] = coord;
   holders_[slot] = 1;
+  Page& page = pages_[slot / kBlocksOfPage];
+  ++page.num_blocks;
+  if (!page.has_memory) --num_without_memory_;
+  page.has_memory = true;
   return slot;
 }
 
@@ -88,9 +113,9 @@ void TsdfBlockPool::grow() {
   memory_->voxels.commit(size * sizeof(VoxelBlock));
   memory_->colors.commit(size * sizeof(ColorBlock));
   coords_.emplace_back();
-  free_.reserve(coords_.capacity());
   holders_.push_back(0);
-  free_.push_back(static_cast<BlockSlot>(size) - 1);
+  pages_.resize((size - 1) / kBlocksOfPage + 1);
+  free_.push(static_cast<BlockSlot>(size) - 1);
 }
 
 void TsdfBlockPool::collect_returns() {

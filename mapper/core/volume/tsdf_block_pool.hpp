@@ -2,7 +2,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
+#include <queue>
 #include <vector>
 
 #include "mapper/core/volume/tsdf_block.hpp"
@@ -14,8 +16,8 @@ using BlockSlot = std::int32_t;
 inline constexpr BlockSlot kNoBlock = -1;
 
 /// Storage of blocks, with a reference count for each slot: never moves a block, reuses freed slots
-/// before it grows, and does not shrink. Blocks are contiguous in the order of their slots, so that
-/// 32-bit indices in a vector register reach every voxel.
+/// before it grows, the lowest one first, and gives memory back page by page. Blocks are contiguous
+/// in the order of their slots, so that 32-bit indices in a vector register reach every voxel.
 ///
 /// Not thread-safe, except that the object that lend() returns may be destroyed on any thread.
 class TsdfBlockPool {
@@ -40,8 +42,14 @@ class TsdfBlockPool {
   void give_back(BlockSlot slot);  ///< removes a reference; the last one frees the slot
 
   /// Returns an object that takes over one reference to each of these slots, and keeps the memory
-  /// alive even after the pool is gone. The references are removed some time after its destruction.
+  /// alive even after the pool is gone. The references are removed by the next tidy() after its
+  /// destruction, or before the pool grows.
   std::shared_ptr<const void> lend(std::vector<BlockSlot> slots) const;
+
+  /// Ends the references of loans that were destroyed, and gives the memory of pages without a
+  /// block back to the system: where all blocks were lent and others took their place, there is
+  /// twice as much as is needed.
+  void tidy();
 
   VoxelBlock& voxels(BlockSlot slot) { return voxels_[slot]; }
   const VoxelBlock& voxels(BlockSlot slot) const { return voxels_[slot]; }
@@ -54,6 +62,11 @@ class TsdfBlockPool {
   std::size_t memory_bytes() const;
 
  private:
+  /// A huge page of voxels, and that of their colours.
+  struct Page {
+    int num_blocks = 0;
+    bool has_memory = true;
+  };
   struct Memory;
   struct Returns;
   struct Loan;
@@ -66,7 +79,9 @@ class TsdfBlockPool {
   ColorBlock* colors_;  ///< of slot 0, in memory_
   std::vector<BlockCoord> coords_;
   std::vector<std::uint8_t> holders_;
-  std::vector<BlockSlot> free_;
+  std::vector<Page> pages_;
+  std::size_t num_without_memory_ = 0;
+  std::priority_queue<BlockSlot, std::vector<BlockSlot>, std::greater<>> free_;
   std::shared_ptr<Returns> returns_;
 };
 

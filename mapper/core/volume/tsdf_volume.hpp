@@ -24,9 +24,9 @@ namespace kintsugi::mapper {
 /// view for longest leave.
 ///
 /// Memory: 4 KB a block; with voxels of 8.8 mm 11.8 MB for a cubic metre of blocks, 1.9 MB for a
-/// square metre of surface in a furnished room. It grows to the most that was ever needed at once
-/// for the region, the blocks that left last and the slices being extracted, whatever the length of
-/// the camera's path.
+/// square metre of surface in a furnished room. It is what is needed for the region, the blocks
+/// that left last and the slices being extracted, in pages of 4 MB, whatever the length of the
+/// camera's path.
 ///
 /// Not thread-safe, except that several threads may write different blocks.
 class TsdfVolume {

@@ -36,6 +36,7 @@ int whole_blocks(double offset_vox) {
 std::vector<DetachedBlocks> TsdfVolume::shift_to(const Eigen::Vector3d& camera_W,
                                                  const BeforeLeaving& before_leaving) {
   check_position(camera_W);
+  pool_.tidy();
   ++num_moves_;
   const Eigen::Vector3d offset_vox = (camera_W - center_W()) / config_.resolution_m;
   return region_.shape == RegionShape::kCube ? shift_cube(offset_vox)

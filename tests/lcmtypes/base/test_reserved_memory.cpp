@@ -34,6 +34,19 @@ TEST(ReservedMemory, IsZeroAgainAfterRelease) {
   EXPECT_EQ(memory.data()[999], std::byte{0});
 }
 
+TEST(ReservedMemory, OnlyADiscardedPageIsZeroAgain) {
+  constexpr std::size_t kPage = ReservedMemory::kPageBytes;
+  ReservedMemory memory(4 * kPage);
+  memory.commit(3 * kPage);
+  std::memset(memory.data(), 0xFF, 3 * kPage);
+  memory.discard_page(1);
+  memory.discard_page(3);  // not committed: nothing happens
+  EXPECT_EQ(memory.data()[kPage - 1], std::byte{0xFF});
+  EXPECT_EQ(memory.data()[kPage], std::byte{0});
+  EXPECT_EQ(memory.data()[2 * kPage - 1], std::byte{0});
+  EXPECT_EQ(memory.data()[2 * kPage], std::byte{0xFF});
+}
+
 TEST(ReservedMemory, ThrowsBeyondTheReservedRange) {
   ReservedMemory memory(5000);
   memory.commit(5000);

@@ -62,6 +62,31 @@ TEST(TsdfBlockPool, LeavesTheMemoryOfLoansThatOutliveIt) {
   EXPECT_EQ(voxels->voxels[3], 77U);
 }
 
+/// Where the camera goes over to other surface, all blocks are lent and as many take their place.
+TEST(TsdfBlockPool, GivesBackTheMemoryOfPagesWithoutABlock) {
+  constexpr std::size_t kPerPage = 1024;
+  TsdfBlockPool pool;
+  std::vector<BlockSlot> old(3 * kPerPage);
+  for (BlockSlot& slot : old) slot = pool.take(at(1));
+  const std::size_t bytes_of_old = pool.memory_bytes();
+  std::shared_ptr<const void> loan = pool.lend(old);
+  std::vector<BlockSlot> later(2 * kPerPage);
+  for (BlockSlot& slot : later) slot = pool.take(at(2));
+  pool.voxels(later.back()).voxels[3] = 77;
+  pool.tidy();
+  EXPECT_GT(pool.memory_bytes(), 1.6 * bytes_of_old) << "what is lent stays";
+  loan.reset();
+  pool.tidy();
+  EXPECT_LT(pool.memory_bytes(), 0.7 * bytes_of_old);
+  EXPECT_EQ(pool.voxels(later.back()).voxels[3], 77U);
+  const BlockSlot again = pool.take(at(3));
+  EXPECT_EQ(again, 0) << "the lowest one";
+  EXPECT_GT(pool.memory_bytes(), 0.95 * bytes_of_old) << "and with it its page";
+  pool.voxels(again).voxels[5] = 9;
+  pool.tidy();
+  EXPECT_EQ(pool.voxels(again).voxels[5], 9U) << "its page is in use";
+}
+
 TEST(TsdfBlockPool, KeepsBlocksOneAfterTheOther) {
   TsdfBlockPool pool;
   for (int i = 0; i < 3000; ++i) {
