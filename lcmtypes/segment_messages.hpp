@@ -132,6 +132,8 @@ enum class QueryPlace : std::int8_t {
   /// The segment of what the camera measures at pixel_px in the newest CameraView of the map: never
   /// a surface behind it.
   kPixel = 5,
+  /// No segments, but what the camera of the map saw.
+  kViews = 6,
 };
 
 /// Asks a segmenter for the segments at a place that pass every filter, ordered by their number of
@@ -153,8 +155,9 @@ struct SegmentQuery {
   double radius_m = 0.0;
   std::vector<std::uint32_t> segment_ids;  ///< kIds
   bool only_planar = false;                ///< only segments that are planar
-  std::int64_t changed_since = 0;  ///< only segments that changed after this device time; 0: all
-  std::int32_t max_segments = 0;   ///< only so many, the largest; 0: all
+  /// Only segments that changed after this device time, views that were taken then or later; 0: all
+  std::int64_t changed_since = 0;
+  std::int32_t max_segments = 0;  ///< only so many, the largest; 0: all
 
   bool operator==(const SegmentQuery&) const = default;
 };
@@ -209,6 +212,9 @@ struct SegmentAnswer {
   float surface_distance_m = 0.0F;
   std::vector<DescribedSegment> segments;  ///< the largest first
   std::vector<SegmentContact> contacts;    ///< of each of `segments`, by ascending ids
+  /// kViews: the oldest of the views that were asked for, as many as one answer may hold, in the
+  /// format of segmenter/io/views_file.hpp, with their poses as the map is corrected now.
+  std::vector<std::uint8_t> views;
 
   bool operator==(const SegmentAnswer&) const = default;
 };

@@ -35,6 +35,7 @@ static_assert(segment_query_t::PLACE_RAY == static_cast<int>(QueryPlace::kRay));
 static_assert(segment_query_t::PLACE_BOX == static_cast<int>(QueryPlace::kBox));
 static_assert(segment_query_t::PLACE_IDS == static_cast<int>(QueryPlace::kIds));
 static_assert(segment_query_t::PLACE_PIXEL == static_cast<int>(QueryPlace::kPixel));
+static_assert(segment_query_t::PLACE_VIEWS == static_cast<int>(QueryPlace::kViews));
 
 template <>
 struct Small<SegmentQuery> : Shape<segment_query_t> {
@@ -76,7 +77,7 @@ struct Small<SegmentQuery> : Shape<segment_query_t> {
     check.not_negative("number", m.number);
     check.not_negative("map_session", m.map_session);
     check.text("map_name", m.map_name);
-    check.range("place", static_cast<int>(m.place), 0, static_cast<int>(QueryPlace::kPixel));
+    check.range("place", static_cast<int>(m.place), 0, static_cast<int>(QueryPlace::kViews));
     check_place(check, m);
     check.range("radius_m", m.radius_m, 0.0, kMaxQueryRadius_m);
     check.not_negative("changed_since", m.changed_since);
@@ -134,9 +135,10 @@ struct Bulk<SegmentAnswer> : PlacedByByte<segment_answer_t> {
     wire.num_segments = counts[0];
     wire.num_contacts = counts[1];
     wire.problem_bytes = counts[2];
+    wire.view_bytes = counts[3];
   }
   static Counts counts(const segment_answer_t& wire) {
-    return {wire.num_segments, wire.num_contacts, wire.problem_bytes, 0};
+    return {wire.num_segments, wire.num_contacts, wire.problem_bytes, wire.view_bytes};
   }
 
   static void check_header(const Check& check, const SegmentAnswer& answer, const Counts& counts) {
@@ -170,6 +172,7 @@ struct Bulk<SegmentAnswer> : PlacedByByte<segment_answer_t> {
     function(answer.segments);
     function(answer.contacts);
     function(answer.problem);
+    function(answer.views);
   }
 
  private:

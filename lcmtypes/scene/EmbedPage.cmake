@@ -3,7 +3,7 @@
 # The modules are joined in the order in which they need each other, so that the page is the same
 # script in a program and in one file: their imports are left out, and what they export is visible
 # to those behind them.
-set(modules math palette arena shaders renderer orbit tiles live embedded panel main)
+set(modules math palette arena shaders renderer orbit tiles live embedded panel objects main)
 set(js "'use strict';\n")
 foreach(module IN LISTS modules)
   file(READ ${PAGE}/${module}.js text)

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <fstream>
+#include <sstream>
 #include <stdexcept>
 #include <system_error>
+#include <utility>
 
 #include <zlib.h>
 
@@ -31,11 +34,16 @@ RecordReader::RecordReader(const std::filesystem::path& path)
     error = std::make_error_code(std::errc::invalid_argument);
   }
   if (!error) {
-    file_.open(path, std::ios::binary);
-    if (!file_) error = std::error_code(errno, std::generic_category());
+    in_ = std::make_unique<std::ifstream>(path, std::ios::binary);
+    if (!*in_) error = std::error_code(errno, std::generic_category());
   }
   if (error) throw std::system_error(error, "cannot read " + name_);
 }
+
+RecordReader::RecordReader(std::span<const std::uint8_t> bytes, std::string name)
+    : name_(std::move(name)),
+      in_(std::make_unique<std::istringstream>(std::string(bytes.begin(), bytes.end()))),
+      size_(bytes.size()) {}
 
 void RecordReader::check_checksum() {
   constexpr std::size_t kPieceBytes = std::size_t{1} << 20;
@@ -43,7 +51,7 @@ void RecordReader::check_checksum() {
   require(1, sizeof(std::uint32_t));
   std::vector<std::byte> piece(std::min<std::uint64_t>(size_, kPieceBytes));
   std::uint32_t crc = 0;
-  file_.seekg(0);
+  in_->seekg(0);
   for (position_ = 0; left() > sizeof(crc);) {
     const auto bytes =
         std::span(piece).first(std::min<std::uint64_t>(left() - sizeof(crc), piece.size()));
@@ -55,7 +63,7 @@ void RecordReader::check_checksum() {
          std::to_string(crc) + ": the file is damaged");
   }
   position_ = place;
-  file_.seekg(static_cast<std::streamoff>(place));
+  in_->seekg(static_cast<std::streamoff>(place));
 }
 
 void RecordReader::fail(const std::string& reason) const {
@@ -70,8 +78,8 @@ void RecordReader::require(std::uint64_t count, std::size_t record_bytes) const 
 }
 
 void RecordReader::read_bytes(std::span<std::byte> bytes) {
-  file_.read(reinterpret_cast<char*>(bytes.data()), std::ssize(bytes));
-  if (!file_) fail("cannot be read to its end");
+  in_->read(reinterpret_cast<char*>(bytes.data()), std::ssize(bytes));
+  if (!*in_) fail("cannot be read to its end");
   position_ += bytes.size();
 }
 

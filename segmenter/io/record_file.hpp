@@ -5,7 +5,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
+#include <istream>
+#include <memory>
 #include <ostream>
 #include <span>
 #include <string>
@@ -46,6 +47,8 @@ class RecordReader {
  public:
   /// @throws std::runtime_error when `path` cannot be read
   explicit RecordReader(const std::filesystem::path& path);
+  /// Reads bytes that are in memory. @param name what errors call them
+  RecordReader(std::span<const std::uint8_t> bytes, std::string name);
 
   std::uint64_t size() const { return size_; }
   /// Bytes from the current position to the end.
@@ -80,7 +83,7 @@ class RecordReader {
   void read_bytes(std::span<std::byte> bytes);
 
   std::string name_;
-  std::ifstream file_;
+  std::unique_ptr<std::istream> in_;
   std::uint64_t size_ = 0;
   std::uint64_t position_ = 0;
 };

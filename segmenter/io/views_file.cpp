@@ -4,9 +4,12 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
+#include <ostream>
 #include <span>
+#include <sstream>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -200,22 +203,13 @@ KeptView read_view(RecordReader& file, std::size_t number, std::int64_t utime_be
   return view;
 }
 
-}  // namespace
-
-std::filesystem::path views_file_of(const std::filesystem::path& saved_map) {
-  std::filesystem::path path = saved_map;
-  path += ".views";
-  return path;
-}
-
-void write_views(const ViewSet& views, const std::filesystem::path& path) {
+void write(const ViewSet& views, std::ostream& stream) {
   Header header;
   header.map_session = views.map_session;
   header.num_name_bytes = static_cast<std::uint32_t>(views.map_name.size());
   header.num_views = static_cast<std::uint32_t>(views.views.size());
   for (const KeptView& view : views.views) header.num_depth_bytes += view.packed_depth->size();
-  AtomicFile file(path);
-  RecordWriter out(file.stream());
+  RecordWriter out(stream);
   out.write(Start{});
   out.write(header);
   out.write_all(std::span<const char>(views.map_name));
@@ -224,11 +218,9 @@ void write_views(const ViewSet& views, const std::filesystem::path& path) {
     out.write_all(std::span<const std::uint8_t>(*view.packed_depth));
   }
   out.write_checksum();
-  file.commit();
 }
 
-ViewSet read_views(const std::filesystem::path& path) {
-  RecordReader file(path);
+ViewSet read(RecordReader& file) {
   read_start(file);
   const Header header = read_header(file);
   file.check_checksum();
@@ -246,6 +238,38 @@ ViewSet read_views(const std::filesystem::path& path) {
     file.fail("expected the checksum here: the views have not the depth the header tells");
   }
   return views;
+}
+
+}  // namespace
+
+std::filesystem::path views_file_of(const std::filesystem::path& saved_map) {
+  std::filesystem::path path = saved_map;
+  path += ".views";
+  return path;
+}
+
+void write_views(const ViewSet& views, const std::filesystem::path& path) {
+  AtomicFile file(path);
+  write(views, file.stream());
+  file.commit();
+}
+
+ViewSet read_views(const std::filesystem::path& path) {
+  RecordReader file(path);
+  return read(file);
+}
+
+std::vector<std::uint8_t> view_bytes(const ViewSet& views) {
+  std::ostringstream stream;
+  stream.exceptions(std::ios::badbit | std::ios::failbit);
+  write(views, stream);
+  const std::string_view bytes = stream.view();
+  return {bytes.begin(), bytes.end()};
+}
+
+ViewSet views_of_bytes(std::span<const std::uint8_t> bytes, const std::string& source) {
+  RecordReader reader(bytes, source);
+  return read(reader);
 }
 
 ViewSet read_views_of(const std::filesystem::path& path, std::int64_t map_session,

@@ -1,9 +1,11 @@
 #pragma once
-// What the camera saw, in a file beside the saved map.
+// What the camera saw, in a file beside the saved map, and as bytes in answers on the bus.
 
 #include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "segmenter/views/kept_view.hpp"
 
@@ -21,6 +23,13 @@ void write_views(const ViewSet& views, const std::filesystem::path& path);
 /// against its checksum, before anything is made of it; every depth image can be unpacked.
 /// @throws std::runtime_error naming the file, the place, the reason and what was expected
 ViewSet read_views(const std::filesystem::path& path);
+
+/// What write_views() would write.
+std::vector<std::uint8_t> view_bytes(const ViewSet& views);
+
+/// Reads what view_bytes() made, as read_views() does. @param source what errors call it
+/// @throws std::runtime_error naming the source, the place, the reason and what was expected
+ViewSet views_of_bytes(std::span<const std::uint8_t> bytes, const std::string& source);
 
 /// The same of the map of this session.
 /// @throws std::runtime_error also when the views are of another map

@@ -11,6 +11,7 @@
 
 #include "lcmtypes/bus/message_subscriber.hpp"
 #include "lcmtypes/channels.hpp"
+#include "segmenter/io/views_file.hpp"
 #include "segmenter/query/answer.hpp"
 #include "segmenter/query/choose_map.hpp"
 
@@ -51,11 +52,13 @@ SegmentAnswer refusal(const SegmentQuery& query, const std::string& problem) {
 }  // namespace
 
 QueryResponder::QueryResponder(Bus* bus, std::int64_t session, std::function<void()> on_work,
-                               std::function<void(const CameraView&)> on_view)
+                               std::function<void(const CameraView&)> on_view,
+                               const ViewRecorder* recorded)
     : bus_(bus),
       session_(session),
       on_work_(std::move(on_work)),
       views_(std::move(on_view)),
+      recorded_(recorded),
       thread_([this] { run(); }) {}
 
 QueryResponder::~QueryResponder() {
@@ -193,7 +196,19 @@ void QueryResponder::drop(const SegmentQuery& query) {
 }
 
 SegmentAnswer QueryResponder::current_answer(const SegmentQuery& query) const {
-  return needs_excerpt(query) ? answer(excerpt_, query) : answer(copy_->map, query);
+  if (!needs_excerpt(query)) return answer(copy_->map, query);
+  SegmentAnswer result = answer(excerpt_, query);
+  if (query.place == QueryPlace::kViews) result.views = recorded_views(query);
+  return result;
+}
+
+std::vector<std::uint8_t> QueryResponder::recorded_views(const SegmentQuery& query) const {
+  const auto all = recorded_ == nullptr ? nullptr : recorded_->views(excerpt_.map_session);
+  if (all == nullptr) return {};
+  const auto first =
+      std::ranges::lower_bound(all->views, query.changed_since, {}, &KeptView::utime);
+  const auto count = std::min<std::ptrdiff_t>(kMaxViews, all->views.end() - first);
+  return view_bytes({all->map_session, all->map_name, {first, first + count}});
 }
 
 void QueryResponder::run() {

@@ -11,11 +11,13 @@
 #include <mutex>
 #include <optional>
 #include <thread>
+#include <vector>
 
 #include "lcmtypes/bus/bus.hpp"
 #include "lcmtypes/stream/stream_publisher.hpp"
 #include "segmenter/map/map_snapshot.hpp"
 #include "segmenter/process/camera_views.hpp"
+#include "segmenter/process/view_recorder.hpp"
 #include "segmenter/query/map_excerpt.hpp"
 #include "segmenter/session/session_maps.hpp"
 
@@ -36,12 +38,17 @@ class QueryResponder {
  public:
   using Clock = std::chrono::steady_clock;
 
+  /// How many views one answer holds: 3.5 MB, which a third of a second is enough to send.
+  static constexpr std::size_t kMaxViews = 200;
+
   /// @param bus must outlive this; null: answers nothing
   /// @param session of this segmenter
   /// @param on_work called from any thread when serve() should be called soon
   /// @param on_view called with each view that is received; may be empty
+  /// @param recorded what queries for views are answered from; must outlive this; null: no views
   QueryResponder(Bus* bus, std::int64_t session, std::function<void()> on_work,
-                 std::function<void(const CameraView&)> on_view = {});
+                 std::function<void(const CameraView&)> on_view = {},
+                 const ViewRecorder* recorded = nullptr);
   /// Waits until the current answer is sent.
   ~QueryResponder();
   QueryResponder(const QueryResponder&) = delete;
@@ -76,6 +83,7 @@ class QueryResponder {
   void prepare(const SegmentMap& map, const SegmentQuery& query);
   void begin(const SegmentQuery& query);
   SegmentAnswer current_answer(const SegmentQuery& query) const;
+  std::vector<std::uint8_t> recorded_views(const SegmentQuery& query) const;
   void drop(const SegmentQuery& query);
   void run();
   template <class MakeAnswer>
@@ -85,6 +93,7 @@ class QueryResponder {
   std::int64_t session_;
   std::function<void()> on_work_;
   CameraViews views_;
+  const ViewRecorder* recorded_;
   // The next two are used by the thread while it is busy, else by serve():
   std::unique_ptr<Copy> copy_;
   MapExcerpt excerpt_;

@@ -31,12 +31,12 @@ SegmenterProcess::SegmenterProcess(const Config& config)
       bus_(config.log.empty() || config.publish ? std::make_unique<Bus>(config.lcm_url) : nullptr),
       updates_(config.publish ? bus_.get() : nullptr, session_, config.updates),
       queue_(config.max_queue_bytes),
-      views_(config.segmentation.files.save_file.empty()
-                 ? nullptr
-                 : std::make_unique<ViewRecorder>(config.segmentation.maps.map_name)),
+      views_(config.publish || !config.segmentation.files.save_file.empty()
+                 ? std::make_unique<ViewRecorder>(config.segmentation.maps.map_name)
+                 : nullptr),
       queries_(
           config.publish ? bus_.get() : nullptr, session_, [this] { queue_.wake(); },
-          [this](const CameraView& view) { keep(view); }),
+          [this](const CameraView& view) { keep(view); }, views_.get()),
       receiver_({session_, config.segmentation.maps.map_name, config.max_queue_bytes}, queue_,
                 views_.get()),
       loop_(config.segmentation, session_,
@@ -164,6 +164,7 @@ void SegmenterProcess::publish_status() {
   SegmenterStatus status = make_status(counts, receiver_.counts(), updates_.counts());
   status.session = session_;
   status.messages_bad += queries_.messages_bad();
+  report_refused(status);
   status.mode = config_.segmentation.maps.map.mode;
   status.finished = counts.complete && nothing_is_queued();
   status.lingering = is_lingering_;

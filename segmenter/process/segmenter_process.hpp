@@ -83,7 +83,7 @@ class SegmenterProcess {
   std::unique_ptr<Bus> bus_;  // null: nothing is received from it or published
   UpdatePublisher updates_;
   SliceQueue queue_;
-  std::unique_ptr<ViewRecorder> views_;  // null: no map is saved
+  std::unique_ptr<ViewRecorder> views_;  // null: nobody can ask for them, and no map is saved
   QueryResponder queries_;
   SliceReceiver receiver_;
   SegmentationLoop loop_;

@@ -37,8 +37,10 @@ std::optional<Hit> find_hit(const LabelledCloud& cloud, const SegmentQuery& quer
     case QueryPlace::kRay:
       return visible_point(cloud, {vector(query.point_W), vector(query.direction_W)},
                            radius_m(cloud, query));
-    default:
+    case QueryPlace::kPixel:
       return find_at_pixel(cloud, query, view, found);
+    default:
+      return std::nullopt;
   }
 }
 

@@ -75,6 +75,7 @@ bool needs_excerpt(const SegmentQuery& query) {
     case QueryPlace::kPoint:
     case QueryPlace::kRay:
     case QueryPlace::kPixel:
+    case QueryPlace::kViews:
       return true;
     case QueryPlace::kIds:
       return query.segment_ids.size() <= kFewIds;

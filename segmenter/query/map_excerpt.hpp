@@ -38,7 +38,7 @@ struct MapExcerpt {
 };
 
 /// Whether an excerpt is all that the answer needs, and much less than the map: the query is about
-/// one point, ray or pixel, or about few segments.
+/// one point, ray or pixel, about few segments, or about views, which are not in the map.
 bool needs_excerpt(const SegmentQuery& query);
 
 /// Takes what needs_excerpt() queries need of a map that is not changing meanwhile, into existing

@@ -125,6 +125,21 @@ Sights ObservedSpace::sights(const Eigen::Vector3f& p_W) const {
   return sights;
 }
 
+std::vector<std::size_t> ObservedSpace::views_of(const Eigen::Vector3f& center_W,
+                                                 float radius_m) const {
+  std::vector<std::size_t> views;
+  for (std::size_t view = 0; view < cones_.size(); ++view) {
+    if (cones_[view].may_show(center_W, radius_m)) views.push_back(view);
+  }
+  return views;
+}
+
+Sights ObservedSpace::sights(const Eigen::Vector3f& p_W, std::span<const std::size_t> views) const {
+  Sights sights;
+  for (const std::size_t view : views) look(view, p_W, sights);
+  return sights;
+}
+
 std::vector<Sights> ObservedSpace::sights(std::span<const Eigen::Vector3f> points_W) const {
   std::vector<std::pair<Cell, std::uint32_t>> by_cell;
   by_cell.reserve(points_W.size());
@@ -146,13 +161,10 @@ std::vector<Sights> ObservedSpace::sights(std::span<const Eigen::Vector3f> point
         (Eigen::Vector3f(static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)) +
          Eigen::Vector3f::Constant(0.5F));
     const float radius_m = 0.5F * std::sqrt(3.0F) * kCell_m * 1.01F;  // 1 %: rounding
-    std::vector<std::size_t> shown_in;
-    for (std::size_t view = 0; view < cones_.size(); ++view) {
-      if (cones_[view].may_show(center_W, radius_m)) shown_in.push_back(view);
-    }
+    const std::vector<std::size_t> views = views_of(center_W, radius_m);
     for (std::size_t k = begins[cell]; k < begins[cell + 1]; ++k) {
       const std::uint32_t i = by_cell[k].second;
-      for (const std::size_t view : shown_in) look(view, points_W[i], all[i]);
+      all[i] = sights(points_W[i], views);
     }
   });
   return all;

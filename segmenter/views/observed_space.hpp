@@ -37,6 +37,13 @@ class ObservedSpace {
   /// by more than a voxel and three standard deviations of the camera's depth there.
   [[nodiscard]] Sights sights(const Eigen::Vector3f& p_W) const;
 
+  /// The views that may show something of a sphere, by their number: all that matter to a place in
+  /// it.
+  [[nodiscard]] std::vector<std::size_t> views_of(const Eigen::Vector3f& center_W,
+                                                  float radius_m) const;
+  /// What some of the views tell about a place.
+  [[nodiscard]] Sights sights(const Eigen::Vector3f& p_W, std::span<const std::size_t> views) const;
+
   /// The same of many places, on all cores: places that are near each other share the search for
   /// the views that may show them.
   [[nodiscard]] std::vector<Sights> sights(std::span<const Eigen::Vector3f> points_W) const;

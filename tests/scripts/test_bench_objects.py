@@ -11,7 +11,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "scripts" / "lib"))
 
-from bench import large_maps, object_libraries, objects, summary, tables  # noqa: E402
+from bench import large_maps, object_delays, object_libraries, objects, summary, tables  # noqa: E402
 
 PLY = ("ply\nformat binary_little_endian 1.0\nelement vertex 2\nproperty float x\nproperty uint segment_id\n"
        "property uchar red\nend_header\n").encode()
@@ -102,16 +102,18 @@ def scores(precision=0.9, recall=None):
 class Tables(unittest.TestCase):
     def test_targets_stand_beside_what_was_measured(self):
         changed = {name: scores() for name in ("office-later", "office-again")}
-        found = {name: (scores(recall=0.5), []) for name in ("kitchen", "office-later")}
+        found = {"kitchen": [(scores(), [])] * 2, "office-later": [(scores(), [])]}
         costs = {40: (0.3, 954, 10.0), 1000: (7.0, 954, 25.0)}
-        told = {"delay_median_s": 1.25, "delay_p99_s": 3.0}
-        rows = [row[1] for row in objects.target_rows(changed, found, costs, told)]
-        self.assertEqual(rows, ["0.90 / not measured", "0.17 (1 of 6)", 2, "0.90 / 0.50", "0.90 / 0.50", "1.25 / 3.00",
-                                "2.50 times"])
-        text = tables.markdown(["what", "measured", "target"], objects.target_rows(changed, found, costs, told))
+        walks = [object_delays.Walk([3.0, 0.0], 0.08), object_delays.Walk([1.25], 0.05), object_delays.Walk([], None)]
+        targets = objects.target_rows(changed, found, costs, walks, object_delays.Walk([0.5], 0.01))
+        rows = [row[1] for row in targets]
+        self.assertEqual(rows, ["0.90 / not measured", "0.17 (1 of 6)", 2, "0.60 / 0.75", "0.60 / 0.75", "1.25 / 3.00",
+                                "0.50 / 0.50", "6.5", "2.50 times"])
+        text = tables.markdown(["what", "measured", "target"], targets)
         self.assertIn("| office: 0.90 / not measured |", summary.summary({"objects": text}))
-        self.assertIn("| kitchen: 0.90 / 0.50 |", summary.summary({"objects": text}))
-        self.assertEqual(objects.delay_text(None), "not measured")
+        self.assertIn("| kitchen: 0.60 / 0.75 |", summary.summary({"objects": text}))
+        self.assertEqual(object_delays.text([]), "not measured")
+        self.assertEqual(object_delays.percent([object_delays.Walk([], None)]), "not measured")
         self.assertEqual(objects.cost_rows(costs)[1], ["1,000", "kitchen", "7.00", 954, "25.0", "26.2"])
         large = {objects.LARGE_MAP: (0.3, 970, 10.0)}
         self.assertEqual(objects.cost_rows(large)[0][:2], ["40", "kitchen, 4 million points"])
@@ -121,7 +123,9 @@ class Tables(unittest.TestCase):
                     {"points": "700", "translation_cm": "3.00", "rotation_deg": ""},
                     {"points": "600", "translation_cm": "", "rotation_deg": ""},
                     {"points": "250", "translation_cm": "9.00", "rotation_deg": "9.00"}]
-        rows = objects.found_rows({"kitchen": (scores(), outcomes)})
+        rows = objects.found_rows({"kitchen": [(scores(), outcomes[:2]), (scores(), outcomes[2:])]})
+        self.assertEqual([row[:6] for row in rows],
+                         [["kitchen, 2 walks", size, 8, 6, 10, 6] for size in ("50 to 199", "200 to 499", "500 and more")])
         self.assertEqual([row[-2:] for row in rows], [[None, None], ["9.0", "9.0"], ["2.0", "4.0"]])
         tables.markdown(["a"] * len(rows[0]), rows)
 

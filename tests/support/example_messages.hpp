@@ -267,6 +267,7 @@ inline SegmentAnswer example_answer(int num_segments) {
     const auto id = static_cast<std::uint32_t>(i + 1);
     answer.segments.push_back(example_described_segment(id));
     if (i % 3 == 0) answer.contacts.push_back({id, id + 5, 40});
+    answer.views.push_back(static_cast<std::uint8_t>(i));
   }
   return answer;
 }

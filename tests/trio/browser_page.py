@@ -38,6 +38,26 @@ FIND = """(() => {
   return null;
 })()"""
 
+# Two known objects in the middle of the map, and one in another part of it: their names on the page, in the list.
+OBJECTS = """(() => {
+  const {page} = kintsugi;
+  const [min, max] = page.tiles.box();
+  const t = min.map((low, i) => (low + max[i]) / 2 + page.tiles.origin[i]);
+  const at = {q: [0, 0, 0, 1], box_min_O: [-0.2, -0.2, -0.2], box_max_O: [0.2, 0.2, 0.2]};
+  page.objects.set([{...at, t, name: 'mug', confirmed: true}, {...at, t, name: '<i>cup</i>', confirmed: false},
+    {...at, t: t.map((x) => x + 1000), name: 'elsewhere', confirmed: true}], page.tiles.box(), page.tiles.origin);
+  page.overview();
+  page.frame(0);
+  const names = [...document.querySelectorAll('#names span')];
+  const {bottom, top} = names[0].getBoundingClientRect();
+  const other = names[1].getBoundingClientRect();
+  const canvas = document.getElementById('map');
+  return {names: names.map((e) => e.textContent), list: document.getElementById('object_list').textContent,
+    overlap: top < other.bottom && other.top < bottom,
+    shown: names.every((e) => !e.hidden && e.getBoundingClientRect().right <= canvas.clientWidth),
+    lines: page.objects.lines.positions.length};
+})()"""
+
 
 def check(condition, what):
     if not condition:
@@ -78,6 +98,14 @@ def main():
         browser.run("const i = document.getElementById('min_points'); i.value = '1000000000';"
                     " i.dispatchEvent(new Event('input'))")
         check(browser.run(f"return {listed}") == 0, "a segment has a thousand million points")
+
+        objects = browser.run(f"return {OBJECTS}")
+        check(objects["names"] == ["mug", "<i>cup</i>"] and objects["shown"], f"names of objects: {objects}")
+        check(objects["list"] == "mugconfirmed<i>cup</i>found", f"list of objects: {objects['list']!r}")
+        check(not objects["overlap"], "the names of two objects cover each other")
+        check(objects["lines"] == 12 * 6 * (1 + 7), f"{objects['lines']} coordinates of lines of a box and a dashed box")
+        if len(sys.argv) > 2:
+            browser.picture(sys.argv[2].replace(".png", "_objects.png"))
 
         check(not browser.messages(), f"errors in the browser: {browser.messages()}")
         outside = browser.run("return performance.getEntriesByType('resource').map((e) => e.name)"

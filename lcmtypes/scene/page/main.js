@@ -3,6 +3,7 @@
 import {EmbeddedSource} from './embedded.js';
 import {LiveSource} from './live.js';
 import {add, rotated, rotationRows, sub} from './math.js';
+import {Objects} from './objects.js';
 import {Orbit} from './orbit.js';
 import {Panel} from './panel.js';
 import {Renderer} from './renderer.js';
@@ -29,6 +30,7 @@ class Page {
       this.look.selected = id;
       this.redraw();
     }, (segment) => this.goTo(segment));
+    this.objects = new Objects(element('map'), (box) => this.goTo(box));
     this.budget = kMaxDrawn;
     this.epoch = 0;
     this.version = 0;
@@ -56,7 +58,7 @@ class Page {
       this.look.backs = event.target.checked;
       this.redraw();
     });
-    element('path').addEventListener('change', () => this.redraw());
+    for (const id of ['path', 'boxes']) element(id).addEventListener('change', () => this.redraw());
     element('overview').addEventListener('click', () => this.overview());
     element('part').addEventListener('change', (event) => {
       this.chosenPart = event.target.value === 'camera' ? null : Number(event.target.value);
@@ -106,7 +108,8 @@ class Page {
       this.panel.apply(await this.source.segments(this.epoch, this.segmentsVersion));
       this.segmentsVersion = state.segments_version;
     }
-    if (await this.showCamera() || !isSame) this.redraw();
+    const areObjectsNew = this.objects.set(state.objects, this.tiles.box(), this.tiles.origin);
+    if (await this.showCamera() || areObjectsNew || !isSame) this.redraw();
     this.wake?.();
   }
 
@@ -211,7 +214,10 @@ class Page {
     this.frames.moving = false;
     this.view = this.orbit.view();
     this.batches = this.tiles.select(this.view, moving ? this.budget : Math.max(this.budget, kMaxStill));
-    this.renderer.draw(this.batches, this.view, this.look, element('path').checked ? this.lines : []);
+    const lines = element('path').checked ? [...this.lines] : [];
+    if (element('boxes').checked) lines.push(this.objects.lines);
+    this.renderer.draw(this.batches, this.view, this.look, lines);
+    this.objects.placeNames(this.view, element('boxes').checked);
     if (moving) this.countFrame(now);
     this.wake?.();
   }
@@ -247,9 +253,10 @@ class Page {
     this.orbit.isFree = false;
   }
 
-  goTo(segment) {
+  /** `box_min`, `box_max`: of what is to fill the view; W, metres. */
+  goTo({box_min: min, box_max: max}) {
     const origin = this.tiles.origin;
-    this.orbit.fit(sub(segment.box_min, origin), sub(segment.box_max, origin));
+    this.orbit.fit(sub(min, origin), sub(max, origin));
     this.orbit.distance *= 1.3;
     this.orbit.changed();
   }
@@ -266,7 +273,7 @@ class Page {
     return {points_known: known, points_held: this.tiles.held, points_drawn: this.tiles.drawn ?? 0,
       tiles: this.tiles.byId.size, bytes: this.source.bytes, block_bytes: this.tiles.bytes,
       is_waiting: this.tiles.nextRequest() === null, selected: this.look.selected,
-      segments: this.panel.segments.size, version: this.version,
+      segments: this.panel.segments.size, objects: this.objects.shown.length, version: this.version,
       multi_draw: Boolean(this.renderer.multi)};
   }
 

@@ -1,5 +1,7 @@
 // The colours of segments: the same for an id as in the pictures of kintsugi-viewer.
 
+export const kObjectColour = [90, 225, 255];  // boxes of known objects
+
 function hsvChannel(offset, hue, saturation, value) {
   const k = (offset + 6 * hue) % 6;
   const ramp = Math.min(Math.max(Math.min(k, 4 - k), 0), 1);

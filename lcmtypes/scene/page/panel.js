@@ -7,7 +7,7 @@ const kAskAgain_ms = 3000;  // about a segment that changes
 const byId = (id) => document.getElementById(id);
 const metres = (v) => `${v.map((x) => x.toFixed(2)).join(', ')} m`;
 
-function made(tag, properties, ...children) {
+export function made(tag, properties, ...children) {
   const element = Object.assign(document.createElement(tag), properties);
   element.append(...children);
   return element;

@@ -5,6 +5,8 @@ import json
 import math
 import re
 
+NOT_MEASURED = "not measured"
+
 
 def markdown(header, rows):
     """A Markdown table; None is an empty cell."""

@@ -142,6 +142,14 @@ class BoxContents {
   std::vector<std::pair<double, std::int64_t>> counts_;  // after each change
 };
 
+std::optional<double> cpu_share_of(ByteView message) {
+  try {
+    return decode<DetectorStatus>(message).cpu_share;
+  } catch (const DecodeError&) {
+    return std::nullopt;
+  }
+}
+
 std::vector<BoxContents> read_contents(const std::filesystem::path& path,
                                        const std::vector<Told>& told, DetectionTimes& result) {
   std::vector<BoxContents> contents;
@@ -151,8 +159,11 @@ std::vector<BoxContents> read_contents(const std::filesystem::path& path,
   const std::int64_t session = told.front().last.map_session;
   PatchMotions motions;
   double now_s = 0.0;
+  std::optional<double> cpu_share;
   StreamSubscriber<CloudSlice> slices(channels::kCloudSlice, [&](const CloudSlice& slice) {
-    if (slice.session != session || slice.superseded) return;
+    if (slice.session != session) return;
+    result.cpu_share = cpu_share;
+    if (slice.superseded) return;
     motions.learn(slice);
     const std::vector<CloudPoint> points_W = moved(slice.points_W, motions.place_of(slice).X_WP);
     for (BoxContents& box : contents) box.take(slice, points_W, now_s);
@@ -161,6 +172,7 @@ std::vector<BoxContents> read_contents(const std::filesystem::path& path,
   while (const auto event = log.next()) {
     now_s = seconds(event->utime);
     slices.handle(event->channel, event->data);
+    if (event->channel == channels::kDetectorStatus) cpu_share = cpu_share_of(event->data);
   }
   if (log.damage()) result.remarks.push_back(*log.damage());
   if (const auto missing = slices.counts().chunks_missing; missing > 0) {
@@ -199,7 +211,7 @@ std::optional<double> DetectionTimes::delay_of_whole_s(double quantile) const {
 }
 
 DetectionTimes read_detection_times(const std::filesystem::path& path) {
-  DetectionTimes result{.source = path.string(), .detections = {}, .remarks = {}};
+  DetectionTimes result{.source = path.string(), .detections = {}, .cpu_share = {}, .remarks = {}};
   const ToldById by_id = read_told(path, result);
   if (by_id.empty()) {
     throw std::runtime_error(path.string() + ": holds no detected object (" +
@@ -232,6 +244,9 @@ std::string to_text(const DetectionTimes& times) {
     text += fmt::format("{:>22.2f}  {:>25.2f}  {}\n", *times.delay_s(share),
                         *times.delay_of_whole_s(share), title);
   }
+  if (times.cpu_share) {
+    text += fmt::format("the detector used {:.1f} % of a core\n", 100 * *times.cpu_share);
+  }
   return text;
 }
 
@@ -257,6 +272,7 @@ std::string to_json(const DetectionTimes& times) {
                   {"delay_p99_s", json(times.delay_s(0.99))},
                   {"delay_of_whole_median_s", json(times.delay_of_whole_s(0.5))},
                   {"delay_of_whole_p99_s", json(times.delay_of_whole_s(0.99))},
+                  {"cpu_share", json(times.cpu_share)},
                   {"detections", list}};
   return root.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -28,6 +28,9 @@ struct DetectionTime {
 struct DetectionTimes {
   std::string source;  ///< the file
   std::vector<DetectionTime> detections;
+  /// Of a core, as the detector told before the last slice: in the minute before, or since its
+  /// start. Nothing: it told nothing.
+  std::optional<double> cpu_share;
   std::vector<std::string> remarks;  ///< what a reader of the results must know
   bool is_whole = true;              ///< false: the log is damaged or lacks messages
 
@@ -35,8 +38,8 @@ struct DetectionTimes {
   [[nodiscard]] std::optional<double> delay_of_whole_s(double quantile) const;
 };
 
-/// Reads CLOUD_SLICE and OBJECT_DETECTION from a log of the bus. Of several detectors the last one
-/// counts.
+/// Reads CLOUD_SLICE, OBJECT_DETECTION and DETECTOR_STATUS from a log of the bus. Of several
+/// detectors the last one counts.
 /// @throws std::runtime_error when `path` cannot be read, is no LCM log, or has no detections
 DetectionTimes read_detection_times(const std::filesystem::path& path);
 

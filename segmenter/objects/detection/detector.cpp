@@ -14,6 +14,13 @@ constexpr std::int64_t kConfirmed_us = 1'000'000;
 // Of logarithms: 10 %, less than things of one place differ.
 constexpr float kSameLight = 0.1F;
 
+// Segments that are examined at once: enough for all cores, and done in some tens of milliseconds.
+constexpr std::size_t kMany = 16;
+
+bool is_same_light(const Eigen::Vector3f& log_change) {
+  return log_change.cwiseAbs().maxCoeff() < kSameLight;
+}
+
 bool is_active(const Detection& detection) { return detection.event != DetectionEvent::kGone; }
 
 bool share_segments(const Recognition& a, const Recognition& b) {
@@ -29,15 +36,19 @@ bool is_same(const Placement& a, const Placement& b) {
 
 }  // namespace
 
+Detector::Detector(std::shared_ptr<const ObjectRecognizer> recognizer)
+    : recognizer_(std::move(recognizer)),
+      scene_(recognizer_->resolution_m()),
+      observed_(recognizer_->resolution_m()),
+      recognitions_(*recognizer_, scene_) {}
+
 Detector::Detector(std::vector<ObjectModel> models, float resolution_m)
-    : recognizer_(std::move(models), resolution_m),
-      scene_(resolution_m),
-      observed_(resolution_m),
-      recognitions_(recognizer_, scene_) {}
+    : Detector(std::make_shared<const ObjectRecognizer>(std::move(models), resolution_m)) {}
 
 void Detector::set_piece(std::int32_t id, LabelledMap::Points points_W,
                          std::vector<std::uint32_t> segment_ids, std::int64_t utime) {
   utime_ = std::max(utime_, utime);
+  is_checking_all_ = false;
   const std::set<std::uint32_t> changed =
       scene_.set_piece(id, std::move(points_W), std::move(segment_ids));
   changed_.insert(changed.begin(), changed.end());
@@ -53,22 +64,36 @@ void Detector::set_piece(std::int32_t id, LabelledMap::Points points_W,
 
 void Detector::set_views(std::span<const MapView> views) {
   observed_.clear();
+  add_views(views);
+}
+
+void Detector::add_views(std::span<const MapView> views) {
   for (const MapView& view : views) observed_.add(view);
   scene_.set_observed(observed_.empty() ? nullptr : &observed_);
 }
 
 void Detector::examine_all() {
+  const std::optional<LightChange> change = recognitions_.light();
+  is_light_expected_ =
+      change && is_same_light(change->log_gain) && scene_.light().log_gain.isZero();
   is_light_settled_ = false;
+  is_checking_all_ = true;
   begin_again({});
 }
 
-/// Where something was recognised comes first: it is there still, most often.
+/// What nobody has examined yet comes first, since nothing of it was told. Where something was
+/// recognised comes next: it is there still, most often.
 void Detector::begin_again(const LightChange& light) {
+  std::vector<std::uint32_t> first = waiting_.in_order();
   const std::set<std::uint32_t> seeds = recognitions_.seeds();
+  first.insert(first.end(), seeds.begin(), seeds.end());
+  for (Detection& detection : detections_) {  // its light is beside that of the scene
+    detection.recognition.placement.light.log_gain += scene_.light().log_gain - light.log_gain;
+  }
   scene_.set_light(light);
   recognitions_.forget_all();
   waiting_.clear();
-  for (const std::uint32_t seed : seeds) wait_for(seed, true);
+  for (const std::uint32_t segment : first) wait_for(segment, true);
   for (const std::uint32_t segment : map().segments()) {
     changed_.insert(segment);
     wait_for(segment);
@@ -81,7 +106,7 @@ void Detector::settle_light() {
   const std::optional<LightChange> change = recognitions_.light();
   if (!change) return;
   is_light_settled_ = true;
-  if (change->log_gain.cwiseAbs().maxCoeff() < kSameLight) return;
+  if (is_same_light(change->log_gain)) return;
   LightChange light;
   light.log_gain = scene_.light().log_gain + change->log_gain;
   begin_again(light);
@@ -93,49 +118,67 @@ void Detector::wait_for(std::uint32_t segment, bool is_urgent) {
 
 void Detector::examine_next() {
   if (waiting_.empty()) return;
+  const std::uint32_t segment = waiting_.pop();
+  examine(std::span(&segment, 1));
+}
+
+void Detector::examine_many() {
+  std::vector<std::uint32_t> segments;
+  while (segments.size() < kMany && !waiting_.empty()) segments.push_back(waiting_.pop());
+  examine(segments);
+}
+
+void Detector::examine(std::span<const std::uint32_t> segments) {
   if (!changed_.empty()) {
     recognitions_.forget(changed_);
     changed_.clear();
   }
-  const std::uint32_t segment = waiting_.pop();
-  const bool may_change = recognitions_.examine(segment);
+  const bool may_change = recognitions_.examine(segments);
   if (waiting_.empty()) settle_light();
-  if (may_change) update_detections();
+  const bool is_light_open =
+      is_checking_all_ && !is_light_settled_ && !is_light_expected_ && !waiting_.empty();
+  if (is_light_open) return;
+  if (may_change || waiting_.empty()) update_detections();
   confirm_old_ones();
 }
 
 void Detector::update_detections() {
   std::set<std::int32_t> kept;  // numbers of detections that hold
-  std::vector<Recognition> others;
-  for (Recognition& recognition : recognitions_.best()) {
+  const std::vector<Recognition> best = certain();
+  std::vector<const Recognition*> others;
+  for (const Recognition& recognition : best) {
     Detection* const detection = same_place(recognition, kept);
     if (detection == nullptr) {
-      others.push_back(std::move(recognition));
+      others.push_back(&recognition);
       continue;
     }
     if (!is_same(detection->recognition.placement, recognition.placement)) {
       detection->change_number = ++num_changes_;
     }
-    detection->recognition = std::move(recognition);
+    detection->recognition = recognition;
     kept.insert(detection->number);
   }
-  for (Recognition& recognition : others) {
-    Detection* detection = vanished(recognition.model, kept);
-    const bool has_moved = detection != nullptr;
-    if (!has_moved) {
+  std::erase_if(others, [&](const Recognition* each) { return is_disputed(*each, kept); });
+  for (Detection& detection : detections_) {
+    if (!is_active(detection) || kept.contains(detection.number)) continue;
+    if (is_undecided(detection) || is_still_there(detection, best)) kept.insert(detection.number);
+  }
+  for (const Recognition* const recognition : others) {
+    Detection* detection = vanished(*recognition, kept);
+    const bool has_moved = detection != nullptr && !is_near(*detection, *recognition);
+    if (detection == nullptr) {
       detection = &detections_.emplace_back();
       detection->number = static_cast<std::int32_t>(detections_.size());
     }
-    detection->recognition = std::move(recognition);
+    detection->recognition = *recognition;
     detection->found_utime = utime_;
     kept.insert(detection->number);
     tell(*detection, has_moved ? DetectionEvent::kMoved : DetectionEvent::kFound);
   }
   for (Detection& detection : detections_) {
-    if (!is_active(detection) || kept.contains(detection.number) || is_undecided(detection)) {
-      continue;
+    if (is_active(detection) && !kept.contains(detection.number)) {
+      tell(detection, DetectionEvent::kGone);
     }
-    tell(detection, DetectionEvent::kGone);
   }
 }
 
@@ -154,31 +197,87 @@ Detection* Detector::same_place(const Recognition& recognition,
   for (Detection& detection : detections_) {
     if (!is_active(detection) || taken.contains(detection.number)) continue;
     if (detection.recognition.model != recognition.model) continue;
-    const double apart_m = (detection.recognition.placement.X_WO.translation() -
-                            recognition.placement.X_WO.translation())
-                               .norm();
-    // Its middle is still inside the object: other segments, but the same place.
-    const bool is_near = apart_m < recognizer_.radius_m(recognition.model) / 2;
-    if (is_near || share_segments(detection.recognition, recognition)) return &detection;
+    const bool is_same_place =
+        is_near(detection, recognition) || share_segments(detection.recognition, recognition);
+    if (is_same_place) return &detection;
   }
   return nullptr;
 }
 
-/// A detection of this object that does not hold any more: the object may have been moved.
-Detection* Detector::vanished(std::size_t model, const std::set<std::int32_t>& kept) {
+/// The nearest detection of this object that does not hold any more: the object may have been
+/// moved.
+Detection* Detector::vanished(const Recognition& recognition, const std::set<std::int32_t>& kept) {
+  Detection* nearest = nullptr;
   for (Detection& detection : detections_) {
-    if (detection.recognition.model != model || kept.contains(detection.number)) continue;
-    if (is_active(detection) && is_undecided(detection)) continue;
-    return &detection;
+    if (detection.recognition.model != recognition.model || kept.contains(detection.number)) {
+      continue;
+    }
+    const bool is_nearer = nearest == nullptr ||
+                           distance_m(detection, recognition) < distance_m(*nearest, recognition);
+    if (is_nearer) nearest = &detection;
   }
-  return nullptr;
+  return nearest;
 }
 
-/// Some of its segments wait to be examined.
+double Detector::distance_m(const Detection& detection, const Recognition& recognition) const {
+  return (detection.recognition.placement.X_WO.translation() -
+          recognition.placement.X_WO.translation())
+      .norm();
+}
+
+/// Its middle is still inside the object: other segments, perhaps, but the same place.
+bool Detector::is_near(const Detection& detection, const Recognition& recognition) const {
+  return distance_m(detection, recognition) < recognizer_->radius_m(recognition.model) / 2;
+}
+
+bool Detector::is_waiting(const Recognition& recognition) const {
+  return std::ranges::any_of(recognition.placement.segment_ids,
+                             [this](std::uint32_t id) { return waiting_.contains(id); });
+}
+
+/// Some of its segments wait to be examined, or some of all that have to be.
 bool Detector::is_undecided(const Detection& detection) const {
-  const std::vector<std::uint32_t>& ids = detection.recognition.placement.segment_ids;
-  return std::any_of(ids.begin(), ids.end(),
-                     [this](std::uint32_t id) { return waiting_.contains(id); });
+  if (is_checking_all_) return !waiting_.empty();
+  return is_waiting(detection.recognition);
+}
+
+/// What is recognised and holds. While all is examined once more, only that of which nothing waits
+/// that may tell otherwise.
+std::vector<Recognition> Detector::certain() const {
+  std::vector<Recognition> best = recognitions_.best();
+  if (is_checking_all_) {
+    std::erase_if(best, [this](const Recognition& each) { return is_waiting(each); });
+  }
+  return best;
+}
+
+/// While all is examined once more: whether something else was told of these segments, or this
+/// object elsewhere, and it is not known yet whether that holds.
+bool Detector::is_disputed(const Recognition& recognition,
+                           const std::set<std::int32_t>& kept) const {
+  if (!is_checking_all_ || waiting_.empty()) return false;
+  return std::ranges::any_of(detections_, [&](const Detection& detection) {
+    if (!is_active(detection) || kept.contains(detection.number)) return false;
+    return detection.recognition.model == recognition.model ||
+           share_segments(detection.recognition, recognition);
+  });
+}
+
+/// While the map grows, segments are cut anew, and then an object is not always recognised in one
+/// of them; it is not gone as long as the map shows it where it was, and nothing else there.
+bool Detector::is_still_there(Detection& detection, const std::vector<Recognition>& best) {
+  if (is_checking_all_) return false;  // what is found depends on the map alone
+  const Placement& last = detection.recognition.placement;
+  Recognition now{
+      .model = detection.recognition.model,
+      .placement = recognizer_->placement_at(detection.recognition.model,
+                                             {.X_WO = last.X_WO, .light = last.light}, scene_)};
+  const bool is_replaced = std::ranges::any_of(
+      best, [&now](const Recognition& other) { return share_segments(now, other); });
+  if (!is_recognized(now.placement) || is_replaced) return false;
+  recognitions_.add(now);
+  detection.recognition = std::move(now);
+  return true;
 }
 
 void Detector::tell(Detection& detection, DetectionEvent event) {

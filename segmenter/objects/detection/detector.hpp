@@ -2,6 +2,7 @@
 // Finds the objects of a library in a map while it grows, and tells what becomes of them.
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <set>
 #include <span>
@@ -35,6 +36,8 @@ struct Detection {
 /// last change.
 class Detector {
  public:
+  /// @param recognizer of the objects, for the resolution of the map
+  explicit Detector(std::shared_ptr<const ObjectRecognizer> recognizer);
   /// @param resolution_m voxel size of the map, > 0
   Detector(std::vector<ObjectModel> models, float resolution_m);
   Detector(const Detector&) = delete;  // its parts refer to each other
@@ -44,20 +47,29 @@ class Detector {
   /// @param utime device time of the map then, microseconds
   void set_piece(std::int32_t id, LabelledMap::Points points_W,
                  std::vector<std::uint32_t> segment_ids, std::int64_t utime);
-  /// What the cameras of the map saw.
+  /// What the cameras of the map saw. It counts for what is examined from now on.
   void set_views(std::span<const MapView> views);
-  /// Lets all segments wait: what depends on the whole map may have changed, also its light.
+  /// What they saw meanwhile.
+  void add_views(std::span<const MapView> views);
+  /// Lets all segments wait, those first that wait already: what depends on the whole map may have
+  /// changed, also its light. Nothing is told before the light is known, or before it is certain,
+  /// and nothing is gone before all was examined.
   void examine_all();
 
-  /// Examines one segment, if one waits, and updates the detections.
+  /// Examines the segment that waits and is next, if there is one, and updates the detections.
   void examine_next();
+  /// The same with several segments, on all cores.
+  void examine_many();
   [[nodiscard]] std::size_t num_waiting() const { return waiting_.size(); }
   /// Device time since which the segment waits that is examined next; nothing: none waits.
   [[nodiscard]] std::optional<std::int64_t> waiting_since_us() const { return waiting_.since_us(); }
 
   /// All detections, by number, gone ones included.
   [[nodiscard]] const std::vector<Detection>& detections() const { return detections_; }
-  [[nodiscard]] const std::vector<ObjectModel>& models() const { return recognizer_.models(); }
+  /// @param model as in Recognition
+  [[nodiscard]] const ObjectModel& model(std::size_t model) const {
+    return recognizer_->model(model);
+  }
   [[nodiscard]] std::int64_t num_events() const { return num_events_; }
   [[nodiscard]] std::int64_t num_changes() const { return num_changes_; }
   [[nodiscard]] std::int64_t num_candidates() const { return recognitions_.num_candidates(); }
@@ -67,18 +79,29 @@ class Detector {
   void wait_for(std::uint32_t segment, bool is_urgent = false);
   void begin_again(const LightChange& light);
   void settle_light();
+  void examine(std::span<const std::uint32_t> segments);
   void update_detections();
+  [[nodiscard]] std::vector<Recognition> certain() const;
   void confirm_old_ones();
   [[nodiscard]] Detection* same_place(const Recognition& recognition,
                                       const std::set<std::int32_t>& taken);
-  [[nodiscard]] Detection* vanished(std::size_t model, const std::set<std::int32_t>& kept);
+  [[nodiscard]] Detection* vanished(const Recognition& recognition,
+                                    const std::set<std::int32_t>& kept);
+  [[nodiscard]] double distance_m(const Detection& detection, const Recognition& recognition) const;
+  [[nodiscard]] bool is_near(const Detection& detection, const Recognition& recognition) const;
+  [[nodiscard]] bool is_waiting(const Recognition& recognition) const;
   [[nodiscard]] bool is_undecided(const Detection& detection) const;
+  [[nodiscard]] bool is_disputed(const Recognition& recognition,
+                                 const std::set<std::int32_t>& kept) const;
+  [[nodiscard]] bool is_still_there(Detection& detection, const std::vector<Recognition>& best);
   void tell(Detection& detection, DetectionEvent event);
 
-  ObjectRecognizer recognizer_;
+  std::shared_ptr<const ObjectRecognizer> recognizer_;
   Scene scene_;
   ObservedSpace observed_;
   bool is_light_settled_ = false;
+  bool is_light_expected_ = false;  // what was recognised before tells the light of the scene
+  bool is_checking_all_ = false;    // since examine_all(), until the map changes
   Recognitions recognitions_;
   WaitingSegments waiting_;
   std::set<std::uint32_t> changed_;  // since the segment examined last

@@ -5,6 +5,8 @@
 #include <optional>
 #include <utility>
 
+#include <oneapi/tbb/parallel_for.h>
+
 #include "segmenter/objects/recognition/scene_light.hpp"
 
 namespace kintsugi::segmenter {
@@ -52,28 +54,74 @@ SceneLight light_of_recognitions(const std::vector<Recognition>& recognitions) {
   return light_of_scene(placements);
 }
 
+template <class Work>
+void for_each_of(std::size_t count, bool on_all_cores, const Work& work) {
+  if (on_all_cores) {
+    oneapi::tbb::parallel_for(std::size_t{0}, count, work);
+  } else {
+    for (std::size_t i = 0; i < count; ++i) work(i);
+  }
+}
+
 }  // namespace
 
-bool Recognitions::examine(std::uint32_t segment) {
-  const bool was_there = by_segment_.erase(segment) > 0;
-  if (scene_.map().num_points(segment) == 0) return was_there;
-  std::map<std::size_t, Recognition> best;  // by model
-  const std::vector<Candidate> candidates = candidates_of(
+bool Recognitions::examine(std::span<const std::uint32_t> segments) {
+  bool was_there = false;
+  for (const std::uint32_t segment : segments) was_there |= by_segment_.erase(segment) > 0;
+  std::vector<std::vector<Candidate>> candidates(segments.size());
+  for_each_of(segments.size(), segments.size() > 1,
+              [&](std::size_t i) { candidates[i] = candidates_at(segments[i]); });
+  recognize(candidates);
+  bool is_there = false;
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    keep_best(segments[i], candidates[i]);
+    is_there |= by_segment_.contains(segments[i]);
+  }
+  return was_there || is_there;
+}
+
+std::vector<Candidate> Recognitions::candidates_at(std::uint32_t segment) const {
+  if (scene_.map().num_points(segment) == 0) return {};
+  return candidates_of(
       segment, scene_.map(),
       [this](std::uint32_t id) -> const std::vector<SegmentNeighbour>& {
         return neighbours_of(id);
       },
       largest_box_m());
+}
+
+/// Those that are not known yet. Each is a matter of the scene alone, so that the order does not
+/// matter.
+void Recognitions::recognize(const std::vector<std::vector<Candidate>>& candidates) {
+  std::vector<std::pair<const Candidate, std::vector<Recognition>>*> unknown;
+  for (const std::vector<Candidate>& of_segment : candidates) {
+    for (const Candidate& candidate : of_segment) {
+      const auto [at, is_new] = by_candidate_.try_emplace(candidate);
+      if (is_new) unknown.push_back(&*at);
+    }
+  }
+  num_candidates_ += std::ssize(unknown);
+  for_each_of(unknown.size(), candidates.size() > 1, [&](std::size_t i) {
+    unknown[i]->second = recognizer_.recognize(unknown[i]->first, scene_);
+  });
+}
+
+void Recognitions::keep_best(std::uint32_t segment, const std::vector<Candidate>& candidates) {
+  std::map<std::size_t, Recognition> best;  // by model
   for (const Candidate& candidate : candidates) {
-    for (const Recognition& found : recognize(candidate)) {
+    for (const Recognition& found : by_candidate_.at(candidate)) {
       const auto [at, is_first] = best.try_emplace(found.model, found);
       if (!is_first && found.placement.score() > at->second.placement.score()) at->second = found;
     }
   }
-  if (best.empty()) return was_there;
+  if (best.empty()) return;
   std::vector<Recognition>& all = by_segment_[segment];
   for (auto& [model, recognition] : best) all.push_back(std::move(recognition));
-  return true;
+}
+
+void Recognitions::add(Recognition recognition) {
+  const std::uint32_t seed = recognition.placement.segment_ids.front();
+  by_segment_[seed].push_back(std::move(recognition));
 }
 
 std::set<std::uint32_t> Recognitions::seeds() const {
@@ -106,17 +154,8 @@ void Recognitions::forget_all() {
 }
 
 void Recognitions::forget(const std::set<std::uint32_t>& changed) {
-  for (const std::uint32_t segment : changed) neighbours_.erase(segment);
+  for (const std::uint32_t segment : changed) neighbours_.unsafe_erase(segment);
   by_candidate_.clear();
-}
-
-const std::vector<Recognition>& Recognitions::recognize(const Candidate& candidate) {
-  const auto [at, is_new] = by_candidate_.try_emplace(candidate);
-  if (is_new) {
-    ++num_candidates_;
-    at->second = recognizer_.recognize(candidate, scene_);
-  }
-  return at->second;
 }
 
 std::vector<Recognition> Recognitions::best() const {
@@ -138,7 +177,7 @@ float Recognitions::largest_box_m() const {
          2 * scene_.resolution_m();
 }
 
-const std::vector<SegmentNeighbour>& Recognitions::neighbours_of(std::uint32_t segment) {
+const std::vector<SegmentNeighbour>& Recognitions::neighbours_of(std::uint32_t segment) const {
   const auto known = neighbours_.find(segment);
   if (known != neighbours_.end()) return known->second;
   const Eigen::AlignedBox3f box = scene_.map().box_of(segment);
@@ -152,7 +191,8 @@ const std::vector<SegmentNeighbour>& Recognitions::neighbours_of(std::uint32_t s
     statistics.box_max_W[axis] = box.max()[axis];
   }
   const LabelledCloud cloud{excerpt.points_W, excerpt.segment_ids, scene_.resolution_m(), radius_m};
-  return neighbours_[segment] = kintsugi::segmenter::neighbours_of(cloud, statistics);
+  return neighbours_.emplace(segment, kintsugi::segmenter::neighbours_of(cloud, statistics))
+      .first->second;
 }
 
 }  // namespace kintsugi::segmenter

@@ -5,7 +5,10 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <span>
 #include <vector>
+
+#include <oneapi/tbb/concurrent_unordered_map.h>
 
 #include "segmenter/objects/detection/candidates.hpp"
 #include "segmenter/objects/recognition/object_recognizer.hpp"
@@ -20,9 +23,14 @@ class Recognitions {
   Recognitions(const ObjectRecognizer& recognizer, const Scene& scene)
       : recognizer_(recognizer), scene_(scene) {}
 
-  /// Examines the segment and its unions with neighbours again. One that does not exist any more is
-  /// forgotten. @return whether something may be recognised there now, or was before
-  bool examine(std::uint32_t segment);
+  /// Examines segments and their unions with neighbours again: one on this thread, several on all
+  /// cores. One that does not exist any more is forgotten.
+  /// @return whether something may be recognised there now, or was before
+  bool examine(std::span<const std::uint32_t> segments);
+
+  /// Something that was recognised otherwise: it counts until the first of its segments is examined
+  /// again.
+  void add(Recognition recognition);
 
   /// The segments at which something was recognised.
   [[nodiscard]] std::set<std::uint32_t> seeds() const;
@@ -47,12 +55,16 @@ class Recognitions {
 
  private:
   [[nodiscard]] float largest_box_m() const;
-  const std::vector<Recognition>& recognize(const Candidate& candidate);
-  const std::vector<SegmentNeighbour>& neighbours_of(std::uint32_t segment);
+  [[nodiscard]] std::vector<Candidate> candidates_at(std::uint32_t segment) const;
+  [[nodiscard]] const std::vector<SegmentNeighbour>& neighbours_of(std::uint32_t segment) const;
+  void recognize(const std::vector<std::vector<Candidate>>& candidates);
+  void keep_best(std::uint32_t segment, const std::vector<Candidate>& candidates);
 
   const ObjectRecognizer& recognizer_;
   const Scene& scene_;
-  std::map<std::uint32_t, std::vector<SegmentNeighbour>> neighbours_;
+  // Of those that were asked for.
+  mutable oneapi::tbb::concurrent_unordered_map<std::uint32_t, std::vector<SegmentNeighbour>>
+      neighbours_;
   std::map<std::uint32_t, std::vector<Recognition>> by_segment_;  // the best of each object
   /// What was found at each candidate since the map changed: most are those of several segments.
   std::map<Candidate, std::vector<Recognition>> by_candidate_;

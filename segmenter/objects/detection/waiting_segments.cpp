@@ -51,6 +51,12 @@ void WaitingSegments::clear() {
   others_.clear();
 }
 
+std::vector<std::uint32_t> WaitingSegments::in_order() const {
+  std::vector<std::uint32_t> all(urgent_.begin(), urgent_.end());
+  all.insert(all.end(), others_.begin(), others_.end());
+  return all;
+}
+
 std::optional<std::int64_t> WaitingSegments::since_us() const {
   if (empty()) return std::nullopt;
   return waiting_.at(next().front()).since_us;

@@ -6,6 +6,7 @@
 #include <deque>
 #include <map>
 #include <optional>
+#include <vector>
 
 namespace kintsugi::segmenter {
 
@@ -22,6 +23,8 @@ class WaitingSegments {
   /// Takes out the next one. There must be one.
   std::uint32_t pop();
   void clear();
+  /// All of them, in the order in which they would be examined.
+  [[nodiscard]] std::vector<std::uint32_t> in_order() const;
 
   /// Whether so many points are another segment than was examined last.
   [[nodiscard]] bool has_changed_much(std::uint32_t segment, std::int64_t num_points) const;

@@ -55,7 +55,10 @@ std::int32_t largest_part(const SegmentMapState& state) {
 void take_points(const SegmentMapState& state, std::int32_t part, ObservedMap& map) {
   map.points_W.reserve(state.points_W.size());
   map.segment_ids.reserve(state.points_W.size());
-  for (const SliceRecord& slice : state.slices) {
+  // By id, as who follows the map on the bus has them: both find the same to the last digit.
+  std::vector<SliceRecord> slices = state.slices;
+  std::ranges::sort(slices, {}, &SliceRecord::slice_id);
+  for (const SliceRecord& slice : slices) {
     if (slice.place.part != part) continue;
     for (std::size_t i = slice.first; i < std::size_t{slice.first} + slice.count; ++i) {
       map.points_W.push_back(state.points_W[i]);

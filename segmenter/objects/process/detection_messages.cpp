@@ -37,7 +37,7 @@ Json list_of(const float (&values)[3]) { return {values[0], values[1], values[2]
 
 ObjectDetection message_of(const Detection& detection, const Detector& detector,
                            const DetectionSource& source) {
-  const ObjectModel& model = detector.models()[detection.recognition.model];
+  const ObjectModel& model = detector.model(detection.recognition.model);
   const Placement& placement = detection.recognition.placement;
   ObjectDetection message;
   message.utime = source.utime;
@@ -94,8 +94,8 @@ std::string detections_text(const Detector& detector) {
     const Placement& placement = detection.recognition.placement;
     const Eigen::Vector3d t = placement.X_WO.translation();
     text << std::setw(9) << detection.number << "  " << std::left << std::setw(24)
-         << detector.models()[detection.recognition.model].name << std::right
-         << std::setprecision(2) << std::setw(7) << placement.score();
+         << detector.model(detection.recognition.model).name << std::right << std::setprecision(2)
+         << std::setw(7) << placement.score();
     for (int axis = 0; axis < 3; ++axis) text << std::setw(8) << t[axis];
     text << std::setw(8) << placement.points << ' ';
     for (const std::uint32_t id : placement.segment_ids) text << ' ' << id;

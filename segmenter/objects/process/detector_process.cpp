@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include <spdlog/spdlog.h>
@@ -22,6 +23,7 @@
 #include "segmenter/objects/library/object_library.hpp"
 #include "segmenter/objects/process/cpu_budget.hpp"
 #include "segmenter/objects/process/detection_messages.hpp"
+#include "segmenter/objects/process/followed_views.hpp"
 #include "segmenter/objects/process/map_detection.hpp"
 
 namespace kintsugi::segmenter {
@@ -36,9 +38,11 @@ constexpr milliseconds kStatusPeriod(500);
 constexpr milliseconds kRepeatPeriod(1000);  // of all detections, for those who come late
 constexpr std::size_t kLags = 1000;          // the newest, of which the status tells the median
 
+bool is_segment(std::uint32_t label) { return label != kNoSegment; }
+
 /// Names what is refused, once.
-ObjectLibrary read_library(const std::filesystem::path& folder) {
-  ObjectLibrary library = ObjectLibrary::read(folder);
+ObjectLibrary read_library(const std::filesystem::path& folder, const ObjectLibrary& earlier) {
+  ObjectLibrary library = ObjectLibrary::read(folder, earlier);
   for (const RefusedObject& refused : library.refusals()) {
     spdlog::warn("{} is not used: {}", refused.name, refused.reason);
   }
@@ -52,7 +56,8 @@ class DetectorProcess {
       : options_(options),
         bus_(options.lcm_url),
         client_(MapClient::connect({.url = options.lcm_url, .map_name = options.map_name})),
-        library_(read_library(options.library)),
+        views_(options.lcm_url),
+        library_(read_library(options.library, {})),
         budget_(options.cpu_share) {}
 
   int run() {
@@ -62,6 +67,7 @@ class DetectorProcess {
         100 * options_.cpu_share);
     while (!stop_requested() && !(options_.exit_on_final && is_finished_)) {
       receive();
+      if (detector_) views_.update(has_ended(), *detector_);
       examine();
       publish();
       tell_service_manager();
@@ -87,9 +93,12 @@ class DetectorProcess {
     // Points may come before the first update, which tells whose map it is.
     if (!dirty_.empty() && !detector_ && source_.map_session != 0) make_detector();
     if (!detector_) return;
-    for (const std::int32_t piece : dirty_) add_piece(piece);
-    if (!dirty_.empty()) is_complete_pass_ = false;
-    dirty_.clear();
+    const std::size_t num_added =
+        std::erase_if(dirty_, [this](std::int32_t piece) { return add_piece(piece); });
+    if (num_added > 0) {
+      is_complete_pass_ = false;
+      views_.go_on();
+    }
   }
 
   void begin_map(const SegmentUpdate& newest) {
@@ -106,45 +115,59 @@ class DetectorProcess {
     if (client_.resolution_m() <= 0.0F) return;
     if (has_numbers_) source_.session = std::max(new_session(), source_.session + 1);
     has_numbers_ = true;
-    detector_ = std::make_unique<Detector>(models_of(library_), client_.resolution_m());
+    recognizer_ = std::make_shared<const ObjectRecognizer>(
+        models_of(library_), client_.resolution_m(), recognizer_.get());
+    spdlog::info("{} objects prepared", recognizer_->num_prepared());
+    detector_ = std::make_unique<Detector>(recognizer_);
+    views_.begin(source_.map_session);
     published_ = 0;
     is_complete_pass_ = false;
     is_finished_ = false;
     budget_.begin();  // preparing the models is not work on the map
   }
 
-  void add_piece(std::int32_t piece) {
-    detector_->set_piece(piece, client_.points_W(piece), client_.labels(piece), source_.utime);
+  /// Points come before their labels: until these are there, the detector keeps the piece as it
+  /// was. Without segments, what is in it would seem to be gone.
+  bool add_piece(std::int32_t piece) {
+    LabelledMap::Points points_W = client_.points_W(piece);
+    std::vector<std::uint32_t> labels = client_.labels(piece);
+    const bool is_segmented = points_W->empty() || std::ranges::any_of(labels, is_segment);
+    if (!is_segmented && !has_ended()) return false;
+    detector_->set_piece(piece, std::move(points_W), std::move(labels), source_.utime);
+    return true;
   }
 
-  /// When the map is closed nothing comes any more that the processor would be needed for.
+  /// When the map is complete nothing comes any more that the processor would be needed for.
   bool may_work() { return client_.is_complete() || budget_.has_some(); }
+
+  [[nodiscard]] bool has_ended() const { return client_.is_complete() && client_.has_ended(); }
 
   void examine() {
     if (!detector_) return;
-    if (detector_->num_waiting() == 0) {
-      finish();
-      return;
-    }
+    if (has_ended() && views_.are_complete()) finish();
     const Clock::time_point begin = Clock::now();
     while (detector_->num_waiting() > 0 && Clock::now() - begin < kWait && may_work()) {
       const std::int64_t since_us = *detector_->waiting_since_us();
       const double cpu_s = CpuBudget::cpu_s();
-      detector_->examine_next();
+      if (client_.is_complete()) {
+        detector_->examine_many();
+      } else {
+        detector_->examine_next();
+      }
       worst_burst_s_ = std::max(worst_burst_s_, CpuBudget::cpu_s() - cpu_s);
       lags_ms_.push_back(1e-3 * static_cast<double>(source_.utime - since_us));
       if (lags_ms_.size() > kLags) lags_ms_.pop_front();
     }
   }
 
-  /// Once more all of a closed map: then the detections depend on the map and the library alone.
+  /// Once more all of a closed map: then the detections depend on the map, what the cameras saw of
+  /// it and the library alone.
   void finish() {
-    if (!client_.is_complete() || !client_.has_ended()) return;
     if (!is_complete_pass_) {
       is_complete_pass_ = true;
       detector_->examine_all();
-      return;
     }
+    if (detector_->num_waiting() > 0) return;
     if (!is_finished_) spdlog::info("the map is complete and examined");
     is_finished_ = true;
   }
@@ -188,7 +211,7 @@ class DetectorProcess {
   void reload_library() {
     try {
       if (!library_.has_changed()) return;
-      library_ = read_library(options_.library);
+      library_ = read_library(options_.library, library_);
       problem_.clear();
     } catch (const std::exception& error) {
       if (problem_ != error.what()) spdlog::error("{}", error.what());
@@ -224,6 +247,7 @@ class DetectorProcess {
     // That there is no map yet is told by map_session.
     const bool has_map = source_.map_session != 0;
     status.problem = problem_.empty() && has_map ? client_.problem() : problem_;
+    report_refused(status);
     bus_.publish(channels::kDetectorStatus, status);
   }
 
@@ -262,10 +286,12 @@ class DetectorProcess {
   const DetectorOptions options_;
   Bus bus_;  // for what is published
   MapClient client_;
+  FollowedViews views_;
   ObjectLibrary library_;
   CpuBudget budget_;
   CpuShare share_;
-  std::unique_ptr<Detector> detector_;  // null: no map is known yet
+  std::shared_ptr<const ObjectRecognizer> recognizer_;  // null: none was needed yet
+  std::unique_ptr<Detector> detector_;                  // null: no map is known yet
   DetectionSource source_{.map = "", .session = new_session()};
   bool has_numbers_ = false;      // detections were numbered in the session
   std::set<std::int32_t> dirty_;  // pieces that the detector has not, or not as they are

@@ -24,7 +24,7 @@ MapDetection detect_in(const ObservedMap& map, const ObjectLibrary& library) {
   detector.set_views(map.views);
   detector.examine_all();
   found.cost.num_segments = detector.num_waiting();
-  while (detector.num_waiting() > 0) detector.examine_next();
+  while (detector.num_waiting() > 0) detector.examine_many();
   found.cost.prepare_s = prepared_s - start_s;
   found.cost.examine_s = CpuBudget::cpu_s() - prepared_s;
   return found;

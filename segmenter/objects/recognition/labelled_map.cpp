@@ -36,12 +36,9 @@ LabelledMap::Change LabelledMap::set_piece(std::int32_t id, Points points_W,
   const bool is_new = old == pieces_.end();
   const bool has_new_points = is_new || old->second.points_W != piece.points_W;
   if (!is_new) {
+    // A patch is sent again as a whole, also when little of it has changed.
     for (const auto& [segment, part] : old->second.segments) {
-      // The same points in the same segment: nothing has changed.
-      const auto now = piece.segments.find(segment);
-      if (has_new_points || now == piece.segments.end() || now->second.indices != part.indices) {
-        change.segments.insert(segment);
-      }
+      if (!has_same_points(old->second, piece, segment)) change.segments.insert(segment);
     }
   }
   for (const auto& [segment, part] : piece.segments) {
@@ -55,6 +52,18 @@ LabelledMap::Change LabelledMap::set_piece(std::int32_t id, Points points_W,
   if (has_new_points) change.blocks.merge(add_points(id, piece));
   pieces_[id] = std::move(piece);
   return change;
+}
+
+/// In the same order. `a` has the segment.
+bool LabelledMap::has_same_points(const Piece& a, const Piece& b, std::uint32_t segment) {
+  const auto there = b.segments.find(segment);
+  if (there == b.segments.end()) return false;
+  const std::vector<std::uint32_t>& of_a = a.segments.at(segment).indices;
+  const std::vector<std::uint32_t>& of_b = there->second.indices;
+  if (a.points_W == b.points_W) return of_a == of_b;
+  return std::ranges::equal(of_a, of_b, [&](std::uint32_t i, std::uint32_t j) {
+    return (*a.points_W)[i] == (*b.points_W)[j];
+  });
 }
 
 void LabelledMap::remove_labels(std::int32_t id, const Piece& piece) {
@@ -94,6 +103,7 @@ std::set<BlockKey> LabelledMap::add_points(std::int32_t id, const Piece& piece) 
     blocks_[key].push_back({id, static_cast<std::uint32_t>(i)});
     changed.insert(key);
   }
+  for (const BlockKey& key : changed) std::ranges::sort(blocks_.at(key));
   up_.add(*piece.points_W);
   num_points_ += std::ssize(*piece.points_W);
   return changed;

@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <array>
+#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -46,11 +47,13 @@ class LabelledMap {
   struct PointRef {
     std::int32_t piece = 0;
     std::uint32_t index = 0;
+
+    auto operator<=>(const PointRef&) const = default;
   };
 
   /// What set_piece() has changed.
   struct Change {
-    std::set<std::uint32_t> segments;  ///< that lost or gained points
+    std::set<std::uint32_t> segments;  ///< that lost, gained or changed points
     std::set<BlockKey> blocks;         ///< in which points came or went; none: only labels changed
   };
 
@@ -70,7 +73,8 @@ class LabelledMap {
 
   [[nodiscard]] float block_m() const { return block_m_; }
   [[nodiscard]] BlockKey block_of(const Eigen::Vector3f& p_W) const;
-  /// All points of a block.
+  /// All points of a block, ascending: means over them must not depend on the order in which the
+  /// pieces came.
   [[nodiscard]] std::span<const PointRef> points_in(const BlockKey& block) const;
 
   /// All points in the box.
@@ -103,6 +107,7 @@ class LabelledMap {
     std::int64_t count = 0;
   };
 
+  static bool has_same_points(const Piece& a, const Piece& b, std::uint32_t segment);
   void remove_labels(std::int32_t id, const Piece& piece);
   void add_labels(std::int32_t id, const Piece& piece);
   std::set<BlockKey> remove_points(std::int32_t id, const Piece& piece);

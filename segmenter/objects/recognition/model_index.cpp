@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <tuple>
 #include <utility>
 
 #include <flann/flann.hpp>
@@ -49,13 +50,31 @@ ViewDescriptor deviation_between_views(const std::vector<IndexedView>& views) {
   return (squares / num_free).cwiseSqrt().cwiseMax(least_deviation());
 }
 
+/// Of a distance as ModelMatch has it: the sum over the elements.
+float squared(float distance) {
+  return distance * distance * static_cast<float>(kViewDescriptorSize);
+}
+
 }  // namespace
 
 struct ModelIndex::Search {
   ViewDescriptor inverse_deviation;
-  std::vector<std::size_t> models;  // of each view
-  std::vector<float> data;          // descriptors, one after the other
-  std::unique_ptr<flann::Index<flann::L2<float>>> index;
+  std::vector<IndexedView> views;  // scaled
+  std::vector<float> data;         // how their descriptors begin, one after the other
+  std::unique_ptr<flann::Index<flann::L2<float>>> index;  // of `data`
+
+  /// The views that are nowhere near farther off than `most_squared`: those whose beginnings are
+  /// nearer than that, ascending.
+  [[nodiscard]] std::vector<std::size_t> near(SizeAndColors scaled, float most_squared) const {
+    std::vector<std::vector<std::size_t>> found;
+    std::vector<std::vector<float>> squares;
+    flann::SearchParams parameters(flann::FLANN_CHECKS_UNLIMITED);
+    parameters.sorted = false;
+    index->radiusSearch(flann::Matrix<float>(scaled.data(), 1, kSizeAndColors), found, squares,
+                        most_squared, parameters);
+    std::ranges::sort(found.front());
+    return std::move(found.front());
+  }
 };
 
 ModelIndex::ModelIndex(const std::vector<IndexedView>& views)
@@ -63,17 +82,17 @@ ModelIndex::ModelIndex(const std::vector<IndexedView>& views)
   if (views.empty()) return;
   search_->inverse_deviation =
       deviation_between_views(views).cwiseInverse().cwiseProduct(weights());
-  search_->models.reserve(views.size());
-  search_->data.reserve(views.size() * kViewDescriptorSize);
-  for (const IndexedView& view : views) {
-    search_->models.push_back(view.model);
-    const ViewDescriptor scaled = view.descriptor.cwiseProduct(search_->inverse_deviation);
-    search_->data.insert(search_->data.end(), scaled.begin(), scaled.end());
+  search_->views = views;
+  search_->data.reserve(views.size() * kSizeAndColors);
+  for (IndexedView& view : search_->views) {
+    view.descriptor = view.descriptor.cwiseProduct(search_->inverse_deviation);
+    const auto beginning = view.descriptor.head<kSizeAndColors>();
+    search_->data.insert(search_->data.end(), beginning.begin(), beginning.end());
   }
   // Exact, so that the result is the same in every run: FLANN's trees for approximate search are
-  // random.
+  // random. Of the beginnings only, so that has_near() can ask it, too.
   search_->index = std::make_unique<flann::Index<flann::L2<float>>>(
-      flann::Matrix<float>(search_->data.data(), views.size(), kViewDescriptorSize),
+      flann::Matrix<float>(search_->data.data(), views.size(), kSizeAndColors),
       flann::KDTreeSingleIndexParams());
   search_->index->buildIndex();
 }
@@ -83,35 +102,35 @@ ModelIndex::ModelIndex(ModelIndex&&) noexcept = default;
 ModelIndex& ModelIndex::operator=(ModelIndex&&) noexcept = default;
 
 bool ModelIndex::has_near(const SizeAndColors& beginning, float distance) const {
-  const SizeAndColors scaled =
-      beginning.cwiseProduct(search_->inverse_deviation.head<kSizeAndColors>());
-  const float most = distance * distance * static_cast<float>(kViewDescriptorSize);
-  for (std::size_t i = 0; i < search_->models.size(); ++i) {
-    const Eigen::Map<const SizeAndColors> view(search_->data.data() + i * kViewDescriptorSize);
-    if ((view - scaled).squaredNorm() <= most) return true;
-  }
-  return false;
+  if (search_->views.empty()) return false;
+  const auto scale = search_->inverse_deviation.head<kSizeAndColors>();
+  return !search_->near(beginning.cwiseProduct(scale), squared(distance)).empty();
 }
 
-std::vector<ModelMatch> ModelIndex::nearest(const ViewDescriptor& descriptor,
-                                            std::size_t count) const {
-  std::vector<ModelMatch> matches;
-  if (search_->models.empty()) return matches;
-  ViewDescriptor scaled = descriptor.cwiseProduct(search_->inverse_deviation);
-  // An object has up to 17 views, so with as many neighbours there are at least `count` objects.
-  const std::size_t wanted = std::min(search_->models.size(), count * 17);
-  std::vector<int> indices(wanted);
-  std::vector<float> squares(wanted);
-  flann::Matrix<int> found(indices.data(), 1, wanted);
-  flann::Matrix<float> distances(squares.data(), 1, wanted);
-  search_->index->knnSearch(flann::Matrix<float>(scaled.data(), 1, kViewDescriptorSize), found,
-                            distances, wanted, flann::SearchParams(flann::FLANN_CHECKS_UNLIMITED));
-  for (std::size_t i = 0; i < wanted && matches.size() < count; ++i) {
-    const std::size_t model = search_->models[static_cast<std::size_t>(indices[i])];
-    const bool is_known = std::any_of(matches.begin(), matches.end(),
-                                      [model](const ModelMatch& m) { return m.model == model; });
-    if (is_known) continue;
-    matches.push_back({model, std::sqrt(squares[i] / static_cast<float>(kViewDescriptorSize))});
+std::vector<ModelMatch> ModelIndex::nearest(const ViewDescriptor& descriptor, std::size_t count,
+                                            float distance) const {
+  if (search_->views.empty()) return {};
+  const ViewDescriptor scaled = descriptor.cwiseProduct(search_->inverse_deviation);
+  const float most = squared(distance);
+  std::vector<ModelMatch> matches;  // the nearest view of each object; distances are squared yet
+  for (const std::size_t i : search_->near(scaled.head<kSizeAndColors>(), most)) {
+    const IndexedView& view = search_->views[i];
+    const float square = (view.descriptor - scaled).squaredNorm();
+    if (square > most) continue;
+    // Views of one object follow each other.
+    if (matches.empty() || matches.back().model != view.model) {
+      matches.push_back({view.model, square});
+    } else {
+      matches.back().distance = std::min(matches.back().distance, square);
+    }
+  }
+  const auto wanted = static_cast<std::ptrdiff_t>(std::min(count, matches.size()));
+  std::ranges::partial_sort(matches, matches.begin() + wanted, [](const auto& a, const auto& b) {
+    return std::tie(a.distance, a.model) < std::tie(b.distance, b.model);
+  });
+  matches.resize(static_cast<std::size_t>(wanted));
+  for (ModelMatch& match : matches) {
+    match.distance = std::sqrt(match.distance / static_cast<float>(kViewDescriptorSize));
   }
   return matches;
 }

@@ -35,9 +35,10 @@ class ModelIndex {
   /// Whether some view may be within `distance` of a descriptor that begins so.
   [[nodiscard]] bool has_near(const SizeAndColors& beginning, float distance) const;
 
-  /// The objects with the nearest views, nearest first, at most `count`.
-  [[nodiscard]] std::vector<ModelMatch> nearest(const ViewDescriptor& descriptor,
-                                                std::size_t count) const;
+  /// The objects with the nearest views, nearest first: at most `count`, and none that is farther
+  /// off than `distance`.
+  [[nodiscard]] std::vector<ModelMatch> nearest(const ViewDescriptor& descriptor, std::size_t count,
+                                                float distance) const;
 
  private:
   struct Search;

@@ -1,7 +1,11 @@
 #include "segmenter/objects/recognition/object_recognizer.hpp"
 
 #include <algorithm>
+#include <map>
+#include <string_view>
 #include <utility>
+
+#include <oneapi/tbb/parallel_for.h>
 
 #include "segmenter/objects/recognition/described_surface.hpp"
 #include "segmenter/objects/recognition/pose_search.hpp"
@@ -18,6 +22,7 @@ constexpr std::size_t kFew = 8;
 // In standard deviations between views of one object, on average over all elements. Candidates are
 // cut by occlusions and by segments that join other things, which simulated views are not.
 constexpr float kLargestDistance = 1.25F;
+constexpr float kAnyDistance = 1e6F;
 constexpr std::size_t kPoses = 3;  // tried of each object
 constexpr float kLeastAgreement =
     0.5F;  // of the candidate with an object: else most of it is something else
@@ -33,27 +38,62 @@ void keep_better(std::optional<Placement>& best, Placement placement) {
   if (!best || placement.score() > best->score()) best = std::move(placement);
 }
 
+/// As far as recognition is concerned.
+bool are_same(const ObjectModel& a, const ObjectModel& b) {
+  return a.name == b.name && a.resolution_m == b.resolution_m && a.points_O == b.points_O &&
+         a.views_O == b.views_O && a.empty_O == b.empty_O;
+}
+
+std::vector<ViewDescriptor> views_of(const PreparedModel& prepared) {
+  const float described_m = described_spacing_m(prepared.spacing_m);
+  return descriptors_of_views({thinned(prepared.surface_O, described_m), described_m});
+}
+
 }  // namespace
 
-ObjectRecognizer::ObjectRecognizer(std::vector<ObjectModel> models, float resolution_m)
-    : models_(std::move(models)), resolution_m_(resolution_m) {
-  std::vector<IndexedView> views;
-  prepared_.reserve(models_.size());
-  for (std::size_t i = 0; i < models_.size(); ++i) {
-    const float spacing_m = std::max(models_[i].resolution_m, resolution_m_);
-    prepared_.push_back(std::make_unique<const PreparedModel>(models_[i], spacing_m));
-    largest_radius_m_ = std::max(largest_radius_m_, prepared_[i]->radius_m);
-    const float described_m = described_spacing_m(spacing_m);
-    const DescribedSurface described(thinned(prepared_[i]->surface_O, described_m), described_m);
-    for (const ViewDescriptor& descriptor : descriptors_of_views(described)) {
-      views.push_back({i, descriptor});
+/// A model with what is computed of it alone.
+struct ObjectRecognizer::Known {
+  Known(ObjectModel model_, float resolution_m)
+      : model(std::move(model_)),
+        prepared(model, std::max(model.resolution_m, resolution_m)),
+        views(views_of(prepared)) {}
+
+  ObjectModel model;
+  PreparedModel prepared;
+  std::vector<ViewDescriptor> views;
+};
+
+ObjectRecognizer::ObjectRecognizer(std::vector<ObjectModel> models, float resolution_m,
+                                   const ObjectRecognizer* earlier)
+    : resolution_m_(resolution_m), known_(models.size()) {
+  if (earlier != nullptr && earlier->resolution_m_ == resolution_m) {
+    std::map<std::string_view, std::shared_ptr<const Known>> by_name;
+    for (const auto& known : earlier->known_) by_name.emplace(known->model.name, known);
+    for (std::size_t i = 0; i < models.size(); ++i) {
+      const auto known = by_name.find(models[i].name);
+      if (known == by_name.end() || !are_same(known->second->model, models[i])) continue;
+      known_[i] = known->second;
     }
+  }
+  num_prepared_ = static_cast<std::size_t>(std::ranges::count(known_, nullptr));
+  oneapi::tbb::parallel_for(std::size_t{0}, models.size(), [&](std::size_t i) {
+    if (known_[i]) return;
+    known_[i] = std::make_shared<const Known>(std::move(models[i]), resolution_m);
+  });
+  std::vector<IndexedView> views;
+  for (std::size_t i = 0; i < known_.size(); ++i) {
+    largest_radius_m_ = std::max(largest_radius_m_, prepared(i).radius_m);
+    for (const ViewDescriptor& view : known_[i]->views) views.push_back({i, view});
   }
   if (!views.empty()) index_.emplace(views);
 }
 
+const ObjectModel& ObjectRecognizer::model(std::size_t model) const {
+  return known_.at(model)->model;
+}
+
 const PreparedModel& ObjectRecognizer::prepared(std::size_t model) const {
-  return *prepared_.at(model);
+  return known_.at(model)->prepared;
 }
 
 std::vector<Recognition> ObjectRecognizer::recognize(const Candidate& candidate,
@@ -62,12 +102,14 @@ std::vector<Recognition> ObjectRecognizer::recognize(const Candidate& candidate,
   const Surface candidate_W = scene.surface_W(candidate);
   if (candidate_W.empty()) return {};
   const SizeAndColors beginning = scene.size_and_colors(candidate);
-  const bool is_choice = models_.size() > kFew;
+  const bool is_choice = known_.size() > kFew;
   if (is_choice && !index_->has_near(beginning, kLargestDistance)) return {};
   const ViewDescriptor descriptor = view_descriptor(beginning, scene.shape(candidate));
   std::vector<Recognition> found;
-  for (const ModelMatch& match : index_->nearest(descriptor, is_choice ? kTried : kFew)) {
-    if (is_choice && match.distance > kLargestDistance) break;
+  const std::vector<ModelMatch> matches =
+      is_choice ? index_->nearest(descriptor, kTried, kLargestDistance)
+                : index_->nearest(descriptor, kFew, kAnyDistance);
+  for (const ModelMatch& match : matches) {
     std::optional<Placement> placement = place(match.model, candidate_W, scene);
     if (!placement || !is_recognized(*placement)) continue;
     found.push_back({match.model, std::move(*placement)});
@@ -78,7 +120,7 @@ std::vector<Recognition> ObjectRecognizer::recognize(const Candidate& candidate,
 std::optional<Placement> ObjectRecognizer::place(std::size_t model, const Surface& part_W,
                                                  const Scene& scene) const {
   const PreparedModel& object = prepared(model);
-  std::vector<PoseHypothesis> poses = upright_poses(object, part_W, scene.map().up_W(), kPoses);
+  std::vector<PoseHypothesis> poses = upright_poses(object, part_W, scene.up_W(), kPoses);
   std::erase_if(poses, [](const PoseHypothesis& pose) { return pose.agreement < kLeastAgreement; });
   if (poses.empty()) return std::nullopt;
   std::optional<Placement> best;
@@ -89,6 +131,11 @@ std::optional<Placement> ObjectRecognizer::place(std::size_t model, const Surfac
     keep_better(best, placement_of(object, scene, refined_pose(object, whole_W, best->X_WO)));
   }
   return best;
+}
+
+Placement ObjectRecognizer::placement_at(std::size_t model, const PoseHypothesis& hypothesis,
+                                         const Scene& scene) const {
+  return placement_of(prepared(model), scene, hypothesis);
 }
 
 bool is_recognized(const Placement& placement) {

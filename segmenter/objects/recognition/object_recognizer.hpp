@@ -17,17 +17,25 @@ namespace kintsugi::segmenter {
 
 /// An object where it was recognised.
 struct Recognition {
-  std::size_t model = 0;  ///< index in ObjectRecognizer::models()
+  std::size_t model = 0;  ///< for ObjectRecognizer::model()
   Placement placement;
 };
 
 class ObjectRecognizer {
  public:
+  /// Prepares the models on all cores: some milliseconds of processor time for each.
   /// @param models in an order that is kept
   /// @param resolution_m voxel size of the map, > 0
-  ObjectRecognizer(std::vector<ObjectModel> models, float resolution_m);
+  /// @param earlier one that has prepared some of the same models, which is not done again for the
+  ///   same resolution; nullptr: there is none
+  ObjectRecognizer(std::vector<ObjectModel> models, float resolution_m,
+                   const ObjectRecognizer* earlier = nullptr);
 
-  [[nodiscard]] const std::vector<ObjectModel>& models() const { return models_; }
+  [[nodiscard]] float resolution_m() const { return resolution_m_; }
+  [[nodiscard]] std::size_t num_models() const { return known_.size(); }
+  [[nodiscard]] const ObjectModel& model(std::size_t model) const;
+  /// How many models it has prepared itself.
+  [[nodiscard]] std::size_t num_prepared() const { return num_prepared_; }
   /// Half the diagonal of the largest object; 0 without objects.
   [[nodiscard]] float largest_radius_m() const { return largest_radius_m_; }
   [[nodiscard]] float radius_m(std::size_t model) const { return prepared(model).radius_m; }
@@ -42,13 +50,20 @@ class ObjectRecognizer {
   [[nodiscard]] std::optional<Placement> place(std::size_t model, const Surface& part_W,
                                                const Scene& scene) const;
 
+  /// What speaks for an object that is at a place in some light.
+  [[nodiscard]] Placement placement_at(std::size_t model, const PoseHypothesis& hypothesis,
+                                       const Scene& scene) const;
+
  private:
+  struct Known;
+  using KnownModels = std::vector<std::shared_ptr<const Known>>;
+
   [[nodiscard]] const PreparedModel& prepared(std::size_t model) const;
 
-  std::vector<ObjectModel> models_;
   float resolution_m_;
+  KnownModels known_;
+  std::size_t num_prepared_ = 0;
   float largest_radius_m_ = 0.0F;
-  std::vector<std::unique_ptr<const PreparedModel>> prepared_;
   std::optional<ModelIndex> index_;
 };
 

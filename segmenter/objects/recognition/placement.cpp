@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cstddef>
 #include <map>
+#include <span>
+#include <vector>
 
 #include "segmenter/objects/recognition/lit_model.hpp"
 
@@ -75,8 +77,9 @@ bool is_in_view(const Surface& seen_W, const Eigen::Vector3f& normal_W) {
 enum class Evidence : std::uint8_t { kSeen, kContradicted, kUnknown };
 
 /// @param model_W the point of this number of the model, where the hypothesis puts it
+/// @param views of the scene that may show the object
 Evidence evidence_at(std::size_t model_point, const SurfacePoint& model_W, float within_m,
-                     const Scene& scene, LitModel& lit) {
+                     const Scene& scene, std::span<const std::size_t> views, LitModel& lit) {
   const SceneSurface& surface_W = scene.surface();
   const SurfacePoint* const seen =
       surface_W.nearest(model_W.position, within_m, facing(model_W.normal));
@@ -87,10 +90,17 @@ Evidence evidence_at(std::size_t model_point, const SurfacePoint& model_W, float
   if (surface_W.nearest(model_W.position, within_m, any_point) != nullptr) {
     return Evidence::kUnknown;
   }
-  const ObservedSpace* const observed = scene.observed();
-  if (observed == nullptr || observed->empty()) return Evidence::kUnknown;
-  const Sights sights = observed->sights(model_W.position);
+  if (views.empty()) return Evidence::kUnknown;
+  const Sights sights = scene.observed()->sights(model_W.position, views);
   return sights.through > sights.measured ? Evidence::kContradicted : Evidence::kUnknown;
+}
+
+/// The views that may show an object there.
+std::vector<std::size_t> views_of(const PreparedModel& model, const Scene& scene,
+                                  const Pose& X_WO) {
+  if (scene.observed() == nullptr) return {};
+  const Eigen::AlignedBox3f box_W = box_around(model, X_WO);
+  return scene.observed()->views_of(box_W.center(), 0.5F * box_W.diagonal().norm());
 }
 
 /// Counts of points of the map.
@@ -177,6 +187,7 @@ void add_evidence(const PreparedModel& model, const Scene& scene, const Surface&
                   LitModel& lit, Placement& placement) {
   const Surface seen_W = every_few(explained_W, kSeenNormals);
   const Eigen::Isometry3f X_WO = placement.X_WO.cast<float>();
+  const std::vector<std::size_t> views = views_of(model, scene, placement.X_WO);
   const std::size_t samples = std::min(kModelSamples, model.surface_O.size());
   float seen = 0.0F;
   float contradicted = 0.0F;
@@ -185,7 +196,7 @@ void add_evidence(const PreparedModel& model, const Scene& scene, const Surface&
     SurfacePoint point_W = model.surface_O[i];
     point_W.position = X_WO * point_W.position;
     point_W.normal = X_WO.linear() * point_W.normal;
-    switch (evidence_at(i, point_W, kSameDistance * model.spacing_m, scene, lit)) {
+    switch (evidence_at(i, point_W, kSameDistance * model.spacing_m, scene, views, lit)) {
       case Evidence::kSeen:
         seen += 1.0F;
         break;

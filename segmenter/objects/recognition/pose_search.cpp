@@ -87,9 +87,14 @@ bool may_be_same(const SurfacePoint& o, const SurfacePoint& u) {
 }
 
 /// The pairs that speak for each turn: normals that are not upright tell it.
-std::vector<std::vector<Pair>> pairs_by_turn(const Surface& voters_O, const Surface& voters_U,
-                                             int turns) {
-  std::vector<std::vector<Pair>> by_turn(static_cast<std::size_t>(turns));
+struct PairsOfTurns {
+  std::vector<std::vector<Pair>> by_turn;
+  std::vector<Pair> of_all_turns;
+};
+
+PairsOfTurns pairs_of_turns(const Surface& voters_O, const Surface& voters_U, int turns) {
+  PairsOfTurns result{.by_turn = std::vector<std::vector<Pair>>(static_cast<std::size_t>(turns)),
+                      .of_all_turns = {}};
   const float turn_rad = 2 * std::numbers::pi_v<float> / static_cast<float>(turns);
   const auto azimuth = [](const SurfacePoint& point) {
     return std::atan2(point.normal.y(), point.normal.x());
@@ -108,17 +113,17 @@ std::vector<std::vector<Pair>> pairs_by_turn(const Surface& voters_O, const Surf
       if (!may_be_same(o, u)) continue;
       const Pair pair{o.position, u.position};
       if (is_upright(o) || is_upright(u)) {
-        for (std::vector<Pair>& pairs : by_turn) pairs.push_back(pair);
+        result.of_all_turns.push_back(pair);
         continue;
       }
       const int middle =
           static_cast<int>(std::lround((azimuths_U[i] - azimuth_O) / turn_rad)) + 2 * turns;
       for (int turn = middle - around; turn <= middle + around; ++turn) {
-        by_turn[static_cast<std::size_t>(turn % turns)].push_back(pair);
+        result.by_turn[static_cast<std::size_t>(turn % turns)].push_back(pair);
       }
     }
   }
-  return by_turn;
+  return result;
 }
 
 /// Where O's origin may be in U if the object has half of the points or more.
@@ -160,13 +165,16 @@ std::vector<Vote> votes_for_turns(const PreparedModel& model, const Surface& see
   std::vector<Vote> votes;
   votes.reserve(static_cast<std::size_t>(turns));
   int turn = 0;
-  for (const std::vector<Pair>& pairs : pairs_by_turn(voters_O, voters_U, turns)) {
+  const PairsOfTurns all_pairs = pairs_of_turns(voters_O, voters_U, turns);
+  for (const std::vector<Pair>& pairs : all_pairs.by_turn) {
     const Eigen::Matrix3d R_UO =
         Eigen::AngleAxisd(2 * std::numbers::pi * turn++ / turns, Eigen::Vector3d::UnitZ())
             .toRotationMatrix();
     const Eigen::Matrix3f R = R_UO.cast<float>();
     accumulator.clear();
-    for (const Pair& pair : pairs) accumulator.add(pair.position_U - R * pair.position_O);
+    for (const std::vector<Pair>* const some : {&pairs, &all_pairs.of_all_turns}) {
+      for (const Pair& pair : *some) accumulator.add(pair.position_U - R * pair.position_O);
+    }
     const auto [t_U, count] = accumulator.best();
     if (count == 0) continue;
     Pose X_UO = Pose::Identity();

@@ -20,24 +20,40 @@ std::set<std::uint32_t> Scene::set_piece(std::int32_t id, LabelledMap::Points po
                                          std::vector<std::uint32_t> segment_ids) {
   LabelledMap::Change change = map_.set_piece(id, std::move(points_W), std::move(segment_ids));
   surface_.forget(change.blocks);
-  for (const std::uint32_t segment : change.segments) segments_.erase(segment);
+  for (const std::uint32_t segment : change.segments) {
+    segments_.unsafe_erase(segment);
+    shapes_.unsafe_erase(segment);
+  }
   return std::move(change.segments);
 }
 
+Eigen::Vector3d Scene::up_W() const {
+  const std::lock_guard lock(up_mutex_);
+  return map_.up_W();
+}
+
 void Scene::set_light(const LightChange& light) {
+  if (light.log_gain == light_.log_gain) return;
   light_ = light;
   surface_.set_gain((-light.log_gain.array()).exp());
   segments_.clear();
 }
 
-Scene::SegmentSurface& Scene::segment(std::uint32_t id) const {
+const Scene::SegmentSurface& Scene::segment(std::uint32_t id) const {
   const auto known = segments_.find(id);
   if (known != segments_.end()) return known->second;
   SegmentSurface segment;
   segment.surface_W = thinned(map_.points_of(id), resolution_m_);
   relight(segment.surface_W, (-light_.log_gain.array()).exp());
   segment.described_W = thinned(segment.surface_W, described_spacing_m(resolution_m_));
-  return segments_[id] = std::move(segment);
+  return segments_.emplace(id, std::move(segment)).first->second;
+}
+
+const ShapeFeature& Scene::shape_of(std::uint32_t id) const {
+  const auto known = shapes_.find(id);
+  if (known != shapes_.end()) return known->second;
+  const DescribedSurface described(segment(id).described_W, described_spacing_m(resolution_m_));
+  return shapes_.emplace(id, described.features.rowwise().mean()).first->second;
 }
 
 Surface Scene::surface_W(std::span<const std::uint32_t> segments) const {
@@ -62,14 +78,10 @@ ShapeFeature Scene::shape(std::span<const std::uint32_t> segments) const {
   ShapeFeature sum = ShapeFeature::Zero();
   float count = 0.0F;
   for (const std::uint32_t id : segments) {
-    SegmentSurface& part = segment(id);
-    if (part.described_W.empty()) continue;
-    if (!part.shape) {
-      const DescribedSurface described(part.described_W, described_spacing_m(resolution_m_));
-      part.shape = described.features.rowwise().mean();
-    }
-    const auto points = static_cast<float>(part.described_W.size());
-    sum += points * *part.shape;
+    const Surface& described_W = segment(id).described_W;
+    if (described_W.empty()) continue;
+    const auto points = static_cast<float>(described_W.size());
+    sum += points * shape_of(id);
     count += points;
   }
   return count > 0.0F ? ShapeFeature(sum / count) : sum;

@@ -2,11 +2,12 @@
 // A map as recognition sees it.
 
 #include <cstdint>
-#include <map>
-#include <optional>
+#include <mutex>
 #include <set>
 #include <span>
 #include <vector>
+
+#include <oneapi/tbb/concurrent_unordered_map.h>
 
 #include "segmenter/objects/recognition/agreement.hpp"
 #include "segmenter/objects/recognition/labelled_map.hpp"
@@ -20,8 +21,8 @@ namespace kintsugi::segmenter {
 /// Touching segments that may together be one object: their ids, ascending.
 using Candidate = std::vector<std::uint32_t>;
 
-/// Keeps what it has computed of segments and places until they change. Not to be used by two
-/// threads at once.
+/// Keeps what it has computed of segments and places until they change. Several threads may ask it
+/// at once, while nobody changes it; they get what one thread would get.
 class Scene {
  public:
   /// @param resolution_m voxel size of the map, > 0
@@ -29,7 +30,7 @@ class Scene {
   Scene(const Scene&) = delete;  // its parts refer to each other
   Scene& operator=(const Scene&) = delete;
 
-  /// As LabelledMap::set_piece(); returns the segments that lost or gained points.
+  /// As LabelledMap::set_piece(); returns the segments that have changed.
   std::set<std::uint32_t> set_piece(std::int32_t id, LabelledMap::Points points_W,
                                     std::vector<std::uint32_t> segment_ids);
   /// The light that falls on all of the map, beside that of the library: colours are compared as if
@@ -42,6 +43,8 @@ class Scene {
   [[nodiscard]] float resolution_m() const { return resolution_m_; }
   [[nodiscard]] const LabelledMap& map() const { return map_; }
   [[nodiscard]] const SceneSurface& surface() const { return surface_; }
+  /// The direction that is up in W.
+  [[nodiscard]] Eigen::Vector3d up_W() const;
   [[nodiscard]] const ObservedSpace* observed() const { return observed_; }
 
   /// The surface of segments, thinned to `resolution_m`.
@@ -55,18 +58,22 @@ class Scene {
  private:
   struct SegmentSurface {
     Surface surface_W;
-    Surface described_W;                // thinned further
-    std::optional<ShapeFeature> shape;  // mean
+    Surface described_W;  // thinned further
   };
 
-  [[nodiscard]] SegmentSurface& segment(std::uint32_t id) const;
+  [[nodiscard]] const SegmentSurface& segment(std::uint32_t id) const;
+  /// Mean over its points, of which there must be some.
+  [[nodiscard]] const ShapeFeature& shape_of(std::uint32_t id) const;
 
   float resolution_m_;
   LabelledMap map_;
+  mutable std::mutex up_mutex_;  // the map computes that when it is asked
   SceneSurface surface_;
   LightChange light_;
   const ObservedSpace* observed_ = nullptr;
-  mutable std::map<std::uint32_t, SegmentSurface> segments_;  // those that were asked for
+  // Of those that were asked for.
+  mutable oneapi::tbb::concurrent_unordered_map<std::uint32_t, SegmentSurface> segments_;
+  mutable oneapi::tbb::concurrent_unordered_map<std::uint32_t, ShapeFeature> shapes_;
 };
 
 }  // namespace kintsugi::segmenter

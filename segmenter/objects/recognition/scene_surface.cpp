@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <tuple>
 #include <utility>
 
 #include "segmenter/objects/recognition/agreement.hpp"
@@ -20,7 +19,7 @@ void SceneSurface::forget(const std::set<BlockKey>& blocks) {
     for (std::int32_t z = key[2] - 1; z <= key[2] + 1; ++z) {
       for (std::int32_t y = key[1] - 1; y <= key[1] + 1; ++y) {
         for (std::int32_t x = key[0] - 1; x <= key[0] + 1; ++x) {
-          blocks_.erase({x, y, z});
+          blocks_.unsafe_erase({x, y, z});
         }
       }
     }
@@ -55,10 +54,6 @@ SceneSurface::Block SceneSurface::made(const BlockKey& key) const {
     }
   };
   add(key);
-  // The means are of floats: their order must not depend on that in which the pieces came.
-  std::sort(refs.begin(), refs.end(), [](const auto& a, const auto& b) {
-    return std::tie(a.piece, a.index) < std::tie(b.piece, b.index);
-  });
   points_W.reserve(refs.size());
   for (const LabelledMap::PointRef& ref : refs) points_W.push_back(map_.point_W(ref));
   for (std::int32_t z = key[2] - 1; z <= key[2] + 1; ++z) {

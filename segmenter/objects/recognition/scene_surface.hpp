@@ -6,8 +6,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <set>
-#include <unordered_map>
 #include <vector>
+
+#include <oneapi/tbb/concurrent_unordered_map.h>
 
 #include "segmenter/objects/recognition/labelled_map.hpp"
 #include "segmenter/objects/recognition/surface_grid.hpp"
@@ -15,7 +16,8 @@
 namespace kintsugi::segmenter {
 
 /// Blocks of the map are made into surface when they are first looked at: most of a map is floor
-/// and walls, where nobody looks for objects. Not to be used by two threads at once.
+/// and walls, where nobody looks for objects. Several threads may look at once, while nobody
+/// changes it.
 class SceneSurface {
  public:
   /// `map` must outlive this. @param resolution_m voxel size of the map, > 0
@@ -50,7 +52,7 @@ class SceneSurface {
   const LabelledMap& map_;
   float resolution_m_;
   Eigen::Array3f gain_ = Eigen::Array3f::Ones();
-  mutable std::unordered_map<BlockKey, Block, BlockKeyHash> blocks_;
+  mutable oneapi::tbb::concurrent_unordered_map<BlockKey, Block, BlockKeyHash> blocks_;
 };
 
 template <class Visit>

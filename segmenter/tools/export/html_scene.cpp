@@ -85,6 +85,7 @@ Json state_json(const MapSnapshot& map, std::span<const scene::Tile> tiles) {
           {"parts", parts},
           {"camera_part", largest_part(parts)},
           {"loops", Json::array()},
+          {"objects", Json::array()},
           {"frustum", nullptr},
           {"tiles", std::move(tile_entries)},
           {"removed", Json::array()}};

@@ -270,8 +270,8 @@ TEST(CodecBounds, ErrorsNameTypeFieldValueAndBound) {
   EXPECT_THAT(refusal(example_update(1),
                       [&](SegmentUpdate& u) { u.statistics[0].area_m2 = std::nanf(""); }),
               HasSubstr("statistics area is nan"));
-  EXPECT_THAT(refusal(example_query(), [](SegmentQuery& q) { q.place = QueryPlace{6}; }),
-              HasSubstr("segment_query_t.place is 6, expected 0 .. 5"));
+  EXPECT_THAT(refusal(example_query(), [](SegmentQuery& q) { q.place = QueryPlace{7}; }),
+              HasSubstr("segment_query_t.place is 7, expected 0 .. 6"));
   EXPECT_THAT(refusal(example_query(), [](SegmentQuery& q) { q.pixel_px[1] = -1.0; }),
               HasSubstr("pixel_px is -1"));
   EXPECT_THAT(refusal(example_query(), [](SegmentQuery& q) { q.client = 0; }),

@@ -8,6 +8,7 @@
 #include <functional>
 #include <iterator>
 #include <memory>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -102,6 +103,18 @@ TEST_F(ViewsFile, HoldsWhatWasWritten) {
   EXPECT_EQ(contents(folder_ / "again"), bytes_);
   write_views({}, path_);
   EXPECT_TRUE(read_views(path_).views.empty());
+}
+
+TEST_F(ViewsFile, IsTheSameInMemory) {
+  const std::vector<std::uint8_t> bytes = view_bytes(views_);
+  EXPECT_EQ(std::string(bytes.begin(), bytes.end()), bytes_);
+  const ViewSet read = views_of_bytes(bytes, "the answer");
+  write_views(read, path_);
+  EXPECT_EQ(contents(path_), bytes_);
+  for (std::size_t size = 0; size < bytes.size(); size += 97) {
+    EXPECT_THAT([&] { views_of_bytes(std::span(bytes).first(size), "the answer"); },
+                ThrowsMessage<std::runtime_error>(HasSubstr("the answer, byte ")));
+  }
 }
 
 TEST_F(ViewsFile, BelongsToOneMap) {

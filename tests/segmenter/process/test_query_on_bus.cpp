@@ -8,8 +8,11 @@
 #include <gtest/gtest.h>
 
 #include "segmenter/io/saved_map.hpp"
+#include "segmenter/io/views_file.hpp"
+#include "segmenter/process/query_responder.hpp"
 #include "segmenter/query/answer.hpp"
 #include "segmenter/tools/query/query_client.hpp"
+#include "tests/segmenter/evaluation/session/log_of_views.hpp"
 #include "tests/segmenter/process/listener.hpp"
 #include "tests/segmenter/process/room_session.hpp"
 #include "tests/segmenter/query/camera_view.hpp"
@@ -126,6 +129,50 @@ TEST_F(QueryOnTheBus, IsNotKeptFromAnsweringByWhoAsksTooMuchOrSendsNonsense) {
   const auto num_bad = static_cast<std::int64_t>((query.size() + 6) / 7);
   EXPECT_TRUE(listener.hears([&] { return listener.status->messages_bad == num_bad; }))
       << listener.status->messages_bad;
+}
+
+TEST_F(QueryOnTheBus, TellsWhatTheCameraSaw) {
+  const auto slices = testing::RoomRow(1, 0.08).cut(1.0);
+  SegmenterProcess::Config config = on_the_bus(folder_, "exact");
+  config.exit_on_final = false;
+  Listener listener(config);
+  QueryClient client(kPrivateBusUrl);
+  const auto ask = [&](std::int64_t since_us) {
+    SegmentQuery query;
+    query.place = QueryPlace::kViews;
+    query.map_session = slices[0].session;
+    query.changed_since = since_us;
+    return client.ask(query, Seconds(60));
+  };
+  StreamPublisher publisher(listener.bus(), channels::kCloudSlice, slices[0].session, {});
+  publisher.publish(slices[0]);
+  ASSERT_TRUE(listener.hears([&] { return listener.last.has_value(); }));
+  EXPECT_TRUE(views_of_bytes(ask(0).views, "answer").views.empty());
+
+  // More than one answer holds, from time 0 on, at which recordings begin; the segmenter has them
+  // in hand before the slices that follow.
+  constexpr auto kMaxViews = static_cast<std::int64_t>(QueryResponder::kMaxViews);
+  constexpr std::int64_t kViews = kMaxViews + 50;
+  StreamPublisher camera(listener.bus(), channels::kCameraView, slices[0].session, {});
+  for (std::int64_t i = 0; i < kViews; ++i)
+    camera.publish(testing::view_at(static_cast<double>(i), i));
+  for (const CloudSlice& slice : slices) publisher.publish(slice);
+  std::vector<KeptView> views;
+  ASSERT_TRUE(listener.hears([&] {
+    views = views_of_bytes(ask(kMaxViews).views, "answer").views;
+    return std::ssize(views) == 50;
+  }));
+  EXPECT_EQ(views.front().utime, kMaxViews);
+  EXPECT_EQ(views.back().utime, kViews - 1);
+  const SegmentAnswer first = ask(0);
+  EXPECT_EQ(first.map_slices, 4);
+  EXPECT_TRUE(first.segments.empty());
+  const ViewSet oldest = views_of_bytes(first.views, "answer");
+  EXPECT_EQ(oldest.map_session, slices[0].session);
+  ASSERT_EQ(std::ssize(oldest.views), kMaxViews);
+  EXPECT_EQ(oldest.views.front().utime, 0);
+  EXPECT_EQ(oldest.views.front().X_WC.translation(), testing::view_at(0, 0).X_WC.translation());
+  EXPECT_TRUE(views_of_bytes(ask(kViews).views, "answer").views.empty());
 }
 
 TEST_F(QueryOnTheBus, ProgramTellsOfSilence) {

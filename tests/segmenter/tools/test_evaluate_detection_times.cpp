@@ -59,6 +59,13 @@ class EvaluateDetectionTimes : public testing::EvaluateProgram {
     log_.append(utime(time_s), channels::kObjectDetection, encode(message));
   }
 
+  void tell_share(double time_s, double cpu_share) {
+    DetectorStatus status;
+    status.session = session_;
+    status.cpu_share = cpu_share;
+    log_.append(utime(time_s), channels::kDetectorStatus, encode(status));
+  }
+
   nlohmann::json times() {
     const auto result = run("--detection-times " + path("run.lcm") + " --json " + path("t.json"));
     EXPECT_EQ(result.exit_code, 0) << result.output;
@@ -118,6 +125,16 @@ TEST_F(EvaluateDetectionTimes, TheLastDetectorCounts) {
   const nlohmann::json told = times();
   ASSERT_EQ(told["detections"].size(), 1U);
   EXPECT_NEAR(told["delay_median_s"].get<double>(), 5.0, 1e-5);
+}
+
+TEST_F(EvaluateDetectionTimes, TheShareOfTheProcessorIsThatUntilTheLastSlice) {
+  tell_share(0.5, 0.3);
+  patch(1.0, 0, 0, -0.5, 0.5);
+  tell_share(1.5, 0.08);
+  patch(2.0, 1, 0, 1.0, 1.5);
+  tell_share(2.5, 0.9);  // it examines all once more
+  tell(3.0, DetectionEvent::kFound, 0.0);
+  EXPECT_NEAR(times()["cpu_share"].get<double>(), 0.08, 1e-9);
 }
 
 TEST_F(EvaluateDetectionTimes, ALogWithoutDetectionsIsNamed) {

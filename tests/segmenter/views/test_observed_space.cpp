@@ -125,6 +125,16 @@ TEST(ObservedSpace, ManyPlacesAreToldAsEachAlone) {
     num_seen += all[i] != kNothing;
   }
   EXPECT_GT(num_seen, 1000);
+
+  const Eigen::Vector3f center_W(1.5F, 0.2F, -0.3F);
+  const std::vector<std::size_t> views = space.views_of(center_W, 0.5F);
+  EXPECT_LT(views.size(), 15U);
+  for (int i = 0; i < 200; ++i) {
+    const Eigen::Vector3f p_W =
+        center_W +
+        0.28F * Eigen::Vector3d(number(random), number(random), number(random)).cast<float>();
+    EXPECT_EQ(space.sights(p_W, views), space.sights(p_W));
+  }
 }
 
 TEST(ObservedSpace, RefusesAViewThatHasNotItsDepths) {

@@ -208,6 +208,34 @@ TEST_F(WebScene, ASegmentThatNoLongerExistsIsRemoved) {
   EXPECT_EQ(after["segments"][0]["id"], 10);
 }
 
+TEST_F(WebScene, KnownObjectsAreThereUntilTheyAreGone) {
+  add_floors();
+  ObjectDetection mug;
+  mug.session = 1;
+  mug.map_session = kSession;
+  mug.detection = mug.num_detections = 1;
+  mug.event_number = 1;
+  mug.name = "mug";
+  mug.X_WO.translation() = Eigen::Vector3d(0.5, 0.25, 0.125);
+  mug.box_min_O[0] = -0.5F;
+  mug.box_max_O[2] = 1.5F;
+  session_.use(mug, 0.0);
+  refresh();
+  EXPECT_EQ(state(0)["objects"], Json::parse(R"([{"name": "mug", "confirmed": false,
+      "t": [0.5, 0.25, 0.125], "q": [0.0, 0.0, 0.0, 1.0],
+      "box_min_O": [-0.5, 0.0, 0.0], "box_max_O": [0.0, 0.0, 1.5]}])"));
+  mug.event = DetectionEvent::kConfirmed;
+  mug.event_number = 2;
+  session_.use(mug, 0.1);
+  refresh();
+  EXPECT_EQ(state(0)["objects"][0]["confirmed"], true);
+  mug.event = DetectionEvent::kGone;
+  mug.event_number = 3;
+  session_.use(mug, 0.2);
+  refresh();
+  EXPECT_THAT(state(0)["objects"], IsEmpty());
+}
+
 TEST_F(WebScene, ANewerMapSessionBeginsAnew) {
   add_floors();
   refresh();

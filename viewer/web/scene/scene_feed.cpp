@@ -14,22 +14,43 @@ namespace {
 
 using Json = nlohmann::json;
 
-Json vector_json(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+template <class Vector>
+Json vector_json(const Vector& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
+/// Translation and quaternion.
+Json pose_json(const Pose& X_WA) {
+  const Eigen::Quaterniond q(X_WA.linear());
+  return {{"t", vector_json(X_WA.translation())}, {"q", {q.x(), q.y(), q.z(), q.w()}}};
+}
 
 /// Where the camera is and what it sees; null: it is not known.
 Json frustum_json(const CameraTrack& track, const CameraView* view) {
   if (!track.X_WC) return nullptr;
-  const Eigen::Quaterniond q(track.X_WC->linear());
   double half_width = 0.6;  // at 1 m, without a view
   double half_height = 0.45;
   if (view != nullptr && view->intrinsics.fx > 0.0 && view->intrinsics.fy > 0.0) {
     half_width = 0.5 * view->intrinsics.width / view->intrinsics.fx;
     half_height = 0.5 * view->intrinsics.height / view->intrinsics.fy;
   }
-  return {{"t", vector_json(track.X_WC->translation())},
-          {"q", {q.x(), q.y(), q.z(), q.w()}},
-          {"x", half_width},
-          {"y", half_height}};
+  Json json = pose_json(*track.X_WC);
+  json["x"] = half_width;
+  json["y"] = half_height;
+  return json;
+}
+
+Json objects_json(const std::vector<DrawnObject>& objects) {
+  Json json = Json::array();
+  for (const DrawnObject& object : objects) {
+    Json entry = pose_json(object.X_WO);
+    entry["name"] = object.name;
+    entry["confirmed"] = object.is_confirmed;
+    entry["box_min_O"] = vector_json(object.box_min_O);
+    entry["box_max_O"] = vector_json(object.box_max_O);
+    json.push_back(std::move(entry));
+  }
+  return json;
 }
 
 Json loops_json(const std::vector<LoopLink>& loops) {
@@ -190,6 +211,7 @@ Json SceneFeed::header(const MapSession& session, const ViewerStatus& status) {
           {"parts", parts},
           {"camera_part", camera_part},
           {"loops", loops},
+          {"objects", objects_json(session.objects())},
           {"frustum", frustum_json(map.received_track(camera_part), session.view())}};
 }
 

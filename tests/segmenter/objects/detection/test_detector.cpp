@@ -65,7 +65,7 @@ std::vector<std::string> names_of(const Detector& detector) {
   std::vector<std::string> names;
   for (const Detection& detection : detector.detections()) {
     if (detection.event == DetectionEvent::kGone) continue;
-    names.push_back(detector.models()[detection.recognition.model].name);
+    names.push_back(detector.model(detection.recognition.model).name);
   }
   std::sort(names.begin(), names.end());
   return names;
@@ -73,7 +73,7 @@ std::vector<std::string> names_of(const Detector& detector) {
 
 const Detection& detection_of(const Detector& detector, const std::string& name) {
   const auto at = std::ranges::find_if(detector.detections(), [&](const Detection& detection) {
-    return detector.models()[detection.recognition.model].name == name;
+    return detector.model(detection.recognition.model).name == name;
   });
   if (at == detector.detections().end()) throw std::runtime_error("no detection of " + name);
   return *at;
@@ -94,6 +94,18 @@ TEST(LabelledMap, TellsWhichSegmentsChange) {
   const LabelledMap::Change labels = labelled.set_piece(1, points, joined);
   EXPECT_THAT(labels.segments, ElementsAre(kTable, kBall));
   EXPECT_TRUE(labels.blocks.empty());
+  // The table has another point; the box and the ball are as they were, but further back.
+  auto longer = std::make_shared<std::vector<CloudPoint>>(map.points_W);
+  longer->insert(longer->begin(), longer->front());
+  std::vector<std::uint32_t> longer_ids = joined;
+  longer_ids.insert(longer_ids.begin(), kTable);
+  const LabelledMap::Change grown = labelled.set_piece(1, longer, longer_ids);
+  EXPECT_THAT(grown.segments, ElementsAre(kTable));
+  EXPECT_FALSE(grown.blocks.empty());
+  auto moved = std::make_shared<std::vector<CloudPoint>>(map.points_W);
+  moved->at(static_cast<std::size_t>(std::ranges::find(joined, kBox) - joined.begin())).x += 0.001F;
+  EXPECT_THAT(labelled.set_piece(1, moved, joined).segments, ElementsAre(kTable, kBox));
+  labelled.set_piece(1, points, joined);
   EXPECT_EQ(labelled.num_points(kBall), 0);
   EXPECT_EQ(labelled.num_points(), static_cast<std::int64_t>(map.points_W.size()));
   EXPECT_TRUE(labelled.box_of(kBall).isEmpty());
@@ -169,6 +181,51 @@ TEST(Detector, TellsWhenAnObjectIsGoneAndWhenItComesBackElsewhere) {
             0.3);
 }
 
+TEST(Detector, DoesNotCallMovedWhatComesBackWhereItWas) {
+  Detector detector(box_and_ball(), 0.01F);
+  give(detector, box_on_table(), kSecond_us);
+  examine(detector);
+  const std::int32_t number = detection_of(detector, "box").number;
+  take_away(detector, kBox, 5 * kSecond_us);
+  examine(detector);
+  ASSERT_EQ(detection_of(detector, "box").event, DetectionEvent::kGone);
+  const std::int64_t num_events = detector.num_events();
+  give(detector, box_on_table(), 9 * kSecond_us, {kBox});
+  examine(detector);
+  EXPECT_EQ(detector.detections().size(), 2U);
+  EXPECT_EQ(detection_of(detector, "box").number, number);
+  EXPECT_EQ(detection_of(detector, "box").event, DetectionEvent::kConfirmed);
+  EXPECT_EQ(detector.num_events(), num_events + 2);  // found and confirmed
+}
+
+TEST(Detector, KeepsWhatIsCutIntoSegmentsTooSmallToRecognise) {
+  Detector detector(box_and_ball(), 0.01F);
+  const ObservedMap map = box_on_table();
+  give(detector, map, kSecond_us);
+  examine(detector);
+  const std::int32_t number = detection_of(detector, "box").number;
+  const std::int64_t num_events = detector.num_events();
+
+  const std::vector<CloudPoint> points_W = points_of(map, kBox);
+  std::vector<std::uint32_t> labels(points_W.size());
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    constexpr std::uint32_t kFirst = 100;
+    constexpr std::size_t kPoints = 20;
+    labels[i] = kFirst + static_cast<std::uint32_t>(i / kPoints);
+  }
+  ASSERT_GT(labels.back(), 110U);
+  const auto points = std::make_shared<const std::vector<CloudPoint>>(points_W);
+  detector.set_piece(kBox, points, labels, 2 * kSecond_us);
+  examine(detector);
+  EXPECT_EQ(detector.num_events(), num_events);
+  EXPECT_EQ(detection_of(detector, "box").number, number);
+  EXPECT_GT(detection_of(detector, "box").recognition.placement.segment_ids.size(), 10U);
+
+  take_away(detector, kBox, 3 * kSecond_us);
+  examine(detector);
+  EXPECT_EQ(detection_of(detector, "box").event, DetectionEvent::kGone);
+}
+
 TEST(Detector, EndsWithTheSameDetectionsWhateverTheOrder) {
   const ObservedMap map = box_on_table();
   std::vector<std::vector<Pose>> poses;
@@ -221,6 +278,76 @@ TEST(Detector, ComparesColoursInTheLightThatMostObjectsTell) {
   examine(detector);
   EXPECT_THAT(names_of(detector), ElementsAre("ball", "ball", "box", "box"));
   EXPECT_LT(largest_change(detector), 0.1F);
+
+  // All is examined again, at first without that light: nobody hears of what is missed then.
+  const std::int64_t num_events = detector.num_events();
+  detector.examine_all();
+  while (detector.num_waiting() > 0) {
+    detector.examine_next();
+    EXPECT_EQ(names_of(detector).size(), 4U);
+  }
+  EXPECT_EQ(detector.num_events(), num_events);
+  EXPECT_LT(largest_change(detector), 0.1F);
+}
+
+/// So many copies of the map beside each other: a place whose light is known from three things on.
+ObservedMap copies_of(const ObservedMap& map, std::uint32_t count) {
+  ObservedMap all = map;
+  all.points_W.clear();
+  all.segment_ids.clear();
+  for (std::uint32_t copy = 0; copy < count; ++copy) {
+    for (std::size_t i = 0; i < map.points_W.size(); ++i) {
+      all.points_W.push_back(map.points_W[i]);
+      all.points_W.back().x += 3.0F * static_cast<float>(copy);
+      all.segment_ids.push_back(map.segment_ids[i] + 10 * copy);
+    }
+  }
+  return all;
+}
+
+TEST(Detector, FindsTheSameOnAllCores) {
+  const ObservedMap map = copies_of(box_on_table(), 4);
+  const auto points = std::make_shared<const std::vector<CloudPoint>>(map.points_W);
+  Detector one(box_and_ball(), 0.01F);
+  Detector many(box_and_ball(), 0.01F);
+  for (Detector* const detector : {&one, &many}) {
+    detector->set_piece(1, points, map.segment_ids, kSecond_us);
+    detector->examine_all();
+  }
+  examine(one);
+  while (many.num_waiting() > 0) many.examine_many();
+  ASSERT_EQ(one.detections().size(), 8U);
+  ASSERT_EQ(many.detections().size(), 8U);
+  EXPECT_EQ(one.num_candidates(), many.num_candidates());
+  for (std::size_t i = 0; i < one.detections().size(); ++i) {
+    const Recognition& a = one.detections()[i].recognition;
+    const Recognition& b = many.detections()[i].recognition;
+    EXPECT_EQ(a.model, b.model);
+    EXPECT_EQ(a.placement.X_WO.matrix(), b.placement.X_WO.matrix());
+    EXPECT_EQ(a.placement.score(), b.placement.score());
+    EXPECT_EQ(a.placement.segment_ids, b.placement.segment_ids);
+  }
+}
+
+TEST(Detector, TellsWhatIsNewBeforeAllIsExaminedAgain) {
+  const ObservedMap map = copies_of(box_on_table(), 3);
+  Detector detector(box_and_ball(), 0.01F);
+  give(detector, map, kSecond_us, {kTable, kBox, kBall, 10 + kTable, 10 + kBox, 10 + kBall});
+  examine(detector);
+  ASSERT_EQ(names_of(detector).size(), 4U);
+  give(detector, map, 2 * kSecond_us, {20 + kTable, 20 + kBox, 20 + kBall});
+  detector.examine_all();
+  std::size_t most_waiting = 0;  // when all is told
+  while (detector.num_waiting() > 0) {
+    detector.examine_next();
+    EXPECT_GE(names_of(detector).size(), 4U);
+    if (names_of(detector).size() == 6U) {
+      most_waiting = std::max(most_waiting, detector.num_waiting());
+    }
+  }
+  EXPECT_GT(most_waiting, 0U);
+  EXPECT_EQ(detector.detections().size(), 6U);
+  EXPECT_EQ(names_of(detector).size(), 6U);
 }
 
 TEST(WaitingSegments, ComeFirstWhenTheyHaveChangedMuch) {
@@ -243,6 +370,7 @@ TEST(WaitingSegments, ComeFirstWhenTheyHaveChangedMuch) {
   EXPECT_EQ(waiting.since_us(), 4);
   waiting.add(8, 71, 8);
   waiting.add(8, 71, 9, true);
+  EXPECT_THAT(waiting.in_order(), ElementsAre(8U, 7U));
   EXPECT_EQ(waiting.pop(), 8U);
   EXPECT_EQ(waiting.pop(), 7U);
   EXPECT_TRUE(waiting.empty());

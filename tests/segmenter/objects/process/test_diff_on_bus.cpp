@@ -1,26 +1,12 @@
 // kintsugi-diff without AFTER: the map on a bus of its own against a saved one.
 
-#include <chrono>
-#include <filesystem>
-#include <fstream>
-#include <optional>
-#include <sstream>
 #include <string>
-#include <vector>
 
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
-#include "lcmtypes/bus/bus.hpp"
-#include "lcmtypes/channels.hpp"
 #include "lcmtypes/client/object_listener.hpp"
-#include "lcmtypes/stream/stream_publisher.hpp"
-#include "tests/segmenter/objects/saved_room.hpp"
-#include "tests/segmenter/objects/toy_room.hpp"
-#include "tests/segmenter/process/mapper_imitation.hpp"
-#include "tests/support/child_program.hpp"
-#include "tests/support/private_bus.hpp"
-#include "tests/support/temporary_folder.hpp"
+#include "tests/segmenter/objects/process/programs_on_bus.hpp"
 
 namespace kintsugi::segmenter {
 namespace {
@@ -32,57 +18,7 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 using testing::ToyRoom;
 
-constexpr std::int64_t kSession = 5;
-
-std::string program(const std::string& name) {
-  const auto here = std::filesystem::read_symlink("/proc/self/exe").parent_path();
-  return (here.parent_path() / "bin" / name).string();
-}
-
-std::string text_of(const std::filesystem::path& file) {
-  std::ostringstream text;
-  text << std::ifstream(file).rdbuf();
-  return text.str();
-}
-
-class DiffOnBus : public ::testing::Test {
- protected:
-  void SetUp() override {
-    static const std::optional<std::string> why_not = kintsugi::testing::enter_private_bus();
-    if (why_not) GTEST_SKIP() << *why_not;
-  }
-
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
-
-  ChildProgram start(const std::string& name, std::vector<std::string> arguments) const {
-    return {program(name), std::move(arguments), path(name + ".log")};
-  }
-
-  /// Handles messages until the condition holds.
-  template <class Condition>
-  static bool hears(Bus& bus, const Condition& condition) {
-    const auto deadline = std::chrono::steady_clock::now() + std::chrono::minutes(2);
-    while (!condition() && std::chrono::steady_clock::now() < deadline) {
-      bus.handle(std::chrono::milliseconds(50));
-    }
-    return condition();
-  }
-
-  bool waits_for(Bus& bus, const std::string& log, const std::string& text) const {
-    return hears(bus, [&] { return text_of(path(log)).find(text) != std::string::npos; });
-  }
-
-  /// What a mapper publishes of the room, views first.
-  static void publish(Bus& bus, testing::MapperImitation& mapper, const ObservedMap& map) {
-    StreamPublisher views(
-        [&bus](const std::string& channel, ByteView message) { bus.publish(channel, message); },
-        channels::kCameraView, kSession, {}, nullptr);
-    for (const MapView& view : map.views) views.publish(testing::message_of(view, kSession));
-    mapper.publish(testing::slice_of(map, kSession));
-  }
-
-  kintsugi::testing::TemporaryFolder folder_;
-};
+using DiffOnBus = testing::ProgramsOnBus;
 
 TEST_F(DiffOnBus, PublishesWhatHasComeAndGone) {
   ToyRoom was = testing::furnished_room();
@@ -99,12 +35,11 @@ TEST_F(DiffOnBus, PublishesWhatHasComeAndGone) {
   mapper.answer(bus);
   ObjectListener listener("map");
   listener.subscribe(bus, [] { return 0.0; });
-  const std::string url = std::string("--lcm-url=") + kPrivateBusUrl;
-  ChildProgram events = start("kintsugi-segment-events", {url});
+  ChildProgram events = start("kintsugi-segment-events", {url_});
   ChildProgram diff =
-      start("kintsugi-diff", {path("before"), "--out", path("out"), "--exit-on-final", url});
-  ChildProgram segmenter = start("kintsugi-segmenter",
-                                 {"--out", path("segments"), "--exit-on-final", "--linger=2", url});
+      start("kintsugi-diff", {path("before"), "--out", path("out"), "--exit-on-final", url_});
+  ChildProgram segmenter = start(
+      "kintsugi-segmenter", {"--out", path("segments"), "--exit-on-final", "--linger=2", url_});
   ASSERT_TRUE(waits_for(bus, "kintsugi-diff.log", "follows"));
   bool has_status = false;
   bus.subscribe(channels::kSegmenterStatus, [&](ByteView) { has_status = true; });

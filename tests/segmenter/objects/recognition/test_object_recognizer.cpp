@@ -179,6 +179,30 @@ TEST(ObjectRecognizer, FindsNothingWithoutObjectsOrSurface) {
   EXPECT_THAT(recognized(some, map, {kNoSuchSegment}), ::testing::IsEmpty());
 }
 
+TEST(ObjectRecognizer, PreparesOnlyWhatHasChanged) {
+  const ObservedMap map = box_on_table(kFourSides);
+  const ObjectModel ball = taught(map, kBall, "ball").model;
+  const ObjectModel box = taught(map, kBox, "box").model;
+  ObjectModel half_a_box = box;
+  half_a_box.points_O.resize(box.points_O.size() / 2);
+  const ObjectRecognizer first({ball, half_a_box}, map.resolution_m);
+  EXPECT_EQ(first.num_prepared(), 2U);
+  const ObjectRecognizer again({box, ball}, map.resolution_m, &first);
+  EXPECT_EQ(again.num_prepared(), 1U);
+  EXPECT_EQ(again.model(1).name, "ball");
+  const ObjectRecognizer anew({box, ball}, map.resolution_m);
+  for (const std::uint32_t id : {kBox, kBall}) {
+    const auto expected = recognized(anew, map, {id});
+    const auto found = recognized(again, map, {id});
+    ASSERT_EQ(expected.size(), 1U);
+    ASSERT_EQ(found.size(), 1U);
+    EXPECT_EQ(found[0].model, expected[0].model);
+    EXPECT_EQ(found[0].placement.X_WO.matrix(), expected[0].placement.X_WO.matrix());
+  }
+  const ObjectRecognizer coarser({box, ball}, 2 * map.resolution_m, &again);
+  EXPECT_EQ(coarser.num_prepared(), 2U);
+}
+
 TEST(Placement, CountsWhatSpeaksAgainstTheObject) {
   const ObservedMap map = box_on_table(kFourSides);
   const MadeModel box = taught(map, kBox, "box");
@@ -307,16 +331,23 @@ TEST(ModelIndex, FindsTheObjectOfTheNearestViewAndBoundsItFromBelow) {
   }
   const ModelIndex index(views);
   for (std::size_t i = 0; i < views.size(); i += 7) {
-    const std::vector<ModelMatch> matches = index.nearest(views[i].descriptor, 3);
+    const std::vector<ModelMatch> matches = index.nearest(views[i].descriptor, 3, 1e3F);
     ASSERT_EQ(matches.size(), 3U);
     EXPECT_EQ(matches[0].model, views[i].model);
     EXPECT_NEAR(matches[0].distance, 0.0F, 1e-3F);
     EXPECT_LE(matches[1].distance, matches[2].distance);
+    // The same when what is farther off is not asked for.
+    const float middle = (matches[1].distance + matches[2].distance) / 2;
+    const std::vector<ModelMatch> near = index.nearest(views[i].descriptor, 3, middle);
+    ASSERT_EQ(near.size(), 2U);
+    EXPECT_EQ(near[1].model, matches[1].model);
+    EXPECT_EQ(near[1].distance, matches[1].distance);
+    EXPECT_EQ(index.nearest(views[i].descriptor, 1, middle).size(), 1U);
     const SizeAndColors beginning = views[i].descriptor.head<kSizeAndColors>();
     EXPECT_TRUE(index.has_near(beginning, matches[0].distance + 1e-3F));
   }
   EXPECT_FALSE(index.has_near(SizeAndColors::Constant(1e3F), 1.0F));
-  EXPECT_TRUE(ModelIndex({}).nearest(ViewDescriptor::Zero(), 3).empty());
+  EXPECT_TRUE(ModelIndex({}).nearest(ViewDescriptor::Zero(), 3, 1.0F).empty());
 }
 
 TEST(SceneLight, IsThatOfMostPlacements) {

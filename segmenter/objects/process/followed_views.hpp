@@ -1,0 +1,61 @@
+#pragma once
+// What the cameras of a map on the bus saw, as its segmenter has recorded it.
+
+#include <chrono>
+#include <cstdint>
+#include <future>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "segmenter/objects/detection/detector.hpp"
+#include "segmenter/views/map_view.hpp"
+
+namespace kintsugi::segmenter {
+
+/// Asks the segmenter again and again, and tells a detector. While the map grows, for what was seen
+/// since the last answer; when it has ended, once for everything: corrections of the map have moved
+/// the views meanwhile, and what is detected in the end must not depend on when they came. Requests
+/// are made in a thread of their own, because an answer takes up to some seconds.
+class FollowedViews {
+ public:
+  /// @param lcm_url of the bus; empty: the default one
+  explicit FollowedViews(std::string lcm_url) : lcm_url_(std::move(lcm_url)) {}
+
+  /// Another map, or another detector, which knows of no views.
+  void begin(std::int64_t map_session);
+  /// The map was about to end, and goes on.
+  void go_on() { end_ = {}; }
+  /// To be called regularly.
+  void update(bool map_has_ended, Detector& detector);
+  /// The detector has all views of a map that has ended, or nobody tells them.
+  [[nodiscard]] bool are_complete() const { return end_.is_told; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  struct Request {
+    std::int64_t map_session = 0;  // of the mapper
+    std::int64_t since_us = 0;     // only views taken then or later, device time; 0: all
+  };
+  struct Answer {
+    Request request;
+    std::vector<MapView> views;  // by ascending time, where corrections have put them
+    std::string problem;         // empty: none
+  };
+
+  static Answer ask(const std::string& lcm_url, const Request& request);
+  void use(const Answer& answer, Detector& detector);
+
+  std::string lcm_url_;
+  Request next_;
+  Clock::time_point due_{};
+  struct {
+    bool is_asked = false;  // for all views
+    bool is_told = false;
+  } end_;
+  bool has_warned_ = false;
+  std::future<Answer> running_;  // last: it is waited for before the others end
+};
+
+}  // namespace kintsugi::segmenter
