@@ -18,7 +18,7 @@ for speed in 1 4; do
     cat replay.txt
     fail "replay at ${speed}x"
   }
-  expect_same live/segments.ply "replay$speed/segments.ply"
+  expect_same_partition live/segments.ply "replay$speed/segments.ply"  # a datagram may be lost on the way
 done
 
 "$KINTSUGI_BIN/kintsugi-segment-cloud" live/segments.ply again.ply --mode batch --resolution 0.02 --json again.json \
