@@ -1,4 +1,4 @@
-// bench_large_walk LOG: plays a recorded walk at the pace at which it was made, into a map that is
+// bench_large_walk STORED BUS: plays a walk at the pace at which it was made, into a map that is
 // large already: level floors that are far away come first. Stands in for the mapper of the walk,
 // and sends again what is asked for.
 
@@ -44,7 +44,8 @@ constexpr double kAway_m = 100.0;
 constexpr double kApart_m = 3.0;  // between floors
 
 struct Options {
-  std::string log;
+  std::string stored;
+  std::string bus;
   std::string url;
   std::int64_t points = 4'000'000;
   double rest_s = 40.0;
@@ -64,33 +65,48 @@ struct Walk {
   std::int64_t points = 0;
 };
 
-Walk read(const std::string& path) {
-  Walk walk;
+/// Slices and poses, of the log that the mapper has stored: it lacks nothing.
+void read_map(const std::string& path, Walk& walk) {
   double now_s = 0.0;
   StreamSubscriber<CloudSlice> slices(channels::kCloudSlice, [&](CloudSlice slice) {
     walk.up.add(slice.points_W);
+    walk.points += std::ssize(slice.points_W);
     walk.events.push_back({now_s, std::move(slice)});
   });
+  LogReader log(path);
+  while (const auto event = log.next()) {
+    now_s = 1e-6 * static_cast<double>(event->utime);
+    slices.handle(event->channel, event->data);
+    if (event->channel == channels::kCameraPose) {
+      walk.events.push_back({now_s, decode<CameraPose>(event->data)});
+    }
+  }
+  if (walk.points == 0) throw std::runtime_error(path + ": has no points");
+  if (slices.counts().chunks_missing > 0) throw std::runtime_error(path + ": lacks slices");
+}
+
+/// Views, which are not stored: what of them lcm-logger has received.
+void read_views(const std::string& path, Walk& walk) {
+  double now_s = 0.0;
   StreamSubscriber<CameraView> views(channels::kCameraView, [&](CameraView view) {
     walk.events.push_back({now_s, std::move(view)});
   });
   LogReader log(path);
   while (const auto event = log.next()) {
     now_s = 1e-6 * static_cast<double>(event->utime);
-    slices.handle(event->channel, event->data);
     views.handle(event->channel, event->data);
-    if (event->channel == channels::kCameraPose) {
-      walk.events.push_back({now_s, decode<CameraPose>(event->data)});
-    }
   }
-  if (slices.counts().chunks_missing > 0) throw std::runtime_error(path + ": lacks slices");
-  for (const Event& event : walk.events) {
-    const auto* const slice = std::get_if<CloudSlice>(&event.message);
-    if (slice == nullptr) continue;
-    if (walk.first == nullptr) walk.first = slice;
-    walk.points += std::ssize(slice->points_W);
-  }
-  if (walk.first == nullptr) throw std::runtime_error(path + ": has no slices");
+}
+
+Walk read(const Options& options) {
+  Walk walk;
+  read_map(options.stored, walk);
+  read_views(options.bus, walk);
+  std::ranges::stable_sort(walk.events, {}, &Event::time_s);
+  const auto first = std::ranges::find_if(walk.events, [](const Event& event) {
+    return std::holds_alternative<CloudSlice>(event.message);
+  });
+  walk.first = &std::get<CloudSlice>(first->message);
   return walk;
 }
 
@@ -212,9 +228,10 @@ int main(int argc, char** argv) {
   using namespace kintsugi;
   Options options;
   CLI::App app(
-      "Plays the slices, views and poses in a log of a mapper's bus into a map that is large "
-      "already. A detector has to listen.");
-  app.add_option("LOG", options.log, "Everything that was on the bus")->required();
+      "Plays the slices, poses and views of a walk into a map that is large already."
+      " A detector has to listen.");
+  app.add_option("STORED", options.stored, "The log that the mapper has stored")->required();
+  app.add_option("BUS", options.bus, "What lcm-logger has heard of the same walk")->required();
   app.add_option("--lcm-url", options.url, "The bus; empty: LCM's default");
   app.add_option("--points", options.points,
                  "Size of the map in the end, at least that of the walk")
@@ -223,7 +240,7 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   CLI11_PARSE(app, argc, argv);
   try {
-    WalkPlayer(options, read(options.log)).run();
+    WalkPlayer(options, read(options)).run();
     return 0;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "bench_large_walk: %s\n", error.what());

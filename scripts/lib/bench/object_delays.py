@@ -12,9 +12,11 @@ from .tables import NOT_MEASURED, fixed
 LIVE_RUNS = 3
 # The detector asks the segmenter for views when the map has ended; nobody asks later.
 PLAYED = """
-"$0" "$1" --points="$2" & player=$!
-"$3/trio" --only segmenter --objects "$4" --out "$5" --segmenter --linger=10 || { kill $player; exit 1; }
-wait $player
+"$0" "$1/mapper.lcm" "$1/run.lcm" --points="$2" &
+"$3/trio" --only segmenter --objects "$4" --out "$5" --segmenter --linger=10 &
+for each in 1 2; do
+  wait -n || { kill $(jobs -p); exit 1; }
+done
 """
 
 
@@ -44,7 +46,7 @@ def walk_in_large_map(run, library, num_points):
     name = "live_objects_large"
     shutil.rmtree(run.folder / name, ignore_errors=True)
     run.execute([f"{SCRIPTS}/private_bus", "bash", "-c", PLAYED, f"{BENCH_PROGRAMS}/bench_large_walk",
-                 run.folder / live_name(1) / "run.lcm", num_points, SCRIPTS, library, name], name=f"{name}_messages")
+                 run.folder / live_name(1), num_points, SCRIPTS, library, name], name=f"{name}_messages")
     return measured(run, name)
 
 
