@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -81,10 +82,10 @@ void ObservedSpace::clear() {
   cones_.clear();
 }
 
-void ObservedSpace::look(std::size_t view, const Eigen::Vector3f& p_W, Sights& sights) const {
+ObservedSpace::Look ObservedSpace::look(std::size_t view, const Eigen::Vector3f& p_W) const {
   const Eigen::Vector3f p_C = X_CW_[view] * p_W.homogeneous();
   const float z_m = p_C.z();
-  if (!(z_m > kNearest_m)) return;
+  if (!(z_m > kNearest_m)) return {};
   const Intrinsics& camera = views_[view].intrinsics;
   const auto fx = static_cast<float>(camera.fx);
   const float u_px = fx * p_C.x() / z_m + static_cast<float>(camera.cx);
@@ -95,34 +96,33 @@ void ObservedSpace::look(std::size_t view, const Eigen::Vector3f& p_W, Sights& s
   const bool is_inside = u_px >= border && v_px >= border &&
                          u_px <= static_cast<float>(camera.width - 1) - border &&
                          v_px <= static_cast<float>(camera.height - 1) - border;
-  if (!is_inside) return;
+  if (!is_inside) return {};
   const auto i = static_cast<std::ptrdiff_t>(std::lround(u_px));
   const auto j = static_cast<std::ptrdiff_t>(std::lround(v_px));
   const std::uint16_t* const at = views_[view].depth_mm.data() + j * camera.width + i;
-  if (*at == 0) return;
+  if (*at == 0) return {};
   const double margin_m = std::max(resolution_m_, kNoiseBound * depth_sigma_m(z_m));
   const auto nearest_mm = static_cast<float>(1e3 * (z_m - margin_m));
   const auto farthest_mm = static_cast<float>(1e3 * (z_m + margin_m));
   const auto depth_mm = static_cast<float>(*at);
-  if (depth_mm >= nearest_mm && depth_mm <= farthest_mm) {
-    ++sights.measured;
-    return;
-  }
+  const float behind_m = (z_m - 1e-3F * depth_mm) * p_C.norm() / z_m;
+  if (depth_mm >= nearest_mm && depth_mm <= farthest_mm) return {Sight::kMeasured, behind_m};
   const bool is_behind = depth_mm > farthest_mm;
   for (int dj = -reach; dj <= reach; ++dj) {
     for (int di = -reach; di <= reach; ++di) {
       const std::uint16_t sample = at[std::ptrdiff_t{dj} * camera.width + di];
       const auto sample_mm = static_cast<float>(sample);
-      if (sample == 0 || (is_behind ? sample_mm <= farthest_mm : sample_mm >= nearest_mm)) return;
+      if (sample == 0 || (is_behind ? sample_mm <= farthest_mm : sample_mm >= nearest_mm))
+        return {};
     }
   }
-  ++(is_behind ? sights.through : sights.hidden);
+  return {is_behind ? Sight::kThrough : Sight::kHidden, behind_m};
 }
 
 Sights ObservedSpace::sights(const Eigen::Vector3f& p_W) const {
-  Sights sights;
-  for (std::size_t view = 0; view < views_.size(); ++view) look(view, p_W, sights);
-  return sights;
+  std::vector<std::size_t> all(views_.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  return sights(p_W, all);
 }
 
 std::vector<std::size_t> ObservedSpace::views_of(const Eigen::Vector3f& center_W,
@@ -136,8 +136,24 @@ std::vector<std::size_t> ObservedSpace::views_of(const Eigen::Vector3f& center_W
 
 Sights ObservedSpace::sights(const Eigen::Vector3f& p_W, std::span<const std::size_t> views) const {
   Sights sights;
-  for (const std::size_t view : views) look(view, p_W, sights);
+  for (const std::size_t view : views) {
+    const Sight sight = look(view, p_W).sight;
+    sights.through += sight == Sight::kThrough ? 1 : 0;
+    sights.measured += sight == Sight::kMeasured ? 1 : 0;
+    sights.hidden += sight == Sight::kHidden ? 1 : 0;
+  }
   return sights;
+}
+
+bool ObservedSpace::is_covered(const Eigen::Vector3f& p_W, const Eigen::Vector3f& normal_W,
+                               float grazing, float within_m,
+                               std::span<const std::size_t> views) const {
+  return std::ranges::any_of(views, [&](std::size_t view) {
+    const Eigen::Vector3f to_C = cones_[view].apex_W - p_W;
+    if (to_C.dot(normal_W) < grazing * to_C.norm()) return false;
+    const Look seen = look(view, p_W);
+    return seen.sight == Sight::kHidden && seen.behind_m < within_m;
+  });
 }
 
 std::vector<Sights> ObservedSpace::sights(std::span<const Eigen::Vector3f> points_W) const {

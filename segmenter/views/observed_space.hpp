@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -44,6 +45,12 @@ class ObservedSpace {
   /// What some of the views tell about a place.
   [[nodiscard]] Sights sights(const Eigen::Vector3f& p_W, std::span<const std::size_t> views) const;
 
+  /// Whether one of the views that look at a surface there from its side (at more than `grazing`,
+  /// the sine of an angle) measured something in front of it that is nearer to it than `within_m`.
+  [[nodiscard]] bool is_covered(const Eigen::Vector3f& p_W, const Eigen::Vector3f& normal_W,
+                                float grazing, float within_m,
+                                std::span<const std::size_t> views) const;
+
   /// The same of many places, on all cores: places that are near each other share the search for
   /// the views that may show them.
   [[nodiscard]] std::vector<Sights> sights(std::span<const Eigen::Vector3f> points_W) const;
@@ -58,7 +65,13 @@ class ObservedSpace {
     [[nodiscard]] bool may_show(const Eigen::Vector3f& center_W, float radius_m) const;
   };
 
-  void look(std::size_t view, const Eigen::Vector3f& p_W, Sights& sights) const;
+  enum class Sight : std::uint8_t { kNothing, kThrough, kMeasured, kHidden };
+  struct Look {
+    Sight sight = Sight::kNothing;
+    float behind_m = 0.0F;  // how far the place is behind what was measured, along the ray
+  };
+
+  [[nodiscard]] Look look(std::size_t view, const Eigen::Vector3f& p_W) const;
 
   double resolution_m_;
   std::vector<MapView> views_;

@@ -17,6 +17,9 @@ namespace {
 constexpr std::size_t kModelSamples = 300;
 constexpr std::size_t kSeenNormals = 100;
 
+// What an absent surface counts that may be there and hidden.
+constexpr float kDoubtful = 0.5F;
+
 // The normals of a flat patch deviate less than this from their axis: sine of 9 degrees.
 constexpr float kFlat = 0.16F;
 // And the colours of a plain one from their mean (CIELAB), by shades and noise.
@@ -74,13 +77,20 @@ bool is_in_view(const Surface& seen_W, const Eigen::Vector3f& normal_W) {
   return std::ranges::any_of(seen_W, facing(normal_W));
 }
 
-enum class Evidence : std::uint8_t { kSeen, kContradicted, kUnknown };
+enum class Evidence : std::uint8_t {
+  kSeen,
+  kContradicted,
+  kCovered,  ///< by something so near that the object would reach into it, or touch it
+  kUnknown,
+};
 
 /// @param model_W the point of this number of the model, where the hypothesis puts it
 /// @param views of the scene that may show the object
-Evidence evidence_at(std::size_t model_point, const SurfacePoint& model_W, float within_m,
-                     const Scene& scene, std::span<const std::size_t> views, LitModel& lit) {
+Evidence evidence_at(const PreparedModel& model, std::size_t model_point,
+                     const SurfacePoint& model_W, const Scene& scene,
+                     std::span<const std::size_t> views, LitModel& lit) {
   const SceneSurface& surface_W = scene.surface();
+  const float within_m = kSameDistance * model.spacing_m;
   const SurfacePoint* const seen =
       surface_W.nearest(model_W.position, within_m, facing(model_W.normal));
   if (seen != nullptr) {
@@ -91,8 +101,12 @@ Evidence evidence_at(std::size_t model_point, const SurfacePoint& model_W, float
     return Evidence::kUnknown;
   }
   if (views.empty()) return Evidence::kUnknown;
-  const Sights sights = scene.observed()->sights(model_W.position, views);
-  return sights.through > sights.measured ? Evidence::kContradicted : Evidence::kUnknown;
+  const ObservedSpace& observed = *scene.observed();
+  const Sights sights = observed.sights(model_W.position, views);
+  if (sights.through > sights.measured) return Evidence::kContradicted;
+  const bool is_covered = sights.hidden > 0 && observed.is_covered(model_W.position, model_W.normal,
+                                                                   kGrazing, model.radius_m, views);
+  return is_covered ? Evidence::kCovered : Evidence::kUnknown;
 }
 
 /// The views that may show an object there.
@@ -196,16 +210,19 @@ void add_evidence(const PreparedModel& model, const Scene& scene, const Surface&
     SurfacePoint point_W = model.surface_O[i];
     point_W.position = X_WO * point_W.position;
     point_W.normal = X_WO.linear() * point_W.normal;
-    switch (evidence_at(i, point_W, kSameDistance * model.spacing_m, scene, views, lit)) {
+    switch (evidence_at(model, i, point_W, scene, views, lit)) {
       case Evidence::kSeen:
         seen += 1.0F;
         break;
       case Evidence::kContradicted:
         contradicted += 1.0F;
         break;
+      case Evidence::kCovered:
+        contradicted += kDoubtful;
+        break;
       case Evidence::kUnknown:
         if (scene.observed() == nullptr && is_in_view(seen_W, point_W.normal)) {
-          contradicted += 0.5F;
+          contradicted += kDoubtful;
         }
         break;
     }

@@ -17,7 +17,8 @@ struct Placement {
   /// Share of the model's surface that is in the map there.
   float seen = 0.0F;
   /// Share of the model's surface that is not in the map, although the camera saw that place: it is
-  /// free, or another surface is there.
+  /// free, or another surface is there; by half, where another surface is so near in front of it
+  /// that the object would reach into it or touch it.
   float contradicted = 0.0F;
   /// Share of the points of `segment_ids` that are surface of the object.
   float explained = 0.0F;

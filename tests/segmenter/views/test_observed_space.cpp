@@ -88,6 +88,24 @@ TEST(ObservedSpace, SaysNothingBesideWhatIsInFront) {
   EXPECT_EQ(sights_of(view, {x_of(77, 1.0), 0, 1.0F}), kThrough);
 }
 
+TEST(ObservedSpace, TellsWhatCoversTheSideOfASurfaceThatAViewLooksAt) {
+  ObservedSpace space(kVoxel_m);
+  space.add(wall(2.0));
+  const std::vector<std::size_t> views = {0};
+  const Eigen::Vector3f to_camera = -Eigen::Vector3f::UnitZ();
+  const auto is_covered = [&](float z_m, const Eigen::Vector3f& normal_W, float within_m) {
+    constexpr float kGrazing = 0.2F;
+    return space.is_covered({0, 0, z_m}, normal_W, kGrazing, within_m, views);
+  };
+  EXPECT_TRUE(is_covered(2.5F, to_camera, 0.6F));
+  EXPECT_FALSE(is_covered(2.5F, to_camera, 0.4F));
+  EXPECT_FALSE(is_covered(2.5F, -to_camera, 0.6F));
+  EXPECT_FALSE(is_covered(2.5F, Eigen::Vector3f(1.0F, 0.0F, -0.1F).normalized(), 0.6F));
+  EXPECT_FALSE(is_covered(2.0F, to_camera, 0.6F));
+  EXPECT_FALSE(is_covered(1.5F, to_camera, 0.6F));
+  EXPECT_FALSE(space.is_covered({0, 0, 2.5F}, to_camera, 0.2F, 0.6F, {}));
+}
+
 TEST(ObservedSpace, CountsEachView) {
   ObservedSpace space(kVoxel_m);
   EXPECT_TRUE(space.empty());

@@ -21,6 +21,7 @@ namespace {
 using testing::box_on_table;
 using testing::kBall;
 using testing::kBox;
+using testing::kBoxSize_m;
 using testing::MapOfThings;
 
 const Eigen::Vector3d kUp_W = -Eigen::Vector3d::UnitY();
@@ -224,6 +225,32 @@ TEST(Placement, CountsWhatSpeaksAgainstTheObject) {
   EXPECT_LT(half.seen, 0.7F);
   EXPECT_GT(half.contradicted, 0.1F);
   EXPECT_LT(half.score(), right.score() - 0.05F);
+}
+
+TEST(Placement, DoubtsAnObjectThatWouldReachIntoAWall) {
+  const ObservedMap taught_map = box_on_table(kFourSides);
+  const MadeModel box = taught(taught_map, kBox, "box");
+  const PreparedModel model(box.model, taught_map.resolution_m);
+  // A level camera before the box, above it, which measures one depth everywhere.
+  const auto contradicted = [&](double depth_m) {
+    MapView view;
+    view.intrinsics = {.fx = 130, .fy = 130, .cx = 79.5, .cy = 59.5, .width = 160, .height = 120};
+    view.depth_mm.assign(std::size_t{160} * 120, static_cast<std::uint16_t>(1e3 * depth_m));
+    ObservedSpace observed(taught_map.resolution_m);
+    observed.add(view);
+    SceneOf scene(box_on_table({"-y"}));  // the map has its front
+    scene.scene.set_observed(&observed);
+    return placement_of(model, scene.scene, {.X_WO = box.X_WO, .light = {}}).contradicted;
+  };
+  const double front_m = MapOfThings::X_WU().translation().z() - kBoxSize_m.y() / 2;
+  const float is_free = contradicted(front_m + 1.0);
+  const float in_wall = contradicted(front_m);
+  const float behind_wall = contradicted(front_m - 0.5);
+  // Colours at the edges of its front are those of two sides.
+  EXPECT_LT(behind_wall, 0.1F);             // what hides it may have nothing to do with it
+  EXPECT_GT(in_wall, behind_wall + 0.1F);   // its top, which faces the camera, by half
+  EXPECT_GT(is_free, behind_wall + 0.35F);  // its top, and two more sides
+  EXPECT_LT(in_wall - behind_wall, 0.5F * (is_free - behind_wall));
 }
 
 TEST(Placement, KnowsNothingOfASideThatWasNotSeenWhenItWasTaught) {
