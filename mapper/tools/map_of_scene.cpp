@@ -35,8 +35,10 @@ SceneOfMap read_scene(const std::string& address, bool in_scene_frame) {
     throw std::invalid_argument("'" + address + "': expected synthetic://NAME?key=value&...");
   }
   const auto config = synthetic::Sequence::Config::parse(uri->path, uri->options);
-  const Pose X_SC = synthetic::Sequence(config).X_WC(0);
-  return {.scene = synthetic::make_scene(config.scene),
+  const synthetic::Sequence sequence(config);
+  const Pose X_SC = sequence.X_WC(0);
+  return {.scene = synthetic::make_scene_in_lap(config.scene, config.seed,
+                                                sequence.lap_of(sequence.num_frames() - 1)),
           .X_SW = in_scene_frame ? Pose::Identity() : X_SC};
 }
 

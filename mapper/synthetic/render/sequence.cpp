@@ -1,11 +1,20 @@
 #include "mapper/synthetic/render/sequence.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 
 #include "lcmtypes/base/argument_check.hpp"
 
 namespace kintsugi::synthetic {
+
+namespace {
+
+/// Of which a frame of 30 Hz is each.
+constexpr std::array<int, 5> kRates_hz = {30, 15, 10, 6, 5};
+
+}  // namespace
 
 Sequence::Sequence(const Config& config)
     : config_(config),
@@ -16,14 +25,17 @@ Sequence::Sequence(const Config& config)
   check_range("synthetic: laps", config_.laps, 1, 1000);
   require(config_.laps == 1 || content_.trajectory.is_closed(), "synthetic: laps", config_.laps,
           "1: the path does not end where it begins");
-  require(config_.rate_hz == 30 || config_.rate_hz == 15, "synthetic: rate", config_.rate_hz,
-          "30 or 15");
+  require(std::ranges::find(kRates_hz, config_.rate_hz) != kRates_hz.end(), "synthetic: rate", config_.rate_hz,
+          "30, 15, 10, 6 or 5");
   const int on_path = frames_on_path();
   check_range("synthetic: start", config_.start, 0, on_path - 1);
   num_frames_ = config_.frames.value_or(on_path - config_.start);
   check_range("synthetic: frames", num_frames_, 1, on_path - config_.start);
   check_range("synthetic: covered", config_.covered.second, config_.covered.first, num_frames_);
   check_range("synthetic: covered", config_.covered.first, 0, num_frames_);
+  if (changes_between_laps(config_.scene)) {
+    content_.scene = make_scene_in_lap(config_.scene, config_.seed, lap_of(num_frames_ - 1));
+  }
 }
 
 int Sequence::frames_on_path() const {
@@ -48,9 +60,24 @@ Pose Sequence::X_WC(int frame) const {
   return content_.trajectory.X_WC(1e-6 * path_us, config_.laps);
 }
 
+int Sequence::lap_of(int frame) const {
+  const double path_s = config_.speed * (config_.start + frame) / config_.rate_hz;
+  return std::min(static_cast<int>(path_s / content_.trajectory.duration_s() + 1e-9),
+                  config_.laps - 1);
+}
+
+const Scene& Sequence::scene_at(int frame) {
+  if (!changes_between_laps(config_.scene)) return content_.scene;
+  if (const int lap = lap_of(frame); lap != lap_) {
+    in_lap_ = make_scene_in_lap(config_.scene, config_.seed, lap);
+    lap_ = lap;
+  }
+  return *in_lap_;
+}
+
 const RenderedFrame& Sequence::truth(int frame) {
   if (frame != rendered_) {
-    last_ = render(content_.scene, intrinsics_, X_WC(frame));
+    last_ = render(scene_at(frame), intrinsics_, X_WC(frame));
     rendered_ = frame;
   }
   return last_;

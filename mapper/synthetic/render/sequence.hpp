@@ -27,7 +27,7 @@ class Sequence {
     bool noise = true;               ///< of the depth sensor
     double speed = 1.0;              ///< times that of the path, within [0.1, 10]
     int laps = 1;                    ///< how often the path is walked, if it is closed
-    int rate_hz = 30;                ///< frames per second, 30 or 15
+    int rate_hz = 30;                ///< frames per second, 30, 15, 10, 6 or 5
     std::uint32_t seed = 1;          ///< for the noise of the sensor and the shake of the hand
     int start = 0;                   ///< first frame, >= 0 and on the path
     std::optional<int> frames;       ///< how many, >= 1 and on the path; absent: to the path's end
@@ -50,6 +50,7 @@ class Sequence {
   explicit Sequence(const Config& config);
 
   const Config& config() const { return config_; }
+  /// As it is at the last frame. Things of a scene that changes were elsewhere in earlier laps.
   const Scene& scene() const { return content_.scene; }
   const Intrinsics& intrinsics() const { return intrinsics_; }
   int num_frames() const { return num_frames_; }
@@ -58,6 +59,9 @@ class Sequence {
   std::int64_t utime(int frame) const {
     return frame_utime(std::int64_t{kFrameRate_hz / config_.rate_hz} * (config_.start + frame));
   }
+
+  /// Which time the path is walked at this frame, from 0.
+  int lap_of(int frame) const;
 
   /// True pose in the scene's frame (see Scene).
   Pose X_WC(int frame) const;
@@ -72,10 +76,13 @@ class Sequence {
  private:
   int frames_on_path() const;
   void check_index(int frame) const;
+  const Scene& scene_at(int frame);
   bool is_covered(int frame) const;
 
   Config config_;
   SceneWithPath content_;
+  std::optional<Scene> in_lap_;  ///< of a scene that changes: as it is in lap_
+  int lap_ = -1;
   std::unique_ptr<SensorModel> sensor_;
   Intrinsics intrinsics_;
   int num_frames_ = 0;

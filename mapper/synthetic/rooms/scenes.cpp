@@ -10,6 +10,8 @@ namespace kintsugi::synthetic {
 
 namespace {
 
+constexpr char kPatrol[] = "patrol";
+
 using Maker = std::function<SceneWithPath(std::uint32_t)>;
 using SurfaceMaker = SceneWithPath (*)(bool is_textured, std::uint32_t seed);
 
@@ -27,6 +29,7 @@ const std::map<std::string, Maker>& makers() {
       {"office", office_scene},
       {"office-again", office_again_scene},
       {"office-later", office_later_scene},
+      {kPatrol, patrol_scene},
       {"two-floors", two_floors_scene},
       {"hall", hall_scene},
       {"hallway", hallway_scene},
@@ -68,5 +71,12 @@ SceneWithPath make_scene_with_path(const std::string& name, std::uint32_t seed) 
 }
 
 Scene make_scene(const std::string& name) { return make_scene_with_path(name).scene; }
+
+bool changes_between_laps(const std::string& name) { return name == kPatrol; }
+
+Scene make_scene_in_lap(const std::string& name, std::uint32_t seed, int lap) {
+  if (changes_between_laps(name)) return patrol_scene_in(lap, seed);
+  return make_scene_with_path(name, seed).scene;
+}
 
 }  // namespace kintsugi::synthetic
