@@ -20,5 +20,6 @@ inline constexpr char kViewerStatus[] = "VIEWER_STATUS";
 inline constexpr char kDetectorStatus[] = "DETECTOR_STATUS";
 inline constexpr char kHeartbeat[] = "HEARTBEAT";
 inline constexpr char kResendRequest[] = "RESEND_REQUEST";
+inline constexpr char kChunksReplaced[] = "CHUNKS_REPLACED";
 
 }  // namespace kintsugi::channels

@@ -245,4 +245,16 @@ struct ResendRequest {
   bool operator==(const ResendRequest&) const = default;
 };
 
+/// The sender of a numbered stream tells that it no longer has these chunks, and that nobody needs
+/// them, because newer ones have replaced them: those of older revisions of patches.
+struct ChunksReplaced {
+  std::int64_t utime = 0;    ///< wall clock, microseconds
+  std::int64_t session = 0;  ///< of the sender
+  std::string channel;
+  std::string map_name;               ///< of the map that the stream carries; empty: several maps
+  std::vector<SequenceRange> ranges;  ///< at most kMaxResendRanges
+
+  bool operator==(const ChunksReplaced&) const = default;
+};
+
 }  // namespace kintsugi

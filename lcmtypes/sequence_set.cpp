@@ -76,4 +76,13 @@ std::vector<SequenceRange> SequenceSet::ranges() const {
   return all;
 }
 
+std::vector<SequenceRange> SequenceSet::ranges_from(std::int64_t begin,
+                                                    std::size_t max_ranges) const {
+  std::vector<SequenceRange> found;
+  for (auto range = reaching(begin); range != ranges_.end() && found.size() < max_ranges; ++range) {
+    found.push_back({std::max(range->first, begin), range->second});
+  }
+  return found;
+}
+
 }  // namespace kintsugi

@@ -28,6 +28,8 @@ class SequenceSet {
   std::int64_t lowest_missing(std::int64_t begin) const;
 
   std::vector<SequenceRange> ranges() const;
+  /// The part of the set from `begin` on: the lowest `max_ranges` ranges of it.
+  std::vector<SequenceRange> ranges_from(std::int64_t begin, std::size_t max_ranges) const;
   std::size_t num_ranges() const { return ranges_.size(); }
 
  private:

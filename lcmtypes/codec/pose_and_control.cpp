@@ -1,6 +1,7 @@
 // The pose of the camera, and the control messages of the numbered streams.
 
 #include <kintsugi/camera_pose_t.hpp>
+#include <kintsugi/chunks_replaced_t.hpp>
 #include <kintsugi/heartbeat_t.hpp>
 #include <kintsugi/resend_request_t.hpp>
 
@@ -69,10 +70,40 @@ struct Small<Heartbeat> : Copied<Heartbeat, heartbeat_t> {
   }
 };
 
-template <>
-struct Small<ResendRequest> : Shape<resend_request_t> {
-  static constexpr int kNumStrings = 1;
+/// A message of which the only array are ranges of sequence numbers.
+template <class Message, class Wire>
+struct Ranges : Shape<Wire> {
   static constexpr std::size_t kBytesPerCount = 2 * sizeof(std::int64_t);
+
+  static void to_wire(const Message& message, Wire& wire) {
+    Small<Message>::copy(message, wire);
+    wire.num_ranges = static_cast<std::int32_t>(message.ranges.size());
+    for (const SequenceRange& range : message.ranges) {
+      wire.first.push_back(range.first);
+      wire.last.push_back(range.last);
+    }
+  }
+  static void from_wire(const Wire& wire, Message& message) {
+    Small<Message>::copy(wire, message);
+    for (std::size_t i = 0; i < wire.first.size(); ++i) {
+      message.ranges.push_back({wire.first[i], wire.last[i]});
+    }
+  }
+  static void check(const Check& check, const Message& m) {
+    check.not_negative("utime", m.utime);
+    check.positive("session", m.session);
+    check.text("channel", m.channel);
+    check.template range<std::size_t>("num_ranges", m.ranges.size(), 0, kMaxResendRanges);
+    for (const SequenceRange& range : m.ranges) {
+      check.template range<std::int64_t>("first", range.first, 0, kMaxSequence);
+      check.template range<std::int64_t>("last", range.last, range.first, kMaxSequence);
+    }
+  }
+};
+
+template <>
+struct Small<ResendRequest> : Ranges<ResendRequest, resend_request_t> {
+  static constexpr int kNumStrings = 1;
 
   template <class From, class To>
   static void copy(const From& from, To& to) {
@@ -81,29 +112,22 @@ struct Small<ResendRequest> : Shape<resend_request_t> {
     to.receiver = from.receiver;
     to.channel = from.channel;
   }
-  static void to_wire(const ResendRequest& message, resend_request_t& wire) {
-    copy(message, wire);
-    wire.num_ranges = static_cast<std::int32_t>(message.ranges.size());
-    for (const SequenceRange& range : message.ranges) {
-      wire.first.push_back(range.first);
-      wire.last.push_back(range.last);
-    }
+};
+
+template <>
+struct Small<ChunksReplaced> : Ranges<ChunksReplaced, chunks_replaced_t> {
+  static constexpr int kNumStrings = 2;
+
+  template <class From, class To>
+  static void copy(const From& from, To& to) {
+    to.utime = from.utime;
+    to.session = from.session;
+    to.channel = from.channel;
+    to.map_name = from.map_name;
   }
-  static void from_wire(const resend_request_t& wire, ResendRequest& message) {
-    copy(wire, message);
-    for (std::size_t i = 0; i < wire.first.size(); ++i) {
-      message.ranges.push_back({wire.first[i], wire.last[i]});
-    }
-  }
-  static void check(const Check& check, const ResendRequest& m) {
-    check.not_negative("utime", m.utime);
-    check.positive("session", m.session);
-    check.text("channel", m.channel);
-    check.range<std::size_t>("num_ranges", m.ranges.size(), 0, kMaxResendRanges);
-    for (const SequenceRange& range : m.ranges) {
-      check.range<std::int64_t>("first", range.first, 0, kMaxSequence);
-      check.range<std::int64_t>("last", range.last, range.first, kMaxSequence);
-    }
+  static void check(const Check& check, const ChunksReplaced& m) {
+    Ranges::check(check, m);
+    check.text("map_name", m.map_name);
   }
 };
 
@@ -115,5 +139,7 @@ template Bytes encode(const Heartbeat&);
 template Heartbeat decode(ByteView);
 template Bytes encode(const ResendRequest&);
 template ResendRequest decode(ByteView);
+template Bytes encode(const ChunksReplaced&);
+template ChunksReplaced decode(ByteView);
 
 }  // namespace kintsugi

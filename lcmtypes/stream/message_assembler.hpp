@@ -65,6 +65,22 @@ class MessageAssembler {
     return dropped;
   }
 
+  /// The same for every message that has a chunk in `range`.
+  std::vector<std::int64_t> drop_in(const SequenceRange& range) {
+    std::vector<std::int64_t> dropped;
+    auto message = messages_.upper_bound(range.first);
+    if (message != messages_.begin()) --message;  // it may reach into the range
+    while (message != messages_.end() && message->first <= range.last) {
+      const std::int64_t first = message->first;
+      const std::int64_t last = first + message->second.front().count - 1;
+      ++message;
+      if (last < range.first) continue;
+      const auto more = numbers(take(first));
+      dropped.insert(dropped.end(), more.begin(), more.end());
+    }
+    return dropped;
+  }
+
   /// Memory of all chunks.
   std::size_t bytes() const { return bytes_; }
 

@@ -22,8 +22,8 @@ std::vector<SequenceRange> first_numbers(std::vector<SequenceRange> ranges, std:
 
 }  // namespace
 
-void ResendRequests::arrived(std::int64_t sequence) {
-  if (asked_ && asked_->first <= sequence && sequence <= asked_->last) has_progress_ = true;
+void ResendRequests::arrived(const SequenceRange& chunks) {
+  if (asked_ && asked_->first <= chunks.last && chunks.first <= asked_->last) has_progress_ = true;
 }
 
 std::vector<SequenceRange> ResendRequests::poll(const SequenceSet& seen, std::int64_t begin,

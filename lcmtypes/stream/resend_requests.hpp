@@ -32,8 +32,8 @@ class ResendRequests {
 
   explicit ResendRequests(const Config& config) : config_(config) {}
 
-  /// To be called when a chunk is received for the first time.
-  void arrived(std::int64_t sequence);
+  /// To be called when chunks are received for the first time, or need not be received any more.
+  void arrived(const SequenceRange& chunks);
 
   /// The numbers to request now, lowest first: some of those in [begin, end) that are not in
   /// `seen`.

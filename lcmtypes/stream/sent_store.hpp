@@ -6,10 +6,19 @@
 #include <deque>
 #include <mutex>
 #include <optional>
+#include <vector>
 
 #include "lcmtypes/codec/codec.hpp"
 
 namespace kintsugi {
+
+/// What has become of a chunk that was added to a store.
+enum class ChunkFate {
+  kKept,
+  kChanged,     ///< there is another one in its place, of which others need no more
+  kReplaced,    ///< newer chunks have replaced it: nobody needs it, and it is not there any more
+  kSuperseded,  ///< likewise, and it was all that was sent of a message that was superseded
+};
 
 /// Encoded chunks by sequence number. Only one thread may call add(); any thread may call the other
 /// functions.
@@ -31,6 +40,12 @@ class SentStore {
   /// Whether a chunk that was added may be sent: not before the store has it where it promises to
   /// keep it.
   virtual bool is_safe(std::int64_t /*sequence*/) const { return true; }
+  virtual ChunkFate fate(std::int64_t /*sequence*/) const { return ChunkFate::kKept; }
+  /// The ranges of chunks from `begin` on that were replaced, the lowest `max_ranges` of them.
+  virtual std::vector<SequenceRange> replaced(std::int64_t /*begin*/,
+                                              std::size_t /*max_ranges*/) const {
+    return {};
+  }
 };
 
 /// Keeps the newest chunks in memory.

@@ -91,7 +91,18 @@ void StreamSender::request(const ResendRequest& request, double now_s) {
       std::any_of(request.ranges.begin(), request.ranges.end(), is_lost)) {
     config_.on_state_wanted();
   }
+  note_replaced(request.ranges);
   resends_.want(request.ranges, std::max(first, state_sequence_), next_sequence(), now_s);
+}
+
+void StreamSender::note_replaced(const std::vector<SequenceRange>& asked) {
+  if (store_ == nullptr) return;
+  for (const SequenceRange& range : asked) {
+    const std::vector<SequenceRange> next = store_->replaced(range.first, 1);
+    if (next.empty() || next.front().first > range.last) continue;
+    const std::int64_t lowest = std::max(range.first, next.front().first);
+    replaced_ = std::min(replaced_.value_or(lowest), lowest);
+  }
 }
 
 double StreamSender::step(double now_s) {
@@ -100,19 +111,30 @@ double StreamSender::step(double now_s) {
     send_heartbeat(now_s);
   } else if (!jobs_.empty() && sequence_ < resumed_end_) {
     compare_with_store();
+  } else if (replaced_ && now_s >= next_replaced_s_) {
+    const double wait_s = wait_for_tokens(kLeastCost_bytes, now_s);
+    if (wait_s > 0.0) return wait_s;
+    send_replaced(now_s);
   } else {
     if (!prepared_) prepare();
     if (!prepared_) {
-      const double idle_s = next_heartbeat_s_ - now_s;
+      double idle_s = next_heartbeat_s_ - now_s;
+      if (replaced_) idle_s = std::min(idle_s, next_replaced_s_ - now_s);
       if (!resends_.empty()) return 0.0;
       if (waits_for_store()) return std::min(kStoreWait_s, idle_s);
       return has_new_chunks() ? 0.0 : idle_s;
     }
-    const double wait_s = bucket_.delay_s(cost_of(prepared_->chunk), now_s);
-    if (wait_s > 0.0) return std::min(std::max(wait_s, min_wait_s_), next_heartbeat_s_ - now_s);
+    const double wait_s = wait_for_tokens(cost_of(prepared_->chunk), now_s);
+    if (wait_s > 0.0) return wait_s;
     send_prepared(now_s);
   }
   return 0.0;
+}
+
+double StreamSender::wait_for_tokens(double cost, double now_s) {
+  const double wait_s = bucket_.delay_s(cost, now_s);
+  if (wait_s <= 0.0) return 0.0;
+  return std::min(std::max(wait_s, min_wait_s_), next_heartbeat_s_ - now_s);
 }
 
 std::int64_t StreamSender::next_sequence() const { return std::max(sent_end_, resumed_end_); }
@@ -134,9 +156,13 @@ std::int64_t StreamSender::first_sequence() const {
 Bytes StreamSender::encode_next() const { return jobs_.front().encode(sequence_, next_index_); }
 
 void StreamSender::compare_with_store() {
-  const std::optional<Bytes> stored = store_->find(sequence_);
   Job& job = jobs_.front();
-  if (stored && job.encode_superseded && *stored == job.encode_superseded(sequence_)) {
+  std::optional<Bytes> stored = store_->find(sequence_);
+  const ChunkFate fate = store_->fate(sequence_);
+  if (fate != ChunkFate::kKept) stored.reset();
+  if (fate == ChunkFate::kSuperseded) {
+    job.num_chunks = 1;
+  } else if (stored && job.encode_superseded && *stored == job.encode_superseded(sequence_)) {
     job.num_chunks = 1;
   } else if (stored && *stored != encode_next()) {
     throw std::runtime_error(channel_ + ", sequence " + std::to_string(sequence_) +
@@ -196,6 +222,25 @@ void StreamSender::send_prepared(double now_s) {
   if (next.starts_state) state_sequence_ = next.sequence;
   sent_end_ = next.sequence + 1;
   queued_bytes_ -= next.job_bytes;
+}
+
+/// As many ranges as fit, from the lowest on that was asked for: who misses that one, because it is
+/// late, misses most of the others, too. Not more often than chunks are sent again.
+void StreamSender::send_replaced(double now_s) {
+  ChunksReplaced message;
+  message.utime = wall_clock_us();
+  message.session = session_;
+  message.channel = channel_;
+  message.map_name = config_.map_name;
+  const std::size_t bytes_left = config_.max_chunk_bytes - encode(message).size();
+  message.ranges = store_->replaced(
+      *std::exchange(replaced_, std::nullopt),
+      std::min<std::size_t>(kMaxResendRanges, bytes_left / (2 * sizeof(std::int64_t))));
+  next_replaced_s_ = now_s + ResendQueue::kInFlight_s;
+  if (message.ranges.empty()) return;
+  const Bytes bytes = encode(message);
+  transmit_(channels::kChunksReplaced, bytes);
+  bucket_.take(cost_of(bytes), now_s);
 }
 
 /// Goes on to the next chunk of the jobs. Returns the bytes of the message that ends here, else 0.

@@ -46,8 +46,8 @@ struct StreamPublisherCounts {
   std::int64_t requests_bad = 0;         ///< not decoded
 };
 
-/// Sends the chunks of queued messages in order, resends requested chunks, and sends heartbeats
-/// that tell which chunks exist; one token bucket limits the rate of all. A chunk is in the store
+/// Sends the chunks of queued messages in order, resends requested chunks or tells that they are
+/// replaced, and sends heartbeats that tell which chunks exist; one token bucket limits the rate of all. A chunk is in the store
 /// before it is sent, and safe there; chunks of one second are stored ahead while the store needs
 /// time for that. Only one thread may use it. Time is an argument: seconds that never decrease.
 class StreamSender {
@@ -107,6 +107,9 @@ class StreamSender {
   void supersede(std::int64_t key);
   void compare_with_store();
   void prepare();
+  void note_replaced(const std::vector<SequenceRange>& asked);
+  void send_replaced(double now_s);
+  double wait_for_tokens(double cost, double now_s);
   void store_ahead();
   void store_next();
   void send_prepared(double now_s);
@@ -133,6 +136,8 @@ class StreamSender {
   std::int64_t state_sequence_ = 0;
   std::int64_t announced_ = -1;  // next_sequence of the last heartbeat
   double next_heartbeat_s_ = 0.0;
+  std::optional<std::int64_t> replaced_;  // the lowest chunk that was asked for and is replaced
+  double next_replaced_s_ = 0.0;          // when that may be told
   const double min_wait_s_;
   bool announce_ = false;
   StreamPublisherCounts counts_;

@@ -47,8 +47,8 @@ void StreamSession::keep(std::int64_t sequence, std::size_t bytes) {
   seen_.insert(sequence);
   ++chunks_came_;
   bytes_came_ += static_cast<std::int64_t>(bytes);
-  lost_requests_.arrived(sequence);
-  requests_.arrived(sequence);
+  lost_requests_.arrived({sequence, sequence});
+  requests_.arrived({sequence, sequence});
 }
 
 void StreamSession::restore(const std::vector<SequenceRange>& ranges) {
@@ -57,6 +57,17 @@ void StreamSession::restore(const std::vector<SequenceRange>& ranges) {
     next_ = std::max(next_, range.last + 1);
     chunks_restored_ += range.last - range.first + 1;
   }
+}
+
+bool StreamSession::replace(const std::vector<SequenceRange>& ranges, std::size_t max_gaps) {
+  heard_ = true;
+  if (seen_.num_ranges() + ranges.size() > max_gaps) return false;
+  for (const SequenceRange& range : ranges) {
+    seen_.insert(range);
+    lost_requests_.arrived(range);
+    requests_.arrived(range);
+  }
+  return true;
 }
 
 std::vector<SequenceRange> StreamSession::poll(StreamRoom room, std::int64_t max_bytes,

@@ -41,6 +41,9 @@ class StreamSession {
   /// Adds chunks that an earlier run of this receiver has kept.
   void restore(const std::vector<SequenceRange>& ranges);
   void drop(std::int64_t sequence) { seen_.erase(sequence); }
+  /// Newer chunks have replaced these: they are not waited for. Does nothing, and returns false, if
+  /// there would be more than `max_gaps` gaps.
+  bool replace(const std::vector<SequenceRange>& ranges, std::size_t max_gaps);
 
   /// The chunks to request now, of about `max_bytes` in total.
   std::vector<SequenceRange> poll(StreamRoom room, std::int64_t max_bytes, std::size_t max_ranges,

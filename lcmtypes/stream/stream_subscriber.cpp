@@ -44,16 +44,21 @@ void StreamSubscriber<Message>::subscribe(Bus& bus) {
   bus.subscribe(channel_, [this](ByteView message) { handle(channel_, message); });
   bus.subscribe(channels::kHeartbeat,
                 [this](ByteView message) { handle(channels::kHeartbeat, message); });
+  bus.subscribe(channels::kChunksReplaced,
+                [this](ByteView message) { handle(channels::kChunksReplaced, message); });
 }
 
 template <BulkMessage Message>
 bool StreamSubscriber<Message>::handle(const std::string& channel, ByteView message) {
   const bool is_heartbeat = channel == channels::kHeartbeat;
-  if (!is_heartbeat && channel != channel_) return false;
+  const bool is_replacement = channel == channels::kChunksReplaced;
+  if (!is_heartbeat && !is_replacement && channel != channel_) return false;
   std::optional<Message> complete;
   try {
     if (is_heartbeat) {
       add(decode<Heartbeat>(message));
+    } else if (is_replacement) {
+      add(decode<ChunksReplaced>(message));
     } else {
       const std::vector<Chunk<Message>> chunks = add(decode_chunk<Message>(message));
       if (!chunks.empty()) complete = join(chunks);
@@ -115,9 +120,7 @@ std::vector<Chunk<Message>> StreamSubscriber<Message>::keep(Session& session,
 
 template <BulkMessage Message>
 void StreamSubscriber<Message>::add(const Heartbeat& heartbeat) {
-  const bool is_wanted = config_.wanted_map_name.empty() || heartbeat.map_name.empty() ||
-                         heartbeat.map_name == config_.wanted_map_name;
-  if (heartbeat.channel != channel_ || !is_wanted) return;
+  if (!is_of_stream(heartbeat.channel, heartbeat.map_name)) return;
   const std::lock_guard lock(mutex_);
   ++counts_.heartbeats;
   Session* session = sessions_.heard_of(heartbeat.session);
@@ -126,6 +129,27 @@ void StreamSubscriber<Message>::add(const Heartbeat& heartbeat) {
   for (const auto sequence : session->messages.drop_before(session->numbers.state_sequence())) {
     session->numbers.drop(sequence);
   }
+}
+
+template <BulkMessage Message>
+void StreamSubscriber<Message>::add(const ChunksReplaced& replaced) {
+  if (!is_of_stream(replaced.channel, replaced.map_name)) return;
+  const std::lock_guard lock(mutex_);
+  Session* session = sessions_.heard_of(replaced.session);
+  if (session == nullptr) return;
+  // What came of a message of which the rest does not come any more. Another one may come instead.
+  for (const SequenceRange& range : replaced.ranges) {
+    for (const auto sequence : session->messages.drop_in(range)) session->numbers.drop(sequence);
+  }
+  session->numbers.replace(replaced.ranges, config_.max_gaps_per_session);
+}
+
+template <BulkMessage Message>
+bool StreamSubscriber<Message>::is_of_stream(const std::string& channel,
+                                             const std::string& map_name) const {
+  const bool is_wanted = config_.wanted_map_name.empty() || map_name.empty() ||
+                         map_name == config_.wanted_map_name;
+  return channel == channel_ && is_wanted;
 }
 
 template <BulkMessage Message>

@@ -87,12 +87,12 @@ class StreamSubscriber {
   StreamSubscriber(std::string channel, OnMessage on_message, OnBad on_bad = {},
                    const Config& config = {});
 
-  /// From now on bus.handle() passes messages of the channel and heartbeats to handle(). This must
-  /// outlive the last bus.handle().
+  /// From now on bus.handle() passes messages of the channel, heartbeats and what is told of replaced
+  /// chunks to handle(). This must outlive the last bus.handle().
   void subscribe(Bus& bus);
 
-  /// Handles one LCM message, for instance of a log. Returns true if it is on the stream's channel
-  /// or a heartbeat. Invalid messages are counted; only the callbacks may throw.
+  /// Handles one LCM message, for instance of a log. Returns true if it is on the stream's channel,
+  /// a heartbeat, or tells of replaced chunks. Invalid messages are counted; only the callbacks may throw.
   bool handle(const std::string& channel, ByteView message);
 
   /// The requests to send now on RESEND_REQUEST. To be called regularly, for instance in the tick
@@ -123,6 +123,8 @@ class StreamSubscriber {
 
   Chunks add(Chunk<Message> chunk);
   void add(const Heartbeat& heartbeat);
+  void add(const ChunksReplaced& replaced);
+  bool is_of_stream(const std::string& channel, const std::string& map_name) const;
   StreamRoom ask_for_room() const;
   // With the lock held:
   Chunks keep(Session& session, Chunk<Message> chunk);

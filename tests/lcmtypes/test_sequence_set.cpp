@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <random>
+#include <ranges>
 #include <set>
 
 #include <gtest/gtest.h>
@@ -39,6 +41,13 @@ TEST(SequenceSet, AgreesWithAPlainSetUnderRandomInsertsAndErasures) {
     ASSERT_EQ(missing.size() + plain.size(), static_cast<std::size_t>(kEnd));
     for (const std::int64_t i : missing) ASSERT_FALSE(plain.contains(i));
     ASSERT_EQ(set.count_missing(0, kEnd), static_cast<std::int64_t>(missing.size()));
+    const std::int64_t begin = random() % kEnd;
+    std::set<std::int64_t> behind;
+    for (const auto& [first, last] : set.ranges_from(begin, 100)) {
+      for (std::int64_t i = first; i <= last; ++i) behind.insert(i);
+    }
+    ASSERT_TRUE(std::ranges::equal(behind, std::ranges::subrange(plain.lower_bound(begin), plain.end())));
+    ASSERT_LE(set.ranges_from(begin, 1).size(), 1U);
   }
 }
 

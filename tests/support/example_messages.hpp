@@ -356,4 +356,8 @@ inline ResendRequest example_resend_request() {
   return {1, 42, "CLOUD_SLICE", 99, {{0, 0}, {5, 9}, {12, 1'000'000}}};
 }
 
+inline ChunksReplaced example_chunks_replaced() {
+  return {1, 42, "CLOUD_SLICE", "office", {{0, 0}, {5, 9}, {12, 1'000'000}}};
+}
+
 }  // namespace kintsugi::testing

@@ -47,6 +47,7 @@ std::vector<Subject> subjects() {
           small("viewer_status", example_viewer_status()),
           small("heartbeat", example_heartbeat()),
           small("resend_request", example_resend_request()),
+          small("chunks_replaced", example_chunks_replaced()),
           small("segment_query", example_query()),
           small("detector_status", example_detector_status()),
           small("object_detection", example_detection()),

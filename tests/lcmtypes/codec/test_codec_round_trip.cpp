@@ -48,6 +48,7 @@ TEST(CodecRoundTrip, SmallMessagesKeepEveryField) {
   EXPECT_TRUE(through_the_wire(example_viewer_status()) == example_viewer_status());
   EXPECT_TRUE(through_the_wire(example_heartbeat()) == example_heartbeat());
   EXPECT_TRUE(through_the_wire(example_resend_request()) == example_resend_request());
+  EXPECT_TRUE(through_the_wire(example_chunks_replaced()) == example_chunks_replaced());
   EXPECT_TRUE(through_the_wire(example_query()) == example_query());
   EXPECT_TRUE(through_the_wire(example_detector_status()) == example_detector_status());
   EXPECT_TRUE(through_the_wire(example_detection()) == example_detection());

@@ -121,7 +121,7 @@ TEST(SignedMessage, FitsIntoOneEthernetFrameOnEveryChannel) {
   for (const std::string channel :
        {kCloudSlice, kCameraPose, kCameraView, kKeyframe, kRgbdFrame, kSegmentUpdate, kSegmentQuery,
         kSegmentAnswer, kSnapshot, kObjectDetection, kChangeReport, kMapperStatus, kSegmenterStatus,
-        kViewerStatus, kDetectorStatus, kHeartbeat, kResendRequest}) {
+        kViewerStatus, kDetectorStatus, kHeartbeat, kResendRequest, kChunksReplaced}) {
     EXPECT_LE(kIpAndUdp + kLcm + channel.size() + 1 + kMinMaxChunkBytes + kSignatureBytes,
               kEthernetPayload)
         << channel;

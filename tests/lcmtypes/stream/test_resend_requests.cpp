@@ -28,7 +28,7 @@ struct Schedule {
 
   void arrive(std::int64_t sequence) {
     seen.insert(sequence);
-    requests.arrived(sequence);
+    requests.arrived({sequence, sequence});
   }
   void run_until(double time_s) {
     for (; now_s < time_s; now_s += kTick_s) {

@@ -1,5 +1,6 @@
 // The steps of a publisher, without its thread.
 
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -23,6 +24,7 @@ struct Sending {
   std::vector<std::int64_t> sequences;
   std::vector<double> times_s;
   std::vector<Heartbeat> heartbeats;
+  std::vector<ChunksReplaced> replaced;
   double now_s = 0.0;
   StreamSender sender;
 
@@ -63,7 +65,9 @@ struct Sending {
     return {static_cast<std::uint8_t>(sequence), text};
   }
   void note(const std::string& channel, ByteView bytes) {
-    if (channel == channels::kHeartbeat) {
+    if (channel == channels::kChunksReplaced) {
+      replaced.push_back(decode<ChunksReplaced>(bytes));
+    } else if (channel == channels::kHeartbeat) {
       heartbeats.push_back(decode<Heartbeat>(bytes));
     } else {
       sequences.push_back(bytes[0]);
@@ -310,6 +314,117 @@ TEST(StreamSender, AFullStateReplacesWhatWasSentBefore) {
   EXPECT_EQ(states_wanted, 0);
   sending.ask({{6, 6}});  // no longer in the store, and part of the full state
   EXPECT_EQ(states_wanted, 1);
+}
+
+/// A store from which chunks were removed because newer ones replace them.
+struct RewrittenStore : RecentChunks {
+  RewrittenStore() : RecentChunks(1'000'000) {}
+  std::optional<Bytes> find(std::int64_t sequence) const override {
+    const ChunkFate its = fate(sequence);
+    if (its == ChunkFate::kKept) return RecentChunks::find(sequence);
+    return its == ChunkFate::kChanged ? std::optional(Bytes{1, 2}) : std::nullopt;
+  }
+  ChunkFate fate(std::int64_t sequence) const override {
+    const auto found = fates.find(sequence);
+    return found == fates.end() ? ChunkFate::kKept : found->second;
+  }
+  std::vector<SequenceRange> replaced(std::int64_t begin, std::size_t max_ranges) const override {
+    SequenceSet set;
+    for (const auto& [sequence, its] : fates) {
+      if (its != ChunkFate::kChanged) set.insert(sequence);
+    }
+    return set.ranges_from(begin, max_ranges);
+  }
+  std::map<std::int64_t, ChunkFate> fates;
+};
+
+TEST(StreamSender, TellsWhoAsksForReplacedChunksOfAllFromTheLowestOn) {
+  RewrittenStore store;
+  StreamPublisherConfig config = Sending::fast();
+  config.map_name = "office";
+  Sending sending(&store, config);
+  sending.push(20);
+  sending.run_until(0.1);
+  for (const std::int64_t sequence : {2, 3, 7, 8, 12}) {
+    store.fates[sequence] = ChunkFate::kReplaced;
+  }
+  sending.sequences.clear();
+  sending.ask({{4, 9}, {3, 3}});
+  sending.ask({{7, 7}});
+  sending.run_until(1.0);
+  EXPECT_THAT(sending.sequences, ElementsAre(4, 5, 6, 9)) << "those that are there are sent again";
+  ASSERT_EQ(sending.replaced.size(), 1U);
+  EXPECT_EQ(sending.replaced[0].session, 42);
+  EXPECT_EQ(sending.replaced[0].channel, channels::kCloudSlice);
+  EXPECT_EQ(sending.replaced[0].map_name, "office");
+  EXPECT_THAT(sending.replaced[0].ranges,
+              ElementsAre(SequenceRange{3, 3}, SequenceRange{7, 8}, SequenceRange{12, 12}));
+  sending.ask({{4, 6}});
+  sending.run_until(2.0);
+  EXPECT_EQ(sending.replaced.size(), 1U) << "nothing that was asked for is replaced";
+}
+
+TEST(StreamSender, TellsOfReplacedChunksNotMoreOftenThanItSendsAgain) {
+  RewrittenStore store;
+  Sending sending(&store);
+  sending.push(4);
+  sending.run_until(0.5);
+  store.fates[1] = ChunkFate::kReplaced;
+  const double begin_s = sending.now_s;
+  while (sending.now_s < begin_s + 1.0) {
+    sending.ask({{0, 3}});
+    sending.run_until(sending.now_s + 0.001);
+  }
+  EXPECT_LE(sending.replaced.size(), 1.0 / ResendQueue::kInFlight_s + 1);
+  EXPECT_GE(sending.replaced.size(), 2U);
+}
+
+TEST(StreamSender, TellsOfAsManyReplacedChunksAsFitIntoAMessage) {
+  RewrittenStore store;
+  StreamPublisherConfig config = Sending::fast();
+  config.max_chunk_bytes = kMinMaxChunkBytes;
+  Sending sending(&store, config);
+  sending.push(200);
+  sending.run_until(0.1);
+  for (std::int64_t sequence = 0; sequence < 200; sequence += 2) {
+    store.fates[sequence] = ChunkFate::kReplaced;
+  }
+  sending.ask({{0, 0}});
+  sending.run_until(1.0);
+  ASSERT_EQ(sending.replaced.size(), 1U);
+  EXPECT_LE(encode(sending.replaced[0]).size(), kMinMaxChunkBytes);
+  EXPECT_GT(encode(sending.replaced[0]).size(), kMinMaxChunkBytes - 32);
+}
+
+TEST(StreamSender, AResumedSessionIsComparedAsFarAsItsChunksAreThere) {
+  RewrittenStore store;
+  {
+    Sending before(&store);
+    before.push(2, false, 1);
+    before.push_newest(7, 1);  // superseded: of one chunk
+    before.push_newest(7, 2);
+    before.push(2, false, 3);
+    before.run_until(1.0);
+    ASSERT_THAT(before.sequences, ElementsAre(0, 1, 2, 3, 4, 5, 6, 7));
+  }
+  store.fates = {{0, ChunkFate::kReplaced},
+                 {1, ChunkFate::kReplaced},
+                 {2, ChunkFate::kSuperseded},
+                 {4, ChunkFate::kChanged}};
+  Sending again(&store);
+  again.push(2, false, 9);  // cannot be compared
+  again.push_newest(7, 9);
+  again.push_newest(7, 2);
+  again.push(2, false, 3);
+  again.push(1, false, 4);
+  again.run_until(1.0);
+  EXPECT_THAT(again.sequences, ElementsAre(8)) << "each message has the place that it had";
+  EXPECT_EQ(again.sender.counts().chunks_compared, 8);
+  Sending other(&store);
+  other.push(2, false, 1);
+  other.push_newest(7, 1);
+  other.push_newest(7, 9);
+  EXPECT_THROW(other.run_until(1.0), std::runtime_error) << "chunk 3 is there, and differs";
 }
 
 }  // namespace

@@ -287,5 +287,72 @@ TEST(Stream, CarriesAllBulkMessages) {
   EXPECT_TRUE(carried(example_snapshot(33'333)));
 }
 
+ChunksReplaced replaced_chunks(std::vector<SequenceRange> ranges) {
+  ChunksReplaced replaced;
+  replaced.session = 42;
+  replaced.channel = channels::kCloudSlice;
+  replaced.ranges = std::move(ranges);
+  return replaced;
+}
+
+TEST(StreamSubscriber, DoesNotWaitForChunksThatAreReplacedAndDropsWhatCameOfTheirMessages) {
+  const std::vector<CloudSlice> slices = {example_slice(300, 0), example_slice(300, 1)};
+  const std::vector<Bytes> chunks = chunks_of(slices);
+  const auto per_slice = static_cast<std::int64_t>(chunks.size()) / 2;
+  ASSERT_GE(per_slice, 3);
+  Receiver receiver;
+  receiver.receive(chunks[0]);  // of the first slice, whose other chunks are replaced
+  for (std::int64_t i = per_slice; i < 2 * per_slice; ++i) receiver.receive(chunks.at(i));
+  EXPECT_GT(receiver.stream.pending_bytes(), 0U);
+  const auto tell = [&](std::vector<SequenceRange> ranges) {
+    EXPECT_TRUE(receiver.stream.handle(channels::kChunksReplaced,
+                                       encode(replaced_chunks(std::move(ranges)))));
+  };
+  tell({{1, per_slice - 1}});
+  EXPECT_EQ(receiver.stream.pending_bytes(), 0U);
+  EXPECT_EQ(receiver.stream.counts().chunks_missing, 1) << "another one may come in its place";
+  ASSERT_FALSE(receiver.stream.poll(1.0).empty() && receiver.stream.poll(2.0).empty());
+  tell({{0, 0}});
+  EXPECT_TRUE(receiver.stream.is_complete(42));
+  receiver.receive(chunks);
+  EXPECT_THAT(receiver.slices, SizeIs(1)) << "what comes late is a duplicate";
+  EXPECT_THAT(receiver.reasons, IsEmpty());
+}
+
+TEST(StreamSubscriber, TakesWhatIsToldOfReplacedChunksOfItsStreamOnly) {
+  const std::vector<Bytes> chunks = chunks_of({example_slice(300, 0)});
+  StreamSubscriber<CloudSlice>::Config config;
+  config.wanted_map_name = "office";
+  Receiver receiver(config);
+  receiver.receive(chunks.back());
+  const auto missing = receiver.stream.counts().chunks_missing;
+  ASSERT_GT(missing, 0);
+  ChunksReplaced replaced = replaced_chunks({{0, missing}});
+  replaced.map_name = "kitchen";
+  receiver.stream.handle(channels::kChunksReplaced, encode(replaced));
+  replaced.map_name = "office";
+  replaced.channel = channels::kKeyframe;
+  receiver.stream.handle(channels::kChunksReplaced, encode(replaced));
+  EXPECT_EQ(receiver.stream.counts().chunks_missing, missing);
+  replaced.channel = channels::kCloudSlice;
+  receiver.stream.handle(channels::kChunksReplaced, encode(replaced));
+  EXPECT_EQ(receiver.stream.counts().chunks_missing, 0);
+}
+
+TEST(StreamSubscriber, IsNotFilledByInventedReplacements) {
+  StreamSubscriber<CloudSlice>::Config config;
+  config.max_gaps_per_session = 100;
+  Receiver receiver(config);
+  receiver.receive(chunks_of({example_slice(0, 0)}));
+  std::vector<SequenceRange> ranges;
+  for (std::int64_t i = 1; i <= 200; ++i) ranges.push_back({10 * i, 10 * i});
+  receiver.stream.handle(channels::kChunksReplaced, encode(replaced_chunks(ranges)));
+  Heartbeat heartbeat = example_heartbeat();
+  heartbeat.state_sequence = heartbeat.first_sequence = 0;
+  heartbeat.next_sequence = 3'000;
+  receiver.stream.handle(channels::kHeartbeat, encode(heartbeat));
+  EXPECT_EQ(receiver.stream.counts().chunks_missing, 2'999) << "none of them was taken";
+}
+
 }  // namespace
 }  // namespace kintsugi
