@@ -36,6 +36,7 @@ struct Options {
   std::vector<std::string> until_ready;
   bool lingering = false;
   std::string log_file;
+  double log_period_s = 0.0;
   double timeout_s = 60.0;
 };
 
@@ -100,7 +101,7 @@ int watch(const Options& options) {
   Bus bus(options.url);
   Progress progress(options.map_name);
   std::optional<StatusLog> log;
-  if (!options.log_file.empty()) log.emplace(options.log_file);
+  if (!options.log_file.empty()) log.emplace(options.log_file, options.log_period_s);
   subscribe_statuses(bus, options.map_name, progress, log);
   LinePrinter printer;
   const std::int64_t start_us = wall_clock_us();
@@ -180,6 +181,10 @@ int main(int argc, char** argv) {
       ->delimiter(',')
       ->check(CLI::IsMember({"mapper", "segmenter", "viewer", "detector"}));
   app.add_option("--log", options.log_file, "Append every field of every status to this CSV file");
+  app.add_option("--log-every", options.log_period_s,
+                 "With --log: of each process one status in so many seconds, and the last; 0: all")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
   app.add_flag("--lingering", options.lingering,
                "With --until-ready: and has published everything");
   app.add_option("--timeout", options.timeout_s,

@@ -28,12 +28,17 @@ std::string csv_text(std::int64_t value) { return std::to_string(value); }
 
 }  // namespace
 
-StatusLog::StatusLog(const std::filesystem::path& path) : path_(path) {
+StatusLog::StatusLog(const std::filesystem::path& path, double period_s)
+    : path_(path), period_us_(1e6 * period_s) {
   std::error_code ignored;
   const bool is_new = std::filesystem::file_size(path, ignored) == 0 || ignored;
   if (!write(is_new ? "utime_us,process,field,value\n" : "")) {
     throw std::runtime_error(path.string() + ": cannot be written: " + std::strerror(errno));
   }
+}
+
+StatusLog::~StatusLog() {
+  for (const auto& [name, process] : processes_) write(process.waiting);
 }
 
 template <class Status>
@@ -46,7 +51,14 @@ void StatusLog::append(const Status& status) {
              << csv_text(value) << '\n';
       },
       status);
-  write(text.str());
+  Process& process = processes_[Status::kProcess];
+  process.waiting = text.str();
+  const double since_us =
+      static_cast<double>(status.utime) - static_cast<double>(process.written_utime);
+  if (since_us < period_us_) return;
+  write(process.waiting);
+  process.waiting.clear();
+  process.written_utime = status.utime;
 }
 
 /// Appends all of the text or nothing; false: nothing, and errno says why.

@@ -24,7 +24,8 @@ READY_TIMEOUT_S = 20
 INTERRUPTED = 130  # exit code, as shells have it
 NOTHING_TO_MAP = "is complete: its slices are only sent again"  # says a mapper
 # What the mapper published. Messages of the recorded segmenter would contradict those of the one that listens now.
-REPLAYED_CHANNELS = "^(CLOUD_SLICE|CAMERA_POSE|MAPPER_STATUS)$"
+REPLAYED_CHANNELS = "^(CLOUD_SLICE|CAMERA_POSE|MAPPER_STATUS|CHUNKS_REPLACED)$"
+LONG_RUN_STATUS_S = 10  # between the statuses of a process in status.csv: 40 MB a day, all are 1.4 GB
 
 
 def run_command(command):
@@ -102,7 +103,8 @@ def run_trio(choice, folder):
     watched = [make[name](choice, folder) for name in choice.only]
     recording = None if choice.no_log else Recording(folder.path, choice.durable)
     logger = logger_process(folder, recording) if recording else None
-    with supervised(folder, watched, logger, map_name(choice)) as supervisor:
+    status_period_s = LONG_RUN_STATUS_S if choice.is_long else 0
+    with supervised(folder, watched, logger, map_name(choice), status_period_s) as supervisor:
         if logger:
             recording.begin()
             logger.start()
@@ -125,9 +127,9 @@ def tell_what_matters(supervisor, choice, leader):
 
 
 @contextlib.contextmanager
-def supervised(folder, processes, logger=None, its_map=None):
+def supervised(folder, processes, logger=None, its_map=None, status_period_s=0):
     """Yields a supervisor that handles signals. When the block ends, for whatever reason, its processes are ended."""
-    supervisor = Supervisor(folder, Status(folder.file("status.csv"), its_map), processes, logger)
+    supervisor = Supervisor(folder, Status(folder.file("status.csv"), its_map, status_period_s), processes, logger)
     supervisor.install_signal_handlers()
     try:
         yield supervisor

@@ -8,6 +8,7 @@ from .messages import Problem
 from .process_options import ProcessOptions
 
 PROCESSES = ("mapper", "segmenter", "viewer")
+STORE_LIMIT = "--store-limit"
 DETECTOR = "detector"  # runs with --objects only
 
 PASS_ON = "pass on"  # FLAG or FLAG=VALUE is passed to one process
@@ -47,6 +48,9 @@ TRIO_OPTIONS = (
     ("--durable", None, STORE, False,
      "a power cut takes at most the last second of the run: go on with --resume (kintsugi-mapper --durable, and the "
      "files of the run are synced)"),
+    (STORE_LIMIT, "MB", PASS_ON, "mapper",
+     "for runs of days: what the map needs no more is removed from mapper.lcm, so that it stays below this; and the bus "
+     "is not recorded, of the statuses only some"),
     ("--map-name", "NAME", STORE, None,
      "name of the map (default: map). Several runs on one bus need a name each; segmenter and viewer then use only "
      "this map"),
@@ -80,15 +84,17 @@ MAY_BE_EMPTY = {"--device", "--mapper", "--segmenter", "--viewer", "--detector"}
 
 
 def parse_trio(arguments):
-    """Namespace with out, resume, video, no_log, private, objects; only (list of names, with objects also that of
-    the detector); and the options of each process as lists: mapper, segmenter, viewer, detector. Of an option given
-    twice the last one counts."""
+    """Namespace with out, resume, video, no_log, is_long (its files shall not grow without limit), private, objects;
+    only (list of names, with objects also that of the detector); and the options of each process as lists: mapper,
+    segmenter, viewer, detector. Of an option given twice the last one counts."""
     parser = Parser("scripts/trio", TRIO_OPTIONS, description=(
         "Runs mapper, segmenter and viewer over LCM with one set of options, restarts what is killed, and stops at "
         "the end of the device or at Ctrl-C with everything written (Ctrl-C twice: without waiting for the rest of "
         "the map to be drawn)."))
     options = parser.parse(arguments)
     options.only = with_detector(chosen_processes(options.only), options)
+    options.is_long = any(word.startswith(STORE_LIMIT) for word in options.mapper)
+    options.no_log |= options.is_long  # run.lcm has no limit
     return options
 
 

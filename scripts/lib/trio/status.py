@@ -18,9 +18,11 @@ class Status:
     """Shows the progress of a run to the person and records each status in `csv_file`; answers questions
     about the processes."""
 
-    def __init__(self, csv_file, map_name=None):
-        """`map_name`: of the map of the run; None: the one that is heard first."""
+    def __init__(self, csv_file, map_name=None, csv_period_s=0):
+        """`map_name`: of the map of the run; None: the one that is heard first. `csv_period_s`: between the recorded
+        statuses of a process; 0: all are recorded."""
         self._csv_file = csv_file
+        self._csv_period_s = csv_period_s
         self._of_map = [f"--map-name={map_name}"] if map_name else []
         self._csv_start = os.path.getsize(csv_file) if csv_file and os.path.exists(csv_file) else 0
         self._records = True
@@ -31,7 +33,7 @@ class Status:
         """Until mapper, segmenter and viewer have finished, or there has been no progress for `idle_s` seconds."""
         self.end()
         self._idle_s = idle_s
-        log = ["--log", self._csv_file] if self._records else []
+        log = ["--log", self._csv_file, f"--log-every={self._csv_period_s}"] if self._records else []
         self._display = spawn([program("status"), "--until-finished", "--viewer", "--timeout", str(idle_s), *self._of_map,
                                *log])
 

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <fstream>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -56,6 +57,32 @@ TEST(StatusLog, HasALineForEachField) {
   EXPECT_THAT(lines, Contains("6,segmenter,problem,\"\"\"map\"\", full\""));
   EXPECT_THAT(lines, Contains("0,viewer,memory_bytes,0"));
   EXPECT_THAT(lines, Contains("0,detector,cpu_share,0.000000"));
+}
+
+TEST(StatusLog, HasWithAPeriodTheFirstOneThenOneOfEachPeriodAndTheLast) {
+  const testing::TemporaryFolder folder;
+  const auto file = folder / "status.csv";
+  {
+    StatusLog log(file, 1.0);
+    for (int i = 0; i <= 25; ++i) {
+      ViewerStatus status;
+      status.utime = 100'000 * i;
+      log.append(status);
+      SegmenterStatus other;
+      other.utime = 1'000'000 + i;
+      log.append(other);
+    }
+  }
+  std::set<std::string> viewer;
+  std::set<std::string> segmenter;
+  std::ifstream in(file);
+  for (std::string line; std::getline(in, line);) {
+    const std::string utime = line.substr(0, line.find(','));
+    if (line.find(",viewer,") != std::string::npos) viewer.insert(utime);
+    if (line.find(",segmenter,") != std::string::npos) segmenter.insert(utime);
+  }
+  EXPECT_EQ(viewer, (std::set<std::string>{"0", "1000000", "2000000", "2500000"}));
+  EXPECT_EQ(segmenter, (std::set<std::string>{"1000000", "1000025"}));
 }
 
 TEST(StatusLog, ThrowsWhenTheFileCannotBeWritten) {
