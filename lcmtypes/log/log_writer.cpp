@@ -126,6 +126,15 @@ void LogWriter::rename(const std::filesystem::path& path) {
   path_ = path;
 }
 
+void LogWriter::replace(const std::filesystem::path& path) {
+  if (std::rename(path_.c_str(), path.c_str()) != 0) fail("rename to", path, errno);
+  path_ = path;
+}
+
+std::filesystem::path LogWriter::open_path() const {
+  return "/proc/self/fd/" + std::to_string(descriptor_);
+}
+
 Bytes LogWriter::read(std::int64_t place, std::size_t size) const {
   Bytes data(size);
   for (std::size_t done = 0; done < size;) {

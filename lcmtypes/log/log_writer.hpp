@@ -61,10 +61,17 @@ class LogWriter {
   /// @throws std::system_error
   void rename(const std::filesystem::path& path);
 
+  /// The same, but a file with this name is replaced. @throws std::system_error
+  void replace(const std::filesystem::path& path);
+
   /// Reads `size` bytes at a place that append() has returned.
   /// @throws std::system_error when they cannot be read, std::runtime_error when the file is
   /// shorter
   Bytes read(std::int64_t place, std::size_t size) const;
+
+  /// A path at which a LogReader finds this file for as long as it is open, also one without a name,
+  /// or after another one has got its name.
+  std::filesystem::path open_path() const;
 
   std::int64_t size_bytes() const { return size_; }
   const std::filesystem::path& path() const { return path_; }

@@ -161,6 +161,13 @@ OptionGroup store_options(Options& o) {
         "the log continues in FILE.1.lcm and so on above this size",
         "MB",
         {1, 1e9}},
+       {"--store-limit",
+        &o.store_limit_mb,
+        kMayDiffer,
+        "the files of the log together stay below this: what the map needs no more is removed; 0: "
+        "nothing is",
+        "MB",
+        {0, 1e9}},
        {"--durable", &o.durable, kMayDiffer,
         "with --store or --resume: a power cut takes at most the last second of the log, and "
         "nothing "

@@ -43,6 +43,7 @@ struct Options {
   std::string store_file;    ///< LCM log of all published messages; empty: an unnamed one
   std::string resume_file;   ///< log to continue, instead of store_file; empty: a new session
   double store_file_size_mb = 1000.0;  ///< above it another file begins
+  double store_limit_mb = 0.0;         ///< of all files of the log; 0: without limit
   bool durable = false;                ///< a power cut takes at most the last second of the log
   bool store_frames = false;  ///< raw frames, too, so that a camera's session can be resumed
   double linger_s = 2.0;      ///< time without requests after which to exit; < 0: never

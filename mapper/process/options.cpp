@@ -89,6 +89,10 @@ void validate(const Options& options) {
                                 options.resume_file +
                                 "': a resumed session is continued in the same log");
   }
+  if (options.store_limit_mb > 0 && options.store_frames) {
+    throw std::invalid_argument(
+        "--store-limit cannot be kept with --store-frames, which needs every frame");
+  }
   if (options.durable && options.store_file.empty() && options.resume_file.empty()) {
     throw std::invalid_argument("--durable needs --store FILE or --resume FILE");
   }

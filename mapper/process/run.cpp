@@ -25,6 +25,7 @@ SessionStore::Config store_config(const Options& options) {
   config.path = config.resume ? options.resume_file : options.store_file;
   config.durable = options.durable;
   config.max_file_bytes = static_cast<std::int64_t>(1e6 * options.store_file_size_mb);
+  config.max_total_bytes = static_cast<std::int64_t>(1e6 * options.store_limit_mb);
   return config;
 }
 

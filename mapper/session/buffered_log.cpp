@@ -20,7 +20,8 @@ constexpr std::chrono::seconds kMaxBehind{1};
 }  // namespace
 
 void BufferedLog::Config::validate() const {
-  check_range<std::int64_t>("max_file_bytes", max_file_bytes, 1'000'000, INT64_MAX);
+  check_range<std::int64_t>("max_file_bytes", max_file_bytes, kMinFileBytes, INT64_MAX);
+  check_range<std::int64_t>("max_total_bytes", max_total_bytes, 0, INT64_MAX);
   check_range<std::size_t>("max_waiting_bytes", max_waiting_bytes, 1, SIZE_MAX);
   check_range<std::int64_t>("retry_period", retry_period.count(), 1, INT64_MAX);
   check_range<std::int64_t>("sync_period", sync_period.count(), 1, INT64_MAX);
@@ -82,7 +83,7 @@ void BufferedLog::append_chunk(const std::string& channel, ByteView data, ChunkI
 std::optional<Bytes> BufferedLog::find(const ChunkIndex& index, std::int64_t sequence) const {
   std::unique_lock lock(mutex_);
   const ChunkIndex::State state = index.state(sequence);
-  if (state == ChunkIndex::State::kMissing) return {};
+  if (state == ChunkIndex::State::kMissing || state == ChunkIndex::State::kReplaced) return {};
   if (state == ChunkIndex::State::kWaiting) {
     const auto is_wanted = [&](const Event& event) {
       return event.index == &index && event.sequence == sequence;
@@ -95,10 +96,10 @@ std::optional<Bytes> BufferedLog::find(const ChunkIndex& index, std::int64_t seq
     return {};
   }
   const LogPlace place = index.place(sequence);
-  const LogWriter& file = files_.file_of(place);
+  const std::shared_ptr<const LogWriter> file = files_.file_of(place);
   lock.unlock();  // written data does not change
   try {
-    return file.read(place.offset, static_cast<std::size_t>(place.size));
+    return file->read(place.offset, static_cast<std::size_t>(place.size));
   } catch (const std::exception&) {
     return {};
   }
@@ -120,6 +121,30 @@ void BufferedLog::retry() {
   } else {
     spdlog::info("the disk keeps up with the log again");
   }
+}
+
+std::vector<LogPart> BufferedLog::closed() const {
+  const std::scoped_lock lock(mutex_);
+  return files_.closed();
+}
+
+std::shared_ptr<LogWriter> BufferedLog::create_base() const {
+  return std::make_shared<LogWriter>(files_.create_base());
+}
+
+void BufferedLog::replace_first(std::shared_ptr<LogWriter> base, std::size_t count,
+                                const std::function<void()>& move) {
+  files_.install(*base);
+  std::vector<LogPart> replaced;
+  {
+    const std::scoped_lock lock(mutex_);
+    replaced = files_.closed();
+    replaced.resize(count);
+    files_.use(std::move(base), count);
+    move();
+    size_bytes_ = files_.size_bytes();
+  }
+  files_.remove(replaced);
 }
 
 void BufferedLog::finish() {

@@ -5,17 +5,23 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <list>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "mapper/session/chunk_index.hpp"
 #include "mapper/session/log_batch.hpp"
 #include "mapper/session/log_files.hpp"
 
 namespace kintsugi::mapper {
+
+/// The smallest limit for a file of a log.
+inline constexpr std::int64_t kMinFileBytes = 1'000'000;
 
 /// An LCM log that accepts events while the disk is full.
 ///
@@ -33,7 +39,8 @@ class BufferedLog {
   struct Config {
     std::filesystem::path path;                     ///< empty: an unnamed temporary file
     bool resume = false;                            ///< continue an existing log
-    std::int64_t max_file_bytes = 1'000'000'000;    ///< start another file above this, >= 1,000,000
+    std::int64_t max_file_bytes = 1'000'000'000;    ///< start another file above this, >= kMinFileBytes
+    std::int64_t max_total_bytes = 0;               ///< of all files, for StoreLimit; 0: without limit
     std::size_t max_waiting_bytes = 256'000'000;    ///< in memory, > 0
     std::chrono::milliseconds retry_period{1'000};  ///< between attempts to write, > 0
     bool durable = false;
@@ -73,6 +80,17 @@ class BufferedLog {
   /// Tries to write the waiting events when retry_period has passed, and logs when a durable log
   /// falls behind. To be called regularly.
   void retry();
+
+  /// The files that are full, and do not change any more.
+  std::vector<LogPart> closed() const;
+  /// @throws as LogFiles::create_base()
+  std::shared_ptr<LogWriter> create_base() const;
+  /// Replaces the first `count` files of closed() by the base, which has all of them that is needed,
+  /// and removes them. A kill or a power cut at any moment leaves the old files or the new one.
+  /// @param move tells the indexes where their chunks are now; nobody can ask for one meanwhile
+  /// @throws std::system_error; nothing has changed then
+  void replace_first(std::shared_ptr<LogWriter> base, std::size_t count,
+                     const std::function<void()>& move);
 
   /// Tries a last time to write what waits. Nothing may be appended any more.
   void finish();

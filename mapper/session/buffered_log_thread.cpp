@@ -38,9 +38,8 @@ std::size_t BufferedLog::write_batch(std::unique_lock<std::mutex>& lock) {
   batch_ = LogBatch::take_from(waiting_, files_);
   lock.unlock();
   batch_->write(files_);
-  const std::int64_t size_bytes = files_.size_bytes();
   lock.lock();
-  size_bytes_ = size_bytes;
+  size_bytes_ = files_.size_bytes();
   LogBatch batch = *std::exchange(batch_, std::nullopt);
   note_written(batch);
   return batch.problem.empty() ? batch.places.size() : 0;

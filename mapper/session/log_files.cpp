@@ -11,6 +11,7 @@
 
 #include "lcmtypes/base/file_sync.hpp"
 #include "lcmtypes/log/log_format.hpp"
+#include "mapper/session/log_base.hpp"
 #include "mapper/session/log_marks.hpp"
 
 namespace kintsugi::mapper {
@@ -66,6 +67,24 @@ LogWriter create_named(const fs::path& path, bool durable) {
   return durable ? LogWriter::create_anew(partial(path)) : LogWriter::create(path);
 }
 
+/// NAME.base.lcm, until it is whole.
+fs::path base_in_work(const fs::path& path) {
+  return path.parent_path() / (path.stem().string() + ".base" + path.extension().string());
+}
+
+/// Removes what a rewriting of the log was killed before: the files that its base replaces, numbers
+/// 1 to the one before `next`, and a base that was not whole.
+void remove_left(const fs::path& path, int next) {
+  std::error_code ignored;
+  fs::remove(base_in_work(path), ignored);
+  for (int number = next - 1; number > 0 && fs::remove(numbered(path, number), ignored); --number) {
+  }
+}
+
+LogPart part(std::int32_t number, LogWriter file) {
+  return {number, std::make_shared<LogWriter>(std::move(file))};
+}
+
 LogWriter create_unnamed() {
   const char* folder = std::getenv("TMPDIR");
   try {
@@ -95,33 +114,44 @@ std::optional<std::string> text_of_cut(const LogWriter& file, std::int64_t end, 
 }  // namespace
 
 LogFiles::LogFiles(Config config) : config_(std::move(config)) {
-  files_.push_back(config_.path.empty() ? create_unnamed()
-                                        : create_named(config_.path, config_.durable));
+  last_ = part(0, config_.path.empty() ? create_unnamed()
+                                       : create_named(config_.path, config_.durable));
 }
 
 LogFiles::LogFiles(Config config, const OnEvent& on_event) : config_(std::move(config)) {
   open_files();
-  for (std::size_t i = 0; i < files_.size(); ++i) {
-    if (files_[i].size_bytes() > 0) read_file(i, on_event);  // else killed before the first event
+  for (const LogPart& part : all()) {
+    if (part.file->size_bytes() > 0) read_file(part, on_event);  // else killed before an event
   }
   if (config_.durable) sync_all();
+  remove_left(config_.path, next_after_base(config_.path));
 }
 
+/// What a base has replaced is passed over: it was killed before it could remove that.
 void LogFiles::open_files() {
   const int last = last_number(config_.path);
-  for (int number = 0; number <= last; ++number) {
+  const auto open = [&](int number) {
     const fs::path file = numbered(config_.path, number);
     std::error_code ignored;
     if (last > 0 && !fs::exists(file, ignored)) {
       throw std::runtime_error("log '" + file.string() + "' is missing, '" +
                                numbered(config_.path, last).string() + "' is there");
     }
-    files_.push_back(LogWriter::open(file));
-  }
+    return LogWriter::open(file);
+  };
+  last_ = part(0, open(0));
+  next_number_ = next_after_base(config_.path);
+  while (next_number_ <= last) continue_in(open(next_number_));
 }
 
-void LogFiles::read_file(std::size_t number, const OnEvent& on_event) {
-  LogWriter& file = files_[number];
+std::vector<LogPart> LogFiles::all() const {
+  std::vector<LogPart> parts = closed_;
+  parts.push_back(last_);
+  return parts;
+}
+
+void LogFiles::read_file(const LogPart& part, const OnEvent& on_event) {
+  LogWriter& file = *part.file;
   // What is on the disk of the mapper is not signed; only what it sends is.
   LogReader reader(file.path(), MessageTrust{});
   LogWriter::End whole;  // the events so far
@@ -133,8 +163,8 @@ void LogFiles::read_file(std::size_t number, const OnEvent& on_event) {
       if (event->channel == kMarkChannel) {
         check_mark(*event, whole.bytes);
         has_mark = true;
-      } else {
-        on_event(*event, {static_cast<std::int32_t>(number), size, reader.bytes_read() - size});
+      } else if (event->channel != kBaseChannel) {
+        on_event(*event, {part.number, size, reader.bytes_read() - size});
       }
       whole = {reader.bytes_read(), whole.events + 1};
     }
@@ -143,7 +173,7 @@ void LogFiles::read_file(std::size_t number, const OnEvent& on_event) {
     damage = "log '" + file.path().string() + "', event " + std::to_string(whole.events) +
              " that ends at byte " + std::to_string(reader.bytes_read()) + ": " + error.what();
   }
-  const bool is_last = number + 1 == files_.size();
+  const bool is_last = part.number == last_.number;
   if (!damage.empty()) {
     const auto text = text_of_cut(file, whole.bytes, reader.is_cut_off(), has_mark);
     if (!is_last || !text) throw std::runtime_error(damage);
@@ -153,7 +183,7 @@ void LogFiles::read_file(std::size_t number, const OnEvent& on_event) {
 }
 
 void LogFiles::sync_all() {
-  for (LogWriter& file : files_) file.sync();
+  for (const LogPart& part : all()) part.file->sync();
   sync_folder(config_.path.parent_path());
 }
 
@@ -162,31 +192,61 @@ std::int64_t LogFiles::event_bytes(const std::string& channel, ByteView data) {
 }
 
 bool LogFiles::has_room(std::int64_t bytes) const {
-  const std::int64_t size = files_.back().size_bytes();
-  return config_.path.empty() || size == 0 || size + bytes <= config_.max_file_bytes;
+  const std::int64_t size = last_.file->size_bytes();
+  return size == 0 || size + bytes <= config_.max_file_bytes;
 }
 
 LogWriter LogFiles::create_next() const {
-  const fs::path path = numbered(config_.path, static_cast<int>(files_.size()));
+  if (config_.path.empty()) return create_unnamed();
+  const fs::path path = numbered(config_.path, next_number_);
   return config_.durable ? LogWriter::create_anew(partial(path)) : LogWriter::create(path);
+}
+
+void LogFiles::continue_in(LogWriter next) {
+  closed_.push_back(std::exchange(last_, part(next_number_, std::move(next))));
+  ++next_number_;
+}
+
+LogWriter LogFiles::create_base() const {
+  return config_.path.empty() ? create_unnamed() : LogWriter::create_anew(base_in_work(config_.path));
+}
+
+void LogFiles::install(LogWriter& base) const {
+  if (config_.path.empty()) return;
+  // Always: what it replaces is removed next, and perhaps sooner from the disk than this is on it.
+  base.sync();
+  base.replace(config_.path);
+  sync_folder(config_.path.parent_path());
+}
+
+void LogFiles::use(std::shared_ptr<LogWriter> base, std::size_t count) {
+  const auto first = closed_.begin();
+  closed_.erase(first, first + static_cast<std::ptrdiff_t>(count));
+  closed_.insert(closed_.begin(), LogPart{0, std::move(base)});
+}
+
+void LogFiles::remove(const std::vector<LogPart>& parts) const {
+  if (config_.path.empty()) return;
+  for (const LogPart& part : parts) {
+    std::error_code ignored;  // then it is left until the log is opened again
+    if (part.number > 0) fs::remove(numbered(config_.path, part.number), ignored);
+  }
 }
 
 LogPlace LogFiles::append(std::int64_t utime, const std::string& channel, ByteView data) {
   if (!config_.durable && !has_room(event_bytes(channel, data))) continue_in(create_next());
-  const std::int64_t offset = files_.back().append(utime, channel, data);
-  return {static_cast<std::int32_t>(files_.size() - 1), static_cast<std::int32_t>(data.size()),
-          offset};
+  const std::int64_t offset = last_.file->append(utime, channel, data);
+  return {last_.number, static_cast<std::int32_t>(data.size()), offset};
 }
 
 void LogFiles::begin_batch(std::int64_t utime) {
-  LogWriter& file = files_.back();
-  file.append(utime, kMarkChannel, mark_at(file.size_bytes()));
+  last_.file->append(utime, kMarkChannel, mark_at(last_.file->size_bytes()));
 }
 
 void LogFiles::sync() {
-  LogWriter& file = files_.back();
+  LogWriter& file = *last_.file;
   file.sync();
-  const fs::path name = numbered(config_.path, static_cast<int>(files_.size() - 1));
+  const fs::path name = numbered(config_.path, last_.number);
   if (file.path() != name) {
     folder_is_synced_ = false;
     file.rename(name);
@@ -197,23 +257,24 @@ void LogFiles::sync() {
 
 void LogFiles::undo(const LogWriter::End& end) {
   try {
-    files_.back().continue_after(end);
+    last_.file->continue_after(end);
   } catch (const std::exception&) {  // what is left is overwritten by the same events
   }
 }
 
 void LogFiles::remove() {
   std::error_code ignored;
-  if (!config_.path.empty()) fs::remove(files_.back().path(), ignored);
+  if (!config_.path.empty()) fs::remove(last_.file->path(), ignored);
 }
 
-const LogWriter& LogFiles::file_of(const LogPlace& place) const {
-  return files_.at(static_cast<std::size_t>(place.file));
+std::shared_ptr<const LogWriter> LogFiles::file_of(const LogPlace& place) const {
+  if (place.file == last_.number) return last_.file;
+  return std::ranges::lower_bound(closed_, place.file, {}, &LogPart::number)->file;
 }
 
 std::int64_t LogFiles::size_bytes() const {
-  std::int64_t bytes = 0;
-  for (const LogWriter& file : files_) bytes += file.size_bytes();
+  std::int64_t bytes = last_.file->size_bytes();
+  for (const LogPart& part : closed_) bytes += part.file->size_bytes();
   return bytes;
 }
 

@@ -11,6 +11,7 @@
 #include "mapper/session/buffered_log.hpp"
 #include "mapper/session/mapping_options.hpp"
 #include "mapper/session/stored_sessions.hpp"
+#include "mapper/session/store_limit.hpp"
 #include "mapper/session/stored_stream.hpp"
 
 namespace kintsugi::mapper {
@@ -39,20 +40,24 @@ class SessionStore {
   /// The chunks of one session on one channel. The stream lives as long as this.
   StoredStream& stream(const std::string& channel, std::int64_t session);
 
-  /// Tries to write what could not be written before. To be called regularly.
-  void retry() { log_.retry(); }
+  /// Tries to write what could not be written before, and keeps the limit. To be called regularly, by
+  /// one thread.
+  void retry();
   /// Tries a last time. Nothing may be added any more.
-  void finish() { log_.finish(); }
+  void finish();
 
-  BufferedLog::Report report() const { return log_.report(); }
+  /// The problem is that of the log, or else that the map is larger than the limit permits.
+  BufferedLog::Report report() const;
 
  private:
   void read_event(const LogEvent& event, const LogPlace& place);
+  void move_chunks(std::int32_t last_file, const RewrittenStreams& streams);
 
   std::mutex mutex_;  ///< guards streams_
   std::map<std::pair<std::string, std::int64_t>, std::unique_ptr<StoredStream>> streams_;
   StoredSessionReader reader_;  ///< constant after the constructor
   BufferedLog log_;
+  StoreLimit limit_;  ///< last: it has a thread
 };
 
 }  // namespace kintsugi::mapper

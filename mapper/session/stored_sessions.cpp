@@ -7,11 +7,16 @@
 #include <nlohmann/json.hpp>
 
 #include "lcmtypes/channels.hpp"
+#include "mapper/session/chunk_fates.hpp"
+#include "mapper/session/mapped_frames.hpp"
 
 namespace kintsugi::mapper {
-namespace {
+Bytes encode_options(std::int64_t session, const MappingOptions& options) {
+  const std::string text = nlohmann::json{{"session", session}, {"options", options}}.dump();
+  return {text.begin(), text.end()};
+}
 
-StoredSession read_options(ByteView data) {
+StoredSession decode_options(ByteView data) {
   try {
     const auto json = nlohmann::json::parse(data.begin(), data.end());
     const auto& number = json.at("session");
@@ -29,13 +34,6 @@ StoredSession read_options(ByteView data) {
   }
 }
 
-}  // namespace
-
-Bytes encode_options(std::int64_t session, const MappingOptions& options) {
-  const std::string text = nlohmann::json{{"session", session}, {"options", options}}.dump();
-  return {text.begin(), text.end()};
-}
-
 std::optional<StoredChunk> StoredSessionReader::read(const LogEvent& event) {
   if (event.channel == kOptionsChannel) {
     begin_session(event);
@@ -51,13 +49,17 @@ std::optional<StoredChunk> StoredSessionReader::read(const LogEvent& event) {
   if (event.channel == channels::kKeyframe) return read_keyframe_chunk(event);
   if (event.channel == channels::kCameraPose) {
     const auto pose = decode<CameraPose>(event.data);
-    auto& utimes = session(pose.session).mapped_utimes;
-    if (utimes.empty() || pose.utime > utimes.back()) utimes.push_back(pose.utime);
+    add_frame(session(pose.session), pose.utime);
+  } else if (event.channel == kMappedFramesChannel) {
+    const MappedFrames frames = decode_mapped_frames(event.data);
+    for (const std::int64_t utime : frames.utimes) add_frame(session(frames.session), utime);
   } else if (event.channel == channels::kMapperStatus) {
     auto status = decode<MapperStatus>(event.data);
     session(status.session).last_status = std::move(status);
   } else if (event.channel == channels::kHeartbeat) {
     (void)decode<Heartbeat>(event.data);
+  } else if (const auto stream = decode_fates(event)) {
+    (void)session(stream->session);
   } else {
     throw std::runtime_error("a message on channel '" + event.channel +
                              "', on which a mapper stores none");
@@ -66,7 +68,7 @@ std::optional<StoredChunk> StoredSessionReader::read(const LogEvent& event) {
 }
 
 void StoredSessionReader::begin_session(const LogEvent& event) {
-  StoredSession session = read_options(event.data);
+  StoredSession session = decode_options(event.data);
   session.last_event_utime = event.utime;
   const auto same = [&](const StoredSession& other) { return other.session == session.session; };
   if (std::ranges::any_of(sessions_, same)) {
@@ -82,6 +84,10 @@ StoredSession& StoredSessionReader::session(std::int64_t number) {
                              ", which did not begin in this log");
   }
   return *found;
+}
+
+void StoredSessionReader::add_frame(StoredSession& of, std::int64_t utime) {
+  if (of.mapped_utimes.empty() || utime > of.mapped_utimes.back()) of.mapped_utimes.push_back(utime);
 }
 
 StoredChunk StoredSessionReader::read_slice_chunk(const LogEvent& event) {

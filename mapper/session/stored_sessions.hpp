@@ -32,6 +32,10 @@ struct StoredSession {
   std::optional<MapperStatus> last_status;
 };
 
+/// The number and the options of a session, of the data of its event.
+/// @throws std::runtime_error when it cannot be read
+StoredSession decode_options(ByteView data);
+
 /// A chunk of a stream in the log.
 struct StoredChunk {
   std::string channel;
@@ -39,7 +43,8 @@ struct StoredChunk {
   std::int64_t sequence = 0;
 };
 
-/// Collects the sessions from the events of a log, which must be read in order.
+/// Collects the sessions from the events of a log, which must be read in order. What a rewritten log
+/// tells of chunks that are not in it (chunk_fates.hpp) is only checked.
 class StoredSessionReader {
  public:
   /// Which chunk the event contains; nullopt if it contains none.
@@ -53,6 +58,7 @@ class StoredSessionReader {
  private:
   void begin_session(const LogEvent& event);
   StoredSession& session(std::int64_t number);
+  static void add_frame(StoredSession& of, std::int64_t utime);
   StoredChunk read_slice_chunk(const LogEvent& event);
   StoredChunk read_keyframe_chunk(const LogEvent& event);
   StoredChunk read_frame_chunk(const LogEvent& event);

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "lcmtypes/stream/sent_store.hpp"
 #include "mapper/session/buffered_log.hpp"
@@ -23,6 +24,11 @@ class StoredStream : public SentStore {
   std::int64_t first_sequence() const override;
   std::int64_t next_sequence() const override;
   bool is_safe(std::int64_t sequence) const override { return log_.is_safe(index_, sequence); }
+
+  ChunkFate fate(std::int64_t sequence) const override { return index_.fate(sequence); }
+  std::vector<SequenceRange> replaced(std::int64_t begin, std::size_t max_ranges) const override {
+    return index_.replaced(begin, max_ranges);
+  }
 
   ChunkIndex& index() { return index_; }
 
