@@ -1,6 +1,8 @@
-# Three times the normal rate of slices, as patches, for a long time. KINTSUGI_SOAK_S: how many seconds.
+# Long runs. KINTSUGI_SOAK_S: how many seconds of three times the normal rate of slices. KINTSUGI_PATROL_HOURS: how long the
+# camera walks its round; KINTSUGI_PATROL_S: after so many seconds here it is stopped before (default: never).
 
 fault_row soak "three times the normal rate of slices, as patches, for ${KINTSUGI_SOAK_S:-1800} s" soak_row
+fault_row patrol "the same round walked for ${KINTSUGI_PATROL_HOURS:-12} h, as fast as it can be mapped, with --store-limit" patrol_row
 
 # The map grows to 4 million points in 170 s; then its patches are revised, at the same rate.
 soak_row() {
@@ -23,6 +25,65 @@ soak_row() {
   must "$(status_last faulty segmenter lag_slices) slices wait in the end" \
     test "$(status_last faulty segmenter lag_slices)" -eq 0
   must "slices are missing" test "$(status_last faulty segmenter slices_missing)" -eq 0
+}
+
+# Of a small image and large voxels, so that hours take minutes. A round takes 100 s.
+patrol_row() {
+  local hours="${KINTSUGI_PATROL_HOURS:-12}" limit_mb=150 laps process seconds walked_s most_mb
+  if_quick && hours=0.03 limit_mb=16
+  laps="$(calculate "$hours * 36 < 1 ? 1 : $hours * 36" 0)"
+  scene+=(--device "synthetic://patrol?sensor=lidar&rate=5&laps=$laps" --resolution 0.02 --store-limit "$limit_mb"
+    --every 100000000 --mapper '--session=7')
+  faulty_start
+  watch_sizes &
+  if [[ -n "${KINTSUGI_PATROL_S:-}" ]]; then
+    { sleep "$KINTSUGI_PATROL_S"; kill -TERM "$faulty_pid"; } 2>/dev/null &
+  fi
+  faulty_wait
+  seconds="$(seconds_of_statuses)"
+  walked_s="$(calculate "($(status_last faulty mapper frames_tracked) + $(status_last faulty mapper frames_lost)) / 5" 0)"
+  note "$(calculate "$walked_s / 3600" 2) h walked, $(calculate "$walked_s / $seconds" 1) times as fast as the camera"
+  for process in mapper segmenter viewer; do
+    memory_over_time "$process" "$seconds"
+    if_quick || must "$process grew" is_flat "$process" "$seconds"
+  done
+  note "files, MB in each tenth: of the log$(sizes_over_time 2), of the folder$(sizes_over_time 3)"
+  most_mb="$(sort -g -k2 sizes.txt | awk 'END { print $2 }')"
+  must "the log had $most_mb MB" test "$(calculate "$most_mb <= $limit_mb" 0)" -eq 1
+  note "$(calculate "1e-6 * $(status_last faulty mapper chunks_published)" 3) million chunks published, most slices behind in \
+each tenth:$(lag_over_time)"
+  must "nothing was removed from the log" test ! -e faulty/mapper.1.lcm
+  must "$(status_last faulty segmenter lag_slices) slices wait in the end" \
+    test "$(status_last faulty segmenter lag_slices)" -eq 0
+  must "slices are missing" test "$(status_last faulty segmenter slices_missing)" -eq 0
+}
+
+# A line for each second: the time, MB of the log's files and of all files of the run; until the run has ended.
+watch_sizes() {
+  local since="$EPOCHREALTIME"
+  while kill -0 "$faulty_pid" 2>/dev/null; do
+    printf '%s %s %s\n' "$(since_s "$since")" "$(mb_of faulty/mapper.lcm faulty/mapper.*.lcm)" "$(mb_of faulty/*)" >>sizes.txt
+    sleep 1
+  done
+}
+mb_of() { stat -c %s "$@" 2>/dev/null | awk '{ n += $1 } END { printf "%.1f", 1e-6 * n }'; }
+
+# sizes_over_time COLUMN: the most in each tenth of the time.
+sizes_over_time() {
+  awk -v c="$1" '{ t[NR] = $1; v[NR] = $c } END {
+    for (i = 1; i <= NR; ++i) { k = int(10 * t[i] / (t[NR] + 0.001)); if (v[i] > m[k]) m[k] = v[i] }
+    for (k = 0; k < 10; ++k) printf " %.0f", m[k] }' sizes.txt
+}
+lag_over_time() {
+  awk -F, '!start { start = $1 } { last = $1 } $2 == "segmenter" && $3 == "lag_slices" { t[++n] = $1; v[n] = $4 } END {
+    for (i = 1; i <= n; ++i) { k = int(10 * (t[i] - start) / (last - start + 1)); if (v[i] > m[k]) m[k] = v[i] }
+    for (k = 0; k < 10; ++k) printf " %d", m[k] }' faulty/status.csv
+}
+
+# From the first slice to the last status.
+seconds_of_statuses() {
+  awk -F, '!start && $2 == "mapper" && $3 == "points_published" && $4 > 0 { start = $1 } { last = $1 }
+    END { printf "%.1f", 1e-6 * (last - start) }' faulty/status.csv
 }
 
 # memory_at PROCESS SHARE SECONDS: peak memory in MB, in the tenth of the time that ends at this share of it.
