@@ -38,7 +38,8 @@ concept SmallMessage = std::same_as<T, CameraPose> || std::same_as<T, MapperStat
     std::same_as<T, SegmenterStatus> || std::same_as<T, ViewerStatus> ||
     std::same_as<T, DetectorStatus> || std::same_as<T, Heartbeat> ||
     std::same_as<T, ResendRequest> || std::same_as<T, ChunksReplaced> ||
-    std::same_as<T, SegmentQuery> || std::same_as<T, ObjectDetection> || std::same_as<T, ChangeReport>;
+    std::same_as<T, SegmentQuery> || std::same_as<T, ObjectDetection> ||
+    std::same_as<T, ChangeReport>;
 
 template <class T>
 concept BulkMessage = std::same_as<T, CloudSlice> || std::same_as<T, SegmentUpdate> ||

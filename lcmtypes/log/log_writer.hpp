@@ -69,8 +69,8 @@ class LogWriter {
   /// shorter
   Bytes read(std::int64_t place, std::size_t size) const;
 
-  /// A path at which a LogReader finds this file for as long as it is open, also one without a name,
-  /// or after another one has got its name.
+  /// A path at which a LogReader finds this file for as long as it is open, also one without a
+  /// name, or after another one has got its name.
   std::filesystem::path open_path() const;
 
   std::int64_t size_bytes() const { return size_; }

@@ -159,10 +159,11 @@ void StreamSender::compare_with_store() {
   Job& job = jobs_.front();
   std::optional<Bytes> stored = store_->find(sequence_);
   const ChunkFate fate = store_->fate(sequence_);
-  if (fate != ChunkFate::kKept) stored.reset();
-  if (fate == ChunkFate::kSuperseded) {
-    job.num_chunks = 1;
-  } else if (stored && job.encode_superseded && *stored == job.encode_superseded(sequence_)) {
+  if (fate != ChunkFate::kKept) stored.reset();  // it cannot be compared
+  const bool was_superseded =
+      fate == ChunkFate::kSuperseded ||
+      (stored && job.encode_superseded && *stored == job.encode_superseded(sequence_));
+  if (was_superseded) {
     job.num_chunks = 1;
   } else if (stored && *stored != encode_next()) {
     throw std::runtime_error(channel_ + ", sequence " + std::to_string(sequence_) +

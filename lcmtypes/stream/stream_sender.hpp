@@ -47,9 +47,10 @@ struct StreamPublisherCounts {
 };
 
 /// Sends the chunks of queued messages in order, resends requested chunks or tells that they are
-/// replaced, and sends heartbeats that tell which chunks exist; one token bucket limits the rate of all. A chunk is in the store
-/// before it is sent, and safe there; chunks of one second are stored ahead while the store needs
-/// time for that. Only one thread may use it. Time is an argument: seconds that never decrease.
+/// replaced, and sends heartbeats that tell which chunks exist; one token bucket limits the rate of
+/// all. A chunk is in the store before it is sent, and safe there; chunks of one second are stored
+/// ahead while the store needs time for that. Only one thread may use it. Time is an argument:
+/// seconds that never decrease.
 class StreamSender {
  public:
   using Config = StreamPublisherConfig;

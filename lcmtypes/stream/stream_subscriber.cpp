@@ -147,8 +147,8 @@ void StreamSubscriber<Message>::add(const ChunksReplaced& replaced) {
 template <BulkMessage Message>
 bool StreamSubscriber<Message>::is_of_stream(const std::string& channel,
                                              const std::string& map_name) const {
-  const bool is_wanted = config_.wanted_map_name.empty() || map_name.empty() ||
-                         map_name == config_.wanted_map_name;
+  const bool is_wanted =
+      config_.wanted_map_name.empty() || map_name.empty() || map_name == config_.wanted_map_name;
   return channel == channel_ && is_wanted;
 }
 

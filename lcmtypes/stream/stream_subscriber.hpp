@@ -87,12 +87,13 @@ class StreamSubscriber {
   StreamSubscriber(std::string channel, OnMessage on_message, OnBad on_bad = {},
                    const Config& config = {});
 
-  /// From now on bus.handle() passes messages of the channel, heartbeats and what is told of replaced
-  /// chunks to handle(). This must outlive the last bus.handle().
+  /// From now on bus.handle() passes messages of the channel, heartbeats and what is told of
+  /// replaced chunks to handle(). This must outlive the last bus.handle().
   void subscribe(Bus& bus);
 
   /// Handles one LCM message, for instance of a log. Returns true if it is on the stream's channel,
-  /// a heartbeat, or tells of replaced chunks. Invalid messages are counted; only the callbacks may throw.
+  /// a heartbeat, or tells of replaced chunks. Invalid messages are counted; only the callbacks may
+  /// throw.
   bool handle(const std::string& channel, ByteView message);
 
   /// The requests to send now on RESEND_REQUEST. To be called regularly, for instance in the tick

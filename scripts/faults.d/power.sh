@@ -3,6 +3,7 @@
 # KINTSUGI_POWER_CUTS: the number of runs, each with another moment (default 200, with --quick 2).
 
 fault_row power-cut "power cut at a random moment of each run, then scripts/trio --resume" power_cut_row
+fault_row power-cut-limit "the same, of a log that is rewritten because of --store-limit" power_cut_limit_row
 
 # forgetful COMMAND...: runs it with the folder `faulty` on such a disk.
 forgetful() {
@@ -17,14 +18,27 @@ cut_power() {
 }
 
 power_cut_row() {
-  local num_runs="${KINTSUGI_POWER_CUTS:-200}" run moment seed_of_cut resumed=0 most_s=0
-  if_quick && num_runs="${KINTSUGI_POWER_CUTS:-2}"
   choose_scene
   reference
+  cut_each_run
+}
+
+# Of a log of 8 MB, some of which is rewritten before it has grown to 2 MB.
+power_cut_limit_row() {
+  scene+=(--device 'synthetic://patrol?sensor=lidar&noise=off&rate=10&speed=3&frames=200' --resolution 0.025 --every 1000000
+    --mapper '--session=7')
+  reference
+  cut_each_run --store-limit 4
+}
+
+# cut_each_run [OPTION...]: further options of the runs.
+cut_each_run() {
+  local num_runs="${KINTSUGI_POWER_CUTS:-200}" run moment seed_of_cut resumed=0 most_s=0
+  if_quick && num_runs="${KINTSUGI_POWER_CUTS:-2}"
   for ((run = 1; run <= num_runs; ++run)); do
     moment="$(calculate "$RANDOM / 32768" 4)" seed_of_cut="$RANDOM"
     rm -rf faulty && mkdir faulty
-    forgetful "$kintsugi_root/scripts/trio" --durable --out faulty "${scene[@]}" >faulty.txt 2>&1 ||
+    forgetful "$kintsugi_root/scripts/trio" --durable --out faulty "${scene[@]}" "$@" >faulty.txt 2>&1 ||
       { failures+=("the run failed: $PWD/faulty.txt"); return; }
     cut_power "$moment" "$seed_of_cut"
     faulty_since="$EPOCHREALTIME"
@@ -32,7 +46,7 @@ power_cut_row() {
       resumed=$((resumed + 1))
       "$kintsugi_root/scripts/trio" --resume --out faulty >resumed.txt 2>&1 || failures+=("--resume failed: $PWD/resumed.txt")
     else # it was cut before there was a run
-      "$kintsugi_root/scripts/trio" --durable --out faulty "${scene[@]}" >resumed.txt 2>&1 ||
+      "$kintsugi_root/scripts/trio" --durable --out faulty "${scene[@]}" "$@" >resumed.txt 2>&1 ||
         failures+=("a run in what is left failed: $PWD/resumed.txt")
     fi
     figure[seconds]="$(since_s "$faulty_since")"

@@ -46,7 +46,8 @@ TEST(SequenceSet, AgreesWithAPlainSetUnderRandomInsertsAndErasures) {
     for (const auto& [first, last] : set.ranges_from(begin, 100)) {
       for (std::int64_t i = first; i <= last; ++i) behind.insert(i);
     }
-    ASSERT_TRUE(std::ranges::equal(behind, std::ranges::subrange(plain.lower_bound(begin), plain.end())));
+    ASSERT_TRUE(
+        std::ranges::equal(behind, std::ranges::subrange(plain.lower_bound(begin), plain.end())));
     ASSERT_LE(set.ranges_from(begin, 1).size(), 1U);
   }
 }

@@ -46,6 +46,13 @@ class TrioOptions(unittest.TestCase):
         self.assertEqual(options.viewer, ["--view", "1,2, 3"])
         self.assertEqual(options.segmenter, [])
 
+    def test_a_limited_log_is_passed_on_and_nothing_is_recorded_without_limit(self):
+        for arguments in (["--store-limit", "500"], ["--mapper", "--store-limit=500"], ["--mapper", "--store-limit 500"]):
+            options = parse_trio(arguments)
+            self.assertEqual("=".join(options.mapper), "--store-limit=500")
+            self.assertTrue(options.is_long and options.no_log)
+        self.assertFalse(parse_trio([]).is_long or parse_trio([]).no_log)
+
     def test_objects_add_the_detector_before_the_last_process(self):
         self.assertEqual(parse_trio([]).only, ["mapper", "segmenter", "viewer"])
         options = parse_trio(["--objects", "my objects", "--detector", "--map-name attic"])

@@ -249,7 +249,8 @@ TEST_P(StoreLimits, KeepTheFilesSmallAndTheMapWhole) {
     Mapper mapper(store);
     step_until_rewritten(mapper, store, path_, 4);
     sent = store.stream(channels::kCloudSlice, kSession).next_sequence();
-    EXPECT_LT(std::ssize(store.stream(channels::kCloudSlice, kSession).replaced(0, SIZE_MAX)), sent);
+    EXPECT_LT(std::ssize(store.stream(channels::kCloudSlice, kSession).replaced(0, SIZE_MAX)),
+              sent);
     EXPECT_THAT(store.report().problem, IsEmpty());
     EXPECT_LT(store.report().size_bytes, kLimit);
     expect_whole(store, mapper);

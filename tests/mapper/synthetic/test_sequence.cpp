@@ -2,8 +2,10 @@
 #include <filesystem>
 #include <fstream>
 #include <sstream>
+#include <map>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -132,6 +134,74 @@ TEST(Sequence, AtFifteenHertzItIsEverySecondFrame) {
   }
   EXPECT_EQ(part.utime(1), every_second.utime(11));
   EXPECT_TRUE(part.X_WC(1).isApprox(every_second.X_WC(11), 0.0));
+}
+
+Sequence patrol(const std::map<std::string, std::string>& more) {
+  std::map<std::string, std::string> options = {{"rate", "5"}, {"sensor", "lidar"}, {"laps", "40"}};
+  options.insert(more.begin(), more.end());
+  return Sequence(Sequence::Config::parse("patrol", options));
+}
+
+/// Where its things are, those of the building too.
+std::vector<Pose> places_in(int lap, std::uint32_t seed) {
+  std::vector<Pose> places;
+  for (const Instance& instance : make_scene_in_lap("patrol", seed, lap).instances()) {
+    places.push_back(instance.X_WG);
+  }
+  return places;
+}
+
+TEST(Sequence, InPatrolOneThingMovesAtMostBetweenTwoLapsAsTheSeedSays) {
+  int num_moves = 0;
+  for (int lap = 1; lap < 40; ++lap) {
+    const auto before = places_in(lap - 1, 1);
+    const auto after = places_in(lap, 1);
+    ASSERT_EQ(before.size(), after.size());
+    int moved = 0;
+    for (std::size_t i = 0; i < after.size(); ++i) {
+      moved += before[i].isApprox(after[i], 0.0) ? 0 : 1;
+    }
+    EXPECT_LE(moved, 1) << lap;
+    num_moves += moved;
+  }
+  EXPECT_GE(num_moves, 20) << "now and then";
+  const auto are_equal = [](const std::vector<Pose>& a, const std::vector<Pose>& b) {
+    return std::ranges::equal(a, b, [](const Pose& x, const Pose& y) { return x.isApprox(y, 0.0); });
+  };
+  EXPECT_TRUE(are_equal(places_in(30, 1), places_in(30, 1)));
+  EXPECT_FALSE(are_equal(places_in(30, 1), places_in(30, 2)));
+  EXPECT_TRUE(are_equal(places_in(0, 1), places_in(0, 2))) << "they begin alike";
+}
+
+TEST(Sequence, PatrolIsWalkedAgainInTheSceneOfTheLap) {
+  constexpr int kFramesOfLap = 500;
+  Sequence walk = patrol({});
+  EXPECT_EQ(walk.num_frames(), 40 * kFramesOfLap + 1);
+  EXPECT_EQ(walk.lap_of(kFramesOfLap - 1), 0);
+  EXPECT_EQ(walk.lap_of(kFramesOfLap), 1);
+  EXPECT_EQ(walk.lap_of(40 * kFramesOfLap), 39);
+  // Whichever order the frames are asked for, and wherever the sequence begins.
+  Sequence later = patrol({{"start", "15000"}, {"frames", "300"}});
+  EXPECT_EQ(later.lap_of(0), 30);
+  const cv::Mat_<std::uint16_t> a = walk.depth_mm(15'200);
+  (void)walk.depth_mm(200);
+  const cv::Mat_<std::uint16_t> b = walk.depth_mm(15'200);
+  const cv::Mat_<std::uint16_t> c = later.depth_mm(200);
+  EXPECT_TRUE(std::equal(a.begin(), a.end(), b.begin(), b.end()));
+  EXPECT_TRUE(std::equal(a.begin(), a.end(), c.begin(), c.end()));
+}
+
+TEST(Sequence, WhatMovesInPatrolIsNotSeenBetweenTwoLaps) {
+  const Sequence walk = patrol({});
+  for (const int lap : {1, 2, 7, 20, 39}) {
+    const Pose X_WC = walk.X_WC(500 * lap);
+    const RenderedFrame before =
+        render(make_scene_in_lap("patrol", 1, lap - 1), walk.intrinsics(), X_WC);
+    const RenderedFrame after = render(make_scene_in_lap("patrol", 1, lap), walk.intrinsics(), X_WC);
+    EXPECT_TRUE(std::equal(before.depth_m.begin(), before.depth_m.end(), after.depth_m.begin(),
+                           [](float x, float y) { return x == y || (x != x && y != y); }))
+        << lap;
+  }
 }
 
 TEST(Sequence, RecordingsHaveTheRateOfTheirFramesAndNoDepthBeyondTheirUnit) {
