@@ -37,10 +37,11 @@ inline constexpr std::int64_t kMinFileBytes = 1'000'000;
 class BufferedLog {
  public:
   struct Config {
-    std::filesystem::path path;                     ///< empty: an unnamed temporary file
-    bool resume = false;                            ///< continue an existing log
-    std::int64_t max_file_bytes = 1'000'000'000;    ///< start another file above this, >= kMinFileBytes
-    std::int64_t max_total_bytes = 0;               ///< of all files, for StoreLimit; 0: without limit
+    std::filesystem::path path;  ///< empty: an unnamed temporary file
+    bool resume = false;         ///< continue an existing log
+    std::int64_t max_file_bytes =
+        1'000'000'000;                 ///< start another file above this, >= kMinFileBytes
+    std::int64_t max_total_bytes = 0;  ///< of all files, for StoreLimit; 0: without limit
     std::size_t max_waiting_bytes = 256'000'000;    ///< in memory, > 0
     std::chrono::milliseconds retry_period{1'000};  ///< between attempts to write, > 0
     bool durable = false;
@@ -85,8 +86,9 @@ class BufferedLog {
   std::vector<LogPart> closed() const;
   /// @throws as LogFiles::create_base()
   std::shared_ptr<LogWriter> create_base() const;
-  /// Replaces the first `count` files of closed() by the base, which has all of them that is needed,
-  /// and removes them. A kill or a power cut at any moment leaves the old files or the new one.
+  /// Replaces the first `count` files of closed() by the base, which has all of them that is
+  /// needed, and removes them. A kill or a power cut at any moment leaves the old files or the new
+  /// one.
   /// @param move tells the indexes where their chunks are now; nobody can ask for one meanwhile
   /// @throws std::system_error; nothing has changed then
   void replace_first(std::shared_ptr<LogWriter> base, std::size_t count,

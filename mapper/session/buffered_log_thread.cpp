@@ -48,7 +48,7 @@ std::size_t BufferedLog::write_batch(std::unique_lock<std::mutex>& lock) {
 /// Where the last file has no room for the next event.
 void BufferedLog::continue_in_next_file(std::unique_lock<std::mutex>& lock) {
   const Event& event = waiting_.front();
-  if (files_.has_room(LogFiles::event_bytes(event.channel, event.data))) return;
+  if (files_.takes(LogFiles::event_bytes(event.channel, event.data))) return;
   lock.unlock();
   LogWriter next = files_.create_next();
   lock.lock();

@@ -23,7 +23,8 @@ std::int32_t next_after_base(const std::filesystem::path& path) {
   const std::string text(event->data.begin(), event->data.end());
   std::int32_t number = 0;
   const auto parsed = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (parsed.ec != std::errc() || number < 1 || base_before(number) != Bytes(text.begin(), text.end())) {
+  if (parsed.ec != std::errc() || number < 1 ||
+      base_before(number) != Bytes(text.begin(), text.end())) {
     throw std::runtime_error("log '" + path.string() + "': its " + kBaseChannel +
                              " does not tell the number of the next file");
   }

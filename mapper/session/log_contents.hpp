@@ -37,12 +37,12 @@ struct SessionContents {
   std::int64_t session = 0;
   std::string map_name;
   PlacedEvent options;
-  std::vector<std::int64_t> mapped_utimes;        ///< of frames, ascending
-  std::map<std::int64_t, PlacedSlice> slices;     ///< by PlacedSlice::sequence
-  std::map<std::string, ChunkFates> fates;        ///< by the channel of the stream
-  std::map<std::string, std::map<std::int64_t, PlacedEvent>> other_chunks;  ///< by channel, sequence
+  std::vector<std::int64_t> mapped_utimes;     ///< of frames, ascending
+  std::map<std::int64_t, PlacedSlice> slices;  ///< by PlacedSlice::sequence
+  std::map<std::string, ChunkFates> fates;     ///< by the channel of the stream
+  std::map<std::string, std::map<std::int64_t, PlacedEvent>>
+      other_chunks;                                  ///< by channel, sequence
   std::map<std::string, PlacedEvent> last_messages;  ///< by channel: status, and heartbeats
-
 };
 
 /// Collects it from the events of the files, which must be read in order.

@@ -1,9 +1,7 @@
 #include "mapper/session/log_files.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cstdlib>
-#include <limits>
 #include <optional>
 #include <stdexcept>
 #include <system_error>
@@ -13,6 +11,7 @@
 #include "lcmtypes/log/log_format.hpp"
 #include "mapper/session/log_base.hpp"
 #include "mapper/session/log_marks.hpp"
+#include "mapper/session/log_names.hpp"
 
 namespace kintsugi::mapper {
 namespace {
@@ -21,38 +20,6 @@ namespace fs = std::filesystem;
 
 /// What the mapper writes is smaller: more than this was not left by an interrupted write.
 constexpr std::int64_t kMaxEventBytes = 262'144;
-
-fs::path numbered(const fs::path& path, int number) {
-  if (number == 0) return path;
-  return path.parent_path() /
-         (path.stem().string() + '.' + std::to_string(number) + path.extension().string());
-}
-
-/// NAME.partial.lcm, as AtomicFile names files.
-fs::path partial(const fs::path& path) {
-  return path.parent_path() / (path.stem().string() + ".partial" + path.extension().string());
-}
-
-/// The largest number that a file of this log bears; 0: there is only the first, or none.
-int last_number(const fs::path& path) {
-  const std::string begin = path.stem().string() + ".";
-  const std::string end = path.extension().string();
-  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
-  int last = 0;
-  std::error_code error;
-  for (const auto& entry : fs::directory_iterator(folder, error)) {
-    const std::string name = entry.path().filename().string();
-    if (!name.starts_with(begin) || !name.ends_with(end) ||
-        name.size() <= begin.size() + end.size()) {
-      continue;
-    }
-    const char* const digits_end = name.data() + (name.size() - end.size());
-    int number = 0;
-    const auto parsed = std::from_chars(name.data() + begin.size(), digits_end, number);
-    if (parsed.ec == std::errc() && parsed.ptr == digits_end) last = std::max(last, number);
-  }
-  return last;
-}
 
 LogWriter create_named(const fs::path& path, bool durable) {
   std::error_code ignored;
@@ -65,20 +32,6 @@ LogWriter create_named(const fs::path& path, bool durable) {
                              "' of an earlier run exists: remove it, or give --store another name");
   }
   return durable ? LogWriter::create_anew(partial(path)) : LogWriter::create(path);
-}
-
-/// NAME.base.lcm, until it is whole.
-fs::path base_in_work(const fs::path& path) {
-  return path.parent_path() / (path.stem().string() + ".base" + path.extension().string());
-}
-
-/// Removes what a rewriting of the log was killed before: the files that its base replaces, numbers
-/// 1 to the one before `next`, and a base that was not whole.
-void remove_left(const fs::path& path, int next) {
-  std::error_code ignored;
-  fs::remove(base_in_work(path), ignored);
-  for (int number = next - 1; number > 0 && fs::remove(numbered(path, number), ignored); --number) {
-  }
 }
 
 LogPart part(std::int32_t number, LogWriter file) {
@@ -114,8 +67,8 @@ std::optional<std::string> text_of_cut(const LogWriter& file, std::int64_t end, 
 }  // namespace
 
 LogFiles::LogFiles(Config config) : config_(std::move(config)) {
-  last_ = part(0, config_.path.empty() ? create_unnamed()
-                                       : create_named(config_.path, config_.durable));
+  last_ = part(
+      0, config_.path.empty() ? create_unnamed() : create_named(config_.path, config_.durable));
 }
 
 LogFiles::LogFiles(Config config, const OnEvent& on_event) : config_(std::move(config)) {
@@ -192,8 +145,11 @@ std::int64_t LogFiles::event_bytes(const std::string& channel, ByteView data) {
 }
 
 bool LogFiles::has_room(std::int64_t bytes) const {
-  const std::int64_t size = last_.file->size_bytes();
-  return size == 0 || size + bytes <= config_.max_file_bytes;
+  return last_.file->size_bytes() + bytes <= config_.max_file_bytes;
+}
+
+bool LogFiles::takes(std::int64_t event_bytes) const {
+  return last_.file->size_bytes() == 0 || has_room(event_bytes);
 }
 
 LogWriter LogFiles::create_next() const {
@@ -208,7 +164,8 @@ void LogFiles::continue_in(LogWriter next) {
 }
 
 LogWriter LogFiles::create_base() const {
-  return config_.path.empty() ? create_unnamed() : LogWriter::create_anew(base_in_work(config_.path));
+  return config_.path.empty() ? create_unnamed()
+                              : LogWriter::create_anew(base_in_work(config_.path));
 }
 
 void LogFiles::install(LogWriter& base) const {
@@ -234,7 +191,7 @@ void LogFiles::remove(const std::vector<LogPart>& parts) const {
 }
 
 LogPlace LogFiles::append(std::int64_t utime, const std::string& channel, ByteView data) {
-  if (!config_.durable && !has_room(event_bytes(channel, data))) continue_in(create_next());
+  if (!config_.durable && !takes(event_bytes(channel, data))) continue_in(create_next());
   const std::int64_t offset = last_.file->append(utime, channel, data);
   return {last_.number, static_cast<std::int32_t>(data.size()), offset};
 }

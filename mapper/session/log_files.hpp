@@ -63,9 +63,10 @@ class LogFiles {
 
   /// Of an event in its file.
   static std::int64_t event_bytes(const std::string& channel, ByteView data);
-  /// Whether the last file has room for so many bytes of events; an empty one always has. Marks are
-  /// not counted.
+  /// Whether so many bytes of events fit into the last file. Marks are not counted.
   bool has_room(std::int64_t bytes) const;
+  /// The same of one event, for which an empty file always has room.
+  bool takes(std::int64_t event_bytes) const;
   /// Opens the file that follows the last one, and nothing more. @throws as LogWriter does
   LogWriter create_next() const;
   /// Continues in this file of create_next().
@@ -74,9 +75,9 @@ class LogFiles {
   /// Opens a file for what shall replace the first ones; has no effect on the log.
   /// @throws as LogWriter does
   LogWriter create_base() const;
-  /// Gives the file of create_base(), which is whole, the name of the first file of the log, so that
-  /// a log that is opened from now on begins with it, also after a power cut. May run in parallel to
-  /// all others. @throws std::system_error; the log has its old first file then
+  /// Gives the file of create_base(), which is whole, the name of the first file of the log, so
+  /// that a log that is opened from now on begins with it, also after a power cut. May run in
+  /// parallel to all others. @throws std::system_error; the log has its old first file then
   void install(LogWriter& base) const;
   /// All files but the last, which may grow. They do not change.
   std::vector<LogPart> closed() const { return closed_; }

@@ -27,7 +27,8 @@ class Rewriting {
   RewrittenStreams run(bool is_marked) {
     LogContents contents;
     for (const LogPart& part : parts_) read(part, contents);
-    const std::int64_t utime = contents.sessions().empty() ? 0 : contents.sessions()[0].options.utime;
+    const std::int64_t utime =
+        contents.sessions().empty() ? 0 : contents.sessions()[0].options.utime;
     base_.append(utime, kBaseChannel, base_before(parts_.back().number + 1));
     for (const SessionContents& session : contents.sessions()) write(session);
     if (is_marked) base_.append(utime, kMarkChannel, mark_at(base_.size_bytes()));
@@ -94,7 +95,8 @@ class Rewriting {
     }
   }
 
-  void note_fate(const PlacedSlice& slice, const SessionContents& session, const SliceNeeds& needs) {
+  void note_fate(const PlacedSlice& slice, const SessionContents& session,
+                 const SliceNeeds& needs) {
     const SliceNeeds::Need need = needs.need(slice);
     if (need == SliceNeeds::Need::kWhole) return;
     ChunkFates& fates = stream(channels::kCloudSlice, session).fates;
@@ -126,8 +128,8 @@ class Rewriting {
     const std::size_t max_bytes = SliceNeeds::max_chunk_bytes(slice);
     for (std::int32_t i = 0; i < num_chunks(shortened, max_bytes); ++i) {
       const Bytes chunk = encode_chunk(shortened, slice.sequence + i, i, max_bytes);
-      kept.push_back({slice.sequence + i,
-                      append(channels::kCloudSlice, slice.chunks.front()->utime, chunk)});
+      kept.push_back(
+          {slice.sequence + i, append(channels::kCloudSlice, slice.chunks.front()->utime, chunk)});
     }
   }
 

@@ -21,7 +21,8 @@ struct RewrittenStream {
 /// By channel and session.
 using RewrittenStreams = std::map<std::pair<std::string, std::int64_t>, RewrittenStream>;
 
-/// Writes the base that can replace `parts`, the first files of a log, all of which are full. It has
+/// Writes the base that can replace `parts`, the first files of a log, all of which are full. It
+/// has
 ///
 /// - the options of each session, so that it can be resumed,
 /// - the times of the frames that were mapped, without their poses,

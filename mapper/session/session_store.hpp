@@ -10,8 +10,8 @@
 
 #include "mapper/session/buffered_log.hpp"
 #include "mapper/session/mapping_options.hpp"
-#include "mapper/session/stored_sessions.hpp"
 #include "mapper/session/store_limit.hpp"
+#include "mapper/session/stored_sessions.hpp"
 #include "mapper/session/stored_stream.hpp"
 
 namespace kintsugi::mapper {
@@ -40,8 +40,8 @@ class SessionStore {
   /// The chunks of one session on one channel. The stream lives as long as this.
   StoredStream& stream(const std::string& channel, std::int64_t session);
 
-  /// Tries to write what could not be written before, and keeps the limit. To be called regularly, by
-  /// one thread.
+  /// Tries to write what could not be written before, and keeps the limit. To be called regularly,
+  /// by one thread.
   void retry();
   /// Tries a last time. Nothing may be added any more.
   void finish();

@@ -39,8 +39,8 @@ SliceNeeds::Need SliceNeeds::need(const PlacedSlice& slice) const {
   const CloudSlice before = whole(slice);
   CloudSlice after = before;
   shorten(after);
-  const bool is_shorter = after.motions.size() < before.motions.size() ||
-                          after.loops.size() < before.loops.size();
+  const bool is_shorter =
+      after.motions.size() < before.motions.size() || after.loops.size() < before.loops.size();
   return is_shorter ? Need::kShortened : Need::kWhole;
 }
 

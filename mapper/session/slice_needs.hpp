@@ -43,8 +43,8 @@ class SliceNeeds {
   void shorten(CloudSlice& correction) const;
 
   Read read_;
-  std::map<std::int32_t, const PlacedSlice*> newest_;       ///< by id
-  std::map<std::int32_t, std::int32_t> placed_by_;          ///< patch to the correction that counts
+  std::map<std::int32_t, const PlacedSlice*> newest_;  ///< by id
+  std::map<std::int32_t, std::int32_t> placed_by_;     ///< patch to the correction that counts
   std::map<std::int32_t, std::int32_t> last_with_loops_of_;  ///< part to correction
 };
 

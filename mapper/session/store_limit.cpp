@@ -5,7 +5,10 @@
 #include <utility>
 #include <vector>
 
+#include <malloc.h>
 #include <spdlog/spdlog.h>
+
+#include "lcmtypes/base/thread_priority.hpp"
 
 namespace kintsugi::mapper {
 namespace {
@@ -28,7 +31,9 @@ void StoreLimit::poll() {
   if (thread_.joinable()) thread_.join();
   is_working_ = true;
   thread_ = std::thread([this] {
+    lower_priority_of_thread();
     rewrite();
+    malloc_trim(0);  // what a thread has freed stays with it, and the next one takes more
     is_working_ = false;
   });
 }
@@ -59,8 +64,7 @@ void StoreLimit::rewrite() {
     const std::shared_ptr<LogWriter> base = log_.create_base();
     const RewrittenStreams streams =
         rewrite_log(parts, *base, durable_, [this] { return is_stopped_.load(); });
-    log_.replace_first(base, parts.size(),
-                       [&] { on_rewritten_(parts.back().number, streams); });
+    log_.replace_first(base, parts.size(), [&] { on_rewritten_(parts.back().number, streams); });
     note_size(base->size_bytes());
   } catch (const std::exception& error) {
     next_try_ = Clock::now() + kRetryPeriod;

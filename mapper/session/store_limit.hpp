@@ -13,9 +13,9 @@
 
 namespace kintsugi::mapper {
 
-/// Keeps the files of a log below a limit: when they have half of it, the full ones are rewritten as
-/// one that has only what the map still needs (rewrite_log()), by a thread, while the log goes on.
-/// For a moment both are there, which is why it is half.
+/// Keeps the files of a log below a limit: when they have half of it, the full ones are rewritten
+/// as one that has only what the map still needs (rewrite_log()), by a thread, while the log goes
+/// on. For a moment both are there, which is why it is half.
 ///
 /// Everything that is needed is kept, also beyond the limit. Then the log is rewritten each time
 /// that it has grown by a quarter of that, and problem() says so.

@@ -87,7 +87,8 @@ StoredSession& StoredSessionReader::session(std::int64_t number) {
 }
 
 void StoredSessionReader::add_frame(StoredSession& of, std::int64_t utime) {
-  if (of.mapped_utimes.empty() || utime > of.mapped_utimes.back()) of.mapped_utimes.push_back(utime);
+  if (of.mapped_utimes.empty() || utime > of.mapped_utimes.back())
+    of.mapped_utimes.push_back(utime);
 }
 
 StoredChunk StoredSessionReader::read_slice_chunk(const LogEvent& event) {

@@ -43,8 +43,8 @@ struct StoredChunk {
   std::int64_t sequence = 0;
 };
 
-/// Collects the sessions from the events of a log, which must be read in order. What a rewritten log
-/// tells of chunks that are not in it (chunk_fates.hpp) is only checked.
+/// Collects the sessions from the events of a log, which must be read in order. What a rewritten
+/// log tells of chunks that are not in it (chunk_fates.hpp) is only checked.
 class StoredSessionReader {
  public:
   /// Which chunk the event contains; nullopt if it contains none.

@@ -25,8 +25,8 @@ Sequence::Sequence(const Config& config)
   check_range("synthetic: laps", config_.laps, 1, 1000);
   require(config_.laps == 1 || content_.trajectory.is_closed(), "synthetic: laps", config_.laps,
           "1: the path does not end where it begins");
-  require(std::ranges::find(kRates_hz, config_.rate_hz) != kRates_hz.end(), "synthetic: rate", config_.rate_hz,
-          "30, 15, 10, 6 or 5");
+  require(std::ranges::find(kRates_hz, config_.rate_hz) != kRates_hz.end(), "synthetic: rate",
+          config_.rate_hz, "30, 15, 10, 6 or 5");
   const int on_path = frames_on_path();
   check_range("synthetic: start", config_.start, 0, on_path - 1);
   num_frames_ = config_.frames.value_or(on_path - config_.start);

@@ -106,6 +106,8 @@ Scene patrol_scene_in(int lap, std::uint32_t seed) {
   return std::move(builder).build();
 }
 
-SceneWithPath patrol_scene(std::uint32_t seed) { return {patrol_scene_in(0, seed), loop_path(seed)}; }
+SceneWithPath patrol_scene(std::uint32_t seed) {
+  return {patrol_scene_in(0, seed), loop_path(seed)};
+}
 
 }  // namespace kintsugi::synthetic

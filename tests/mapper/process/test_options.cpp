@@ -26,6 +26,13 @@ TEST(Options, DefaultsAreTheDesigns) {
   EXPECT_FALSE(options.source.replay);
 }
 
+TEST(Options, ALimitOfTheLogCannotBeKeptWithEveryFrame) {
+  EXPECT_DOUBLE_EQ(options_of({"--store-limit", "500"}).store_limit_mb, 500.0);
+  EXPECT_THAT(error_of({"--store-limit", "500", "--store-frames"}),
+              HasSubstr("--store-limit cannot be kept with --store-frames"));
+  EXPECT_THAT(error_of({"--store-limit", "-1"}), HasSubstr("--store-limit"));
+}
+
 TEST(Options, TakesEveryFlag) {
   const Options options = options_of({"--device",
                                       "folder:///data/x",

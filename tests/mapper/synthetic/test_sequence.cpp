@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
 #include <map>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -145,9 +145,8 @@ Sequence patrol(const std::map<std::string, std::string>& more) {
 /// Where its things are, those of the building too.
 std::vector<Pose> places_in(int lap, std::uint32_t seed) {
   std::vector<Pose> places;
-  for (const Instance& instance : make_scene_in_lap("patrol", seed, lap).instances()) {
-    places.push_back(instance.X_WG);
-  }
+  const Scene scene = make_scene_in_lap("patrol", seed, lap);
+  for (const Instance& instance : scene.instances()) places.push_back(instance.X_WG);
   return places;
 }
 
@@ -166,7 +165,8 @@ TEST(Sequence, InPatrolOneThingMovesAtMostBetweenTwoLapsAsTheSeedSays) {
   }
   EXPECT_GE(num_moves, 20) << "now and then";
   const auto are_equal = [](const std::vector<Pose>& a, const std::vector<Pose>& b) {
-    return std::ranges::equal(a, b, [](const Pose& x, const Pose& y) { return x.isApprox(y, 0.0); });
+    return std::ranges::equal(a, b,
+                              [](const Pose& x, const Pose& y) { return x.isApprox(y, 0.0); });
   };
   EXPECT_TRUE(are_equal(places_in(30, 1), places_in(30, 1)));
   EXPECT_FALSE(are_equal(places_in(30, 1), places_in(30, 2)));
@@ -197,7 +197,8 @@ TEST(Sequence, WhatMovesInPatrolIsNotSeenBetweenTwoLaps) {
     const Pose X_WC = walk.X_WC(500 * lap);
     const RenderedFrame before =
         render(make_scene_in_lap("patrol", 1, lap - 1), walk.intrinsics(), X_WC);
-    const RenderedFrame after = render(make_scene_in_lap("patrol", 1, lap), walk.intrinsics(), X_WC);
+    const RenderedFrame after =
+        render(make_scene_in_lap("patrol", 1, lap), walk.intrinsics(), X_WC);
     EXPECT_TRUE(std::equal(before.depth_m.begin(), before.depth_m.end(), after.depth_m.begin(),
                            [](float x, float y) { return x == y || (x != x && y != y); }))
         << lap;
