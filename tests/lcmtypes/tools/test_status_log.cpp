@@ -1,3 +1,4 @@
+#include <cstdint>
 #include <algorithm>
 #include <fstream>
 #include <set>
@@ -66,7 +67,7 @@ TEST(StatusLog, HasWithAPeriodTheFirstOneThenOneOfEachPeriodAndTheLast) {
     StatusLog log(file, 1.0);
     for (int i = 0; i <= 25; ++i) {
       ViewerStatus status;
-      status.utime = 100'000 * i;
+      status.utime = std::int64_t{100'000} * i;
       log.append(status);
       SegmenterStatus other;
       other.utime = 1'000'000 + i;
