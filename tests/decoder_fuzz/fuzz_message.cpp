@@ -44,6 +44,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   decode_small<ViewerStatus>(message);
   decode_small<Heartbeat>(message);
   decode_small<ResendRequest>(message);
+  decode_small<ChunksReplaced>(message);
   decode_small<SegmentQuery>(message);
   decode_small<DetectorStatus>(message);
   decode_small<ObjectDetection>(message);

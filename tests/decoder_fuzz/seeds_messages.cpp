@@ -1,6 +1,8 @@
 // Messages and logs of them.
 
 #include "lcmtypes/channels.hpp"
+#include "mapper/session/chunk_fates.hpp"
+#include "mapper/session/mapped_frames.hpp"
 #include "mapper/session/stored_sessions.hpp"
 #include "tests/decoder_fuzz/log_events.hpp"
 #include "tests/decoder_fuzz/seeds.hpp"
@@ -27,6 +29,10 @@ Bytes log_of(const char* channel, const Message& first, const Message& second) {
   heartbeat.session = first.session;
   heartbeat.channel = channel;
   events.push_back({channels::kHeartbeat, encode(heartbeat)});
+  ChunksReplaced replaced = testing::example_chunks_replaced();
+  replaced.session = first.session;
+  replaced.channel = channel;
+  events.push_back({channels::kChunksReplaced, encode(replaced)});
   append_chunks(channel, second, static_cast<std::int64_t>(events.size()), events);
   return write_events(events);
 }
@@ -44,6 +50,7 @@ Seeds message_seeds() {
           {"change_report", encode(example_change())},
           {"heartbeat", encode(example_heartbeat())},
           {"resend_request", encode(example_resend_request())},
+          {"chunks_replaced", encode(example_chunks_replaced())},
           {"cloud_slice", encode_chunk(example_slice(10), 0, 0, kDefaultMaxChunkBytes)},
           {"patch", encode_chunk(example_patch(5), 0, 0, kDefaultMaxChunkBytes)},
           {"correction", encode_chunk(example_correction(6), 0, 0, kDefaultMaxChunkBytes)},
@@ -102,7 +109,20 @@ Seeds stored_session_seeds() {
   RgbdFrameMessage frame = testing::example_frame(40, 30);
   frame.session = slice.session;
   append_chunks(channels::kRgbdFrame, frame, 0, events);
-  return {{"session", write_events(events)}};
+  std::vector<LoggedMessage> rewritten = {
+      events.front(),
+      {mapper::kMappedFramesChannel,
+       mapper::encode_mapped_frames(slice.session, std::vector<std::int64_t>{5, 33'005, 70'000})}};
+  mapper::ChunkFates fates;
+  fates.replaced.insert({2, 5});
+  fates.superseded.insert({4, 5});
+  fates.changed.insert({2, 3});
+  for (const auto& [channel, data] :
+       mapper::encode_fates({channels::kCloudSlice, slice.session, fates}, slice.map_name)) {
+    rewritten.push_back({channel, data});
+  }
+  append_chunks(channels::kCloudSlice, slice, 0, rewritten);
+  return {{"session", write_events(events)}, {"rewritten", write_events(rewritten)}};
 }
 
 Seeds rgbd_frame_seeds() {
