@@ -71,18 +71,27 @@ class GrowingArray {
     return back() = value;
   }
 
+  /// From now on what is not used for long may go to disk (SwapSpace), which must outlive the
+  /// array.
+  void swap_to(SwapSpace& space) {
+    if (data_ == nullptr) reserve();
+    memory_.swap_to(space);
+  }
+
   /// Memory taken so far.
   std::size_t bytes() const { return capacity_ * sizeof(T); }
 
  private:
   static constexpr std::size_t kReservedBytes = (std::size_t{1} << 32) * sizeof(T);
 
-  void commit(std::size_t size) {
-    if (data_ == nullptr) {
-      memory_ = ReservedMemory(kReservedBytes, ReservedMemory::HugePages::kAfterTheFirst);
-    }
-    memory_.commit(size * sizeof(T));
+  void reserve() {
+    memory_ = ReservedMemory(kReservedBytes, ReservedMemory::HugePages::kAfterTheFirst);
     data_ = reinterpret_cast<T*>(memory_.data());
+  }
+
+  void commit(std::size_t size) {
+    if (data_ == nullptr) reserve();
+    memory_.commit(size * sizeof(T));
     capacity_ = memory_.committed_bytes() / sizeof(T);
   }
 

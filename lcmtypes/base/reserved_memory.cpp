@@ -1,16 +1,20 @@
 #include "lcmtypes/base/reserved_memory.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <memory>
 #include <new>
 #include <utility>
 
 #include <sys/mman.h>
 
+#include "lcmtypes/base/swap_space.hpp"
+
 namespace kintsugi {
 namespace {
 
 constexpr std::size_t kHugePageBytes = ReservedMemory::kPageBytes;
+static_assert(kHugePageBytes == SwapSpace::kChunkBytes);
 
 std::size_t round_up(std::size_t bytes) {
   return (bytes + kHugePageBytes - 1) / kHugePageBytes * kHugePageBytes;
@@ -40,7 +44,8 @@ ReservedMemory::ReservedMemory(ReservedMemory&& other) noexcept
       range_bytes_(std::exchange(other.range_bytes_, 0)),
       data_(std::exchange(other.data_, nullptr)),
       reserved_bytes_(std::exchange(other.reserved_bytes_, 0)),
-      committed_bytes_(std::exchange(other.committed_bytes_, 0)) {}
+      committed_bytes_(std::exchange(other.committed_bytes_, 0)),
+      swap_(std::exchange(other.swap_, nullptr)) {}
 
 ReservedMemory& ReservedMemory::operator=(ReservedMemory&& other) noexcept {
   std::swap(range_, other.range_);
@@ -48,10 +53,14 @@ ReservedMemory& ReservedMemory::operator=(ReservedMemory&& other) noexcept {
   std::swap(data_, other.data_);
   std::swap(reserved_bytes_, other.reserved_bytes_);
   std::swap(committed_bytes_, other.committed_bytes_);
+  std::swap(swap_, other.swap_);
   return *this;
 }
 
 ReservedMemory::~ReservedMemory() {
+  for (std::size_t k = 0; swap_ != nullptr && k < committed_bytes_; k += kHugePageBytes) {
+    swap_->remove(data_ + k);
+  }
   if (range_ != nullptr) ::munmap(range_, range_bytes_);
 }
 
@@ -60,20 +69,33 @@ void ReservedMemory::commit(std::size_t bytes) {
   if (bytes > reserved_bytes_) throw std::bad_alloc();
   const std::size_t usable = std::min(round_up(bytes), reserved_bytes_);
   if (::mprotect(data_, usable, PROT_READ | PROT_WRITE) != 0) throw std::bad_alloc();
-  committed_bytes_ = usable;
+  const std::size_t first_new = std::exchange(committed_bytes_, usable);
+  if (swap_ != nullptr) add_to_swap(first_new);
 }
 
 void ReservedMemory::discard_page(std::size_t page) {
+  assert(swap_ == nullptr);
   const std::size_t first = page * kHugePageBytes;
   if (first >= committed_bytes_) return;
   ::madvise(data_ + first, std::min(kHugePageBytes, committed_bytes_ - first), MADV_DONTNEED);
 }
 
 void ReservedMemory::release() {
+  assert(swap_ == nullptr);
   if (committed_bytes_ == 0) return;
   ::madvise(data_, committed_bytes_, MADV_DONTNEED);
   ::mprotect(data_, committed_bytes_, PROT_NONE);
   committed_bytes_ = 0;
+}
+
+void ReservedMemory::swap_to(SwapSpace& space) {
+  assert(swap_ == nullptr && reserved_bytes_ % kHugePageBytes == 0);
+  swap_ = &space;
+  add_to_swap(0);
+}
+
+void ReservedMemory::add_to_swap(std::size_t first_byte) {
+  for (std::size_t k = first_byte; k < committed_bytes_; k += kHugePageBytes) swap_->add(data_ + k);
 }
 
 }  // namespace kintsugi

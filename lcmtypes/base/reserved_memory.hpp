@@ -4,6 +4,8 @@
 
 namespace kintsugi {
 
+class SwapSpace;
+
 /// A range of addresses that is reserved once and never moves; memory is taken as it is needed, and
 /// references into it stay valid.
 class ReservedMemory {
@@ -42,12 +44,19 @@ class ReservedMemory {
   /// Gives all memory back; then no byte is usable.
   void release();
 
+  /// From now on the memory may go to disk (SwapSpace), which must outlive it, and is neither
+  /// released nor discarded. The reserved range has to be a multiple of kPageBytes.
+  void swap_to(SwapSpace& space);
+
  private:
+  void add_to_swap(std::size_t first_byte);
+
   void* range_ = nullptr;  ///< from mmap
   std::size_t range_bytes_ = 0;
   std::byte* data_ = nullptr;  ///< the first huge page in range_
   std::size_t reserved_bytes_ = 0;
   std::size_t committed_bytes_ = 0;
+  SwapSpace* swap_ = nullptr;  ///< null: all stays in memory
 };
 
 }  // namespace kintsugi

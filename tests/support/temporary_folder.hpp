@@ -8,10 +8,14 @@
 
 namespace kintsugi::testing {
 
+/// For the parent of a folder that has to be on a disk: temporary files may be in memory (tmpfs).
+inline constexpr char kOnDisk[] = "/var/tmp";
+
 class TemporaryFolder {
  public:
-  TemporaryFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "kintsugi-XXXXXX").string();
+  explicit TemporaryFolder(
+      const std::filesystem::path& parent = std::filesystem::temp_directory_path()) {
+    std::string name = (parent / "kintsugi-XXXXXX").string();
     if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("cannot make " + name);
     path_ = name;
   }

@@ -1,0 +1,184 @@
+#include "lcmtypes/base/swap_space.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <stdexcept>
+#include <system_error>
+#include <utility>
+
+#include <fcntl.h>
+#include <linux/magic.h>
+#include <sys/mman.h>
+#include <sys/vfs.h>
+#include <unistd.h>
+
+#include "lcmtypes/base/argument_check.hpp"
+#include "lcmtypes/base/process_memory.hpp"
+
+namespace kintsugi {
+namespace {
+
+constexpr std::size_t kMaxBytesOfTrim = std::size_t{64} << 20;
+constexpr std::size_t kPageBytes = 4096;
+constexpr std::size_t kPagesOfChunk = SwapSpace::kChunkBytes / kPageBytes;
+
+// Of an entry of /proc/self/pagemap (admin-guide/mm/pagemap.rst of the kernel).
+constexpr std::uint64_t kIsPresent = std::uint64_t{1} << 63;
+constexpr std::uint64_t kIsSwapped = std::uint64_t{1} << 62;  ///< by the kernel, to a swap of its own
+constexpr std::uint64_t kIsOfFile = std::uint64_t{1} << 61;
+
+[[noreturn]] void fail(const std::filesystem::path& path, const std::string& what, int error) {
+  throw std::runtime_error(path.string() + ": " + what + ": " + std::strerror(error));
+}
+
+/// A file without a name.
+int make_file(const std::filesystem::path& folder) {
+  struct statfs system {};
+  if (::statfs(folder.c_str(), &system) != 0) fail(folder, "no folder for swapped memory", errno);
+  if (system.f_type == TMPFS_MAGIC || system.f_type == RAMFS_MAGIC) {
+    throw std::runtime_error(folder.string() +
+                             ": no folder for swapped memory: it is in memory itself (tmpfs); "
+                             "expected one on a disk");
+  }
+  std::string path = (folder / "kintsugi-swap.XXXXXX").string();
+  const int file = ::mkostemp(path.data(), O_CLOEXEC);
+  if (file < 0) fail(folder, "no file for swapped memory can be made", errno);
+  ::unlink(path.c_str());
+  return file;
+}
+
+}  // namespace
+
+void SwapSpace::Config::validate() const {
+  require(max_resident_bytes > 0, "max_resident_bytes", max_resident_bytes, "> 0");
+}
+
+SwapSpace::SwapSpace(const Config& config)
+    : config_((config.validate(), config)), file_(make_file(config.folder)) {
+  pagemap_ = ::open("/proc/self/pagemap", O_RDONLY | O_CLOEXEC);
+  if (pagemap_ >= 0) return;
+  const int error = errno;
+  ::close(file_);
+  fail("/proc/self/pagemap", "cannot be read", error);
+}
+
+SwapSpace::~SwapSpace() {
+  ::close(pagemap_);
+  ::close(file_);
+}
+
+void SwapSpace::add(std::byte* chunk) {
+  const std::lock_guard lock(mutex_);
+  by_address_[chunk] = chunks_.insert(chunks_.end(), Chunk{chunk});
+}
+
+void SwapSpace::remove(std::byte* chunk) {
+  const std::lock_guard lock(mutex_);
+  const auto found = by_address_.find(chunk);
+  if (found == by_address_.end()) return;
+  if (found->second->slot != kNoSlot) free_slots_.push_back(found->second->slot);
+  chunks_.erase(found->second);
+  by_address_.erase(found);
+}
+
+void SwapSpace::trim() {
+  const auto resident = static_cast<std::size_t>(process_memory().resident_bytes);
+  if (resident <= config_.max_resident_bytes) return;
+  const std::size_t excess = std::min(resident - config_.max_resident_bytes, kMaxBytesOfTrim);
+  std::size_t freed = 0;
+  const std::lock_guard lock(mutex_);
+  try {
+    for (std::size_t n = chunks_.size(); n > 0 && freed < excess; --n) {
+      Chunk& chunk = chunks_.front();
+      chunks_.splice(chunks_.end(), chunks_, chunks_.begin());
+      freed += put_on_disk(chunk);
+    }
+    problem_.clear();
+  } catch (const std::system_error& error) {
+    problem_ = "memory that was not used for long cannot be written to disk, in " +
+               config_.folder.string() + ": " + error.code().message();
+  }
+}
+
+/// Returns how many bytes are free now.
+std::size_t SwapSpace::put_on_disk(Chunk& chunk) {
+  Pages pages = pages_of(chunk);
+  if (pages.num_resident == 0) return 0;
+  const bool is_new = chunk.slot == kNoSlot;
+  if (is_new) {
+    chunk.slot = take_slot();
+    pages.are_changed.assign(kPagesOfChunk, true);  // the slot may have had another chunk
+  }
+  const auto offset = static_cast<off_t>(chunk.slot * kChunkBytes);
+  try {
+    write_changed(chunk, pages.are_changed);
+    // Takes the place of the old mapping at once: a thread that reads sees either.
+    if (::mmap(chunk.data, kChunkBytes, PROT_READ | PROT_WRITE,
+               MAP_PRIVATE | MAP_FIXED | MAP_NORESERVE, file_, offset) == MAP_FAILED) {
+      throw std::system_error(errno, std::generic_category());
+    }
+  } catch (...) {
+    if (is_new) free_slots_.push_back(std::exchange(chunk.slot, kNoSlot));
+    throw;
+  }
+  return pages.num_resident * kPageBytes;
+}
+
+SwapSpace::Pages SwapSpace::pages_of(const Chunk& chunk) const {
+  std::array<std::uint64_t, kPagesOfChunk> entries{};
+  const auto offset = reinterpret_cast<std::uintptr_t>(chunk.data) / kPageBytes * sizeof(entries[0]);
+  if (::pread(pagemap_, entries.data(), sizeof(entries), static_cast<off_t>(offset)) !=
+      static_cast<ssize_t>(sizeof(entries))) {
+    throw std::system_error(errno, std::generic_category());
+  }
+  Pages pages{.are_changed = std::vector<bool>(kPagesOfChunk)};
+  for (std::size_t k = 0; k < kPagesOfChunk; ++k) {
+    const bool is_resident = (entries[k] & kIsPresent) != 0;
+    const bool is_swapped = (entries[k] & kIsSwapped) != 0;
+    pages.num_resident += is_resident ? 1 : 0;
+    pages.are_changed[k] = is_swapped || (is_resident && (entries[k] & kIsOfFile) == 0);
+  }
+  return pages;
+}
+
+std::size_t SwapSpace::take_slot() {
+  if (!free_slots_.empty()) {
+    const std::size_t slot = free_slots_.back();
+    free_slots_.pop_back();
+    return slot;
+  }
+  const auto offset = static_cast<off_t>(num_slots_ * kChunkBytes);
+  // Space is taken now, so that no later write into the slot finds the disk full.
+  if (const int error = ::posix_fallocate(file_, offset, static_cast<off_t>(kChunkBytes))) {
+    throw std::system_error(error, std::generic_category());
+  }
+  return num_slots_++;
+}
+
+void SwapSpace::write_changed(const Chunk& chunk, const std::vector<bool>& are_changed) {
+  for (std::size_t first = 0; first < kPagesOfChunk;) {
+    std::size_t last = first;
+    while (last < kPagesOfChunk && are_changed[last]) ++last;
+    if (last > first) {
+      write(chunk.data + first * kPageBytes, (last - first) * kPageBytes,
+            chunk.slot * kChunkBytes + first * kPageBytes);
+    }
+    first = last + 1;
+  }
+}
+
+void SwapSpace::write(const std::byte* data, std::size_t bytes, std::size_t offset) {
+  while (bytes > 0) {
+    const ssize_t written = ::pwrite(file_, data, bytes, static_cast<off_t>(offset));
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) throw std::system_error(errno, std::generic_category());
+    data += written;
+    bytes -= static_cast<std::size_t>(written);
+    offset += static_cast<std::size_t>(written);
+    written_bytes_ += static_cast<std::size_t>(written);
+  }
+}
+
+}  // namespace kintsugi
