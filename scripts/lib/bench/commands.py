@@ -63,6 +63,8 @@ SECTIONS = (
             ("bench_segmenter",)),
     Section("exact", "mode exact slice by slice and under corrections, on a generated map of 4 million points",
             segmenting.exact, ("bench_exact",)),
+    Section("beyond-memory", "mode exact on a generated map of 50 million points, with a limit on memory and without",
+            segmenting.beyond_memory, ("bench_memory",)),
     Section("corrections", "corrections that move all patches, or few, of a generated map of 4 million points",
             segmenting.corrections, ("bench_motions",)),
     Section("whole-map", "saving, describing, querying and resuming a whole map", segmenting.whole_map,

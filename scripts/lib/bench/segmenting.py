@@ -4,6 +4,7 @@ import re
 import shlex
 from pathlib import Path
 
+from trio.messages import Problem
 from trio.programs import ROOT
 
 from .run import PAPER_SLICES, room
@@ -151,6 +152,21 @@ def exact(run):
     tables = {preset: parse_tables(run.bench("bench_exact", "--threads", 1, "--corrections", 300, "--preset", preset))
               for preset in ("paper", "objects")}
     return exact_tables(tables)
+
+
+def beyond_memory(run):
+    """Each run of bench_memory is a column."""
+    large = ("--points", 50_000_000)
+    limit = ("--max-memory", 4000, "--swap-folder", run.folder)
+    runs = {"5 million": ("--points", 5_000_000), "50 million": large, "50 million, with a limit": (*large, *limit),
+            "50 million, batch": (*large, "--batch")}
+    columns = {name: by_first_column(parse_tables(run.bench("bench_memory", *options))[0])
+               for name, options in runs.items()}
+    if len({column["digest of the partition"][0] for name, column in columns.items() if name != "5 million"}) != 1:
+        raise Problem("the partitions of 50 million points differ")
+    rows = dict.fromkeys(row for column in columns.values() for row in column)
+    return markdown(["", *columns], [[row, *(column.get(row, [None])[0] for column in columns.values())]
+                                     for row in rows])
 
 
 def exact_tables(tables):
