@@ -26,7 +26,8 @@ constexpr std::size_t kPagesOfChunk = SwapSpace::kChunkBytes / kPageBytes;
 
 // Of an entry of /proc/self/pagemap (admin-guide/mm/pagemap.rst of the kernel).
 constexpr std::uint64_t kIsPresent = std::uint64_t{1} << 63;
-constexpr std::uint64_t kIsSwapped = std::uint64_t{1} << 62;  ///< by the kernel, to a swap of its own
+constexpr std::uint64_t kIsSwapped = std::uint64_t{1}
+                                     << 62;  ///< by the kernel, to a swap of its own
 constexpr std::uint64_t kIsOfFile = std::uint64_t{1} << 61;
 
 [[noreturn]] void fail(const std::filesystem::path& path, const std::string& what, int error) {
@@ -128,7 +129,8 @@ std::size_t SwapSpace::put_on_disk(Chunk& chunk) {
 
 SwapSpace::Pages SwapSpace::pages_of(const Chunk& chunk) const {
   std::array<std::uint64_t, kPagesOfChunk> entries{};
-  const auto offset = reinterpret_cast<std::uintptr_t>(chunk.data) / kPageBytes * sizeof(entries[0]);
+  const auto offset =
+      reinterpret_cast<std::uintptr_t>(chunk.data) / kPageBytes * sizeof(entries[0]);
   if (::pread(pagemap_, entries.data(), sizeof(entries), static_cast<off_t>(offset)) !=
       static_cast<ssize_t>(sizeof(entries))) {
     throw std::system_error(errno, std::generic_category());

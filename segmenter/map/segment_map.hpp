@@ -76,6 +76,15 @@ class SegmentMap {
   /// far as the final slice tells them.
   [[nodiscard]] bool is_complete() const;
 
+  /// From now on what is not used for long may go to disk (mode `exact`), in chunks, whenever
+  /// `space`, which must outlive the map, is trimmed: never while a call is at work.
+  void swap_to(SwapSpace& space) {
+    cloud_.swap_to(space);
+    engine_->swap_to(space);
+    ids_.swap_to(space);
+    statistics_.swap_to(space);
+  }
+
   /// Memory of points, engine, ids and statistics.
   [[nodiscard]] std::size_t bytes() const {
     return cloud_.bytes() + engine_->bytes() + ids_.bytes() + statistics_.bytes();

@@ -50,6 +50,11 @@ class SegmentStatisticsTable {
   /// @throws std::invalid_argument unless there is one for each segment
   void set_last_changes(std::span<const LastChange> last_changes);
 
+  /// What is not used for long may go to disk from now on.
+  void swap_to(SwapSpace& space) {
+    place_.swap_to(space);
+    sums_.swap_to(space);
+  }
   /// Memory in use.
   [[nodiscard]] std::size_t bytes() const;
 

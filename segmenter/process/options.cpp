@@ -123,6 +123,15 @@ void add_slice_flags(CLI::App& app, Options& options) {
                  "refused and requested again when there is room, > 0")
       ->check(CLI::Range(1e-6, 1e6))
       ->capture_default_str();
+  app.add_option("--max-memory", options.max_memory_mb,
+                 "mode exact: MB of memory that the process may have; parts of the map that are "
+                 "not used for long go to a file, and come back when something touches them. The "
+                 "result is the same. 0: no limit")
+      ->check(CLI::Range(0.0, 1e9))
+      ->capture_default_str();
+  app.add_option("--swap-folder", options.swap_folder,
+                 "folder, on a disk, of the file for --max-memory, which has no name and is gone "
+                 "with the process (default: that of --out)");
   app.add_option("--map-name", maps.map_name,
                  "only the map of this name (default: all; maps not named 'map' are written as "
                  "segments_NAME)");
@@ -155,6 +164,17 @@ SegmenterProcess::Config Options::config() const {
   config.max_queue_bytes = static_cast<std::size_t>(std::llround(max_queue_mb * 1e6));
   config.updates.rate_bytes_per_s = rate_mb_per_s * 1e6;
   config.updates.map_name = maps.map_name;
+  if (max_memory_mb > 0.0) {
+    const std::string& mode = maps.map.mode;
+    if (mode != "exact") {
+      throw std::invalid_argument("--max-memory needs mode exact, the mode is " + mode);
+    }
+    config.segmentation.swap = {
+        .folder = swap_folder.empty() ? config.segmentation.files.folder : swap_folder,
+        .max_resident_bytes = static_cast<std::size_t>(std::llround(max_memory_mb * 1e6))};
+  } else if (!swap_folder.empty()) {
+    throw std::invalid_argument("--swap-folder needs --max-memory MB");
+  }
   config.publish = config.log.empty() || !config.lcm_url.empty();
   if (resume_if_saved) {
     const std::filesystem::path& saved = config.segmentation.files.save_file;

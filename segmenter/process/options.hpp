@@ -1,6 +1,7 @@
 #pragma once
 // The command line of kintsugi-segmenter, and the flags that all programs of the segmenter share.
 
+#include <filesystem>
 #include <string_view>
 #include <variant>
 
@@ -16,10 +17,12 @@ namespace kintsugi::segmenter {
 /// What the command line of kintsugi-segmenter sets; config() turns it into that of the process.
 struct Options {
   SegmenterProcess::Config process;
-  double gap_timeout_s = 10.0;   ///< SliceSequencer::Config::gap_timeout
-  double max_queue_mb = 1024.0;  ///< SegmenterProcess::Config::max_queue_bytes, 1e6 bytes each
-  double rate_mb_per_s = 10.0;   ///< UpdatePublisher::Config::rate_bytes_per_s
-  bool resume_if_saved = false;  ///< resume the map that --save has left, if there is one
+  double gap_timeout_s = 10.0;        ///< SliceSequencer::Config::gap_timeout
+  double max_queue_mb = 1024.0;       ///< SegmenterProcess::Config::max_queue_bytes, 1e6 bytes each
+  double rate_mb_per_s = 10.0;        ///< UpdatePublisher::Config::rate_bytes_per_s
+  double max_memory_mb = 0.0;         ///< SwapSpace::Config::max_resident_bytes; 0: no limit
+  std::filesystem::path swap_folder;  ///< SwapSpace::Config::folder; empty: that of the map files
+  bool resume_if_saved = false;       ///< resume the map that --save has left, if there is one
 
   /// @throws std::invalid_argument for flags that do not fit together
   SegmenterProcess::Config config() const;

@@ -18,6 +18,12 @@ using std::chrono::milliseconds;
 constexpr milliseconds kPollPeriod{50};
 constexpr char kDefaultMapName[] = "map";  // of a mapper without --map-name
 
+SwapSpace* make_swap(const SegmentationLoop::Config& config, std::optional<SwapSpace>& space) {
+  if (!config.swap) return nullptr;
+  std::filesystem::create_directories(config.files.folder);  // the swap file may be there, too
+  return &space.emplace(*config.swap);
+}
+
 void log_all(const std::vector<std::string>& warnings) {
   for (const std::string& warning : warnings) {
     spdlog::warn("{}", warning);
@@ -28,6 +34,7 @@ void log_all(const std::vector<std::string>& warnings) {
 
 void SegmentationLoop::Config::validate() const {
   maps.validate();
+  if (swap) swap->validate();
   require(rewrite_period.count() > 0, "rewrite_period [ms]", rewrite_period.count(), "> 0");
 }
 
@@ -37,8 +44,10 @@ SegmentationLoop::SegmentationLoop(const Config& config, std::int64_t session,
       session_(session),
       with_(connections),
       writer_(config.files),
-      maps_(config.maps, session,
-            [this](std::int64_t map_session) { return stream_state(map_session); }) {}
+      maps_(
+          config.maps, session,
+          [this](std::int64_t map_session) { return stream_state(map_session); },
+          make_swap(config, swap_)) {}
 
 void SegmentationLoop::run() {
   try {
@@ -107,8 +116,23 @@ bool SegmentationLoop::step() {
   if (result.ended_session) {
     with_.receiver.forget(*result.ended_session);
   }
+  if (swap_) trim_memory();
   update_counts();
   return result.has_progressed;
+}
+
+void SegmentationLoop::trim_memory() {
+  const bool is_first = swap_->file_bytes() == 0;
+  swap_->trim();
+  if (is_first && swap_->file_bytes() > 0) {
+    spdlog::info(
+        "{} MB of memory are in use: parts of the map that are not used for long go to "
+        "a file in {}",
+        config_.swap->max_resident_bytes / 1'000'000, config_.swap->folder.string());
+  }
+  const std::lock_guard lock(mutex_);
+  if (swap_problem_.empty() && !swap_->problem().empty()) spdlog::error("{}", swap_->problem());
+  swap_problem_ = swap_->problem();
 }
 
 void SegmentationLoop::serve() {
@@ -165,6 +189,13 @@ void SegmentationLoop::update_counts() {
 SessionMaps::Counts SegmentationLoop::counts() const {
   const std::lock_guard lock(mutex_);
   return counts_;
+}
+
+std::string SegmentationLoop::file_problem() const {
+  std::string problem = writer_.problem();
+  if (!problem.empty()) return problem;
+  const std::lock_guard lock(mutex_);
+  return swap_problem_;
 }
 
 // Nobody resends what is missing in a log; but what was resent while it was recorded may lie

@@ -7,10 +7,12 @@
 #include <filesystem>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "lcmtypes/base/patient_clock.hpp"
+#include "lcmtypes/base/swap_space.hpp"
 #include "segmenter/output/map_writer.hpp"
 #include "segmenter/process/query_responder.hpp"
 #include "segmenter/process/slice_queue.hpp"
@@ -28,7 +30,8 @@ class SegmentationLoop {
   struct Config {
     SessionMaps::Config maps;
     MapWriter::Config files;
-    std::filesystem::path resume_file;  ///< a saved map to resume; empty: begin without a map
+    std::optional<SwapSpace::Config> swap;  ///< where maps beyond memory go; nothing: nowhere
+    std::filesystem::path resume_file;      ///< a saved map to resume; empty: begin without a map
     /// A file that could not be written is tried again after this time, and when files are due; > 0
     std::chrono::milliseconds rewrite_period{10'000};
 
@@ -66,7 +69,7 @@ class SegmentationLoop {
   void end() { is_ending_ = true; }
   SessionMaps::Counts counts() const;
   /// Which file is not written, and why; empty: none.
-  std::string file_problem() const { return writer_.problem(); }
+  std::string file_problem() const;
 
  private:
   using Clock = SessionMaps::Clock;
@@ -77,6 +80,7 @@ class SegmentationLoop {
   void segment_rest();
   void add(std::vector<CloudSlice> slices);
   bool step();
+  void trim_memory();
   void write_all(const std::vector<SaveRequest>& requests);
   void write(const SaveRequest& request);
   void update_counts();
@@ -86,6 +90,7 @@ class SegmentationLoop {
   Config config_;
   std::int64_t session_;
   Connections with_;
+  std::optional<SwapSpace> swap_;  // of maps_
   MapWriter writer_;
   SessionMaps maps_;
   Clock::time_point next_rewrite_{};
@@ -93,6 +98,7 @@ class SegmentationLoop {
 
   mutable std::mutex mutex_;    // guards the next against readers
   SessionMaps::Counts counts_;  // written by the thread of run() alone
+  std::string swap_problem_;
 };
 
 }  // namespace kintsugi::segmenter

@@ -19,10 +19,11 @@ void SessionMaps::Config::validate() const {
 }
 
 SessionMaps::SessionMaps(const Config& config, std::int64_t session,
-                         std::function<StreamState(std::int64_t)> stream_state)
+                         std::function<StreamState(std::int64_t)> stream_state, SwapSpace* swap)
     : config_((config.validate(), config)),
       session_(session),
-      stream_state_(std::move(stream_state)) {}
+      stream_state_(std::move(stream_state)),
+      swap_(swap) {}
 
 void SessionMaps::resume(std::unique_ptr<SegmentMap> map) { begin(std::move(map), {}); }
 
@@ -63,6 +64,7 @@ SessionMaps::Session* SessionMaps::find_or_begin(const CloudSlice& slice, Clock:
 
 SessionMaps::Session& SessionMaps::begin(std::unique_ptr<SegmentMap> map, Clock::time_point now) {
   const std::int64_t map_session = map->map_session();
+  if (swap_ != nullptr) map->swap_to(*swap_);
   Session session{SessionMap(config_.each_map, std::move(map)), now};
   return sessions_.try_emplace(map_session, std::move(session)).first->second;
 }

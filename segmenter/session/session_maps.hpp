@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "lcmtypes/base/swap_space.hpp"
 #include "segmenter/session/session_map.hpp"
 
 namespace kintsugi::segmenter {
@@ -59,9 +60,10 @@ class SessionMaps {
 
   /// @param session of this segmenter
   /// @param stream_state of a mapper session, given by its number
+  /// @param swap for what the maps do not use for long, must outlive them; null: all in memory
   /// @throws std::invalid_argument for an invalid config
   SessionMaps(const Config& config, std::int64_t session,
-              std::function<StreamState(std::int64_t)> stream_state);
+              std::function<StreamState(std::int64_t)> stream_state, SwapSpace* swap = nullptr);
 
   /// Resumes a saved map; call before the first offer().
   void resume(std::unique_ptr<SegmentMap> map);
@@ -110,6 +112,7 @@ class SessionMaps {
   Config config_;
   std::int64_t session_;
   std::function<StreamState(std::int64_t)> stream_state_;
+  SwapSpace* swap_;
   Sessions sessions_;                      // by number
   std::int64_t last_stepped_session_ = 0;  // the next step begins with the one after it
   bool is_closed_ = false;

@@ -1,5 +1,5 @@
-// A map beyond memory: times of slices, memory and a digest of the partition, with a limit on memory
-// and without. Prints Markdown tables.
+// A map beyond memory: times of slices, memory and a digest of the partition, with a limit on
+// memory and without. Prints Markdown tables.
 //
 //   bench_memory --points 50000000                                    # all in memory
 //   bench_memory --points 50000000 --max-memory 4000 --swap-folder .  # the rest on disk
@@ -158,7 +158,8 @@ void run_slices(const Options& options, const EngineConfig& config) {
     print_row({"file, MB", number(static_cast<double>(space->file_bytes()) / kMegabyte)});
     print_row({"written, MB", number(static_cast<double>(space->written_bytes()) / kMegabyte)});
   }
-  print_row({"pages read from disk", count(static_cast<std::size_t>(major_faults() - faults_before))});
+  print_row(
+      {"pages read from disk", count(static_cast<std::size_t>(major_faults() - faults_before))});
   print_row({"digest of the partition", digest_of(engine->components())});
 }
 

@@ -32,6 +32,7 @@ class AuditedEngine final : public SegmentationEngine {
   }
   std::span<const PointIndex> changed() const override { return engine_->changed(); }
   double theta(ComponentId component) const override { return engine_->theta(component); }
+  void swap_to(SwapSpace& space) override { engine_->swap_to(space); }
   std::size_t bytes() const override { return engine_->bytes() + reference_.bytes(); }
 
  private:

@@ -76,6 +76,10 @@ class SegmentationEngine {
   /// the unmerged component with this name.
   virtual double theta(ComponentId component) const = 0;
 
+  /// From now on what is not used for long may go to disk, in the modes that know what that is.
+  /// Then no call may be at work while `space`, which must outlive the engine, is trimmed.
+  virtual void swap_to(SwapSpace& /*space*/) {}
+
   /// Memory taken, without the cloud.
   virtual std::size_t bytes() const = 0;
 };

@@ -31,6 +31,10 @@ class ComponentNames {
   std::span<const PointIndex> changed() const { return changed_; }
   PointIndex root(ComponentId name) const { return roots_[name]; }
 
+  void swap_to(SwapSpace& space) {
+    names_.swap_to(space);
+    roots_.swap_to(space);
+  }
   std::size_t bytes() const {
     return names_.bytes() + roots_.bytes() + free_.capacity() * sizeof(ComponentId);
   }

@@ -149,6 +149,12 @@ double ExactEngine::theta(ComponentId component) const {
   return state_.forest.history().final_theta(names_.root(component));
 }
 
+void ExactEngine::swap_to(SwapSpace& space) {
+  index_->swap_to(space);
+  state_.swap_to(space);
+  names_.swap_to(space);
+}
+
 std::size_t ExactEngine::bytes() const { return index_->bytes() + state_.bytes() + names_.bytes(); }
 
 }  // namespace kintsugi::segmenter

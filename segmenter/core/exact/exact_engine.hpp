@@ -81,6 +81,7 @@ class ExactEngine final : public IncrementalEngine {
   const NeighbourIndex& neighbour_index() const override { return *index_; }
   std::unique_ptr<const PointRows> take_rows() override { return std::move(rows_); }
   PointIndex point_of(ComponentId component) const override { return names_.root(component); }
+  void swap_to(SwapSpace& space) override;
   std::size_t bytes() const override;
 
  private:

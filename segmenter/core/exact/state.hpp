@@ -19,6 +19,11 @@ struct State {
   /// Clears everything except which points are gone.
   void clear();
 
+  void swap_to(SwapSpace& space) {
+    vertices.swap_to(space);
+    edges.swap_to(space);
+    watches.swap_to(space);
+  }
   std::size_t bytes() const { return vertices.bytes() + edges.bytes() + watches.bytes(); }
 
   Vertices vertices;

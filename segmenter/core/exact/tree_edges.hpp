@@ -68,6 +68,7 @@ class TreeEdges {
     }
   }
 
+  void swap_to(SwapSpace& space) { edges_.swap_to(space); }
   std::size_t bytes() const { return edges_.bytes(); }
 
   /// Removes all edges. The lists at the vertices are left as they are.

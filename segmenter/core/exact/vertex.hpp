@@ -91,6 +91,10 @@ class Vertices {
   void prefetch(PointIndex x) const { __builtin_prefetch(&absorptions_.data()[x]); }
   void prefetch_record(PointIndex x) const { __builtin_prefetch(&records_.data()[x]); }
 
+  void swap_to(SwapSpace& space) {
+    records_.swap_to(space);
+    absorptions_.swap_to(space);
+  }
   std::size_t bytes() const { return records_.bytes() + absorptions_.bytes(); }
 
  private:

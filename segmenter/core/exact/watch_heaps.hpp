@@ -59,6 +59,7 @@ class WatchHeaps {
   }
 
   std::size_t size() const { return watches_.size() - num_free_; }
+  void swap_to(SwapSpace& space) { watches_.swap_to(space); }
   std::size_t bytes() const { return watches_.bytes(); }
 
  private:

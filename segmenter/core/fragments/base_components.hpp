@@ -39,6 +39,10 @@ class BaseComponents {
     ++sizes_[name];
   }
 
+  void swap_to(SwapSpace& space) {
+    names_.swap_to(space);
+    sizes_.swap_to(space);
+  }
   std::size_t bytes() const { return names_.bytes() + sizes_.bytes(); }
 
  private:

@@ -37,6 +37,7 @@ class ClusterSearch {
   /// The cluster of the fragment that has the point `from`.
   Found operator()(PointIndex from);
 
+  void swap_to(SwapSpace& space) { seen_.swap_to(space); }
   std::size_t bytes() const { return seen_.bytes(); }
 
  private:

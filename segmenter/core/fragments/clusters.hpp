@@ -69,6 +69,10 @@ class Clusters {
   }
   ClusterId next_to(ClusterId cluster) const { return clusters_[cluster].next; }
 
+  void swap_to(SwapSpace& space) {
+    cluster_of_.swap_to(space);
+    next_.swap_to(space);
+  }
   std::size_t bytes() const;
 
  private:

@@ -27,6 +27,10 @@ class FragmentEngine final : public SegmentationEngine {
   }
   std::span<const PointIndex> changed() const override { return layer_.changed(); }
   double theta(ComponentId component) const override { return engine_->theta(component); }
+  void swap_to(SwapSpace& space) override {
+    engine_->swap_to(space);
+    layer_.swap_to(space);
+  }
   std::size_t bytes() const override { return engine_->bytes() + layer_.bytes(); }
 
  private:

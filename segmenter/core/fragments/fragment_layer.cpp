@@ -171,6 +171,13 @@ bool FragmentLayer::set_label(PointIndex point, ComponentId label) {
   return true;
 }
 
+void FragmentLayer::swap_to(SwapSpace& space) {
+  components_.swap_to(space);
+  clusters_.swap_to(space);
+  search_.swap_to(space);
+  labels_.swap_to(space);
+}
+
 std::size_t FragmentLayer::bytes() const {
   return components_.bytes() + clusters_.bytes() + search_.bytes() + labels_.bytes() +
          (changed_.capacity() + loose_.capacity()) * sizeof(PointIndex);

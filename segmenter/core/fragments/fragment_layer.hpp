@@ -56,6 +56,7 @@ class FragmentLayer {
   std::span<const ComponentId> components() const { return labels_.span(); }
   std::span<const PointIndex> changed() const { return changed_; }
 
+  void swap_to(SwapSpace& space);
   std::size_t bytes() const;
 
  private:

@@ -29,7 +29,7 @@ GridIndex::Block& GridIndex::block_at(const Cell& block) {
   if (!tile) tile = std::make_unique<Tile>();
   std::unique_ptr<Block>& place = tile->blocks[place_in_tile(block)];
   if (!place) {
-    place = std::make_unique<Block>();
+    place = std::make_unique<Block>(&pool_);
     ++num_blocks_;
   }
   return *place;
@@ -47,9 +47,7 @@ void GridIndex::insert(std::span<const PointIndex> points) {
   }
   // No spare room: a block that gets points is rewritten anyway.
   for (Block* const block : touched) {
-    num_entries_ -= block->entries.capacity();
     block->entries.reserve(block->entries.size() + block->num_arrivals);
-    num_entries_ += block->entries.capacity();
     block->num_arrivals = 0;
   }
   for (std::size_t k = 0; k < points.size(); ++k) {
@@ -86,11 +84,7 @@ void GridIndex::remove(PointIndex point) {
   if (found == last) return;
   block.entries.erase(found);
   for (std::int32_t r = row + 1; r <= kNumRows; ++r) --block.first[r];
-  if (block.entries.size() <= block.entries.capacity() / 2) {
-    num_entries_ -= block.entries.capacity();
-    block.entries.shrink_to_fit();
-    num_entries_ += block.entries.capacity();
-  }
+  if (block.entries.size() <= block.entries.capacity() / 2) block.entries.shrink_to_fit();
 }
 
 void GridIndex::visit(std::span<const PointIndex> points, const Visit& visit_point) const {
@@ -136,7 +130,7 @@ void GridIndex::visit_all(const Visit& visit_point) const {
 }
 
 std::size_t GridIndex::bytes() const {
-  return num_entries_ * sizeof(Entry) + num_blocks_ * sizeof(Block) +
+  return arena_.bytes() + num_blocks_ * sizeof(Block) +
          tiles_.size() * (sizeof(Tile) + sizeof(Cell) + 4 * sizeof(void*));
 }
 

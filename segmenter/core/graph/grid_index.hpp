@@ -5,10 +5,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <memory_resource>
 #include <span>
 #include <unordered_map>
 #include <vector>
 
+#include "lcmtypes/base/reserved_arena.hpp"
 #include "segmenter/core/graph/neighbour_index.hpp"
 #include "segmenter/core/points/cell.hpp"
 
@@ -37,6 +39,7 @@ class GridIndex final : public NeighbourIndex {
   void visit_concurrently(std::span<const PointIndex> points,
                           const Visit& visit_point) const override;
   void visit_all(const Visit& visit_point) const override;
+  void swap_to(SwapSpace& space) override { arena_.swap_to(space); }
   std::size_t bytes() const override;
 
   /// Calls fn(PointIndex) for each neighbour of `point`, in no particular order, without allocating
@@ -57,9 +60,11 @@ class GridIndex final : public NeighbourIndex {
     PointIndex point;
   };
   struct Block {
+    explicit Block(std::pmr::memory_resource* memory) : entries(memory) {}
+
     std::array<std::uint32_t, kNumRows + 1> first{};  ///< by row, y fastest: its first entry
     std::uint32_t num_arrivals = 0;                   ///< used by insert(), else zero
-    std::vector<Entry> entries;                       ///< sorted by row
+    std::pmr::vector<Entry> entries;                  ///< sorted by row
   };
   struct Run;
   struct Tile {
@@ -102,8 +107,9 @@ class GridIndex final : public NeighbourIndex {
   const PointCloud& cloud_;
   float squared_radius_m2_;
   double cell_m_;
+  ReservedArena arena_;
+  std::pmr::synchronized_pool_resource pool_{&arena_};  ///< of the entries
   std::unordered_map<Cell, std::unique_ptr<Tile>, CellHash> tiles_;
-  std::size_t num_entries_ = 0;  ///< allocated
   std::size_t num_blocks_ = 0;
 };
 

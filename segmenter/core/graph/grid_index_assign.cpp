@@ -31,12 +31,6 @@ void GridIndex::assign(const PointRows& rows) {
   }
   oneapi::tbb::parallel_for(std::size_t{0}, layers.size(),
                             [&](std::size_t k) { fill_layer(rows, layers[k]); });
-  num_entries_ = 0;
-  for (const auto& [cell, tile] : tiles_) {
-    for (const std::unique_ptr<Block>& block : tile->blocks) {
-      if (block) num_entries_ += block->entries.capacity();
-    }
-  }
 }
 
 /// Blocks that had points keep their memory: most of them will have points again.

@@ -61,6 +61,9 @@ class NeighbourIndex {
   /// Visits every point in the index once, in any order and from several threads at once.
   virtual void visit_all(const Visit& visit_point) const = 0;
 
+  /// What is not used for long may go to disk from now on.
+  virtual void swap_to(SwapSpace& /*space*/) {}
+
   /// Memory taken, without the overhead of the allocator.
   virtual std::size_t bytes() const = 0;
 };

@@ -18,6 +18,7 @@ class MemberLists {
   static constexpr PointIndex kEmpty = UINT32_MAX;
 
   void resize(PointIndex num_points) { links_.resize(num_points); }
+  void swap_to(SwapSpace& space) { links_.swap_to(space); }
   std::size_t bytes() const { return links_.bytes(); }
 
   /// Puts `point`, which is in no list, into the list of `head` (kEmpty: a new one).

@@ -77,6 +77,12 @@ class SegmentIds {
   std::int64_t num_segments() const { return static_cast<std::int64_t>(id_of_component_.size()); }
   /// The id that will be given next; larger than all so far.
   std::uint32_t next_id() const { return static_cast<std::uint32_t>(segments_.size()); }
+  /// What is not used for long may go to disk from now on.
+  void swap_to(SwapSpace& space) {
+    ids_.swap_to(space);
+    members_.swap_to(space);
+    segments_.swap_to(space);
+  }
   /// Memory in use.
   std::size_t bytes() const;
 

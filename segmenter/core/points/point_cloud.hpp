@@ -165,6 +165,8 @@ class PointCloud {
   const SliceRecord& slice_of(PointIndex i) const;
   PointId id_of(PointIndex i) const;
   std::int64_t num_rejected() const { return num_rejected_; }
+  /// The points may go to disk from now on.
+  void swap_to(SwapSpace& space) { points_W_.swap_to(space); }
   /// Memory of the points.
   std::size_t bytes() const { return points_W_.bytes() + bytes_P_; }
 

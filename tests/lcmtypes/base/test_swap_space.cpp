@@ -225,9 +225,7 @@ TEST(SwapSpace, RefusesMemoryAsADisk) {
   }
 }
 
-TEST(SwapSpace, RefusesALimitOfZero) {
-  EXPECT_THROW(SwapSpace({".", 0}), std::invalid_argument);
-}
+TEST(SwapSpace, RefusesALimitOfZero) { EXPECT_THROW(SwapSpace({".", 0}), std::invalid_argument); }
 
 }  // namespace
 }  // namespace kintsugi

@@ -127,6 +127,33 @@ TEST_F(SegmenterProgram, SegmentsALogAndWritesTheMap) {
   }
 }
 
+TEST_F(SegmenterProgram, HasTheSameMapWithLessMemoryThanItNeeds) {
+  const TemporaryFolder disk(kintsugi::testing::kOnDisk);
+  write_log(path("slices.lcm"), messages_of(wavy_session(8, 400)));
+  const std::string log = "--log " + path("slices.lcm") + " --out ";
+  EXPECT_EQ(run(log + path("all")).exit_code, 0);
+  const auto result =
+      run(log + path("less") + " --max-memory 1 --swap-folder " + disk.path().string());
+  EXPECT_EQ(result.exit_code, 0) << result.output;
+  EXPECT_THAT(result.output, HasSubstr("parts of the map that are not used for long go to a file"));
+  const PlyCloud all = read_ply(path("all") + "/segments.ply");
+  const PlyCloud less = read_ply(path("less") + "/segments.ply");
+  EXPECT_EQ(less.segment_ids, all.segment_ids);
+  EXPECT_EQ(less.points_W, all.points_W);
+}
+
+TEST_F(SegmenterProgram, RefusesALimitOfMemoryThatItCannotKeep) {
+  write_log(path("slices.lcm"), messages_of(wavy_session(2, 100)));
+  const std::string log = "--log " + path("slices.lcm") + " --out " + path("out");
+  const auto voting = run(log + " --mode voting --max-memory 100");
+  EXPECT_NE(voting.exit_code, 0);
+  EXPECT_THAT(voting.output, HasSubstr("--max-memory needs mode exact"));
+  const auto nowhere = run(log + " --max-memory 100 --swap-folder " + path("nowhere"));
+  EXPECT_NE(nowhere.exit_code, 0);
+  EXPECT_THAT(nowhere.output, HasSubstr(path("nowhere")));
+  EXPECT_NE(run(log + " --swap-folder " + path("")).exit_code, 0);
+}
+
 TEST_F(SegmenterProgram, WritesTheMapOfEachSessionInALog) {
   auto messages = messages_of(wavy_session(2, 100, 5));
   const auto more = messages_of(wavy_session(2, 150, 6));
