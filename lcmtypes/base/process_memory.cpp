@@ -13,6 +13,7 @@ ProcessMemory process_memory() {
   while (status >> key) {
     std::int64_t value_kb = 0;
     if (key == "VmRSS:" && status >> value_kb) memory.resident_bytes = value_kb * 1024;
+    if (key == "RssAnon:" && status >> value_kb) memory.anonymous_bytes = value_kb * 1024;
     if (key == "VmHWM:" && status >> value_kb) memory.peak_resident_bytes = value_kb * 1024;
     status.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
   }

@@ -7,6 +7,8 @@ namespace kintsugi {
 /// Physical memory of this process, from /proc/self/status; zero where that does not exist.
 struct ProcessMemory {
   std::int64_t resident_bytes = 0;
+  /// Of these, what is not of a file: what the system cannot take back without a swap of its own.
+  std::int64_t anonymous_bytes = 0;
   std::int64_t peak_resident_bytes = 0;
 };
 

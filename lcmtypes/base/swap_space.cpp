@@ -20,14 +20,14 @@
 namespace kintsugi {
 namespace {
 
-constexpr std::size_t kMaxBytesOfTrim = std::size_t{64} << 20;
+constexpr std::size_t kMaxWrittenByTrim = std::size_t{64} << 20;
 constexpr std::size_t kPageBytes = 4096;
 constexpr std::size_t kPagesOfChunk = SwapSpace::kChunkBytes / kPageBytes;
 
 // Of an entry of /proc/self/pagemap (admin-guide/mm/pagemap.rst of the kernel).
 constexpr std::uint64_t kIsPresent = std::uint64_t{1} << 63;
-constexpr std::uint64_t kIsSwapped = std::uint64_t{1}
-                                     << 62;  ///< by the kernel, to a swap of its own
+/// By the kernel, to a swap of its own.
+constexpr std::uint64_t kIsSwapped = std::uint64_t{1} << 62;
 constexpr std::uint64_t kIsOfFile = std::uint64_t{1} << 61;
 
 [[noreturn]] void fail(const std::filesystem::path& path, const std::string& what, int error) {
@@ -87,11 +87,13 @@ void SwapSpace::remove(std::byte* chunk) {
 void SwapSpace::trim() {
   const auto resident = static_cast<std::size_t>(process_memory().resident_bytes);
   if (resident <= config_.max_resident_bytes) return;
-  const std::size_t excess = std::min(resident - config_.max_resident_bytes, kMaxBytesOfTrim);
+  const std::size_t excess = resident - config_.max_resident_bytes;
   std::size_t freed = 0;
   const std::lock_guard lock(mutex_);
+  const std::size_t may_be_written = written_bytes_ + kMaxWrittenByTrim;
   try {
-    for (std::size_t n = chunks_.size(); n > 0 && freed < excess; --n) {
+    for (std::size_t n = chunks_.size(); n > 0 && freed < excess && written_bytes_ < may_be_written;
+         --n) {
       Chunk& chunk = chunks_.front();
       chunks_.splice(chunks_.end(), chunks_, chunks_.begin());
       freed += put_on_disk(chunk);

@@ -21,8 +21,8 @@ namespace kintsugi {
 /// use, unlike in a shared mapping, and a full disk is an error that leaves all in memory, not a
 /// signal. The file has no name: it is gone with the process, however that ends.
 ///
-/// Chunks take turns, the one whose turn was longest ago first. One that is in use comes back page
-/// by page, from the page cache, which costs much less than to know which chunks are in use.
+/// Chunks take turns, the one whose turn was longest ago first, in use or not, which the system
+/// does not tell. One that is in use comes back page by page, from the page cache.
 ///
 /// Any thread may add and remove chunks; trim() needs that no thread changes them.
 class SwapSpace {
@@ -50,8 +50,10 @@ class SwapSpace {
   /// Its content is not needed any more.
   void remove(std::byte* chunk);
 
-  /// Writes chunks to disk while the process has more memory than Config::max_resident_bytes. At
-  /// most 64 MB at a time, so that nobody waits for long: who calls it often stays near the limit.
+  /// Puts chunks on disk while the process has more memory than Config::max_resident_bytes. Writes
+  /// at most 64 MB at a time, so that nobody waits for long: who calls it often stays at the limit.
+  /// In between there may be more: reading maps pages of the file, in blocks of 64 kB and more. The
+  /// system can take those back at any time.
   void trim();
 
   /// Bytes of the file.

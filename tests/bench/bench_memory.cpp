@@ -22,6 +22,7 @@
 #include <sys/resource.h>
 
 #include "lcmtypes/base/growing_array.hpp"
+#include "lcmtypes/base/process_memory.hpp"
 #include "lcmtypes/base/swap_space.hpp"
 #include "segmenter/core/ids/segment_ids.hpp"
 #include "segmenter/core/make_engine.hpp"
@@ -58,6 +59,14 @@ std::size_t max_bytes(const Options& options) {
   return static_cast<std::size_t>(options.max_memory_mb * kMegabyte);
 }
 
+/// A limit may be below what can go to disk at all.
+void trim_all(SwapSpace& space) {
+  for (std::size_t before = SIZE_MAX; resident_bytes() < before;) {
+    before = resident_bytes();
+    space.trim();
+  }
+}
+
 /// Other rooms all the way: as many as points are wanted.
 Walk generate(const Options& options, SwapSpace* space) {
   const auto num_rooms =
@@ -73,7 +82,7 @@ Walk generate(const Options& options, SwapSpace* space) {
   }
   walk.first.push_back(walk.points_W.size());
   ::malloc_trim(0);  // what the generator had would count as the segmenter's
-  while (space != nullptr && resident_bytes() > max_bytes(options)) space->trim();
+  if (space != nullptr) trim_all(*space);
   return walk;
 }
 
@@ -89,6 +98,8 @@ std::string digest_of(std::span<const ComponentId> components) {
   }
   return fmt::format("{:016x}", digest);
 }
+
+std::string megabytes(std::int64_t bytes) { return number(static_cast<double>(bytes) / kMegabyte); }
 
 std::int64_t major_faults() {
   rusage usage{};
@@ -127,7 +138,8 @@ void run_slices(const Options& options, const EngineConfig& config) {
   }
   Sample all_ms;
   Sample last_ms;
-  std::size_t max_bytes = 0;
+  std::int64_t max_resident_bytes = 0;
+  std::int64_t max_anonymous_bytes = 0;
   const std::int64_t faults_before = major_faults();
   const Stopwatch whole;
   for (std::size_t k = 0; k < walk.num_slices(); ++k) {
@@ -137,7 +149,9 @@ void run_slices(const Options& options, const EngineConfig& config) {
     engine->update(change);
     const IdUpdate update = ids.update(cloud, change, engine->components(), engine->changed());
     statistics.apply(cloud, ids, update.changes);
-    max_bytes = std::max(max_bytes, resident_bytes());
+    const ProcessMemory memory = process_memory();
+    max_resident_bytes = std::max(max_resident_bytes, memory.resident_bytes);
+    max_anonymous_bytes = std::max(max_anonymous_bytes, memory.anonymous_bytes);
     if (space) space->trim();
     all_ms.add(stopwatch.wall_ms());
     if (walk.first[k] + 1'000'000 > walk.points_W.size()) last_ms.add(stopwatch.wall_ms());
@@ -153,10 +167,11 @@ void run_slices(const Options& options, const EngineConfig& config) {
   print_row({"a slice, ms: largest", number(all_ms.max())});
   print_row({"a slice of the last million, ms: average", number(last_ms.average())});
   print_row({"a slice, CPU ms: average", number(cpu_ms / static_cast<double>(all_ms.size()))});
-  print_row({"resident memory at most, MB", number(static_cast<double>(max_bytes) / kMegabyte)});
+  print_row({"resident memory at most, MB", megabytes(max_resident_bytes)});
+  print_row({"of these not of a file, at most, MB", megabytes(max_anonymous_bytes)});
   if (space) {
-    print_row({"file, MB", number(static_cast<double>(space->file_bytes()) / kMegabyte)});
-    print_row({"written, MB", number(static_cast<double>(space->written_bytes()) / kMegabyte)});
+    print_row({"file, MB", megabytes(static_cast<std::int64_t>(space->file_bytes()))});
+    print_row({"written, MB", megabytes(static_cast<std::int64_t>(space->written_bytes()))});
   }
   print_row(
       {"pages read from disk", count(static_cast<std::size_t>(major_faults() - faults_before))});
