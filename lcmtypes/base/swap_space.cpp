@@ -23,6 +23,9 @@ namespace {
 constexpr std::size_t kMaxWrittenByTrim = std::size_t{64} << 20;
 constexpr std::size_t kPageBytes = 4096;
 constexpr std::size_t kPagesOfChunk = SwapSpace::kChunkBytes / kPageBytes;
+/// What is always in use is written in one of eight turns; what is not in use any more stays in
+/// memory for at most seven.
+constexpr int kMaxMissedTurns = 7;
 
 // Of an entry of /proc/self/pagemap (admin-guide/mm/pagemap.rst of the kernel).
 constexpr std::uint64_t kIsPresent = std::uint64_t{1} << 63;
@@ -72,7 +75,7 @@ SwapSpace::~SwapSpace() {
 
 void SwapSpace::add(std::byte* chunk) {
   const std::lock_guard lock(mutex_);
-  by_address_[chunk] = chunks_.insert(chunks_.end(), Chunk{chunk});
+  by_address_[chunk] = chunks_.insert(chunks_.end(), Chunk{.data = chunk});
 }
 
 void SwapSpace::remove(std::byte* chunk) {
@@ -92,11 +95,12 @@ void SwapSpace::trim() {
   const std::lock_guard lock(mutex_);
   const std::size_t may_be_written = written_bytes_ + kMaxWrittenByTrim;
   try {
-    for (std::size_t n = chunks_.size(); n > 0 && freed < excess && written_bytes_ < may_be_written;
-         --n) {
+    // All take a turn if need be: so small a limit has to be kept as well.
+    for (std::size_t n = chunks_.size() * (kMaxMissedTurns + 1);
+         n > 0 && freed < excess && written_bytes_ < may_be_written; --n) {
       Chunk& chunk = chunks_.front();
       chunks_.splice(chunks_.end(), chunks_, chunks_.begin());
-      freed += put_on_disk(chunk);
+      freed += take_turn(chunk);
     }
     problem_.clear();
   } catch (const std::system_error& error) {
@@ -106,9 +110,27 @@ void SwapSpace::trim() {
 }
 
 /// Returns how many bytes are free now.
-std::size_t SwapSpace::put_on_disk(Chunk& chunk) {
+std::size_t SwapSpace::take_turn(Chunk& chunk) {
+  if (chunk.num_turns_to_miss > 0) {
+    --chunk.num_turns_to_miss;
+    return 0;
+  }
   Pages pages = pages_of(chunk);
-  if (pages.num_resident == 0) return 0;
+  if (pages.num_resident == 0) {
+    chunk.num_turns_missed_last = 0;
+    return 0;
+  }
+  const bool was_on_disk = chunk.slot != kNoSlot;
+  const std::size_t freed = put_on_disk(chunk, std::move(pages));
+  if (was_on_disk) {
+    chunk.num_turns_missed_last = std::min(2 * chunk.num_turns_missed_last + 1, kMaxMissedTurns);
+    chunk.num_turns_to_miss = chunk.num_turns_missed_last;
+  }
+  return freed;
+}
+
+/// Returns how many bytes are free now.
+std::size_t SwapSpace::put_on_disk(Chunk& chunk, Pages pages) {
   const bool is_new = chunk.slot == kNoSlot;
   if (is_new) {
     chunk.slot = take_slot();

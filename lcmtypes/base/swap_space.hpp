@@ -21,8 +21,11 @@ namespace kintsugi {
 /// use, unlike in a shared mapping, and a full disk is an error that leaves all in memory, not a
 /// signal. The file has no name: it is gone with the process, however that ends.
 ///
-/// Chunks take turns, the one whose turn was longest ago first, in use or not, which the system
-/// does not tell. One that is in use comes back page by page, from the page cache.
+/// Chunks take turns, the one whose turn was longest ago first. The system does not tell which are
+/// in use; but one that went to disk and has pages in memory when its turn comes again was used in
+/// between. It goes to disk once more, and misses more and more turns after that. So what is always
+/// in use is written seldom, and what is not in use any more goes to disk a few turns later. One
+/// that is in use comes back page by page, from the page cache.
 ///
 /// Any thread may add and remove chunks; trim() needs that no thread changes them.
 class SwapSpace {
@@ -68,7 +71,9 @@ class SwapSpace {
 
   struct Chunk {
     std::byte* data;
-    std::size_t slot = kNoSlot;  ///< where it is in the file
+    std::size_t slot = kNoSlot;     ///< where it is in the file
+    int num_turns_to_miss = 0;      ///< from now on
+    int num_turns_missed_last = 0;  ///< before the turn that it took last
   };
   using Chunks = std::list<Chunk>;
   /// Pages of a chunk that have to be written, and how many are in memory.
@@ -77,7 +82,8 @@ class SwapSpace {
     std::size_t num_resident = 0;
   };
 
-  std::size_t put_on_disk(Chunk& chunk);
+  std::size_t take_turn(Chunk& chunk);
+  std::size_t put_on_disk(Chunk& chunk, Pages pages);
   Pages pages_of(const Chunk& chunk) const;
   std::size_t take_slot();
   void write_changed(const Chunk& chunk, const std::vector<bool>& are_changed);

@@ -107,6 +107,27 @@ TEST(SwapSpace, StaysBelowTheLimitWhileAnArrayGrows) {
   }
 }
 
+TEST(SwapSpace, SeldomWritesWhatIsAlwaysInUse) {
+  constexpr std::size_t kValuesOfChunk = SwapSpace::kChunkBytes / sizeof(std::uint64_t);
+  constexpr std::size_t kChunksInUse = 8;
+  const TemporaryFolder folder(kOnDisk);
+  const auto limit = static_cast<std::size_t>(process_memory().resident_bytes) + (48U << 20);
+  SwapSpace space({folder.path(), limit});
+  GrowingArray<std::uint64_t> in_use(kChunksInUse * kValuesOfChunk);
+  GrowingArray<std::uint64_t> growing;
+  in_use.swap_to(space);
+  growing.swap_to(space);
+  for (std::size_t step = 0; step < 200; ++step) {
+    for (std::size_t i = 0; i < in_use.size(); ++i) in_use[i] = value_of(i) + step;
+    for (std::size_t k = 0; k < kValuesOfChunk; ++k) growing.push_back(value_of(growing.size()));
+    space.trim();
+  }
+  EXPECT_EQ(num_wrong(in_use, 199), 0U);
+  EXPECT_EQ(num_wrong(growing), 0U);
+  // The limit has room for 16 steps beside what is in use: it would be written 12 times.
+  EXPECT_LE(space.written_bytes(), (growing.size() + 5 * in_use.size()) * sizeof(std::uint64_t));
+}
+
 TEST(SwapSpace, DoesNothingBelowTheLimit) {
   const TemporaryFolder folder(kOnDisk);
   SwapSpace space({folder.path(), std::size_t{1} << 50});
