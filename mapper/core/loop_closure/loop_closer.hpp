@@ -61,7 +61,7 @@ class LoopCloser {
     LoopVerifier::Config verifier;
     KeyframeGraph::Config graph;
     JoinRule::Config join;
-    double delay_s = 2.0;     ///< from a keyframe to the correction that it brings, device time
+    double delay_s = 0.5;     ///< from a keyframe to the correction that it brings, device time
     int max_by_position = 3;  ///< candidates that would see the same
     int max_matches = 2;  ///< of a keyframe in its part; with other parts all count, as rivals do
     /// Two keyframes that were tracked in the same volume and have at least this share of their

@@ -44,6 +44,7 @@ void LoopClosure::Config::validate() const {
   check_range("least_motion_vox", least_motion_vox, 0.0, 1e3);
   check_range("reach_m", reach_m, 0.0, 1e3);
   check_range("voxel_m", voxel_m, 1e-4, 1.0);
+  check_range("appearance_s", appearance_s, 0.0, closer.delay_s);
   check_range("max_speed", max_speed, 0.0, 1e6);
   check_range("max_similar", max_similar, 0, 1000);
 }
@@ -193,6 +194,7 @@ std::vector<int> LoopClosure::similar_to(const NewKeyframe& added) {
 }
 
 std::optional<MapCorrection> LoopClosure::take_due(std::int64_t utime) {
+  if (1e-6 * static_cast<double>(utime - newest_utime_) >= config_.appearance_s) compare_newest();
   note(closer_.take_due(utime));
   if (!waiting_) return std::nullopt;
   const bool may_be_small = 1e-6 * static_cast<double>(utime - applied_utime_) >= config_.period_s;

@@ -32,7 +32,10 @@ class LoopClosure {
     double least_motion_vox = 0.1;
     double reach_m = 5.0;  ///< how far a keyframe's surface is from it, m
     double voxel_m = 4.5 / 512;
-    int max_similar = 6;     ///< keyframes that look alike, for each new one
+    int max_similar = 6;  ///< keyframes that look alike, for each new one
+    /// From a keyframe to its comparison with others, s of device time: three frames, in which a
+    /// thread of its own computes its appearance.
+    double appearance_s = 0.1;
     double max_speed = 2.0;  ///< m/s, of a camera that is lost, see Tracker
 
     /// @throws std::invalid_argument naming field, value and bound
@@ -133,7 +136,7 @@ class LoopClosure {
   KeyframeMap& keyframes_;
   LoopCloser closer_;
   CameraPath path_;
-  /// The newest keyframe, until its appearance is known: when the next one comes.
+  /// The newest keyframe, until it is compared with others.
   std::optional<NewKeyframe> newest_;
   std::int64_t newest_utime_ = 0;
   int newest_number_ = -1;  ///< of the camera's newest keyframe; those of guests may follow
