@@ -60,7 +60,7 @@ void TileStore::keep(BlocksByTile blocks, const std::vector<TileVisit>& visits) 
     newer.merge(kept);  // but for those that are there already
     kept = std::move(newer);
     num_bytes_ += bytes_of(kept);
-    if (kept.empty()) entries_.erase(entry);
+    if (kept.empty()) erase(entry);
   }
 }
 
@@ -70,7 +70,8 @@ void TileStore::close(const TileCoord& tile, int keyframe) {
   if (open.empty()) return;
   open.key().number = number;
   open.mapped().keyframe = keyframe;
-  closed_.push_back(open.key());
+  open.mapped().age_key = next_age_key_++;
+  by_age_[open.mapped().age_key] = open.key();
   entries_.insert(std::move(open));
 }
 
@@ -107,7 +108,9 @@ std::vector<BlockCoord> TileStore::coords_of(const TileVisit& visit) const {
 
 void TileStore::tidy() {
   pack_some();
-  for (; num_bytes_ > max_bytes_ && !closed_.empty(); closed_.pop_front()) forget(closed_.front());
+  while (num_bytes_ > max_bytes_ && !by_age_.empty()) {
+    erase(entries_.find(by_age_.begin()->second));
+  }
 }
 
 void TileStore::pack_some() {
@@ -130,8 +133,13 @@ std::optional<int> TileStore::keyframe_of(const TileVisit& visit) const {
 
 void TileStore::forget(const TileVisit& visit) {
   const auto entry = entries_.find(visit);
-  if (entry == entries_.end()) return;
-  num_bytes_ -= bytes_of(entry->second.blocks);
+  if (entry != entries_.end()) erase(entry);
+}
+
+void TileStore::erase(std::map<TileVisit, Entry>::iterator entry) {
+  const auto& [visit, kept] = *entry;
+  num_bytes_ -= bytes_of(kept.blocks);
+  if (visit.number != TileVisit::kOpen) by_age_.erase(kept.age_key);
   entries_.erase(entry);
 }
 

@@ -74,21 +74,25 @@ class TileStore {
   /// Packs some of the blocks that wait for it, and forgets visits. To be called once a frame.
   void tidy();
 
-  std::size_t bytes() const { return num_bytes_; }  ///< of the blocks
+  std::size_t bytes() const { return num_bytes_; }           ///< of the blocks
+  std::size_t num_closed() const { return by_age_.size(); }  ///< visits that are kept
 
  private:
   struct Entry {
     int keyframe = -1;
+    std::int64_t age_key = 0;  ///< in by_age_, of a closed one
     Blocks blocks;
   };
 
   static std::size_t bytes_of(const Blocks& blocks);
   void pack_some();
+  void erase(std::map<TileVisit, Entry>::iterator entry);
 
   const TileGrid grid_;
   const std::size_t max_bytes_;
   std::map<TileVisit, Entry> entries_;
-  std::deque<TileVisit> closed_;  ///< in this order; some have come back
+  std::map<std::int64_t, TileVisit> by_age_;  ///< the closed ones, from the one closed first
+  std::int64_t next_age_key_ = 0;
   std::size_t num_bytes_ = 0;
   std::map<TileCoord, int> num_closed_;
   std::deque<std::weak_ptr<KeptBlock>> to_pack_;  ///< expired: it has come back

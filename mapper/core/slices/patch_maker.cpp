@@ -61,11 +61,11 @@ std::vector<PatchRun> PatchMaker::patches_of(const MeshPiece& piece, double reso
 PatchMaker::Patch& PatchMaker::patch_at(const TileCoord& tile, const SeenAt& seen_at) {
   Patch& patch = patches_[tile];
   if (patch.number != kNoPatch) return patch;
-  patch.number = static_cast<int>(places_.size());
-  places_.push_back({.tile = tile,
-                     .keyframe = seen_at.keyframe,
-                     .X_WP = seen_at.place.X_WU,
-                     .part = seen_at.place.part});
+  patch.number = next_number_++;
+  places_[patch.number] = {.tile = tile,
+                           .keyframe = seen_at.keyframe,
+                           .X_WP = seen_at.place.X_WU,
+                           .part = seen_at.place.part};
   newest_[tile] = patch.number;
   return patch;
 }
@@ -76,26 +76,31 @@ std::vector<CloudSlice> PatchMaker::reopen(std::span<const TileVisit> visits,
   for (const TileVisit& visit : visits) {
     Patch& patch = patch_at(visit.tile, seen_at);
     if (visit.number != TileVisit::kOpen) {
-      if (places_[patch.number].id != kNoId) ended.push_back(revision_of(patch, header));
-      places_[patch.number].is_void = true;
-      const Closed& closed = closed_.at(visit.tile).at(visit.number);
+      if (places_.at(patch.number).id != kNoId) ended.push_back(revision_of(patch, header));
+      places_.erase(patch.number);
+      const Closed closed = closed_.extract(visit).mapped();
       patch.number = closed.number;
       patch.revision = closed.revision;
     }
-    places_[patch.number].is_void = true;
-    places_.push_back(places_[patch.number]);
-    places_.back().is_void = false;
-    patch.number = static_cast<int>(places_.size()) - 1;
-    patch.left_W.clear();
-    newest_[visit.tile] = patch.number;
+    go_on(patch, visit);
   }
   if (!ended.empty()) ended.back().ends_batch = true;
   return ended;
 }
 
+/// Under another number, as points that were given with the one before count no more.
+void PatchMaker::go_on(Patch& patch, const TileVisit& visit) {
+  auto place = places_.extract(patch.number);
+  patch.number = next_number_++;
+  place.key() = patch.number;
+  places_.insert(std::move(place));
+  patch.left_W.clear();
+  newest_[visit.tile] = patch.number;
+}
+
 /// The next revision, without points yet.
 CloudSlice PatchMaker::revision_of(Patch& patch, const CloudSlice& header) {
-  const Place& place = places_[patch.number];
+  const Place& place = places_.at(patch.number);
   CloudSlice slice = header;
   slice.kind = SliceKind::kPatch;
   slice.id = place.id;
@@ -109,9 +114,10 @@ CloudSlice PatchMaker::revision_of(Patch& patch, const CloudSlice& header) {
 }
 
 std::optional<PatchPlace> PatchMaker::place_of(int patch) const {
-  const Place& place = places_.at(patch);
-  if (place.is_void) return std::nullopt;
-  return PatchPlace{.X_WP = place.X_WP, .correction = correction_, .part = place.part};
+  const auto place = places_.find(patch);
+  if (place == places_.end()) return std::nullopt;
+  return PatchPlace{
+      .X_WP = place->second.X_WP, .correction = correction_, .part = place->second.part};
 }
 
 std::vector<CloudSlice> PatchMaker::make(const PatchBatch& batch, const ExtractedSurface& in_volume,
@@ -120,7 +126,7 @@ std::vector<CloudSlice> PatchMaker::make(const PatchBatch& batch, const Extracte
   std::vector<CloudSlice> slices;
   for (const PatchBatch::Patch& due : batch.patches) {
     Patch& patch = patch_at(due.tile, {due.keyframe, due.place});
-    Place& place = places_[patch.number];
+    Place& place = places_.at(patch.number);
     place.keyframe = due.keyframe;
     std::vector<CloudPoint> points_W = due.in_volume ? patch.left_W : std::move(patch.left_W);
     if (due.in_volume) {
@@ -136,7 +142,7 @@ std::vector<CloudSlice> PatchMaker::make(const PatchBatch& batch, const Extracte
       slice.points_W = std::move(points_W);
     }
     if (due.in_volume) continue;
-    closed_[due.tile].push_back({patch.number, patch.revision});
+    closed_[{due.tile, num_closed_[due.tile]++}] = {patch.number, patch.revision};
     patches_.erase(due.tile);
   }
   if (!slices.empty()) slices.back().ends_batch = true;
@@ -150,10 +156,10 @@ std::vector<CloudSlice> PatchMaker::take_in(std::vector<GuestPatch> patches,
     const auto [found, is_new] = of_guests_.try_emplace(taken.name);
     Patch& patch = found->second;
     if (is_new) {
-      patch.number = static_cast<int>(places_.size());
-      places_.emplace_back().id = next_id_++;
+      patch.number = next_number_++;
+      places_[patch.number].id = next_id_++;
     }
-    Place& place = places_[patch.number];
+    Place& place = places_.at(patch.number);
     place.guest = {.X_UP = taken.X_UP, .box_P = box_of(taken.points_P)};
     place.keyframe = taken.at.keyframe;
     place.X_WP = pose_of(place, taken.at.place.X_WU);
@@ -182,10 +188,10 @@ std::vector<CloudSlice> PatchMaker::correct(const MapDeformation& deformation,
                                             const CloudSlice& header, const Pose& X_WU_now) {
   correction_ = deformation.number();
   std::map<int, std::vector<PatchMotion>> motions;  // by part
-  for (Place& place : places_) {
+  for (auto& [number, place] : places_) {
     const auto [X_WU, part] = deformation.place(place.keyframe);
     const PatchPose X_WP = pose_of(place, X_WU);
-    if (place.id == kNoId || place.is_void || place.X_WP == X_WP) continue;
+    if (place.id == kNoId || place.X_WP == X_WP) continue;
     const double moved_m =
         motion_m(box_P(place, header.resolution_m), place.X_WP.pose(), X_WP.pose());
     if (moved_m <= kLeastMotion_vox * header.resolution_m) continue;
@@ -214,7 +220,7 @@ std::vector<CloudSlice> PatchMaker::correct(const MapDeformation& deformation,
 std::vector<CloudSlice> PatchMaker::finish(const CloudSlice& header) {
   PatchBatch everything;
   for (const auto& [tile, patch] : patches_) {
-    const Place& place = places_[patch.number];
+    const Place& place = places_.at(patch.number);
     everything.patches.push_back({tile, false, place.keyframe, {place.X_WP.pose(), place.part}});
   }
   std::vector<CloudSlice> slices = make(everything, {}, header);

@@ -69,6 +69,9 @@ class PatchMaker {
   /// The last revision of every patch that is not departed, and the final slice.
   std::vector<CloudSlice> finish(const CloudSlice& header);
 
+  /// How many have a place in the map, departed or not: those that ended are forgotten.
+  std::size_t num_placed() const { return places_.size(); }
+
  private:
   static constexpr std::int32_t kNoId = -1;
   static constexpr std::int32_t kNotOfCamera = -1;  ///< CloudSlice::keyframe of a guest's patch
@@ -91,8 +94,7 @@ class PatchMaker {
     std::int32_t id = kNoId;
     int keyframe = 0;  ///< with which it moves
     PatchPose X_WP = {};
-    int part = 0;          ///< of the map
-    bool is_void = false;  ///< the patch goes on under another number
+    int part = 0;  ///< of the map
   };
 
   struct Closed {
@@ -102,17 +104,20 @@ class PatchMaker {
 
   std::map<TileCoord, std::vector<CloudPoint>> by_tile(const ExtractedSurface& surface) const;
   Patch& patch_at(const TileCoord& tile, const SeenAt& seen_at);
+  void go_on(Patch& patch, const TileVisit& visit);
   CloudSlice revision_of(Patch& patch, const CloudSlice& header);
   static PatchPose pose_of(const Place& place, const Pose& X_WU);
   Eigen::AlignedBox3d box_P(const Place& place, double resolution_m) const;
 
   const TileGrid grid_;
-  std::vector<Place> places_;        ///< of all patches, by number
-  std::map<TileCoord, int> newest_;  ///< the number of the newest patch of each tile
-  std::map<TileCoord, std::vector<Closed>> closed_;  ///< by TileVisit::number
-  std::int32_t correction_ = 0;                      ///< number of the last one
-  std::map<TileCoord, Patch> patches_;               ///< those that may be sent again
-  std::map<GuestPatch::Name, Patch> of_guests_;      ///< without points
+  std::map<int, Place> places_;  ///< by the number of the patch
+  int next_number_ = 0;
+  std::map<TileCoord, int> newest_;              ///< the number of the newest patch of each tile
+  std::map<TileVisit, Closed> closed_;           ///< those that may be reopened
+  std::map<TileCoord, int> num_closed_;          ///< visits, those that were reopened as well
+  std::int32_t correction_ = 0;                  ///< number of the last one
+  std::map<TileCoord, Patch> patches_;           ///< those that may be sent again
+  std::map<GuestPatch::Name, Patch> of_guests_;  ///< without points
   std::int32_t next_id_ = 0;
   std::int64_t revision_sum_ = 0;  ///< of the newest revisions
 };

@@ -129,6 +129,16 @@ TEST_F(Store, ForgetsWhatWasClosedLongestAgo) {
   EXPECT_EQ(store_.bytes(), 0U);
 }
 
+TEST_F(Store, CountsNoVisitThatHasComeBack) {
+  for (int round = 0; round < 5; ++round) {
+    keep({first_});
+    store_.close(tile_, 0);
+    EXPECT_EQ(store_.num_closed(), 1U);
+    store_.forget({tile_, round});
+    EXPECT_EQ(store_.num_closed(), 0U);
+  }
+}
+
 TEST_F(Store, FindsABlockInTheVisitsThatAreAllowed) {
   keep({first_});
   store_.close(tile_, 0);

@@ -138,6 +138,19 @@ TEST_F(Patches, EndWhereAnEarlierOneGoesOn) {
   EXPECT_EQ(maker.make({{{kHere}}}, surface({{0, {5}}}), header()).at(0).id, 0);
 }
 
+TEST_F(Patches, AreForgottenWhenTheyHaveEnded) {
+  maker.make({{{kHere}}}, surface({{0, {1}}}), header());
+  maker.make({{{kHere, false}}}, {}, header());
+  const std::size_t num_placed = maker.num_placed();
+  for (int round = 0; round < 20; ++round) {
+    maker.make({{{kHere}}}, surface({{0, {2}}}), header());
+    maker.reopen(std::vector<TileVisit>{{kHere, round}}, header());
+    maker.reopen(std::vector<TileVisit>{{kHere}}, header());
+    EXPECT_EQ(maker.make({{{kHere, false}}}, {}, header()).at(0).id, 0);
+    EXPECT_EQ(maker.num_placed(), num_placed);
+  }
+}
+
 TEST_F(Patches, EndWithTheirLastRevisionsAndTheirSum) {
   maker.make({{{kHere}}}, surface({{0, {1}}}), header());
   maker.make({{{kHere}, {kThere}}}, surface({{0, {1}}, {1, {2}}}), header());
