@@ -1,4 +1,4 @@
-"""The section of scripts/bench about objects: what is taught, how a library is grown, and its tables."""
+"""The sections of scripts/bench about objects: what is taught, how a library is grown, and its tables."""
 
 import json
 import struct
@@ -11,7 +11,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "scripts" / "lib"))
 
-from bench import large_maps, object_delays, object_libraries, objects, summary, tables  # noqa: E402
+from bench import large_maps, object_delays, object_libraries, object_times, objects, summary, tables  # noqa: E402
 
 PLY = ("ply\nformat binary_little_endian 1.0\nelement vertex 2\nproperty float x\nproperty uint segment_id\n"
        "property uchar red\nend_header\n").encode()
@@ -103,20 +103,23 @@ class Tables(unittest.TestCase):
     def test_targets_stand_beside_what_was_measured(self):
         changed = {name: scores() for name in ("office-later", "office-again")}
         found = {"kitchen": [(scores(), [])] * 2, "office-later": [(scores(), [])]}
-        costs = {40: (0.3, 954, 10.0), 1000: (7.0, 954, 25.0)}
-        walks = [object_delays.Walk([3.0, 0.0], 0.08), object_delays.Walk([1.25], 0.05), object_delays.Walk([], None)]
-        targets = objects.target_rows(changed, found, costs, walks, object_delays.Walk([0.5], 0.01))
+        targets = objects.target_rows(changed, found)
         rows = [row[1] for row in targets]
-        self.assertEqual(rows, ["0.90 / not measured", "0.17 (1 of 6)", 2, "0.60 / 0.75", "0.60 / 0.75", "1.25 / 3.00",
-                                "0.50 / 0.50", "6.5", "2.50 times"])
+        self.assertEqual(rows, ["0.90 / not measured", "0.17 (1 of 6)", 2, "0.60 / 0.75", "0.60 / 0.75"])
         text = tables.markdown(["what", "measured", "target"], targets)
         self.assertIn("| office: 0.90 / not measured |", summary.summary({"objects": text}))
         self.assertIn("| kitchen: 0.60 / 0.75 |", summary.summary({"objects": text}))
+
+    def test_times_stand_beside_their_targets(self):
+        costs = {40: (0.3, 954, 10.0), 1000: (7.0, 954, 25.0)}
+        walks = [object_delays.Walk([3.0, 0.0], 0.08), object_delays.Walk([1.25], 0.05), object_delays.Walk([], None)]
+        targets = object_times.target_rows(costs, walks, object_delays.Walk([0.5], 0.01))
+        self.assertEqual([row[1] for row in targets], ["1.25 / 3.00", "0.50 / 0.50", "6.5", "2.50 times"])
         self.assertEqual(object_delays.text([]), "not measured")
         self.assertEqual(object_delays.percent([object_delays.Walk([], None)]), "not measured")
-        self.assertEqual(objects.cost_rows(costs)[1], ["1,000", "kitchen", "7.00", 954, "25.0", "26.2"])
-        large = {objects.LARGE_MAP: (0.3, 970, 10.0)}
-        self.assertEqual(objects.cost_rows(large)[0][:2], ["40", "kitchen, 4 million points"])
+        self.assertEqual(object_times.cost_rows(costs)[1], ["1,000", "kitchen", "7.00", 954, "25.0", "26.2"])
+        large = {object_times.LARGE_MAP: (0.3, 970, 10.0)}
+        self.assertEqual(object_times.cost_rows(large)[0][:2], ["40", "kitchen, 4 million points"])
 
     def test_errors_are_of_the_objects_of_the_size(self):
         outcomes = [{"points": "900", "translation_cm": "1.00", "rotation_deg": "4.00"},

@@ -13,7 +13,7 @@ from typing import Callable
 from trio.messages import Problem, os_error_text, say
 from trio.programs import ROOT
 
-from . import battery, fleets, live, mapping, objects, others, recordings, segmenting
+from . import battery, fleets, live, mapping, object_times, objects, others, recordings, segmenting
 from .battery_cases import chosen_cases
 from .document import Document
 from .run import Run, recordings_under
@@ -32,6 +32,7 @@ class Section:
 
 TRIO = ("kintsugi-mapper", "kintsugi-segmenter", "kintsugi-viewer", "kintsugi-status")
 MAPPER = ("kintsugi-mapper", "kintsugi-evaluate")
+OBJECTS = (*TRIO, "kintsugi-diff", "kintsugi-evaluate", "kintsugi-ground-truth", "kintsugi-objects")
 
 SECTIONS = (
     Section("live", "mapper, segmenter and viewer at the camera's rate: CPU, frames dropped, what of the view is segmented",
@@ -57,8 +58,9 @@ SECTIONS = (
     Section("quality", "segments against the true objects of the synthetic office, and a sweep of each parameter",
             segmenting.quality, (*MAPPER, "kintsugi-ground-truth")),
     Section("objects", "changes between two maps of a room, and objects taught in one room and found in others",
-            objects.objects, (*TRIO, "kintsugi-diff", "kintsugi-evaluate", "kintsugi-ground-truth", "kintsugi-objects",
-                              "bench_large_walk")),
+            objects.objects, OBJECTS),
+    Section("object-times", "how soon taught objects are found live and in a large map, and what it costs",
+            object_times.object_times, (*OBJECTS, "bench_large_walk")),
     Section("segmenter", "batch, voting and neighbour search on generated maps", segmenting.segmenter,
             ("bench_segmenter",)),
     Section("exact", "mode exact slice by slice and under corrections, on a generated map of 4 million points",
