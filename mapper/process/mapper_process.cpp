@@ -133,7 +133,9 @@ void MapperProcess::map_frame(const TimedFrame& read) {
   if (result.correction) log_correction(*result.correction, frame);
   log_guests(frame);
   log_joined(frame, num_parts_before);
-  if (is_located(tracking.state)) paths_[result.part].push_back({frame.utime, tracking.X_WC});
+  if (is_located(tracking.state) && !options_.online_path_file.empty()) {
+    online_paths_[result.part].push_back({frame.utime, tracking.X_WC});
+  }
 
   const std::size_t num_slices = result.slices.size();
   const double mapped_ms = stopwatch.elapsed_ms();
@@ -208,7 +210,7 @@ void MapperProcess::commit_map_files() {
 
 void MapperProcess::write_paths() const {
   write_path_files(options_.output_path_file, pipeline_.corrected_paths());
-  write_path_files(options_.online_path_file, paths_);
+  write_path_files(options_.online_path_file, online_paths_);
 }
 
 void MapperProcess::publish_status() {

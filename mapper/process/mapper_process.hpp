@@ -71,8 +71,9 @@ class MapperProcess {
   RunStatistics statistics_;
   std::optional<FrameLog> frame_log_;
   std::optional<FrameStore> frame_store_;
-  /// Of the frames that were tracked or given, as believed at each frame; by part of the map.
-  std::map<int, Trajectory> paths_;
+  /// Of the frames that were tracked or given, as believed at each frame; by part of the map. Only
+  /// where it is to be written.
+  std::map<int, Trajectory> online_paths_;
   TrackingState last_state_ = TrackingState::kStarting;
   int part_ = 0;                ///< of the map, in which the camera is
   int num_parts_ = 1;           ///< that no loop has joined, after the last frame

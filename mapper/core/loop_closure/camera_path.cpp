@@ -14,14 +14,26 @@ Pose between(const Pose& X_WA, const Pose& X_WB, double share) {
 
 }  // namespace
 
+CameraPath::Step::Step(std::int64_t time, const Pose& X_UC)
+    : utime(time),
+      t_UC(X_UC.translation()),
+      q_UC(Eigen::Quaterniond(X_UC.linear()).cast<float>()) {}
+
+Pose CameraPath::Step::X_UC() const {
+  Pose X = Pose::Identity();
+  X.translation() = t_UC;
+  X.linear() = q_UC.cast<double>().normalized().toRotationMatrix();
+  return X;
+}
+
 void CameraPath::add(std::int64_t utime, const Pose& X_UC, int keyframe, bool jumped) {
   if (!steps_.empty() && !jumped) {
-    length_m_ += (X_UC.translation() - steps_.back().X_UC.translation()).norm();
+    length_m_ += (X_UC.translation() - steps_.back().t_UC).norm();
   }
   if (stays_.empty() || jumped || stays_.back().keyframe != keyframe) {
     stays_.push_back({keyframe, steps_.size(), jumped});
   }
-  steps_.push_back({utime, X_UC});
+  steps_.emplace_back(utime, X_UC);
 }
 
 std::map<int, Trajectory> CameraPath::corrected(const MapDeformation& deformation) const {
@@ -39,8 +51,9 @@ std::map<int, Trajectory> CameraPath::corrected(const MapDeformation& deformatio
       const Step& step = steps_[i];
       const double share =
           static_cast<double>(step.utime - begin_utime) / static_cast<double>(duration_us);
-      path.push_back({step.utime, goes_over ? between(here * step.X_UC, next * step.X_UC, share)
-                                            : here * step.X_UC});
+      const Pose X_UC = step.X_UC();
+      path.push_back(
+          {step.utime, goes_over ? between(here * X_UC, next * X_UC, share) : here * X_UC});
     }
   }
   return paths;

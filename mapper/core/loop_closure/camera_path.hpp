@@ -1,7 +1,9 @@
 #pragma once
 // The camera's path, which follows when the keyframes on it are moved.
 
+#include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <map>
 #include <vector>
 
@@ -11,7 +13,7 @@
 namespace kintsugi::mapper {
 
 /// The poses of the camera as tracked, in the uncorrected map (U) and, for each, the keyframe that
-/// it was at.
+/// it was at. A pose takes 48 bytes.
 class CameraPath {
  public:
   /// Adds the pose at a time after all before. `jumped`: it was not tracked from the one before.
@@ -27,8 +29,12 @@ class CameraPath {
 
  private:
   struct Step {
+    Step(std::int64_t time, const Pose& X_UC);
+    Pose X_UC() const;
+
     std::int64_t utime;
-    Pose X_UC;
+    Eigen::Vector3d t_UC;
+    Eigen::Quaternionf q_UC;  ///< rounded: by 1e-7 rad
   };
   /// While the camera was at one keyframe.
   struct Stay {
@@ -37,7 +43,7 @@ class CameraPath {
     bool jumped;
   };
 
-  std::vector<Step> steps_;
+  std::deque<Step> steps_;
   std::vector<Stay> stays_;
   double length_m_ = 0.0;
 };

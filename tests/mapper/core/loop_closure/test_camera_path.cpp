@@ -30,6 +30,16 @@ TEST(CameraPath, StaysAsTrackedWithoutACorrection) {
   }
 }
 
+TEST(CameraPath, KeepsPosesFarFromTheOrigin) {
+  Pose tilted = at(1e4, -2e4);
+  tilted.linear() = Eigen::AngleAxisd(2.5, Eigen::Vector3d(1.0, 2.0, -3.0).normalized()).matrix();
+  CameraPath path;
+  path.add(7, tilted, 0, false);
+  const Pose error = path.corrected(MapDeformation()).at(0).at(0).X_WC.inverse() * tilted;
+  EXPECT_LT(error.translation().norm(), 1e-9);
+  EXPECT_LT(rotation_angle_rad(error), 1e-6);
+}
+
 TEST(CameraPath, GoesOverFromOneCorrectionToTheNextLinearly) {
   const Trajectory path = two_stays(false).corrected(up_at_keyframe_1()).at(0);
   for (int i = 0; i < 10; ++i) {
