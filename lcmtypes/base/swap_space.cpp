@@ -56,7 +56,7 @@ int make_file(const std::filesystem::path& folder) {
 }  // namespace
 
 void SwapSpace::Config::validate() const {
-  require(max_resident_bytes > 0, "max_resident_bytes", max_resident_bytes, "> 0");
+  require(max_anonymous_bytes > 0, "max_anonymous_bytes", max_anonymous_bytes, "> 0");
 }
 
 SwapSpace::SwapSpace(const Config& config)
@@ -88,9 +88,9 @@ void SwapSpace::remove(std::byte* chunk) {
 }
 
 void SwapSpace::trim() {
-  const auto resident = static_cast<std::size_t>(process_memory().resident_bytes);
-  if (resident <= config_.max_resident_bytes) return;
-  const std::size_t excess = resident - config_.max_resident_bytes;
+  const auto in_memory = static_cast<std::size_t>(process_memory().anonymous_bytes);
+  if (in_memory <= config_.max_anonymous_bytes) return;
+  const std::size_t excess = in_memory - config_.max_anonymous_bytes;
   std::size_t freed = 0;
   const std::lock_guard lock(mutex_);
   const std::size_t may_be_written = written_bytes_ + kMaxWrittenByTrim;
@@ -116,7 +116,7 @@ std::size_t SwapSpace::take_turn(Chunk& chunk) {
     return 0;
   }
   Pages pages = pages_of(chunk);
-  if (pages.num_resident == 0) {
+  if (pages.num_in_memory == 0) {
     chunk.num_turns_missed_last = 0;
     return 0;
   }
@@ -148,7 +148,7 @@ std::size_t SwapSpace::put_on_disk(Chunk& chunk, Pages pages) {
     if (is_new) free_slots_.push_back(std::exchange(chunk.slot, kNoSlot));
     throw;
   }
-  return pages.num_resident * kPageBytes;
+  return pages.num_in_memory * kPageBytes;
 }
 
 SwapSpace::Pages SwapSpace::pages_of(const Chunk& chunk) const {
@@ -161,10 +161,9 @@ SwapSpace::Pages SwapSpace::pages_of(const Chunk& chunk) const {
   }
   Pages pages{.are_changed = std::vector<bool>(kPagesOfChunk)};
   for (std::size_t k = 0; k < kPagesOfChunk; ++k) {
-    const bool is_resident = (entries[k] & kIsPresent) != 0;
-    const bool is_swapped = (entries[k] & kIsSwapped) != 0;
-    pages.num_resident += is_resident ? 1 : 0;
-    pages.are_changed[k] = is_swapped || (is_resident && (entries[k] & kIsOfFile) == 0);
+    const bool is_in_memory = (entries[k] & kIsPresent) != 0 && (entries[k] & kIsOfFile) == 0;
+    pages.num_in_memory += is_in_memory ? 1 : 0;
+    pages.are_changed[k] = is_in_memory || (entries[k] & kIsSwapped) != 0;
   }
   return pages;
 }

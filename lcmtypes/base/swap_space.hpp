@@ -22,10 +22,14 @@ namespace kintsugi {
 /// signal. The file has no name: it is gone with the process, however that ends.
 ///
 /// Chunks take turns, the one whose turn was longest ago first. The system does not tell which are
-/// in use; but one that went to disk and has pages in memory when its turn comes again was used in
-/// between. It goes to disk once more, and misses more and more turns after that. So what is always
-/// in use is written seldom, and what is not in use any more goes to disk a few turns later. One
-/// that is in use comes back page by page, from the page cache.
+/// in use; but one that went to disk and has changed when its turn comes again was used in between.
+/// It goes to disk once more, and misses more and more turns after that. So what is always in use
+/// is written seldom, and what is not in use any more goes to disk a few turns later. One that is
+/// in use comes back page by page, from the page cache.
+///
+/// Pages of the file that were only read count as memory of the process, too, but the system takes
+/// them back when it needs memory. To unmap them here would cost more than anything else: reading
+/// maps them in blocks of 64 kB and more.
 ///
 /// Any thread may add and remove chunks; trim() needs that no thread changes them.
 class SwapSpace {
@@ -33,8 +37,9 @@ class SwapSpace {
   static constexpr std::size_t kChunkBytes = std::size_t{1} << 21;  ///< of a huge page
 
   struct Config {
-    std::filesystem::path folder;        ///< of the file, on a disk
-    std::size_t max_resident_bytes = 0;  ///< of the process, > 0
+    std::filesystem::path folder;  ///< of the file, on a disk
+    /// Of the process, > 0: of what is not of a file, see ProcessMemory.
+    std::size_t max_anonymous_bytes = 0;
 
     /// @throws std::invalid_argument naming field, value and bound
     void validate() const;
@@ -53,10 +58,8 @@ class SwapSpace {
   /// Its content is not needed any more.
   void remove(std::byte* chunk);
 
-  /// Puts chunks on disk while the process has more memory than Config::max_resident_bytes. Writes
+  /// Puts chunks on disk while the process has more memory than Config::max_anonymous_bytes. Writes
   /// at most 64 MB at a time, so that nobody waits for long: who calls it often stays at the limit.
-  /// In between there may be more: reading maps pages of the file, in blocks of 64 kB and more. The
-  /// system can take those back at any time.
   void trim();
 
   /// Bytes of the file.
@@ -76,10 +79,10 @@ class SwapSpace {
     int num_turns_missed_last = 0;  ///< before the turn that it took last
   };
   using Chunks = std::list<Chunk>;
-  /// Pages of a chunk that have to be written, and how many are in memory.
+  /// Pages of a chunk that have to be written, and how many of these are in memory.
   struct Pages {
     std::vector<bool> are_changed;
-    std::size_t num_resident = 0;
+    std::size_t num_in_memory = 0;
   };
 
   std::size_t take_turn(Chunk& chunk);

@@ -124,9 +124,10 @@ void add_slice_flags(CLI::App& app, Options& options) {
       ->check(CLI::Range(1e-6, 1e6))
       ->capture_default_str();
   app.add_option("--max-memory", options.max_memory_mb,
-                 "mode exact: MB of memory that the process may have; parts of the map that are "
-                 "not used for long go to a file, and come back when something touches them. The "
-                 "result is the same. 0: no limit")
+                 "mode exact: MB of memory that the process may have, not counted what the system "
+                 "can take back at any time; parts of the map that are not used for long go to a "
+                 "file, and come back when something touches them. The result is the same. 0: no "
+                 "limit")
       ->check(CLI::Range(0.0, 1e9))
       ->capture_default_str();
   app.add_option("--swap-folder", options.swap_folder,
@@ -171,7 +172,7 @@ SegmenterProcess::Config Options::config() const {
     }
     config.segmentation.swap = {
         .folder = swap_folder.empty() ? config.segmentation.files.folder : swap_folder,
-        .max_resident_bytes = static_cast<std::size_t>(std::llround(max_memory_mb * 1e6))};
+        .max_anonymous_bytes = static_cast<std::size_t>(std::llround(max_memory_mb * 1e6))};
   } else if (!swap_folder.empty()) {
     throw std::invalid_argument("--swap-folder needs --max-memory MB");
   }

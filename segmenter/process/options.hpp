@@ -20,7 +20,7 @@ struct Options {
   double gap_timeout_s = 10.0;        ///< SliceSequencer::Config::gap_timeout
   double max_queue_mb = 1024.0;       ///< SegmenterProcess::Config::max_queue_bytes, 1e6 bytes each
   double rate_mb_per_s = 10.0;        ///< UpdatePublisher::Config::rate_bytes_per_s
-  double max_memory_mb = 0.0;         ///< SwapSpace::Config::max_resident_bytes; 0: no limit
+  double max_memory_mb = 0.0;         ///< SwapSpace::Config::max_anonymous_bytes; 0: no limit
   std::filesystem::path swap_folder;  ///< SwapSpace::Config::folder; empty: that of the map files
   bool resume_if_saved = false;       ///< resume the map that --save has left, if there is one
 

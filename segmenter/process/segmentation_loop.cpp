@@ -128,7 +128,7 @@ void SegmentationLoop::trim_memory() {
     spdlog::info(
         "{} MB of memory are in use: parts of the map that are not used for long go to "
         "a file in {}",
-        config_.swap->max_resident_bytes / 1'000'000, config_.swap->folder.string());
+        config_.swap->max_anonymous_bytes / 1'000'000, config_.swap->folder.string());
   }
   const std::lock_guard lock(mutex_);
   if (swap_problem_.empty() && !swap_->problem().empty()) spdlog::error("{}", swap_->problem());

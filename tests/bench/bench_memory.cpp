@@ -61,8 +61,9 @@ std::size_t max_bytes(const Options& options) {
 
 /// A limit may be below what can go to disk at all.
 void trim_all(SwapSpace& space) {
-  for (std::size_t before = SIZE_MAX; resident_bytes() < before;) {
-    before = resident_bytes();
+  const auto anonymous_bytes = [] { return process_memory().anonymous_bytes; };
+  for (std::int64_t before = INT64_MAX; anonymous_bytes() < before;) {
+    before = anonymous_bytes();
     space.trim();
   }
 }

@@ -95,7 +95,7 @@ TEST(SwapSpace, WritesOnlyWhatHasChanged) {
 
 TEST(SwapSpace, StaysBelowTheLimitWhileAnArrayGrows) {
   const TemporaryFolder folder(kOnDisk);
-  const auto limit = static_cast<std::size_t>(process_memory().resident_bytes) + (64U << 20);
+  const auto limit = static_cast<std::size_t>(process_memory().anonymous_bytes) + (64U << 20);
   SwapSpace space({folder.path(), limit});
   GrowingArray<std::uint64_t> array;
   array.swap_to(space);
@@ -103,7 +103,7 @@ TEST(SwapSpace, StaysBelowTheLimitWhileAnArrayGrows) {
     array.push_back(value_of(i));
     if (i % 100'000 != 0) continue;
     space.trim();
-    ASSERT_LE(process_memory().resident_bytes, static_cast<std::int64_t>(limit) + (8 << 20));
+    ASSERT_LE(process_memory().anonymous_bytes, static_cast<std::int64_t>(limit) + (8 << 20));
   }
 }
 
@@ -111,7 +111,7 @@ TEST(SwapSpace, SeldomWritesWhatIsAlwaysInUse) {
   constexpr std::size_t kValuesOfChunk = SwapSpace::kChunkBytes / sizeof(std::uint64_t);
   constexpr std::size_t kChunksInUse = 8;
   const TemporaryFolder folder(kOnDisk);
-  const auto limit = static_cast<std::size_t>(process_memory().resident_bytes) + (48U << 20);
+  const auto limit = static_cast<std::size_t>(process_memory().anonymous_bytes) + (48U << 20);
   SwapSpace space({folder.path(), limit});
   GrowingArray<std::uint64_t> in_use(kChunksInUse * kValuesOfChunk);
   GrowingArray<std::uint64_t> growing;
