@@ -95,12 +95,14 @@ void SwapSpace::trim() {
   const std::lock_guard lock(mutex_);
   const std::size_t may_be_written = written_bytes_ + kMaxWrittenByTrim;
   try {
-    // All take a turn if need be: so small a limit has to be kept as well.
-    for (std::size_t n = chunks_.size() * (kMaxMissedTurns + 1);
-         n > 0 && freed < excess && written_bytes_ < may_be_written; --n) {
-      Chunk& chunk = chunks_.front();
-      chunks_.splice(chunks_.end(), chunks_, chunks_.begin());
-      freed += take_turn(chunk);
+    // What is in use goes to disk, too, if nothing else is left: the limit is kept.
+    for (const bool may_miss : {true, false}) {
+      for (std::size_t n = chunks_.size();
+           n > 0 && freed < excess && written_bytes_ < may_be_written; --n) {
+        Chunk& chunk = chunks_.front();
+        chunks_.splice(chunks_.end(), chunks_, chunks_.begin());
+        freed += take_turn(chunk, may_miss);
+      }
     }
     problem_.clear();
   } catch (const std::system_error& error) {
@@ -110,8 +112,8 @@ void SwapSpace::trim() {
 }
 
 /// Returns how many bytes are free now.
-std::size_t SwapSpace::take_turn(Chunk& chunk) {
-  if (chunk.num_turns_to_miss > 0) {
+std::size_t SwapSpace::take_turn(Chunk& chunk, bool may_miss) {
+  if (may_miss && chunk.num_turns_to_miss > 0) {
     --chunk.num_turns_to_miss;
     return 0;
   }

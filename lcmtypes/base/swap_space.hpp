@@ -85,7 +85,7 @@ class SwapSpace {
     std::size_t num_in_memory = 0;
   };
 
-  std::size_t take_turn(Chunk& chunk);
+  std::size_t take_turn(Chunk& chunk, bool may_miss);
   std::size_t put_on_disk(Chunk& chunk, Pages pages);
   Pages pages_of(const Chunk& chunk) const;
   std::size_t take_slot();
