@@ -3,6 +3,7 @@
 
 #include "mapper/core/kernels/linearization.hpp"
 #include "mapper/core/simd/depth_sigma.hpp"
+#include "mapper/core/simd/vector_lanes.hpp"
 
 namespace kintsugi::mapper {
 
@@ -37,19 +38,7 @@ class RowLinearization {
   using Int = typename Pack::Int;
   using Mask = typename Pack::Mask;
 
-  struct Vector {
-    Float x, y, z;
-  };
-  static Float dot(const Vector& a, const Vector& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-  static Vector cross(const Vector& a, const Vector& b) {
-    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-  }
-  Vector rotated(const Vector& a) const {
-    const auto& R = in_.X_VC.R;
-    return {Float(R[0][0]) * a.x + Float(R[0][1]) * a.y + Float(R[0][2]) * a.z,
-            Float(R[1][0]) * a.x + Float(R[1][1]) * a.y + Float(R[1][2]) * a.z,
-            Float(R[2][0]) * a.x + Float(R[2][1]) * a.y + Float(R[2][2]) * a.z};
-  }
+  using Vector = VectorLanes<Float>;
 
   /// Adds `count` pixels of a row: `pixel` is the index of the first, `u` its column; their rays
   /// are (x, y, 1).
@@ -61,10 +50,7 @@ class RowLinearization {
     if (none(is_measured)) return;
     const Float x = (Float(static_cast<float>(u)) + Float::iota() - Float(frame.camera.cx)) *
                     Float(frame.camera.inverse_fx);
-    Vector point = rotated({depth * x, depth * Float(y), depth});
-    point.x = point.x + Float(in_.X_VC.t[0]);
-    point.y = point.y + Float(in_.X_VC.t[1]);
-    point.z = point.z + Float(in_.X_VC.t[2]);
+    const Vector point = moved(in_.X_VC, Vector{depth * x, depth * Float(y), depth});
 
     const Association model = associate(point, is_measured);
     if (none(model.exists)) return;
@@ -77,9 +63,10 @@ class RowLinearization {
     const Mask is_near =
         model.exists & (dot(offset, offset) < Float(in_.max_squared_distance_m2) + noise * noise);
     if (none(is_near)) return;
-    const Vector frame_normal = rotated({Float::load(frame.normal_x + pixel, count),
-                                         Float::load(frame.normal_y + pixel, count),
-                                         Float::load(frame.normal_z + pixel, count)});
+    const Vector frame_normal =
+        rotated(in_.X_VC, Vector{Float::load(frame.normal_x + pixel, count),
+                                 Float::load(frame.normal_y + pixel, count),
+                                 Float::load(frame.normal_z + pixel, count)});
     const Vector normal = {gather(in_.model_V.normal_x, model.pixel, is_near),
                            gather(in_.model_V.normal_y, model.pixel, is_near),
                            gather(in_.model_V.normal_z, model.pixel, is_near)};

@@ -5,6 +5,7 @@
 
 #include "mapper/core/kernels/surface.hpp"
 #include "mapper/core/simd/depth_sigma.hpp"
+#include "mapper/core/simd/vector_lanes.hpp"
 
 namespace kintsugi::mapper {
 
@@ -120,9 +121,7 @@ class SurfaceRows {
   static constexpr float kInfinity = __builtin_inff();
   static constexpr float kRoot2 = 1.41421356F;
 
-  struct Vector {
-    Float x, y, z;
-  };
+  using Vector = VectorLanes<Float>;
   /// The pixels of a 2x2 square, for each of sixteen squares side by side.
   struct Four {
     Float of[4];
@@ -163,7 +162,7 @@ class SurfaceRows {
   }
   /// NaN where the length is zero or NaN.
   static Vector normalized(const Vector& vector) {
-    const Float squared = vector.x * vector.x + vector.y * vector.y + vector.z * vector.z;
+    const Float squared = dot(vector, vector);
     const Float scale = select(squared > Float(0.0F), Float(1.0F) / sqrt(squared), Float(kNaN));
     return {vector.x * scale, vector.y * scale, vector.z * scale};
   }
@@ -216,8 +215,7 @@ class SurfaceRows {
     const Vector dv = {(below - above) * x, below * ray_y(v + 1) - above * ray_y(v - 1),
                        below - above};
     // u points right and v down, so dv x du points towards the camera.
-    const Vector normal = normalized(
-        {dv.y * du.z - dv.z * du.y, dv.z * du.x - dv.x * du.z, dv.x * du.y - dv.y * du.x});
+    const Vector normal = normalized(cross(dv, du));
     const Float column = Float(static_cast<float>(u)) + Float::iota();
     const Float center = Float::load(here, count);
     const Float reach = same_surface_m(tolerance, center, 2);
