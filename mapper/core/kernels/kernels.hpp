@@ -6,6 +6,7 @@
 #include "mapper/core/kernels/block_sides.hpp"
 #include "mapper/core/kernels/integration.hpp"
 #include "mapper/core/kernels/linearization.hpp"
+#include "mapper/core/kernels/photometry.hpp"
 #include "mapper/core/kernels/raycast.hpp"
 #include "mapper/core/kernels/surface.hpp"
 
@@ -18,6 +19,7 @@ struct Kernels {
   FindBlockSides find_block_sides = nullptr;
   IntegrateBlock integrate_block = nullptr;
   LinearizeRows linearize_rows = nullptr;
+  SumPhotometryRows sum_photometry_rows = nullptr;
   SmoothDepthRow smooth_depth_row = nullptr;
   HalveDepthRow halve_depth_row = nullptr;
   NormalsRow normals_row = nullptr;

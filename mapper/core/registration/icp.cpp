@@ -1,18 +1,12 @@
 #include "mapper/core/registration/icp.hpp"
 
-#include <algorithm>
 #include <vector>
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include "mapper/core/frame/kernel_arguments.hpp"
+#include "mapper/core/registration/row_bands.hpp"
 
 namespace kintsugi::mapper {
 namespace {
-
-constexpr int kRowsPerBand = 8;          ///< summed in single precision
-constexpr int kMinPixelsPerTask = 8192;  ///< waking a thread for fewer costs more
 
 LinearizationInput make_input(const SurfaceMap& frame_C, const SurfaceMap& model_V,
                               const Pose& X_VC, const IcpGates& gates) {
@@ -61,18 +55,9 @@ NormalEquations sum_of(const std::vector<LinearizationSums>& bands) {
 NormalEquations linearize(const SurfaceMap& frame_C, const SurfaceMap& model_V, const Pose& X_VC,
                           const IcpGates& gates, const Kernels& kernels) {
   const LinearizationInput input = make_input(frame_C, model_V, X_VC, gates);
-  const int rows = frame_C.depth_m.rows;
-  const int pixels_per_band = kRowsPerBand * std::max(1, frame_C.depth_m.cols);
-  std::vector<LinearizationSums> bands((rows + kRowsPerBand - 1) / kRowsPerBand);
-  const tbb::blocked_range<int> all_bands(0, static_cast<int>(bands.size()),
-                                          1 + kMinPixelsPerTask / pixels_per_band);
-  tbb::parallel_for(all_bands, [&](const tbb::blocked_range<int>& range) {
-    for (int band = range.begin(); band < range.end(); ++band) {
-      const int first = band * kRowsPerBand;
-      bands[band] = kernels.linearize_rows(input, first, std::min(first + kRowsPerBand, rows));
-    }
-  });
-  return sum_of(bands);
+  return sum_of(sum_bands<LinearizationSums>(frame_C.depth_m.size(), [&](int first, int last) {
+    return kernels.linearize_rows(input, first, last);
+  }));
 }
 
 }  // namespace kintsugi::mapper

@@ -1,10 +1,7 @@
 #pragma once
-// Sums of information over the pixels of an image. They do not depend on the number of threads.
+// Sums of information over the pixels of an image.
 
 #include <Eigen/Core>
-#include <vector>
-
-#include <tbb/parallel_for.h>
 
 #include "mapper/core/registration/twist.hpp"
 
@@ -45,18 +42,5 @@ struct InformationSum {
     total.C += half + half.transpose();
   }
 };
-
-/// The sums of each band of eight rows of an image, in order. `Sum sum_rows(int first, int last)`
-/// is called in parallel.
-template <typename Sum, typename SumRows>
-std::vector<Sum> sum_bands(int rows, const SumRows& sum_rows) {
-  constexpr int kRowsPerBand = 8;
-  std::vector<Sum> bands((rows + kRowsPerBand - 1) / kRowsPerBand);
-  tbb::parallel_for(0, static_cast<int>(bands.size()), [&](int band) {
-    const int first = band * kRowsPerBand;
-    bands[band] = sum_rows(first, first + kRowsPerBand < rows ? first + kRowsPerBand : rows);
-  });
-  return bands;
-}
 
 }  // namespace kintsugi::mapper

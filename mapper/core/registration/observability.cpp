@@ -7,6 +7,7 @@
 #include "lcmtypes/base/argument_check.hpp"
 #include "mapper/core/frame/camera.hpp"
 #include "mapper/core/registration/pose_uncertainty.hpp"
+#include "mapper/core/registration/row_bands.hpp"
 
 namespace kintsugi::mapper {
 namespace {
@@ -128,7 +129,7 @@ Information geometric_information(const SurfaceMap& frame_C, const SurfaceMap& m
   const NormalPairs pairs(frame_C, model_V, X_VC, gates);
   Information information;
   for (const InformationSum& band : sum_bands<InformationSum>(
-           frame_C.depth_m.rows,
+           frame_C.depth_m.size(),
            [&](int first, int last) { return pairs.sum_rows(first, last); })) {
     band.add_to(information);
   }

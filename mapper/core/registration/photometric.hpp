@@ -10,6 +10,7 @@
 #include "lcmtypes/geometry.hpp"
 #include "mapper/core/frame/intensity.hpp"
 #include "mapper/core/frame/surface_map.hpp"
+#include "mapper/core/kernels/kernels.hpp"
 #include "mapper/core/registration/information.hpp"
 
 namespace kintsugi::mapper {
@@ -56,11 +57,12 @@ struct PhotometricConfig {
 };
 
 /// `exposure`: as of the step before; where there is none yet, all pixels have the same weight. The
-/// result does not depend on the number of threads.
+/// result depends neither on the number of threads nor on the instruction set.
 PhotometricEquations linearize_photometric(const PhotometricImage& frame_C,
                                            const PhotometricImage& reference_K, const Pose& X_VC,
                                            const Pose& X_KV,
                                            const std::optional<Exposure>& exposure,
-                                           const PhotometricConfig& config);
+                                           const PhotometricConfig& config,
+                                           const Kernels& kernels = best_kernels());
 
 }  // namespace kintsugi::mapper

@@ -6,6 +6,7 @@
 #include "mapper/core/simd/integration_kernel.hpp"
 #include "mapper/core/simd/linearization_kernel.hpp"
 #include "mapper/core/simd/pack_avx2.hpp"
+#include "mapper/core/simd/photometry_kernel.hpp"
 #include "mapper/core/simd/raycast_kernel.hpp"
 #include "mapper/core/simd/surface_kernel.hpp"
 
@@ -16,6 +17,7 @@ const Kernels kAvx2Kernels = {
     .find_block_sides = find_block_sides<Avx2Pack>,
     .integrate_block = integrate_block<Avx2Pack>,
     .linearize_rows = linearize_rows<Avx2Pack>,
+    .sum_photometry_rows = sum_photometry_rows<Avx2Pack>,
     .smooth_depth_row = SurfaceRows<Avx2Pack>::smooth_depth,
     .halve_depth_row = SurfaceRows<Avx2Pack>::halve_depth,
     .normals_row = SurfaceRows<Avx2Pack>::normals,

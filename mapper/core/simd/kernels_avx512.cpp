@@ -6,6 +6,7 @@
 #include "mapper/core/simd/integration_kernel.hpp"
 #include "mapper/core/simd/linearization_kernel.hpp"
 #include "mapper/core/simd/pack_avx512.hpp"
+#include "mapper/core/simd/photometry_kernel.hpp"
 #include "mapper/core/simd/raycast_kernel.hpp"
 #include "mapper/core/simd/surface_kernel.hpp"
 
@@ -16,6 +17,7 @@ const Kernels kAvx512Kernels = {
     .find_block_sides = find_block_sides<Avx512Pack>,
     .integrate_block = integrate_block<Avx512Pack>,
     .linearize_rows = linearize_rows<Avx512Pack>,
+    .sum_photometry_rows = sum_photometry_rows<Avx512Pack>,
     .smooth_depth_row = SurfaceRows<Avx512Pack>::smooth_depth,
     .halve_depth_row = SurfaceRows<Avx512Pack>::halve_depth,
     .normals_row = SurfaceRows<Avx512Pack>::normals,

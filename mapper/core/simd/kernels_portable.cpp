@@ -6,6 +6,7 @@
 #include "mapper/core/simd/integration_kernel.hpp"
 #include "mapper/core/simd/linearization_kernel.hpp"
 #include "mapper/core/simd/pack_portable.hpp"
+#include "mapper/core/simd/photometry_kernel.hpp"
 #include "mapper/core/simd/raycast_kernel.hpp"
 #include "mapper/core/simd/surface_kernel.hpp"
 
@@ -16,6 +17,7 @@ const Kernels kPortableKernels = {
     .find_block_sides = find_block_sides<PortablePack>,
     .integrate_block = integrate_block<PortablePack>,
     .linearize_rows = linearize_rows<PortablePack>,
+    .sum_photometry_rows = sum_photometry_rows<PortablePack>,
     .smooth_depth_row = SurfaceRows<PortablePack>::smooth_depth,
     .halve_depth_row = SurfaceRows<PortablePack>::halve_depth,
     .normals_row = SurfaceRows<PortablePack>::normals,

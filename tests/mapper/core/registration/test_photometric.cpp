@@ -1,9 +1,12 @@
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include <gtest/gtest.h>
+#include <oneapi/tbb/global_control.h>
 
 #include "mapper/core/frame/surface_pyramid.hpp"
+#include "mapper/core/kernels/instruction_set.hpp"
 #include "mapper/core/registration/observability.hpp"
 #include "mapper/core/registration/photometric.hpp"
 #include "tests/mapper/core/box_room.hpp"
@@ -156,6 +159,142 @@ TEST(Photometric, WhatTheReferenceDidNotSeeTakesNoPart) {
   frame.surface.depth_m(cv::Rect(80, 0, 10, 120)).setTo(std::numeric_limits<float>::quiet_NaN());
   const auto seen = linearize_at(frame, reference, Pose::Identity()).pixels;
   EXPECT_NEAR(static_cast<double>(seen) / static_cast<double>(all), 70.0 / 160.0, 0.02);
+}
+
+/// The sums of the definition, pixel by pixel in double precision.
+PhotometricEquations slow_linearization(const Picture& frame, const Picture& reference,
+                                        const Pose& X_VC, const Pose& X_KV,
+                                        const Exposure& exposure,
+                                        const PhotometricConfig& config = {}) {
+  const Intrinsics& camera = frame.surface.intrinsics;  // of both
+  const auto mixed = [](const cv::Mat_<float>& image, double x, double y) {
+    const int u = static_cast<int>(x);
+    const int v = static_cast<int>(y);
+    return (v + 1 - y) * ((u + 1 - x) * image(v, u) + (x - u) * image(v, u + 1)) +
+           (y - v) * ((u + 1 - x) * image(v + 1, u) + (x - u) * image(v + 1, u + 1));
+  };
+  const auto row_of = [&](const Eigen::Matrix3d& R_VA, const Vector3d& p_A, double gradient_u,
+                          double gradient_v, const Vector3d& p_V) {
+    const double du = gradient_u * camera.fx / p_A.z();
+    const double dv = gradient_v * camera.fy / p_A.z();
+    const Vector3d a = R_VA * Vector3d(du, dv, -(du * p_A.x() + dv * p_A.y()) / p_A.z());
+    Vector6d row;
+    row << a, p_V.cross(a);
+    return row;
+  };
+  PhotometricEquations sum;
+  Vector6d rows = Vector6d::Zero();
+  double weights = 0.0;
+  double residuals = 0.0;
+  double squares = 0.0;
+  for (int v = 0; v < camera.height; ++v) {
+    for (int u = 0; u < camera.width; ++u) {
+      const Vector3d p_C = frame.surface.point(v, u).cast<double>();
+      if (std::isnan(p_C.z())) continue;
+      const Vector3d p_V = X_VC * p_C;
+      const Vector3d p_K = X_KV * p_V;
+      if (p_K.z() <= 0.0) continue;
+      const double x = camera.fx * p_K.x() / p_K.z() + camera.cx;
+      const double y = camera.fy * p_K.y() / p_K.z() + camera.cy;
+      if (x < 1.0 || y < 1.0 || x >= camera.width - 2.0 || y >= camera.height - 2.0) continue;
+      const double depth_m = reference.surface.depth_m(static_cast<int>(std::lround(y)),
+                                                       static_cast<int>(std::lround(x)));
+      const double allowed_m = std::max(config.depth_sigmas * frame.surface.noise.sigma_m(p_K.z()),
+                                        config.min_depth_step_m);
+      if (std::isnan(depth_m) || std::abs(depth_m - p_K.z()) >= allowed_m) continue;
+      const double seen = mixed(reference.intensity.value, x, y);
+      const double residual = seen - exposure.gain * frame.intensity.value(v, u) - exposure.bias;
+      const double limit = config.huber_sigmas * config.sigma;
+      const double weight =
+          std::min(1.0, limit / std::abs(residual)) / (config.sigma * config.sigma);
+      const Vector6d row =
+          row_of(X_KV.linear().transpose(), p_K, mixed(reference.intensity.gradient_u, x, y),
+                 mixed(reference.intensity.gradient_v, x, y), p_V);
+      const Vector6d other =
+          row_of(X_VC.linear(), p_C, exposure.gain * frame.intensity.gradient_u(v, u),
+                 exposure.gain * frame.intensity.gradient_v(v, u), p_V);
+      sum.information.A += weight * row * row.transpose();
+      sum.information.C += 0.5 * weight * (row * other.transpose() + other * row.transpose());
+      sum.b -= weight * residual * row;
+      rows += weight * row;
+      weights += weight;
+      residuals += weight * residual;
+      squares += residual * residual;
+      ++sum.pixels;
+    }
+  }
+  sum.information.A -= rows * rows.transpose() / weights;
+  sum.information.C -= rows * rows.transpose() / weights;
+  sum.mean_residual = residuals / weights;
+  sum.b += rows * sum.mean_residual;
+  sum.rms = std::sqrt(squares / static_cast<double>(sum.pixels));
+  return sum;
+}
+
+/// Two pictures that differ in pose, exposure and what is seen, and where V is.
+struct TwoPictures {
+  Pose X_KV = se3_retract(some_twist(2.0));
+  Pose X_VC = se3_retract(some_twist(-1.2));
+  Picture reference = picture_at(Pose::Identity());
+  Picture frame = picture_at(se3_retract(some_twist(1.0)), 0.9, 0.05);
+  Exposure exposure{.gain = 1.05, .bias = -0.04};
+
+  TwoPictures() {
+    frame.surface.depth_m(cv::Rect(20, 10, 37, 30)).setTo(0.8F);
+    reference.surface.depth_m(cv::Rect(90, 40, 11, 50))
+        .setTo(std::numeric_limits<float>::quiet_NaN());
+    frame.intensity.value(cv::Rect(60, 70, 30, 30)).setTo(0.9F);  // beyond Huber's limit
+  }
+};
+
+TEST(Photometric, SumsAreThoseOfTheDefinition) {
+  const TwoPictures two;
+  const PhotometricEquations fast =
+      linearize_photometric(two.frame, two.reference, two.X_VC, two.X_KV, two.exposure, {});
+  const PhotometricEquations slow =
+      slow_linearization(two.frame, two.reference, two.X_VC, two.X_KV, two.exposure);
+  ASSERT_GT(slow.pixels, 10'000);
+  EXPECT_NEAR(static_cast<double>(fast.pixels), static_cast<double>(slow.pixels), 3.0);
+  constexpr double kShare = 1e-3;  // three pixels at a border of these, and single precision
+  EXPECT_LT((fast.information.A - slow.information.A).norm(), kShare * slow.information.A.norm());
+  EXPECT_LT((fast.information.C - slow.information.C).norm(), kShare * slow.information.C.norm());
+  EXPECT_LT((fast.b - slow.b).norm(), kShare * slow.b.norm());
+  EXPECT_NEAR(fast.mean_residual, slow.mean_residual, kShare * slow.rms);
+  EXPECT_NEAR(fast.rms, slow.rms, kShare * slow.rms);
+}
+
+void expect_same_bits(const PhotometricEquations& a, const PhotometricEquations& b) {
+  EXPECT_EQ(a.information.A, b.information.A);
+  EXPECT_EQ(a.information.C, b.information.C);
+  EXPECT_EQ(a.b, b.b);
+  EXPECT_EQ(a.exposure.gain, b.exposure.gain);
+  EXPECT_EQ(a.exposure.bias, b.exposure.bias);
+  EXPECT_EQ(a.rms, b.rms);
+  EXPECT_EQ(a.mean_residual, b.mean_residual);
+  EXPECT_EQ(a.pixels, b.pixels);
+}
+
+TEST(Photometric, GivesTheSameBitsWithEveryInstructionSet) {
+  const TwoPictures two;
+  const auto with = [&](InstructionSet set) {
+    return linearize_photometric(two.frame, two.reference, two.X_VC, two.X_KV, two.exposure, {},
+                                 kernels_for(set));
+  };
+  const PhotometricEquations portable = with(InstructionSet::kPortable);
+  for (const InstructionSet set : kInstructionSets) {
+    if (!is_supported(set)) continue;
+    SCOPED_TRACE(name_of(set));
+    expect_same_bits(with(set), portable);
+  }
+}
+
+TEST(Photometric, GivesTheSameBitsWhateverTheThreads) {
+  const TwoPictures two;
+  const auto with_threads = [&](int threads) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    return linearize_photometric(two.frame, two.reference, two.X_VC, two.X_KV, two.exposure, {});
+  };
+  expect_same_bits(with_threads(4), with_threads(1));
 }
 
 TEST(PhotometricConfig, NamesTheFieldOutOfRange) {
