@@ -27,14 +27,14 @@ soak_row() {
   must "slices are missing" test "$(status_last faulty segmenter slices_missing)" -eq 0
 }
 
-# Of a small image and large voxels, so that hours take minutes. A round takes 100 s. What left the volume fills the memory
-# that is given to it, here after some rounds.
+# Of few and small images and large voxels, so that hours take minutes. A round takes 100 s. What left the volume fills the
+# memory that is given to it, here after some rounds.
 patrol_row() {
-  local hours="${KINTSUGI_PATROL_HOURS:-12}" limit_mb=150 laps process seconds walked_s most_mb
+  local hours="${KINTSUGI_PATROL_HOURS:-12}" limit_mb=150 rate_hz=2 laps process seconds walked_s most_mb
   if_quick && hours=0.03 limit_mb=16
   laps="$(calculate "$hours * 36 < 1 ? 1 : $hours * 36" 0)"
-  scene+=(--device "synthetic://patrol?sensor=lidar&rate=5&laps=$laps" --resolution 0.02 --store-limit "$limit_mb"
-    --every 100000000 --mapper '--session=7 --kept-memory=30')
+  scene+=(--device "synthetic://patrol?sensor=lidar&rate=$rate_hz&laps=$laps" --resolution 0.02
+    --store-limit "$limit_mb" --every 100000000 --mapper '--session=7 --kept-memory=30')
   faulty_start
   watch_sizes &
   if [[ -n "${KINTSUGI_PATROL_S:-}" ]]; then
@@ -42,7 +42,7 @@ patrol_row() {
   fi
   faulty_wait
   seconds="$(seconds_of_statuses)"
-  walked_s="$(calculate "($(status_last faulty mapper frames_tracked) + $(status_last faulty mapper frames_lost)) / 5" 0)"
+  walked_s="$(calculate "($(status_last faulty mapper frames_tracked) + $(status_last faulty mapper frames_lost)) / $rate_hz" 0)"
   note "$(calculate "$walked_s / 3600" 2) h walked, $(calculate "$walked_s / $seconds" 1) times as fast as the camera"
   for process in mapper segmenter viewer; do
     memory_over_time "$process" "$seconds"

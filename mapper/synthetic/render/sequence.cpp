@@ -12,7 +12,7 @@ namespace kintsugi::synthetic {
 namespace {
 
 /// Of which a frame of 30 Hz is each.
-constexpr std::array<int, 5> kRates_hz = {30, 15, 10, 6, 5};
+constexpr std::array kRates_hz = {30, 15, 10, 6, 5, 3, 2, 1};
 
 }  // namespace
 
@@ -26,7 +26,7 @@ Sequence::Sequence(const Config& config)
   require(config_.laps == 1 || content_.trajectory.is_closed(), "synthetic: laps", config_.laps,
           "1: the path does not end where it begins");
   require(std::ranges::find(kRates_hz, config_.rate_hz) != kRates_hz.end(), "synthetic: rate",
-          config_.rate_hz, "30, 15, 10, 6 or 5");
+          config_.rate_hz, "30, 15, 10, 6, 5, 3, 2 or 1");
   const int on_path = frames_on_path();
   check_range("synthetic: start", config_.start, 0, on_path - 1);
   num_frames_ = config_.frames.value_or(on_path - config_.start);

@@ -27,7 +27,7 @@ class Sequence {
     bool noise = true;               ///< of the depth sensor
     double speed = 1.0;              ///< times that of the path, within [0.1, 10]
     int laps = 1;                    ///< how often the path is walked, if it is closed
-    int rate_hz = 30;                ///< frames per second, 30, 15, 10, 6 or 5
+    int rate_hz = 30;                ///< frames per second, 30, 15, 10, 6, 5, 3, 2 or 1
     std::uint32_t seed = 1;          ///< for the noise of the sensor and the shake of the hand
     int start = 0;                   ///< first frame, >= 0 and on the path
     std::optional<int> frames;       ///< how many, >= 1 and on the path; absent: to the path's end

@@ -70,7 +70,7 @@ const std::array<Option, 10>& options_table() {
       {"noise", "on|off", [](Config& c, const Argument& a) { c.noise = a.is_on(); }},
       {"speed", "N", [](Config& c, const Argument& a) { c.speed = a.number<double>(); }},
       {"laps", "N", [](Config& c, const Argument& a) { c.laps = a.number<int>(); }},
-      {"rate", "30|15|10|6|5", [](Config& c, const Argument& a) { c.rate_hz = a.number<int>(); }},
+      {"rate", "30|15|10|6|5|3|2|1", [](Config& c, const Argument& a) { c.rate_hz = a.number<int>(); }},
       {"seed", "N", [](Config& c, const Argument& a) { c.seed = a.number<std::uint32_t>(); }},
       {"start", "N", [](Config& c, const Argument& a) { c.start = a.number<int>(); }},
       {"frames", "N", [](Config& c, const Argument& a) { c.frames = a.number<int>(); }},
