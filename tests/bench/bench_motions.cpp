@@ -69,20 +69,6 @@ Options parse_command_line(int argc, char** argv) {
   return options;
 }
 
-/// Where a patch is when the map, straight along x so far, is bent to an arc: a patch moves and
-/// turns with the place on the axis that is beside its middle.
-Pose bent(const CloudSlice& patch, double bend) {
-  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
-  for (const CloudPoint& p : patch.points_W) middle += Eigen::Vector3d(p.x, p.y, p.z);
-  middle /= static_cast<double>(patch.points_W.size());
-  const double angle = bend * middle.x();
-  Pose X = Pose::Identity();
-  X.linear() = Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()).matrix();
-  const Eigen::Vector3d on_arc(std::sin(angle) / bend, (1.0 - std::cos(angle)) / bend, 0.0);
-  X.translation() = on_arc - X.linear() * Eigen::Vector3d(middle.x(), 0.0, 0.0);
-  return X;
-}
-
 /// Corrections of a map, the batch segmentations of the same points, and what they took.
 class CorrectedMap {
  public:
@@ -123,7 +109,7 @@ class CorrectedMap {
     correction.correction = ++num_corrections_;
     times.num_points = 0;
     for (std::size_t k = first; k < last; ++k) {
-      places_[k] = bent(patches_[k], share * bends_);
+      places_[k] = place_on_arc(patches_[k], share * bends_);
       correction.motions.push_back({patches_[k].id, places_[k]});
       times.num_points += patches_[k].points_W.size();
     }

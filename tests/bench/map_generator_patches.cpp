@@ -54,4 +54,17 @@ std::vector<CloudSlice> cut_into_patches(const Slices& slices, double tile_m, do
   return patches;
 }
 
+Pose place_on_arc(const CloudSlice& patch, double curvature_per_m) {
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  for (const CloudPoint& p : patch.points_W) middle += Eigen::Vector3d(p.x, p.y, p.z);
+  middle /= static_cast<double>(patch.points_W.size());
+  const double angle = curvature_per_m * middle.x();
+  Pose X = Pose::Identity();
+  X.linear() = Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()).matrix();
+  const Eigen::Vector3d on_arc =
+      Eigen::Vector3d(std::sin(angle), 1.0 - std::cos(angle), 0.0) / curvature_per_m;
+  X.translation() = on_arc - X.linear() * Eigen::Vector3d(middle.x(), 0.0, 0.0);
+  return X;
+}
+
 }  // namespace kintsugi::segmenter::bench

@@ -68,7 +68,7 @@ SECTIONS = (
     Section("beyond-memory", "mode exact on a generated map of 50 million points, with a limit on memory and without",
             segmenting.beyond_memory, ("bench_memory",)),
     Section("corrections", "corrections that move all patches, or few, of a generated map of 4 million points",
-            segmenting.corrections, ("bench_motions",)),
+            segmenting.corrections, ("bench_closing", "bench_motions")),
     Section("whole-map", "saving, describing, querying and resuming a whole map", segmenting.whole_map,
             ("bench_whole_map",)),
     Section("renderer", "drawing a picture", others.renderer, ("bench_renderer",)),

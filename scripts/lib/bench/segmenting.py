@@ -5,10 +5,10 @@ import shlex
 from pathlib import Path
 
 from trio.messages import Problem
-from trio.programs import ROOT
+from trio.programs import ROOT, program
 
 from .memory_limit import MemoryLimit
-from .run import BENCH_PROGRAMS, PAPER_SLICES, room
+from .run import BENCH_PROGRAMS, PAPER_SLICES, SCRIPTS, room
 from .tables import fixed, markdown, number, parse_tables, read_csv
 
 PAPER_RESULTS = Path(ROOT, "segmenter", "evaluation", "paper", "paper_results.hpp")
@@ -198,7 +198,13 @@ def by_first_column(table):
 
 
 def corrections(run):
-    return run.bench("bench_motions", "--runs", 7)
+    """In memory; and on a bus, with a segmenter that runs beside it."""
+    segmenter = shlex.join([program("segmenter"), "--out", str(run.folder), "--linger", "-1"])
+    client = f"{BENCH_PROGRAMS}/bench_closing --runs 7"
+    on_bus = run.execute([f"{SCRIPTS}/private_bus", "bash", "-c",
+                          f"{segmenter} >segmenter.txt 2>&1 & {client}; code=$?; kill $!; wait; exit $code"],
+                         name="bench_closing")
+    return run.bench("bench_motions", "--runs", 7) + "\nThe same map on the bus:\n\n" + on_bus
 
 
 def whole_map(run):
