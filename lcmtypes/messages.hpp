@@ -179,7 +179,7 @@ struct KeyframeMessage {
   /// The keyframe from which the camera was tracked; -1: it begins a part of the map.
   std::int32_t tracked_from = -1;
   std::int32_t part = 0;  ///< of the map, in which the camera was tracked; see CloudSlice::part
-  double path_m = 0.0;    ///< length of the camera's path up to it
+  double way_m = 0.0;     ///< length of the camera's way from tracked_from to it
   /// How far the camera may have gone between the previous keyframe and the beginning of a part.
   double unseen_m = 0.0;
   float resolution_m = 0.0F;  ///< voxel size of the map, > 0

@@ -26,7 +26,7 @@ struct Bulk<KeyframeMessage> : PlacedByByte<keyframe_t> {
     to.previous = from.previous;
     to.tracked_from = from.tracked_from;
     to.part = from.part;
-    to.path_m = from.path_m;
+    to.way_m = from.way_m;
     to.unseen_m = from.unseen_m;
     to.resolution_m = from.resolution_m;
     to.noise_base_m = from.noise_base_m;
@@ -66,7 +66,7 @@ struct Bulk<KeyframeMessage> : PlacedByByte<keyframe_t> {
     check.range("previous", keyframe.previous, -1, keyframe.number - 1);
     check.range("tracked_from", keyframe.tracked_from, -1, keyframe.previous);
     check.not_negative("part", keyframe.part);
-    check.range("path_m", keyframe.path_m, 0.0, kMaxPath_m);
+    check.range("way_m", keyframe.way_m, 0.0, kMaxPath_m);
     check.range("unseen_m", keyframe.unseen_m, 0.0, kMaxPath_m);
     check.range("resolution_m", keyframe.resolution_m, kMinResolution_m, kMaxResolution_m);
     check.pose("X_UK", keyframe.X_UK);

@@ -173,7 +173,7 @@ inline KeyframeMessage example_keyframe(int num_features) {
   keyframe.previous = 5;
   keyframe.tracked_from = 4;
   keyframe.part = 1;
-  keyframe.path_m = 12.5;
+  keyframe.way_m = 12.5;
   keyframe.unseen_m = 3.0;
   keyframe.resolution_m = 0.008F;
   keyframe.X_UK = example_pose();

@@ -44,12 +44,12 @@ inline bool operator==(const CameraView& a, const CameraView& b) {
 }
 
 inline bool operator==(const KeyframeMessage& a, const KeyframeMessage& b) {
-  const auto& [utime, session, map_name, join, number, previous, tracked_from, part, path_m,
+  const auto& [utime, session, map_name, join, number, previous, tracked_from, part, way_m,
                unseen_m, resolution_m, X_UK, information_K, noise_base_m, noise_share,
                noise_growth_per_m, intrinsics, in_volume, features, depth, intensity] = a;
   return utime == b.utime && session == b.session && map_name == b.map_name && join == b.join &&
          number == b.number && previous == b.previous && tracked_from == b.tracked_from &&
-         part == b.part && path_m == b.path_m && unseen_m == b.unseen_m &&
+         part == b.part && way_m == b.way_m && unseen_m == b.unseen_m &&
          resolution_m == b.resolution_m && equal(X_UK, b.X_UK) &&
          information_K == b.information_K && noise_base_m == b.noise_base_m &&
          noise_share == b.noise_share && noise_growth_per_m == b.noise_growth_per_m &&

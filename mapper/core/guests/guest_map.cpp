@@ -72,8 +72,8 @@ void GuestMap::add_next(LoopClosure& loops, std::int64_t utime) {
   keyframe->X_WC = X_UG(part_of_.at(message.number)) * message.X_UK;
 
   NewKeyframe added;
-  added.path_m = message.path_m;
   added.from = from;
+  added.way_m = message.way_m;
   if (!from && last_ >= 0) {
     added.unseen = UnseenWay{.before = number_here_.at(last_), .distance_m = message.unseen_m};
   }

@@ -55,7 +55,7 @@ KeyframeMessage keyframe_message(const NewKeyframe& added, std::optional<int> pr
   message.previous = previous.value_or(-1);
   message.tracked_from = added.from.value_or(-1);
   message.part = part;
-  message.path_m = added.path_m;
+  message.way_m = added.way_m;
   message.unseen_m = added.unseen ? added.unseen->distance_m : 0.0;
   message.resolution_m = static_cast<float>(resolution_m);
   message.X_UK = keyframe.X_WC;

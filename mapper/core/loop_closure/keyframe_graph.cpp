@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -39,7 +40,7 @@ void KeyframeGraph::Config::validate() const {
 
 KeyframeGraph::KeyframeGraph(const Config& config) : config_((config.validate(), config)) {}
 
-void KeyframeGraph::add(const Pose& X_UK, double path_m, std::optional<int> from,
+void KeyframeGraph::add(const Pose& X_UK, std::optional<int> from, double way_m,
                         std::optional<UnseenWay> unseen) {
   Pose X_WU = Pose::Identity();
   int part = static_cast<int>(parts_.size());
@@ -49,10 +50,10 @@ void KeyframeGraph::add(const Pose& X_UK, double path_m, std::optional<int> from
     part = nodes_[*from].part;
   } else {
     if (unseen) check_number(unseen->before);
-    const int camera = unseen ? parts_[nodes_[unseen->before].part].camera : num_cameras_++;
-    parts_.push_back({.first = size(), .camera = camera, .unseen = unseen, .joined = part});
+    parts_.push_back({.first = size(), .unseen = unseen, .joined = part});
   }
-  nodes_.push_back({X_UK, path_m, part});
+  nodes_.push_back({X_UK, part});
+  ways_.add(from, way_m);
   X_WK_.push_back(X_WU * X_UK);
 }
 
@@ -93,16 +94,24 @@ int KeyframeGraph::offer(const Loop& loop) {
 bool KeyframeGraph::is_plausible(const Loop& loop) const {
   const Pose X_EL = X_WK_[loop.earlier].inverse(Eigen::Isometry) * X_WK_[loop.later];
   const double drift_m = size_of(loop.X_EL.inverse(Eigen::Isometry) * X_EL);
-  const double path_m = path_between_m(loop.later, loop.earlier);
-  return drift_m <= config_.max_drift_share * path_m + config_.voxel_m;
+  return drift_m <= config_.max_drift_share * way_m(loop.later, loop.earlier) + config_.voxel_m;
 }
 
-/// On what length of path tracking may have drifted between two keyframes. Where two cameras met is
-/// not followed up: at most on both paths as a whole.
-double KeyframeGraph::path_between_m(int a, int b) const {
-  const bool same_camera = parts_[nodes_[a].part].camera == parts_[nodes_[b].part].camera;
-  return same_camera ? std::abs(nodes_[a].path_m - nodes_[b].path_m)
-                     : nodes_[a].path_m + nodes_[b].path_m;
+/// The way on which tracking may have drifted between two keyframes. Where no loop leads from the
+/// part of the one to that of the other, nothing bounds it.
+double KeyframeGraph::way_m(int a, int b) const {
+  const int part_a = nodes_[a].part;
+  const int part_b = nodes_[b].part;
+  if (part_a == part_b) return ways_.way_m(a, b);
+  double least_m = std::numeric_limits<double>::infinity();
+  for (const Loop& loop : confirmed_) {
+    for (const auto& [beside_a, beside_b] :
+         {std::pair(loop.later, loop.earlier), std::pair(loop.earlier, loop.later)}) {
+      if (nodes_[beside_a].part != part_a || nodes_[beside_b].part != part_b) continue;
+      least_m = std::min(least_m, ways_.way_m(a, beside_a) + ways_.way_m(beside_b, b));
+    }
+  }
+  return least_m;
 }
 
 std::pair<int, int> KeyframeGraph::later_and_earlier(int a, int b) const {
@@ -146,9 +155,9 @@ bool KeyframeGraph::is_reachable(const Loop& loop) const {
   const Pose X_EB = X_WK_[loop.earlier].inverse(Eigen::Isometry) * X_WK_[before];
   const Pose X_LF = X_WK_[loop.later].inverse(Eigen::Isometry) * X_WK_[part.first];
   const double distance_m = (loop.X_EL * X_LF.translation() - X_EB.translation()).norm();
-  const double path_m =
-      path_between_m(loop.earlier, before) + path_between_m(part.first, loop.later);
-  return distance_m <= part.unseen->distance_m + config_.max_drift_share * path_m + config_.voxel_m;
+  const double tracked_m = way_m(loop.earlier, before) + way_m(part.first, loop.later);
+  return distance_m <=
+         part.unseen->distance_m + config_.max_drift_share * tracked_m + config_.voxel_m;
 }
 
 bool KeyframeGraph::are_rivals(const Loop& a, const Loop& b) const {
@@ -158,9 +167,9 @@ bool KeyframeGraph::are_rivals(const Loop& a, const Loop& b) const {
   const Pose X_LaLb = X_WK_[a.later].inverse(Eigen::Isometry) * X_WK_[b.later];
   const Pose X_EaEb = X_WK_[a.earlier].inverse(Eigen::Isometry) * X_WK_[b.earlier];
   const Pose X_LaLb_loops = a.X_EL.inverse(Eigen::Isometry) * X_EaEb * b.X_EL;
-  const double path_m = path_between_m(a.later, b.later) + path_between_m(a.earlier, b.earlier);
+  const double tracked_m = way_m(a.later, b.later) + way_m(a.earlier, b.earlier);
   return size_of(X_LaLb.inverse(Eigen::Isometry) * X_LaLb_loops) >
-         uncertainty_m(a, b, X_LaLb_loops) + config_.max_drift_share * path_m;
+         uncertainty_m(a, b, X_LaLb_loops) + config_.max_drift_share * tracked_m;
 }
 
 /// Moves the later of the two parts to where the loop puts it.
@@ -184,13 +193,8 @@ void KeyframeGraph::move_part(const Loop& loop) {
 
 bool KeyframeGraph::agree(const Loop& a, const Loop& b) const {
   if (a.later == b.later) return false;  // one view may look like another place as a whole
-  const auto are_of_one_part = [&](int i, int j) { return nodes_[i].part == nodes_[j].part; };
-  if (!are_of_one_part(a.later, b.later) || !are_of_one_part(a.earlier, b.earlier)) return false;
-  const auto distance_m = [&](int i, int j) {
-    return std::abs(nodes_[i].path_m - nodes_[j].path_m);
-  };
-  if (distance_m(a.later, b.later) > config_.near_m) return false;
-  if (distance_m(a.earlier, b.earlier) > config_.near_m) return false;
+  if (ways_.way_m(a.later, b.later) > config_.near_m) return false;
+  if (ways_.way_m(a.earlier, b.earlier) > config_.near_m) return false;
   const Pose X_LaLb_tracked = nodes_[a.later].X_UK.inverse(Eigen::Isometry) * nodes_[b.later].X_UK;
   const Pose X_EaEb = nodes_[a.earlier].X_UK.inverse(Eigen::Isometry) * nodes_[b.earlier].X_UK;
   const Pose X_LaLb = a.X_EL.inverse(Eigen::Isometry) * X_EaEb * b.X_EL;

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "mapper/core/loop_closure/keyframe_tree.hpp"
 #include "mapper/core/loop_closure/loop.hpp"
 #include "mapper/core/pose_graph/pose_graph.hpp"
 
@@ -27,10 +28,14 @@ struct UnseenWay {
 ///
 /// A loop in one part counts only when it is confirmed: when another loop, from another later
 /// keyframe, agrees with it. For that both later keyframes must have been near each other on the
-/// camera's path, and both earlier ones, too, so that the poses between them are as precise as
+/// camera's way, and both earlier ones, too, so that the poses between them are as precise as
 /// tracking in one volume; then the way from one later keyframe to the other over both loops is
 /// where tracking has it, but for the uncertainty of the loops. Loops that lead farther than
 /// tracking can drift are refused.
+///
+/// The way between two keyframes is that on which they are tracked from each other, and not how far
+/// the camera has gone meanwhile: one that goes its round for the hundredth time is tracked in the
+/// surface of the first.
 ///
 /// Between two parts there is no such bound, only that on how far the camera can have gone while it
 /// was lost. There agreeing loops are only proposed, if they are more than twice as many as those
@@ -38,8 +43,8 @@ struct UnseenWay {
 class KeyframeGraph {
  public:
   struct Config {
-    /// Keyframes are near each other when the camera's path between them is not longer than this:
-    /// what one saw was still in the volume at the other.
+    /// Keyframes are near each other when the way between them is not longer than this: what one
+    /// saw was still in the volume at the other.
     double near_m = 5.0;
     double max_drift_share = 0.02;  ///< of tracking, see Tracker
     double voxel_m = 4.5 / 512;
@@ -52,12 +57,12 @@ class KeyframeGraph {
   /// @throws std::invalid_argument if the configuration is not valid
   explicit KeyframeGraph(const Config& config);
 
-  /// Adds keyframe number size(). `path_m` is the length of the camera's path up to it; `from` the
-  /// keyframe from which the camera came, with which it is corrected until loops say more. Without
-  /// one it begins a part, to which the camera came by an unseen way; without that, too, another
-  /// camera did, which may be anywhere.
+  /// Adds keyframe number size(). `from` is the keyframe from which the camera came, by a way of
+  /// `way_m`; it is corrected with that until loops say more. Without one it begins a part, to
+  /// which the camera came by an unseen way; without that, too, another camera did, which may be
+  /// anywhere.
   /// @throws std::invalid_argument when there is no keyframe `from`, or none before the unseen way
-  void add(const Pose& X_UK, double path_m, std::optional<int> from,
+  void add(const Pose& X_UK, std::optional<int> from, double way_m,
            std::optional<UnseenWay> unseen = {});
 
   /// Adds a motion that was tracked; X_FT is taken from the poses in U.
@@ -93,7 +98,6 @@ class KeyframeGraph {
   const Pose& X_UK(int number) const { return nodes_[number].X_UK; }
   const Pose& X_WK(int number) const { return X_WK_[number]; }
   const std::vector<Pose>& poses_W() const { return X_WK_; }
-  double path_m(int number) const { return nodes_[number].path_m; }
   /// The part of the map in which a keyframe is: of parts that are joined the first one.
   int part_of(int number) const { return parts_[nodes_[number].part].joined; }
   std::vector<int> parts() const;                                ///< part_of() each keyframe
@@ -103,18 +107,16 @@ class KeyframeGraph {
  private:
   struct Node {
     Pose X_UK;
-    double path_m;
     int part;  ///< in which it was tracked
   };
   struct Part {
-    int first;   ///< keyframe
-    int camera;  ///< that was tracked
+    int first;  ///< keyframe
     std::optional<UnseenWay> unseen;
     int joined;  ///< the first of the parts that it is joined with, or itself
   };
 
   void check_number(int number) const;
-  double path_between_m(int a, int b) const;
+  double way_m(int a, int b) const;
   bool is_plausible(const Loop& loop) const;
   bool is_reachable(const Loop& loop) const;
   void move_part(const Loop& loop);
@@ -124,8 +126,8 @@ class KeyframeGraph {
 
   Config config_;
   std::vector<Node> nodes_;
+  KeyframeTree ways_;  ///< a tree for each part
   std::vector<Part> parts_;
-  int num_cameras_ = 0;
   std::vector<Pose> X_WK_;
   std::vector<PoseEdge> tracked_;
   std::vector<Loop> confirmed_;

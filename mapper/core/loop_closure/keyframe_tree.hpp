@@ -9,12 +9,15 @@ namespace kintsugi::mapper {
 class KeyframeTree {
  public:
   /// Adds keyframe number size(), `distance_m` from that from which the camera came to it; without
-  /// one no way leads to it.
+  /// one no way leads to it, and it is the root of a tree of its own.
   void add(std::optional<int> from, double distance_m);
 
   /// Whether a keyframe is this one, or the camera's way to it from this one was not longer than
   /// `reach_m`; by number. Of one that is not there yet: none.
   std::vector<bool> within(int keyframe, double reach_m) const;
+
+  /// Length of the way between two keyframes; infinite where no way leads from one to the other.
+  double way_m(int a, int b) const;
 
   /// The keyframe from which the camera came to this one; itself for one without.
   int from(int keyframe) const { return nodes_[keyframe].from; }
@@ -24,6 +27,7 @@ class KeyframeTree {
   struct Node {
     int from = 0;
     double distance_m = 0.0;
+    int level = 0;  ///< how many keyframes are between it and the root, and one
     std::vector<int> to;
   };
 

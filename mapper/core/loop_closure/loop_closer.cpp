@@ -96,7 +96,7 @@ void LoopCloser::run() {
 
 std::optional<MapCorrection> LoopCloser::work_on(const NewKeyframe& added) {
   keyframes_.push_back(added.keyframe);
-  graph_.add(added.keyframe->X_WC, added.path_m, added.from, added.unseen);
+  graph_.add(added.keyframe->X_WC, added.from, added.way_m, added.unseen);
   add_tracked(added);
   int num_confirmed = 0;
   std::vector<Loop> joining;  // once for a keyframe, as the rule compares many

@@ -23,9 +23,9 @@ namespace kintsugi::mapper {
 struct NewKeyframe {
   int number = 0;
   std::shared_ptr<const Keyframe> keyframe;
-  double path_m = 0.0;  ///< length of the camera's path up to it
   /// The keyframe from which the camera was tracked to this one; none: it begins a part of the map.
   std::optional<int> from;
+  double way_m = 0.0;                    ///< length of the camera's way from that
   std::optional<UnseenWay> unseen = {};  ///< to that; none: the first part of a camera
   Matrix6d information;                  ///< of its pose in the volume, see Registration
   std::vector<int> similar;              ///< keyframes that look alike, released ones only

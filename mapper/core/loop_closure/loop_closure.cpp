@@ -98,6 +98,11 @@ std::optional<int> LoopClosure::find_released_near(const Pose& X_WC) const {
   return nearest;
 }
 
+double LoopClosure::way_to_m(int keyframe) const {
+  if (std::max(keyframe, last_at_) >= tree_.size()) return path_.length_m();  // a part begins
+  return std::min(tree_.way_m(keyframe, last_at_), path_.length_m());
+}
+
 void LoopClosure::go_to(int keyframe) {
   keyframes_.release_if([](const Keyframe&) { return true; });
   last_at_ = keyframe;
@@ -110,32 +115,41 @@ void LoopClosure::follow(const TrackingResult& located, bool is_keyframe, std::i
   const bool jumped =
       std::exchange(went_, false) || begins_part_ || located.found_by_keyframe.has_value();
   if (located.found_by_keyframe) last_at_ = *located.found_by_keyframe;
+  if (jumped && !begins_part_) note_near(last_at_, X_UC);
   if (is_keyframe) {
     compare_newest();
     const int number = keyframes_.size() - 1;
     path_.add(utime, X_UC, number, jumped);
     const bool begins_part = std::exchange(begins_part_, false);
     const auto from = begins_part ? std::nullopt : std::optional(last_at_);
-    newest_ = NewKeyframe{.number = number,
-                          .keyframe = keyframes_.share(number),
-                          .path_m = path_.length_m(),
-                          .from = from,
-                          .unseen = begins_part ? unseen_way(utime) : std::nullopt,
-                          .information = located.information_C,
-                          .similar = {},
-                          .is_released = keyframes_.is_released(),
-                          .noise = noise};
+    newest_ =
+        NewKeyframe{.number = number,
+                    .keyframe = keyframes_.share(number),
+                    .from = from,
+                    .way_m = from ? way_at_last_m_ + path_.length_m() - length_at_last_m_ : 0.0,
+                    .unseen = begins_part ? unseen_way(utime) : std::nullopt,
+                    .information = located.information_C,
+                    .similar = {},
+                    .is_released = keyframes_.is_released(),
+                    .noise = noise};
     newest_utime_ = utime;
     newest_number_ = number;
     untold_ = newest_;
     tree_.add(from,
               from ? (keyframes_[*from].X_WC.translation() - X_UC.translation()).norm() : 0.0);
     if (from) deformation_.add(deformation_.place(*from));
-    last_at_ = number;
+    note_near(number, X_UC);
     return;
   }
-  last_at_ = keyframes_.find_near(X_UC).value_or(last_at_);
-  path_.add(utime, X_UC, last_at_, jumped);
+  const auto near = keyframes_.find_near(X_UC);
+  path_.add(utime, X_UC, near.value_or(last_at_), jumped);
+  if (near) note_near(*near, X_UC);
+}
+
+void LoopClosure::note_near(int keyframe, const Pose& X_UC) {
+  last_at_ = keyframe;
+  way_at_last_m_ = (keyframes_[keyframe].X_WC.translation() - X_UC.translation()).norm();
+  length_at_last_m_ = path_.length_m();
 }
 
 /// Since the newest keyframe.

@@ -67,6 +67,10 @@ class LoopClosure {
     return tree_.within(keyframe, config_.reach_m);
   }
 
+  /// Length of the way on which tracking may have drifted between a keyframe and the one near which
+  /// the camera is, or was: of all the camera's path, where neither was tracked from the other.
+  double way_to_m(int keyframe) const;
+
   /// The nearest of the released keyframes that a camera at this pose is near, as corrected.
   std::optional<int> find_released_near(const Pose& X_WC) const;
 
@@ -128,6 +132,7 @@ class LoopClosure {
   void compare_newest();
   std::vector<int> similar_to(const NewKeyframe& added);
   std::optional<UnseenWay> unseen_way(std::int64_t utime) const;
+  void note_near(int keyframe, const Pose& X_UC);
   std::optional<MapCorrection> apply_if_above(double least_motion_vox);
   void note(std::optional<MapCorrection> newest);
   double motion_m(const MapCorrection& correction) const;
@@ -142,6 +147,8 @@ class LoopClosure {
   int newest_number_ = -1;  ///< of the camera's newest keyframe; those of guests may follow
   std::optional<NewKeyframe> untold_;  ///< to be given by take_new()
   int last_at_ = 0;                    ///< the keyframe near which the camera is, or was
+  double way_at_last_m_ = 0.0;         ///< from that keyframe to where it was near it last
+  double length_at_last_m_ = 0.0;      ///< of the path, then
   MapDeformation deformation_;
   KeyframeTree tree_;
   bool went_ = false;         ///< go_to() was called since the last frame

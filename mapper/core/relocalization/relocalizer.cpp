@@ -46,21 +46,21 @@ bool Relocalizer::remember(const TrackingInput& frame, const Model& model) {
 
 std::optional<TrackingResult> Relocalizer::find(const TrackingInput& frame, const Tracker& tracker,
                                                 const ModelFrom& model_from,
-                                                const MotionOf& motion_of) {
+                                                const PlaceOf& place_of) {
   const KeyframeAppearance appearance = appearance_of(frame, config_.keyframes.max_features);
   const std::vector<int> candidates = keyframes_.similar_to(appearance);
   if (candidates.empty()) return std::nullopt;
-  auto found = try_keyframe(candidates.front(), appearance, frame, tracker, model_from, motion_of);
+  auto found = try_keyframe(candidates.front(), appearance, frame, tracker, model_from, place_of);
   if (!found && candidates.size() > 1) {
     const int other = candidates[1 + turn_++ % (candidates.size() - 1)];
-    found = try_keyframe(other, appearance, frame, tracker, model_from, motion_of);
+    found = try_keyframe(other, appearance, frame, tracker, model_from, place_of);
   }
   return found;
 }
 
 std::optional<TrackingResult> Relocalizer::try_keyframe(
     int number, const KeyframeAppearance& appearance, const TrackingInput& frame,
-    const Tracker& tracker, const ModelFrom& model_from, const MotionOf& motion_of) const {
+    const Tracker& tracker, const ModelFrom& model_from, const PlaceOf& place_of) const {
   const Keyframe& keyframe = keyframes_[number];
   std::optional<Pose> X_WC_features;
   if (const auto X_KC = pose_from_features(keyframe.appearance.features, appearance.features)) {
@@ -71,8 +71,8 @@ std::optional<TrackingResult> Relocalizer::try_keyframe(
   const TrackingResult near =
       tracker.register_anew(frame, seen_then, X_WC_features.value_or(keyframe.X_WC));
   if (near.quality.overlap_share < config_.min_overlap_share) return std::nullopt;
-  const Pose X_WC_now = motion_of ? motion_of(number) * near.X_WC : near.X_WC;
-  if (!tracker.can_be_at(X_WC_now, frame.utime)) return std::nullopt;
+  const Place place = place_of ? place_of(number) : Place{.way_m = tracker.path_m()};
+  if (!tracker.can_be_at(place.motion * near.X_WC, frame.utime, place.way_m)) return std::nullopt;
 
   const TrackingResult in_map = tracker.register_anew(frame, model_from(near.X_WC), near.X_WC);
   const bool map_reaches = in_map.quality.overlap_share >= config_.min_overlap_share;

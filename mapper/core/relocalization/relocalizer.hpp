@@ -57,15 +57,18 @@ class Relocalizer {
   /// @returns whether the frame became a keyframe
   bool remember(const TrackingInput& frame, const Model& model);
 
-  /// Where the map, as corrected, has what a keyframe saw: its motion to the frame in which the
-  /// camera was tracked last.
-  using MotionOf = std::function<Pose(int keyframe)>;
+  /// Where the map, as corrected, has what a keyframe saw.
+  struct Place {
+    Pose motion = Pose::Identity();  ///< to the frame in which the camera was tracked last
+    double way_m = 0.0;              ///< on which tracking may have drifted between both
+  };
+  using PlaceOf = std::function<Place(int keyframe)>;
 
   /// The camera's pose, if the frame can be registered with one of the keyframes that are tried
-  /// now and the camera can have got there. `tracker` does not change. Without `motion_of` nothing
-  /// was corrected.
+  /// now and the camera can have got there. `tracker` does not change. Without `place_of` nothing
+  /// was corrected, and tracking may have drifted on all of the camera's path.
   std::optional<TrackingResult> find(const TrackingInput& frame, const Tracker& tracker,
-                                     const ModelFrom& model_from, const MotionOf& motion_of = {});
+                                     const ModelFrom& model_from, const PlaceOf& place_of = {});
 
   KeyframeMap& keyframes() { return keyframes_; }
   int num_keyframes() const { return keyframes_.size(); }
@@ -74,7 +77,7 @@ class Relocalizer {
   std::optional<TrackingResult> try_keyframe(int number, const KeyframeAppearance& appearance,
                                              const TrackingInput& frame, const Tracker& tracker,
                                              const ModelFrom& model_from,
-                                             const MotionOf& motion_of) const;
+                                             const PlaceOf& place_of) const;
   /// `X_WC_features`: the pose from features, if there is one.
   bool is_accepted(const TrackingResult& result, const std::optional<Pose>& X_WC_features,
                    std::optional<double> correlation) const;

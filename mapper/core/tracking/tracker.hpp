@@ -79,8 +79,12 @@ class Tracker {
   Pose predict(std::int64_t utime) const;
 
   /// Whether the camera, which was at the last good pose, can be here at this device time
-  /// (microseconds). Before the first pose it can be anywhere.
-  bool can_be_at(const Pose& X_WC, std::int64_t utime) const;
+  /// (microseconds), where tracking has drifted on a way of `way_m` between the two. Before the
+  /// first pose it can be anywhere.
+  bool can_be_at(const Pose& X_WC, std::int64_t utime, double way_m) const;
+
+  /// Length of the path to the last good pose, without jumps.
+  double path_m() const { return path_m_; }
 
   /// Whether the last frame was lost, but the camera is still expected near predict(): its model
   /// should be the map as seen from there.
@@ -100,7 +104,7 @@ class Tracker {
   LossRule loss_rule_;
   Pose X_WC_ = Pose::Identity();  ///< last good
   bool has_pose_ = false;
-  double path_m_ = 0.0;     ///< length of the path to it, without jumps
+  double path_m_ = 0.0;     ///< see path_m()
   std::int64_t utime_ = 0;  ///< of the last good pose
   /// From which predict() goes on: the last good pose or, after it, one that was determined but for
   /// some directions, in which it is predicted.

@@ -32,7 +32,7 @@ class JoinRuleTest : public ::testing::Test {
         map.add(X_UK, input, input.surface_C[1]);
         map.similar_to(number, [](int) { return false; });  // waits for its appearance
         keyframes_.push_back(map.share(number));
-        graph_.add(X_UK, 0.5 * number, i == 0 ? std::nullopt : std::optional(number - 1));
+        graph_.add(X_UK, i == 0 ? std::nullopt : std::optional(number - 1), 0.5);
       }
     }
   }

@@ -31,7 +31,7 @@ class OutAndBack : public ::testing::Test {
 
   OutAndBack() {
     for (int i = 0; i <= 2 * kHalf; ++i) {
-      graph.add(drifted(i), kStep_m * i, i == 0 ? std::nullopt : std::optional(i - 1));
+      graph.add(drifted(i), i == 0 ? std::nullopt : std::optional(i - 1), kStep_m);
       if (i > 0) graph.add_tracked(i - 1, i, precise());
     }
   }
@@ -72,6 +72,25 @@ TEST_F(OutAndBack, ALoopThatLeadsFartherThanTrackingDriftsIsRefused) {
   EXPECT_EQ(graph.offer(loop(40, at(0.2))), 2);
 }
 
+TEST_F(OutAndBack, FromRoundToRoundTrackingDriftsNoFarther) {
+  // On later rounds the camera is tracked in the surface of the first, from keyframe 10 on, and
+  // comes by a place that looks like that of keyframes 2 and 3. The way there is 4 m long: 2 % of
+  // it are 8 cm, however many rounds the camera has gone.
+  for (int round = 1; round <= 100; ++round) {
+    graph.add(drifted(10) * at(0.0, 0.1 * round), 10, kStep_m);
+  }
+  graph.add(drifted(11), 10, kStep_m);
+  const int last = graph.size() - 1;
+  const auto elsewhere = [&](int later, int earlier, double error_m) {
+    const Pose X_EL = drifted(earlier).inverse() * graph.X_UK(later) * at(error_m);
+    return Loop{later, earlier, X_EL, precise(), kSigma_m};
+  };
+  EXPECT_EQ(graph.offer(elsewhere(last, 3, 0.15)), 0);
+  EXPECT_EQ(graph.offer(elsewhere(10, 2, 0.15)), 0) << "too far, though they agree";
+  EXPECT_EQ(graph.offer(elsewhere(last, 3, 0.05)), 0);
+  EXPECT_EQ(graph.offer(elsewhere(10, 2, 0.05)), 2);
+}
+
 TEST_F(OutAndBack, IsCorrectedByItsLoops) {
   for (const int later : {36, 38, 40}) graph.offer(loop(later));
   const double moved_m = graph.optimize();
@@ -100,7 +119,7 @@ TEST_F(OutAndBack, ALoopThatTheOthersContradictIsGivenUpAndCounted) {
 TEST_F(OutAndBack, WhatComesAfterACorrectionMovesWithTheKeyframeItComesFrom) {
   for (const int later : {38, 40}) graph.offer(loop(later));
   graph.optimize();
-  graph.add(drifted(40) * at(0.0, 0.25), 20.25, 40);
+  graph.add(drifted(40) * at(0.0, 0.25), 40, 0.25);
   EXPECT_TRUE((graph.X_WK(40) * at(0.0, 0.25)).isApprox(graph.X_WK(41), 1e-9));
 }
 
@@ -113,7 +132,7 @@ class TwoParts : public ::testing::Test {
   TwoParts() {
     for (int i = 0; i < 2 * kLength; ++i) {
       const bool begins = i % kLength == 0;
-      graph.add(X_UK(i), kStep_m * i, begins ? std::nullopt : std::optional(i - 1), unseen(i));
+      graph.add(X_UK(i), begins ? std::nullopt : std::optional(i - 1), kStep_m, unseen(i));
       if (!begins) graph.add_tracked(i - 1, i, precise());
     }
   }
@@ -177,15 +196,14 @@ class TwoCameras : public ::testing::Test {
   TwoCameras() {
     for (int i = 0; i < 2 * kLength; ++i) {
       const bool begins = i < 2;
-      graph.add(X_UK(i), path_m(i), begins ? std::nullopt : std::optional(i - 2));
+      graph.add(X_UK(i), begins ? std::nullopt : std::optional(i - 2), kStep_m);
       if (!begins) graph.add_tracked(i - 2, i, precise());
     }
   }
-  static double path_m(int i) {
+  static Pose truth(int i) {
     const int number = i / 2;  // among those of its camera
-    return kStep_m * number;
+    return at(kStep_m * number);
   }
-  static Pose truth(int i) { return at(path_m(i)); }
   static Pose X_UK(int i) { return at(i % 2 == 0 ? 0.0 : 1'000.0) * truth(i); }
   /// Where both cameras have their i-th keyframe, or `shift` from there.
   static Loop loop(int i, const Pose& shift = Pose::Identity()) {
@@ -219,16 +237,16 @@ TEST_F(TwoCameras, MayDriftOnBothWaysOnceTheyAreJoined) {
   for (const int i : {3, 4, 5}) graph.offer(loop(i));
   graph.join(graph.agreeing_to_join(loop(5)));
   EXPECT_GT(graph.offer(loop(6, at(0.0, 0.005))), 0) << "agrees with those of before";
-  // 2 % of both ways, of 9.5 m each, are 38 cm.
-  EXPECT_EQ(graph.offer(loop(19, at(0.0, 0.3))), 0) << "nothing agrees with it";
-  EXPECT_EQ(graph.offer(loop(18, at(0.0, 0.3))), 2) << "they agree with each other";
+  // 2 % of both ways since the last of these loops, 6.5 and 6 m each, are 26 and 24 cm.
+  EXPECT_EQ(graph.offer(loop(19, at(0.0, 0.22))), 0) << "nothing agrees with it";
+  EXPECT_EQ(graph.offer(loop(18, at(0.0, 0.22))), 2) << "they agree with each other";
   EXPECT_EQ(graph.offer(loop(17, at(0.0, 0.5))), 0);
   EXPECT_EQ(graph.offer(loop(16, at(0.0, 0.5))), 0) << "too far, though they agree";
 }
 
 TEST_F(TwoParts, KeepTheirPlacesWhenOnlyOneIsCorrected) {
-  graph.add(X_UK(0), kStep_m * 40.0, 19);
-  graph.add(X_UK(1), kStep_m * 41.0, 40);
+  graph.add(X_UK(0), 19, kStep_m * 19.0);
+  graph.add(X_UK(1), 40, kStep_m);
   graph.add_tracked(40, 41, precise());
   graph.offer({40, 0, at(0.01), precise(), kSigma_m});
   graph.offer({41, 1, at(0.01), precise(), kSigma_m});
@@ -242,7 +260,7 @@ TEST_F(OutAndBack, RefusesMotionsOfKeyframesThatAreNotThere) {
   EXPECT_THROW(graph.add_tracked(3, 99, precise()), std::invalid_argument);
   EXPECT_THROW(graph.add_tracked(-1, 3, precise()), std::invalid_argument);
   EXPECT_THROW(graph.add_tracked(3, 3, precise()), std::invalid_argument);
-  EXPECT_THROW(graph.add(at(0.0), 1.0, 41), std::invalid_argument);
+  EXPECT_THROW(graph.add(at(0.0), 41, 1.0), std::invalid_argument);
 }
 
 }  // namespace

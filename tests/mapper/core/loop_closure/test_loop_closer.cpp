@@ -45,8 +45,8 @@ class TwoVisits {
  public:
   TwoVisits(const std::string& first, const std::string& second, bool with_color)
       : with_color_(with_color) {
-    for (int i = 0; i < kKeyframes; ++i) visit(first, 2 * i, Pose::Identity(), 0.1 * i);
-    for (int i = 0; i < kKeyframes; ++i) visit(second, 2 * i + 1, drift(), kAway_m + 0.1 * i);
+    for (int i = 0; i < kKeyframes; ++i) visit(first, 2 * i, Pose::Identity(), 0.1);
+    for (int i = 0; i < kKeyframes; ++i) visit(second, 2 * i + 1, drift(), i == 0 ? kAway_m : 0.1);
   }
 
   std::optional<MapCorrection> finish() { return closer.drain(); }
@@ -55,7 +55,7 @@ class TwoVisits {
   LoopCloser closer{LoopCloser::Config{}};
 
  private:
-  void visit(const std::string& scene, int frame_number, const Pose& X_UT, double path_m) {
+  void visit(const std::string& scene, int frame_number, const Pose& X_UT, double way_m) {
     const SyntheticRun& run = run_of(scene);
     const RgbdFrame& frame = run.frames[frame_number];
     TrackingInput input{
@@ -65,8 +65,8 @@ class TwoVisits {
     keyframes_.add(X_UT * run.true_path[frame_number].X_WC, input, input.surface_C[1]);
     NewKeyframe added{.number = number,
                       .keyframe = keyframes_.share(number),
-                      .path_m = path_m,
                       .from = number == 0 ? std::nullopt : std::optional(number - 1),
+                      .way_m = way_m,
                       .information = Matrix6d::Identity() * (number == kKeyframes ? kAway : kNear),
                       .similar = {},
                       .is_released = {},

@@ -48,5 +48,31 @@ TEST(LoopClosure, CorrectsInTimeAlsoIfNoKeyframeFollows) {
   EXPECT_EQ(correction->X_WK.size(), 2U * kKeyframes) << "with what the last keyframe brought";
 }
 
+TEST(LoopClosure, CountsTheWayToAKeyframeAndNotHowFarTheCameraHasGone) {
+  const testing::SyntheticRun run = testing::synthetic_run("office", 2, true, 5);
+  const RgbdFrame& frame = run.frames[0];
+  const TrackingInput input{0, pyramid_from_depth(frame.depth_m, frame.intrinsics, 0, 3, 6.0F),
+                            frame.color_rgb};
+  KeyframeMap keyframes{{}};
+  LoopClosure loops({}, keyframes);
+  std::int64_t utime = 0;
+  const auto go_to = [&](double x_m, bool is_keyframe) {
+    TrackingResult located;
+    located.X_WC.translation().x() = x_m;
+    if (is_keyframe) keyframes.add(located.X_WC, input, input.surface_C[1]);
+    loops.follow(located, is_keyframe, ++utime, {});
+  };
+  go_to(0.0, true);
+  for (const double x_m : {0.3, 0.6, 0.9}) go_to(x_m, false);
+  go_to(1.0, true);
+  EXPECT_NEAR(loops.way_to_m(0), 1.0, 1e-9);
+  for (int i = 0; i < 100; ++i) go_to(i % 2 == 0 ? 1.05 : 1.0, false);  // 5 m at the second one
+  EXPECT_NEAR(loops.way_to_m(0), 1.0, 1e-9);
+  EXPECT_EQ(loops.way_to_m(1), 0.0);
+  go_to(1.1, false);  // still near it
+  go_to(1.6, true);
+  EXPECT_NEAR(loops.take_new()->way_m, 0.6, 1e-9) << "from the keyframe";
+}
+
 }  // namespace
 }  // namespace kintsugi::mapper

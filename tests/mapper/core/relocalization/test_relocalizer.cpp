@@ -53,15 +53,15 @@ class OfficeMap {
         X_WV};
   }
   std::optional<TrackingResult> find(const TrackingInput& frame,
-                                     const Relocalizer::MotionOf& motion_of = {}) {
+                                     const Relocalizer::PlaceOf& place_of = {}) {
     return relocalizer.find(
-        frame, tracker, [&](const Pose& X_WV) { return seen_from(X_WV); }, motion_of);
+        frame, tracker, [&](const Pose& X_WV) { return seen_from(X_WV); }, place_of);
   }
   /// Calls find() as often as there can be candidates.
   std::optional<TrackingResult> find_at_last(const TrackingInput& frame,
-                                             const Relocalizer::MotionOf& motion_of = {}) {
+                                             const Relocalizer::PlaceOf& place_of = {}) {
     for (int i = 0; i < 9; ++i) {
-      if (auto found = find(frame, motion_of)) return found;
+      if (auto found = find(frame, place_of)) return found;
     }
     return std::nullopt;
   }
@@ -190,7 +190,23 @@ TEST(Relocalizer, MeasuresHowFarTheCameraCanHaveGotInTheCorrectedMap) {
   Pose X_joined(Eigen::Translation3d(1'000.0, 0.0, 0.0));
   map.tracker.start_at(X_joined * OfficeMap::office().true_path[1].X_WC, input_from(frame), 1.0);
   EXPECT_FALSE(map.find_at_last(input_from(frame))) << "a kilometre away";
-  EXPECT_TRUE(map.find_at_last(input_from(frame), [&](int /*keyframe*/) { return X_joined; }));
+  EXPECT_TRUE(map.find_at_last(
+      input_from(frame), [&](int /*keyframe*/) { return Relocalizer::Place{.motion = X_joined}; }));
+}
+
+/// 3 m from where it was a moment before, as in the next room of a building: that tracking drifts
+/// so far takes a way of 150 m.
+TEST(Relocalizer, RefusesAPlaceFartherAwayThanTrackingDriftsOnTheWay) {
+  OfficeMap map(true);
+  const RgbdFrame& frame = OfficeMap::office().frames[1];
+  const Pose X_away(Eigen::Translation3d(3.0, 0.0, 0.0));
+  map.tracker.start_at(X_away * OfficeMap::office().true_path[1].X_WC, input_from(frame), 1.0);
+  const auto found_after = [&](double way_m) {
+    return map.find_at_last(input_from(frame),
+                            [&](int /*keyframe*/) { return Relocalizer::Place{.way_m = way_m}; });
+  };
+  EXPECT_FALSE(found_after(100.0));
+  EXPECT_TRUE(found_after(200.0));
 }
 
 }  // namespace

@@ -78,11 +78,12 @@ TEST(Tracker, KnowsWhereTheCameraCanHaveGot) {
   const Pose X_W0 = testing::looking_at_the_crate();
   const auto metres_away = [&](double x) { return X_W0 * se3_retract(twist(x, 0, 0, 0, 0, 0)); };
   Tracker tracker({});
-  EXPECT_TRUE(tracker.can_be_at(metres_away(1000.0), 0)) << "before the first pose";
+  EXPECT_TRUE(tracker.can_be_at(metres_away(1000.0), 0, 0.0)) << "before the first pose";
   tracker.start_at(X_W0, frame_at(X_W0, 0), 1.0);
-  EXPECT_TRUE(tracker.can_be_at(metres_away(0.15), 100'000)) << "at 2 m/s";
-  EXPECT_FALSE(tracker.can_be_at(metres_away(0.3), 100'000));
-  EXPECT_TRUE(tracker.can_be_at(metres_away(0.3), 200'000));
+  EXPECT_TRUE(tracker.can_be_at(metres_away(0.15), 100'000, 0.0)) << "at 2 m/s";
+  EXPECT_FALSE(tracker.can_be_at(metres_away(0.3), 100'000, 0.0));
+  EXPECT_TRUE(tracker.can_be_at(metres_away(0.3), 200'000, 0.0));
+  EXPECT_TRUE(tracker.can_be_at(metres_away(0.3), 100'000, 10.0)) << "after a drift of 2 %";
 }
 
 TEST(Tracker, IsLostOnABlankFrameAndRecoversWhenTheViewReturns) {
