@@ -97,21 +97,35 @@ bool KeyframeGraph::is_plausible(const Loop& loop) const {
   return drift_m <= config_.max_drift_share * way_m(loop.later, loop.earlier) + config_.voxel_m;
 }
 
-/// The way on which tracking may have drifted between two keyframes. Where no loop leads from the
-/// part of the one to that of the other, nothing bounds it.
+/// The shortest way on which tracking may have drifted between two keyframes: from one part to
+/// another over the loops that join them. Infinite where none do.
 double KeyframeGraph::way_m(int a, int b) const {
-  const int part_a = nodes_[a].part;
-  const int part_b = nodes_[b].part;
-  if (part_a == part_b) return ways_.way_m(a, b);
-  double least_m = std::numeric_limits<double>::infinity();
+  if (nodes_[a].part == nodes_[b].part) return ways_.way_m(a, b);
+  std::vector<int> ends;        // of the loops between parts, two by two
+  std::vector<double> least_m;  // from a to each of them
   for (const Loop& loop : confirmed_) {
-    for (const auto& [beside_a, beside_b] :
-         {std::pair(loop.later, loop.earlier), std::pair(loop.earlier, loop.later)}) {
-      if (nodes_[beside_a].part != part_a || nodes_[beside_b].part != part_b) continue;
-      least_m = std::min(least_m, ways_.way_m(a, beside_a) + ways_.way_m(beside_b, b));
+    if (nodes_[loop.later].part == nodes_[loop.earlier].part) continue;
+    for (const int end : {loop.later, loop.earlier}) {
+      ends.push_back(end);
+      least_m.push_back(ways_.way_m(a, end));
     }
   }
-  return least_m;
+  for (bool is_shorter = true; is_shorter;) {
+    is_shorter = false;
+    for (std::size_t i = 0; i < ends.size(); ++i) {
+      for (std::size_t j = 0; j < ends.size(); ++j) {
+        const double step_m = i / 2 == j / 2 ? 0.0 : ways_.way_m(ends[i], ends[j]);
+        if (!(least_m[i] + step_m < least_m[j])) continue;
+        least_m[j] = least_m[i] + step_m;
+        is_shorter = true;
+      }
+    }
+  }
+  double least_to_b_m = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < ends.size(); ++i) {
+    least_to_b_m = std::min(least_to_b_m, least_m[i] + ways_.way_m(ends[i], b));
+  }
+  return least_to_b_m;
 }
 
 std::pair<int, int> KeyframeGraph::later_and_earlier(int a, int b) const {

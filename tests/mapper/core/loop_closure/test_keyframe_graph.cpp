@@ -244,6 +244,29 @@ TEST_F(TwoCameras, MayDriftOnBothWaysOnceTheyAreJoined) {
   EXPECT_EQ(graph.offer(loop(16, at(0.0, 0.5))), 0) << "too far, though they agree";
 }
 
+TEST_F(TwoParts, AreOnTheWayToAThirdPart) {
+  // The third part is where the second is, which is where the first is.
+  for (int i = 0; i < kLength; ++i) {
+    const bool begins = i == 0;
+    graph.add(at(2'000.0) * truth(i), begins ? std::nullopt : std::optional(2 * kLength + i - 1),
+              kStep_m, begins ? unseen(2 * kLength) : std::nullopt);
+  }
+  const auto third = [](int i, int earlier, const Pose& shift) {
+    return Loop{2 * kLength + i, earlier, shift, precise(), kSigma_m};
+  };
+  for (const int i : {3, 4, 5}) graph.offer(loop(i));
+  graph.join(graph.agreeing_to_join(loop(5)));
+  for (const int i : {13, 14, 15}) graph.offer(third(i, kLength + i, Pose::Identity()));
+  graph.join(graph.agreeing_to_join(third(15, kLength + 15, Pose::Identity())));
+  ASSERT_EQ(num_parts(), 1);
+  // From keyframe 16 of the third part to 15 of the second, to 5 of the first, to 16: 0.5, 5 and
+  // 5.5 m, of which 2 % are 22 cm.
+  EXPECT_EQ(graph.offer(third(16, 16, at(0.0, 0.3))), 0);
+  EXPECT_EQ(graph.offer(third(17, 17, at(0.0, 0.3))), 0) << "too far, though they agree";
+  EXPECT_EQ(graph.offer(third(16, 16, at(0.0, 0.2))), 0);
+  EXPECT_EQ(graph.offer(third(17, 17, at(0.0, 0.2))), 2);
+}
+
 TEST_F(TwoParts, KeepTheirPlacesWhenOnlyOneIsCorrected) {
   graph.add(X_UK(0), 19, kStep_m * 19.0);
   graph.add(X_UK(1), 40, kStep_m);
