@@ -27,7 +27,7 @@ class KeyframeTree {
   struct Node {
     int from = 0;
     double distance_m = 0.0;
-    int level = 0;  ///< how many keyframes are between it and the root, and one
+    int level = 0;  ///< steps from it to the root
     std::vector<int> to;
   };
 
