@@ -179,12 +179,14 @@ std::optional<TrackingResult> MapperPipeline::find_again(const TrackingInput& in
   const auto model_from_pose = [&](const Pose& X_WV) {
     return model_from(X_WV, surface_C.intrinsics, surface_C.depth_m);
   };
-  const auto place_of = [&](int keyframe) -> Relocalizer::Place {
-    if (!loops_) return {.way_m = tracker_.path_m()};
-    return {.motion =
-                map_.camera_at().place.X_WU.inverse(Eigen::Isometry) * map_.place_of(keyframe).X_WU,
-            .way_m = loops_->way_to_m(keyframe)};
-  };
+  Relocalizer::PlaceOf place_of;
+  if (loops_) {
+    place_of = [&](int keyframe) -> Relocalizer::Place {
+      return {.motion = map_.camera_at().place.X_WU.inverse(Eigen::Isometry) *
+                        map_.place_of(keyframe).X_WU,
+              .way_m = loops_->way_to_m(keyframe)};
+    };
+  }
   auto found = relocalizer_.find(input, tracker_, model_from_pose, place_of);
   if (found) tracker_.start_at(found->X_WC, input, found->quality.covered_share);
   return found;

@@ -93,18 +93,8 @@ class MapOnBus {
 
   /// Moves all patches to where the map is bent. @returns ms until a client has the labels
   double correct(double curvature_per_m) {
-    CloudSlice correction;
-    correction.session = kSession;
-    correction.map_name = kMapName;
-    correction.kind = SliceKind::kCorrection;
-    correction.ends_batch = true;
-    correction.resolution_m = patches_[0].resolution_m;
-    correction.id = next_id_++;
-    correction.correction = ++num_corrections_;
-    for (const CloudSlice& patch : patches_) {
-      correction.motions.push_back({patch.id, place_on_arc(patch, curvature_per_m)});
-    }
-    const std::int32_t id = correction.id;
+    const std::int32_t id = next_id_++;
+    CloudSlice correction = correction_to_arc(patches_, curvature_per_m, id, ++num_corrections_);
     const auto begin = Clock::now();
     stream_.publish(std::move(correction));
     wait_for(id);

@@ -12,6 +12,7 @@
 #include <iostream>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -100,17 +101,12 @@ class CorrectedMap {
 
   /// Moves the patches [first, last) to where the map is bent by `share` of the most.
   void correct(std::size_t first, std::size_t last, double share, Times& times) {
-    CloudSlice correction;
-    correction.session = 1;
-    correction.kind = SliceKind::kCorrection;
-    correction.ends_batch = true;
-    correction.resolution_m = patches_[0].resolution_m;
-    correction.id = next_id_++;
-    correction.correction = ++num_corrections_;
+    const std::span<const CloudSlice> moving(patches_.begin() + first, patches_.begin() + last);
+    const CloudSlice correction =
+        correction_to_arc(moving, share * bends_, next_id_++, ++num_corrections_);
     times.num_points = 0;
     for (std::size_t k = first; k < last; ++k) {
-      places_[k] = place_on_arc(patches_[k], share * bends_);
-      correction.motions.push_back({patches_[k].id, places_[k]});
+      places_[k] = correction.motions[k - first].X_WP;
       times.num_points += patches_[k].points_W.size();
     }
     const std::vector<std::uint32_t> before = labels();

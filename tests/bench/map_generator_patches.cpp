@@ -15,6 +15,19 @@ Cell cell_of(const CloudPoint& p, double side_m) {
   return {cell(p.x), cell(p.y), cell(p.z)};
 }
 
+Pose place_on_arc(const CloudSlice& patch, double curvature_per_m) {
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  for (const CloudPoint& p : patch.points_W) middle += Eigen::Vector3d(p.x, p.y, p.z);
+  middle /= static_cast<double>(patch.points_W.size());
+  const double angle = curvature_per_m * middle.x();
+  Pose X = Pose::Identity();
+  X.linear() = Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()).matrix();
+  const Eigen::Vector3d on_arc =
+      Eigen::Vector3d(std::sin(angle), 1.0 - std::cos(angle), 0.0) / curvature_per_m;
+  X.translation() = on_arc - X.linear() * Eigen::Vector3d(middle.x(), 0.0, 0.0);
+  return X;
+}
+
 }  // namespace
 
 std::vector<CloudSlice> cut_into_patches(const Slices& slices, double tile_m, double voxel_m) {
@@ -54,17 +67,20 @@ std::vector<CloudSlice> cut_into_patches(const Slices& slices, double tile_m, do
   return patches;
 }
 
-Pose place_on_arc(const CloudSlice& patch, double curvature_per_m) {
-  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
-  for (const CloudPoint& p : patch.points_W) middle += Eigen::Vector3d(p.x, p.y, p.z);
-  middle /= static_cast<double>(patch.points_W.size());
-  const double angle = curvature_per_m * middle.x();
-  Pose X = Pose::Identity();
-  X.linear() = Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()).matrix();
-  const Eigen::Vector3d on_arc =
-      Eigen::Vector3d(std::sin(angle), 1.0 - std::cos(angle), 0.0) / curvature_per_m;
-  X.translation() = on_arc - X.linear() * Eigen::Vector3d(middle.x(), 0.0, 0.0);
-  return X;
+CloudSlice correction_to_arc(std::span<const CloudSlice> patches, double curvature_per_m,
+                             std::int32_t id, std::int32_t number) {
+  CloudSlice correction;
+  correction.session = patches.front().session;
+  correction.map_name = patches.front().map_name;
+  correction.kind = SliceKind::kCorrection;
+  correction.ends_batch = true;
+  correction.resolution_m = patches.front().resolution_m;
+  correction.id = id;
+  correction.correction = number;
+  for (const CloudSlice& patch : patches) {
+    correction.motions.push_back({patch.id, place_on_arc(patch, curvature_per_m)});
+  }
+  return correction;
 }
 
 }  // namespace kintsugi::segmenter::bench

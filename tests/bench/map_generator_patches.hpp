@@ -1,8 +1,9 @@
 #pragma once
 
+#include <cstdint>
+#include <span>
 #include <vector>
 
-#include "lcmtypes/geometry.hpp"
 #include "lcmtypes/messages.hpp"
 #include "tests/bench/map_generator_file.hpp"
 
@@ -13,8 +14,10 @@ namespace kintsugi::segmenter::bench {
 /// still change.
 std::vector<CloudSlice> cut_into_patches(const Slices& slices, double tile_m, double voxel_m);
 
-/// Where a patch is when the map, straight along x so far, is bent to an arc of this curvature, as
-/// a closed loop bends it: it moves and turns with the place on the axis that is beside its middle.
-Pose place_on_arc(const CloudSlice& patch, double curvature_per_m);
+/// Correction number `number` of a map: its patches go to where they are when the map, straight
+/// along x so far, is bent to an arc of this curvature, as a closed loop bends it. Each moves and
+/// turns with the place on the axis that is beside its middle.
+CloudSlice correction_to_arc(std::span<const CloudSlice> patches, double curvature_per_m,
+                             std::int32_t id, std::int32_t number);
 
 }  // namespace kintsugi::segmenter::bench

@@ -3,6 +3,7 @@
 
 #include "mapper/core/kernels/linearization.hpp"
 #include "mapper/core/simd/depth_sigma.hpp"
+#include "mapper/core/simd/pixel_rows.hpp"
 #include "mapper/core/simd/vector_lanes.hpp"
 
 namespace kintsugi::mapper {
@@ -15,13 +16,9 @@ class RowLinearization {
   }
 
   void add_row(int v) {
-    const PinholeCamera& camera = in_.frame_C.camera;
-    const float y = (static_cast<float>(v) - camera.cy) * camera.inverse_fy;
-    for (int u = 0; u < camera.width; u += Pack::kNumLanes) {
-      const int remaining = camera.width - u;
-      add_pixels(v * camera.width + u, u, y,
-                 remaining < Pack::kNumLanes ? remaining : Pack::kNumLanes);
-    }
+    for_pixels_of_row<Pack>(in_.frame_C.camera, v, [this](int pixel, int u, float y, int count) {
+      add_pixels(pixel, u, y, count);
+    });
   }
 
   LinearizationSums sums() const {
@@ -48,8 +45,7 @@ class RowLinearization {
     const Float depth = Float::load(frame.depth_m + pixel, count);
     const Mask is_measured = depth > Float(0.0F);
     if (none(is_measured)) return;
-    const Float x = (Float(static_cast<float>(u)) + Float::iota() - Float(frame.camera.cx)) *
-                    Float(frame.camera.inverse_fx);
+    const Float x = ray_x<Pack>(frame.camera, u);
     const Vector point = moved(in_.X_VC, Vector{depth * x, depth * Float(y), depth});
 
     const Association model = associate(point, is_measured);

@@ -3,6 +3,7 @@
 
 #include "mapper/core/kernels/photometry.hpp"
 #include "mapper/core/simd/depth_sigma.hpp"
+#include "mapper/core/simd/pixel_rows.hpp"
 #include "mapper/core/simd/vector_lanes.hpp"
 
 namespace kintsugi::mapper {
@@ -16,13 +17,9 @@ class RowPhotometry {
   }
 
   void add_row(int v) {
-    const PinholeCamera& camera = in_.surface_C.camera;
-    const float y = (static_cast<float>(v) - camera.cy) * camera.inverse_fy;
-    for (int u = 0; u < camera.width; u += Pack::kNumLanes) {
-      const int remaining = camera.width - u;
-      add_pixels(v * camera.width + u, u, y,
-                 remaining < Pack::kNumLanes ? remaining : Pack::kNumLanes);
-    }
+    for_pixels_of_row<Pack>(in_.surface_C.camera, v, [this](int pixel, int u, float y, int count) {
+      add_pixels(pixel, u, y, count);
+    });
   }
 
   PhotometrySums sums() const {
@@ -61,8 +58,7 @@ class RowPhotometry {
     const Float depth = Float::load(in_.surface_C.depth_m + pixel, count);
     const Mask is_measured = depth > Float(0.0F);
     if (none(is_measured)) return;
-    const Float x = (Float(static_cast<float>(u)) + Float::iota() - Float(camera.cx)) *
-                    Float(camera.inverse_fx);
+    const Float x = ray_x<Pack>(camera, u);
     const Vector point_V = moved(in_.X_VC, Vector{depth * x, depth * Float(y), depth});
     const Vector point_K = moved(in_.X_KV, point_V);
     const Float inverse_z_K = Float(1.0F) / point_K.z;

@@ -5,6 +5,7 @@
 
 #include "mapper/core/kernels/surface.hpp"
 #include "mapper/core/simd/depth_sigma.hpp"
+#include "mapper/core/simd/pixel_rows.hpp"
 #include "mapper/core/simd/vector_lanes.hpp"
 
 namespace kintsugi::mapper {
@@ -18,7 +19,7 @@ class SurfaceRows {
     const std::ptrdiff_t pitch = width + 2 * kReach;
     const float* upper_left = padded_m + v * pitch;
     for (int u = 0; u < width; u += Pack::kNumLanes) {
-      const int count = lanes_until(width - u);
+      const int count = lanes_until<Pack>(width - u);
       const Float here = Float::load(upper_left + kReach * pitch + kReach + u, count);
       const Float largest_step = same_surface_m(tolerance, here, kReach);
       Float sum(0.0F);
@@ -39,7 +40,7 @@ class SurfaceRows {
   static void halve_depth(const float* upper_m, const float* lower_m, float max_depth_m,
                           const DepthTolerance& tolerance, int width, float* half_m) {
     for (int u = 0; u < width; u += Pack::kNumLanes) {
-      const int count = lanes_until(width - u);
+      const int count = lanes_until<Pack>(width - u);
       const int first = 2 * u;
       Four depth = load_four(upper_m + first, lower_m + first, count);
       for (Float& z : depth.of) {
@@ -56,7 +57,7 @@ class SurfaceRows {
     const int row = v * camera.width;
     const bool is_border = v == 0 || v + 1 == camera.height;
     for (int u = 0; u < camera.width; u += Pack::kNumLanes) {
-      const int count = lanes_until(camera.width - u);
+      const int count = lanes_until<Pack>(camera.width - u);
       const Vector normal = is_border ? Vector{Float(kNaN), Float(kNaN), Float(kNaN)}
                                       : normal_at(depth_m, tolerance, camera, v, u, count);
       store(normal, surface, row + u, count);
@@ -69,7 +70,7 @@ class SurfaceRows {
     const int upper = 2 * v * fine.camera.width;
     const int lower = upper + fine.camera.width;
     for (int u = 0; u < width; u += Pack::kNumLanes) {
-      const int count = lanes_until(width - u);
+      const int count = lanes_until<Pack>(width - u);
       const int first = 2 * u;
       const auto load = [&](const float* plane) {
         return load_four(plane + upper + first, plane + lower + first, count);
@@ -98,8 +99,9 @@ class SurfaceRows {
     const int row = v * camera.width;
     std::int32_t result = 0;
     for (int u = 0; u < camera.width; u += Pack::kNumLanes) {
-      const Float depth = Float::load(in.frame_C.depth_m + row + u, lanes_until(camera.width - u));
-      const Float x = ray_x(camera, u);
+      const Float depth =
+          Float::load(in.frame_C.depth_m + row + u, lanes_until<Pack>(camera.width - u));
+      const Float x = ray_x<Pack>(camera, u);
       Mask is_inside = depth > Float(0.0F);
       for (int axis = 0; axis < 3; ++axis) {
         const float* R = in.X_WC.R[axis];
@@ -132,13 +134,6 @@ class SurfaceRows {
     return Float(DepthTolerance::kSigmas * kRoot2) * depth_sigma_m(tolerance.variance, depth_m) +
            Float(static_cast<float>(steps) * tolerance.slope) * depth_m;
   }
-  static int lanes_until(int remaining) {
-    return remaining < Pack::kNumLanes ? remaining : Pack::kNumLanes;
-  }
-  static Float ray_x(const PinholeCamera& camera, int u) {
-    return (Float(static_cast<float>(u)) + Float::iota() - Float(camera.cx)) *
-           Float(camera.inverse_fx);
-  }
   static Four load_four(const float* upper, const float* lower, int count) {
     Four result;
     load_pairs(upper, 2 * count, result.of[0], result.of[1]);
@@ -148,7 +143,7 @@ class SurfaceRows {
   /// The even and the odd of `count` numbers, 0 to 32.
   static void load_pairs(const float* numbers, int count, Float& even, Float& odd) {
     constexpr int kHalf = Pack::kNumLanes;
-    const Float first = Float::load(numbers, lanes_until(count));
+    const Float first = Float::load(numbers, lanes_until<Pack>(count));
     const Float second = count > kHalf ? Float::load(numbers + kHalf, count - kHalf) : Float(0.0F);
     even = even_lanes(first, second);
     odd = odd_lanes(first, second);
@@ -208,7 +203,7 @@ class SurfaceRows {
     const Float right = Float::load(here + 1, count);
     const Float above = Float::load(here - camera.width, count);
     const Float below = Float::load(here + camera.width, count);
-    const Float x = ray_x(camera, u);
+    const Float x = ray_x<Pack>(camera, u);
     const Float step(camera.inverse_fx);
     const Vector du = {right * (x + step) - left * (x - step), (right - left) * ray_y(v),
                        right - left};
