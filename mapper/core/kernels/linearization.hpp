@@ -17,6 +17,10 @@ struct LinearizationInput {
   float max_squared_distance_m2 = 0.0F;
   float max_distance_sigmas = 0.0F;
   float min_normal_cosine = 0.0F;
+  // A residual r, in deviations sigma, counts in b as sign(r) min(|r|, influence_slope
+  // max(0, no_influence_sigmas - |r|)).
+  float no_influence_sigmas = 1e30F;
+  float influence_slope = 1.0F;
   DepthVariance variance;  ///< of the frame's depths
   // A point is behind or in front of the model's surface when its depth differs by more than
   // max(agreement_sigmas * sigma, agreement_distance_m).

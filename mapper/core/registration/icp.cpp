@@ -9,7 +9,8 @@ namespace kintsugi::mapper {
 namespace {
 
 LinearizationInput make_input(const SurfaceMap& frame_C, const SurfaceMap& model_V,
-                              const Pose& X_VC, const IcpGates& gates) {
+                              const Pose& X_VC, const IcpGates& gates,
+                              const std::optional<InfluenceLimits>& limits) {
   LinearizationInput input;
   input.frame_C = planes_of(frame_C);
   input.model_V = planes_of(model_V);
@@ -17,6 +18,11 @@ LinearizationInput make_input(const SurfaceMap& frame_C, const SurfaceMap& model
   input.max_squared_distance_m2 = static_cast<float>(gates.max_distance_m * gates.max_distance_m);
   input.max_distance_sigmas = static_cast<float>(gates.max_distance_sigmas);
   input.min_normal_cosine = static_cast<float>(gates.min_normal_cosine);
+  if (limits) {
+    const double falling_sigmas = limits->none_sigmas - limits->full_sigmas;
+    input.no_influence_sigmas = static_cast<float>(limits->none_sigmas);
+    input.influence_slope = static_cast<float>(limits->full_sigmas / falling_sigmas);
+  }
   input.variance = depth_variance(frame_C.noise);
   input.agreement_sigmas = static_cast<float>(SurfaceAgreement::kSigmas);
   input.agreement_distance_m = static_cast<float>(SurfaceAgreement::kDistance_m);
@@ -53,8 +59,9 @@ NormalEquations sum_of(const std::vector<LinearizationSums>& bands) {
 }  // namespace
 
 NormalEquations linearize(const SurfaceMap& frame_C, const SurfaceMap& model_V, const Pose& X_VC,
-                          const IcpGates& gates, const Kernels& kernels) {
-  const LinearizationInput input = make_input(frame_C, model_V, X_VC, gates);
+                          const IcpGates& gates, const std::optional<InfluenceLimits>& limits,
+                          const Kernels& kernels) {
+  const LinearizationInput input = make_input(frame_C, model_V, X_VC, gates, limits);
   return sum_of(sum_bands<LinearizationSums>(frame_C.depth_m.size(), [&](int first, int last) {
     return kernels.linearize_rows(input, first, last);
   }));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "lcmtypes/base/argument_check.hpp"
 #include "mapper/core/frame/covered_share.hpp"
@@ -66,11 +67,13 @@ class CoarseToFine {
     IcpGates gates = config_.gates;
     if (widened) gates.max_distance_m *= config_.wide_gate_factor;
     const int steps = config_.iterations[level_] * (widened ? config_.wide_iteration_factor : 1);
+    std::optional<InfluenceLimits> limits;
+    if (level_ == 0 && coarsest_ > 0) limits = config_.influence;
     const double small_enough = config_.early_exit * std::exp2(level_);
     // First with the rough start pose, then again when the pose is nearly final.
     if (level_ == coarsest_ || level_ == 0) observe(gates);
     for (int i = 0; i < steps; ++i) {
-      equations_ = linearize(frame_C_[level_], model_.surface_V[level_], X_VC_, gates);
+      equations_ = linearize(frame_C_[level_], model_.surface_V[level_], X_VC_, gates, limits);
       const auto step = solver_.solve(equations_, level_, X_VC_);
       if (!step) return false;
       step_ = *step;
@@ -135,6 +138,8 @@ void RegistrationConfig::validate() const {
   for (const int count : iterations) check_range("ICP iterations", count, 1, 1000);
   check_range("max_distance_m", gates.max_distance_m, 1e-3, 10.0);
   check_range("min_normal_cosine", gates.min_normal_cosine, -1.0, 1.0);
+  check_range("influence.full_sigmas", influence.full_sigmas, 1e-3, 1e6);
+  check_range("influence.none_sigmas", influence.none_sigmas, 1.001 * influence.full_sigmas, 1e9);
   check_range("early_exit", early_exit, 0.0, 1.0);
   check_range("wide_gate_factor", wide_gate_factor, 1.0, 100.0);
   check_range("wide_iteration_factor", wide_iteration_factor, 1, 100);

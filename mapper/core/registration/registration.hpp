@@ -18,6 +18,9 @@ namespace kintsugi::mapper {
 struct RegistrationConfig {
   std::vector<int> iterations = {5, 5, 4};  ///< at most, per level, finest first
   IcpGates gates;
+  /// At the finest level after a coarser one: the pose is nearly right already, and what does not
+  /// fit then is no motion.
+  InfluenceLimits influence;
   double early_exit = 3e-5;  ///< norm of the increment (m, rad) at the finest level, x2 a level
   double wide_gate_factor = 3.0;  ///< on max_distance_m, at the coarsest level of a wide search
   int wide_iteration_factor = 3;  ///< on the iterations of the coarsest level of a wide search

@@ -109,24 +109,35 @@ class RowLinearization {
   }
 
   /// d(se3_retract(xi) p)/dxi = [I, -[p]x], so the prediction n . p changes by n for the
-  /// translation and by p x n for the rotation.
+  /// translation and by p x n for the rotation. Residuals are limited in b alone.
   void add_products(const Vector& point, const Vector& normal, const Float& residual,
                     const Float& sigma, const Mask& is_inlier) {
     const Float zero(0.0F);
     const Float inverse_sigma = Float(1.0F) / sigma;
     const Vector moment = cross(point, normal);
-    const Float row[7] = {normal.x, normal.y, normal.z, moment.x, moment.y, moment.z, residual};
+    const Float row[6] = {normal.x, normal.y, normal.z, moment.x, moment.y, moment.z};
+    const Float residual_sigmas = select(is_inlier, residual * inverse_sigma, zero);
     Float weighted[7];
-    for (int i = 0; i < 7; ++i) weighted[i] = select(is_inlier, row[i] * inverse_sigma, zero);
+    for (int i = 0; i < 6; ++i) weighted[i] = select(is_inlier, row[i] * inverse_sigma, zero);
+    weighted[6] = influence_of(residual_sigmas);
     int k = 0;
 // Not unrolled by the compiler on its own, which costs a fifth of the time of this kernel.
-#pragma GCC unroll 7
-    for (int i = 0; i < 7; ++i) {
+#pragma GCC unroll 6
+    for (int i = 0; i < 6; ++i) {
 #pragma GCC unroll 7
       for (int j = i; j < 7; ++j, ++k) products_[k] = products_[k] + weighted[i] * weighted[j];
     }
+    products_[k] = products_[k] + residual_sigmas * residual_sigmas;
     const Float inlier_residual = select(is_inlier, residual, zero);
     squared_residuals_ = squared_residuals_ + inlier_residual * inlier_residual;
+  }
+
+  Float influence_of(const Float& residual_sigmas) const {
+    const Float zero(0.0F);
+    const Float amount = max(residual_sigmas, zero - residual_sigmas);
+    const Float falling = max(Float(in_.no_influence_sigmas) - amount, zero);
+    const Float limited = min(amount, Float(in_.influence_slope) * falling);
+    return select(residual_sigmas < zero, zero - limited, limited);
   }
 
   static std::int32_t count_of(const Mask& mask) { return count(mask); }

@@ -28,6 +28,7 @@ struct Pair {
 };
 
 const DepthNoise kNoise;  ///< of the frames below
+const InfluenceLimits kLimits{.full_sigmas = 3.0, .none_sigmas = 9.0};
 
 /// Points with depths `frame_z` and `model_z` on the ray (x, y, 1), with the same normal.
 Pair one_pair(float frame_z, float model_z, const Eigen::Vector3f& normal, double x = 0.0,
@@ -75,6 +76,26 @@ TEST(Linearize, JacobianIsTheNumericDerivativeOfTheResidual) {
   // The code computes the moment from floats: 1e-6 of entries of the order of 1.
   EXPECT_LT((equations.A / weight - jacobian * jacobian.transpose()).norm(), 1e-5);
   EXPECT_LT((equations.b / weight - jacobian * residual(Vector6d::Zero())).norm(), 1e-6);
+}
+
+TEST(Linearize, LimitsTheInfluenceOfLargeResiduals) {
+  const double sigma_m = kNoise.sigma_m(1.0);
+  // Between 3 and 9 deviations the influence falls from 3 to 0.
+  for (const auto& [amount, influence] :
+       {std::pair{0.0, 0.0}, {2.9, 2.9}, {3.0, 3.0}, {5.0, 2.0}, {8.0, 0.5}, {9.5, 0.0}}) {
+    for (const double sign : {-1.0, 1.0}) {
+      const auto model_z = static_cast<float>(1.0 - sign * amount * sigma_m);
+      const Pair pair = one_pair(1.0F, model_z, {0, 0, -1});
+      const NormalEquations limited =
+          linearize(pair.frame, pair.model, Pose::Identity(), {}, kLimits);
+      // One float rounding of the depths is 1e-7 m of deviations of 2 mm: 1e-4.
+      EXPECT_NEAR(limited.b(2) * sigma_m, -sign * influence, 1e-3) << sign * amount;
+      const NormalEquations whole = linearize(pair.frame, pair.model, Pose::Identity(), {});
+      EXPECT_EQ(limited.A, whole.A);
+      EXPECT_EQ(limited.weighted_squares, whole.weighted_squares);
+      EXPECT_NEAR(whole.b(2) * sigma_m, -sign * amount, 1e-3);
+    }
+  }
 }
 
 TEST(Linearize, RejectsPairsOutsideTheGates) {
@@ -142,6 +163,16 @@ TEST(Linearize, CountsPointsBehindAndInFrontOfTheModel) {
   expect(3.0F, 3.045F, 0, 1);
 }
 
+/// The pose that Gauss-Newton steps end at.
+Pose iterated(const SurfaceMap& frame_C, const SurfaceMap& model_V, Pose X_VC,
+              const std::optional<InfluenceLimits>& limits) {
+  for (int i = 0; i < 15; ++i) {
+    const NormalEquations equations = linearize(frame_C, model_V, X_VC, {}, limits);
+    X_VC = se3_retract(equations.A.ldlt().solve(equations.b)) * X_VC;
+  }
+  return X_VC;
+}
+
 TEST(Linearize, IteratingFindsAKnownMotionInAnExactRoom) {
   const Pose X_WV = testing::looking_at_the_crate();
   const SurfaceMap model = testing::render_room(X_WV, testing::test_camera());
@@ -150,11 +181,7 @@ TEST(Linearize, IteratingFindsAKnownMotionInAnExactRoom) {
         twist(-0.015, 0.02, 0.01, 0.01, 0.015, -0.02)}) {
     const Pose X_VC_true = se3_retract(motion);
     const SurfaceMap frame = testing::render_room(X_WV * X_VC_true, testing::test_camera());
-    Pose X_VC = Pose::Identity();
-    for (int i = 0; i < 15; ++i) {
-      const NormalEquations equations = linearize(frame, model, X_VC, {});
-      X_VC = se3_retract(equations.A.ldlt().solve(equations.b)) * X_VC;
-    }
+    const Pose X_VC = iterated(frame, model, Pose::Identity(), {});
     // On planes the point-to-plane error of exact data vanishes at the truth alone; what remains is
     // the pairs across creases (points within 10 cm and 37 degrees), none here: float rounding.
     EXPECT_LT(distance_m(X_VC, X_VC_true), 1e-5);
@@ -162,9 +189,35 @@ TEST(Linearize, IteratingFindsAKnownMotionInAnExactRoom) {
   }
 }
 
+TEST(Linearize, WithLimitsAStripInAWrongPlaceDoesNotMoveThePose) {
+  const Pose X_WV = testing::looking_at_the_crate();
+  SurfaceMap model = testing::render_room(X_WV, testing::test_camera());
+  const Pose X_VC_true = se3_retract(twist(0.02, -0.01, 0.015, 0.005, -0.01, 0.005));
+  SurfaceMap frame = testing::render_room(X_WV * X_VC_true, testing::test_camera());
+  frame.noise = {.base_m = 0.002, .share = 0.0, .growth_per_m = 0.0};
+  cv::Mat strip = model.depth_m.colRange(0, model.depth_m.cols / 10);
+  strip -= 0.06;  // 30 deviations along the rays, on slanted walls less
+  const Pose X_VC_start = X_VC_true * se3_retract(twist(0.001, -0.001, 0.001, 0, 0.001, 0));
+  const Pose drawn = iterated(frame, model, X_VC_start, {});
+  const Pose limited = iterated(frame, model, X_VC_start, kLimits);
+  EXPECT_GT(distance_m(drawn, X_VC_true), 2e-3);
+  EXPECT_LT(distance_m(limited, X_VC_true), 1e-4);
+  EXPECT_LT(angle_rad(limited, X_VC_true), 1e-4);
+}
+
+/// The definition of InfluenceLimits.
+double limited(double residual_sigmas, const InfluenceLimits& limits) {
+  const double amount = std::abs(residual_sigmas);
+  if (amount <= limits.full_sigmas) return residual_sigmas;
+  if (amount >= limits.none_sigmas) return 0.0;
+  const double share = (limits.none_sigmas - amount) / (limits.none_sigmas - limits.full_sigmas);
+  return std::copysign(limits.full_sigmas * share, residual_sigmas);
+}
+
 /// linearize() in double and pixel by pixel.
 NormalEquations slow_linearize(const SurfaceMap& frame_C, const SurfaceMap& model_V,
-                               const Pose& X_VC, const IcpGates& gates) {
+                               const Pose& X_VC, const IcpGates& gates,
+                               const InfluenceLimits& limits) {
   NormalEquations sums;
   const Intrinsics& camera = model_V.intrinsics;
   for (int v = 0; v < frame_C.depth_m.rows; ++v) {
@@ -195,7 +248,7 @@ NormalEquations slow_linearize(const SurfaceMap& frame_C, const SurfaceMap& mode
       jacobian << n, p.cross(n);
       const double residual = n.dot(m - p);
       sums.A += jacobian * jacobian.transpose() / (sigma * sigma);
-      sums.b += jacobian * residual / (sigma * sigma);
+      sums.b += jacobian * limited(residual / sigma, limits) / sigma;
       sums.weighted_squares += residual * residual / (sigma * sigma);
       sums.squared_residuals_m2 += residual * residual;
       ++sums.inliers;
@@ -215,6 +268,7 @@ class RoomPair : public ::testing::Test {
     const float nan = std::numeric_limits<float>::quiet_NaN();
     frame_.depth_m(cv::Rect(20, 30, 37, 11)).setTo(nan);
     frame_.depth_m(cv::Rect(100, 60, 30, 30)) *= 1.2F;  // behind the model
+    frame_.depth_m(cv::Rect(5, 70, 30, 60)) *= 1.02F;   // farther off than noise, but inliers
     for (cv::Mat* plane : {&frame_.normal_x, &frame_.normal_y, &frame_.normal_z}) {
       (*plane)(cv::Rect(150, 5, 9, 70)).setTo(nan);
     }
@@ -230,9 +284,11 @@ class RoomPair : public ::testing::Test {
 TEST_F(RoomPair, GivesTheSumsOfASlowReference) {
   const IcpGates gates;
   const Pose X_VC = X_VC_ * se3_retract(twist(0.004, 0.003, -0.005, 0.002, 0.001, -0.003));
-  const NormalEquations slow = slow_linearize(frame_, model_, X_VC, gates);
-  const NormalEquations fast = linearize(frame_, model_, X_VC, gates);
+  const NormalEquations slow = slow_linearize(frame_, model_, X_VC, gates, kLimits);
+  const NormalEquations fast = linearize(frame_, model_, X_VC, gates, kLimits);
   ASSERT_GT(slow.inliers, 15'000);
+  const NormalEquations without = linearize(frame_, model_, X_VC, gates);
+  ASSERT_GT((without.b - slow.b).norm(), 0.05 * slow.b.norm());
   ASSERT_GT(slow.agreement.behind, 500);
   // A pixel in ten thousand falls on the other side of a rounding or a gate in single precision.
   EXPECT_NEAR(fast.inliers, slow.inliers, 5);
@@ -250,7 +306,7 @@ TEST_F(RoomPair, GivesTheSumsOfASlowReference) {
 TEST_F(RoomPair, MayHaveTwoSizesOfImages) {
   const SurfaceMap small_frame =
       testing::render_room(testing::looking_at_the_crate() * X_VC_, testing::test_camera(75, 131));
-  const NormalEquations slow = slow_linearize(small_frame, model_, X_VC_, {});
+  const NormalEquations slow = slow_linearize(small_frame, model_, X_VC_, {}, kLimits);
   const NormalEquations fast = linearize(small_frame, model_, X_VC_, {});
   ASSERT_GT(slow.inliers, 3'000);
   EXPECT_NEAR(fast.inliers, slow.inliers, 3);
@@ -270,11 +326,11 @@ void expect_same_bits(const NormalEquations& a, const NormalEquations& b) {
 
 TEST_F(RoomPair, GivesTheSameBitsWithEveryInstructionSet) {
   const NormalEquations portable =
-      linearize(frame_, model_, X_VC_, {}, kernels_for(InstructionSet::kPortable));
+      linearize(frame_, model_, X_VC_, {}, kLimits, kernels_for(InstructionSet::kPortable));
   for (const InstructionSet set : kInstructionSets) {
     if (!is_supported(set)) continue;
     SCOPED_TRACE(name_of(set));
-    expect_same_bits(linearize(frame_, model_, X_VC_, {}, kernels_for(set)), portable);
+    expect_same_bits(linearize(frame_, model_, X_VC_, {}, kLimits, kernels_for(set)), portable);
   }
 }
 
