@@ -18,7 +18,7 @@ struct LinearizationInput {
   float max_distance_sigmas = 0.0F;
   float min_normal_cosine = 0.0F;
   // A residual r, in deviations sigma, counts in b as sign(r) min(|r|, influence_slope
-  // max(0, no_influence_sigmas - |r|)).
+  // max(0, no_influence_sigmas - |r|)); without limits, as r.
   float no_influence_sigmas = 1e30F;
   float influence_slope = 1.0F;
   DepthVariance variance;  ///< of the frame's depths
