@@ -1,6 +1,7 @@
 #include "mapper/core/relocalization/relocalizer.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "lcmtypes/base/argument_check.hpp"
 #include "lcmtypes/trajectory.hpp"
@@ -15,12 +16,21 @@ const SurfaceMap& coarse(const SurfacePyramid& pyramid) {
   return pyramid[std::min<std::size_t>(1, pyramid.size() - 1)];
 }
 
-std::optional<double> correlation_between(const Keyframe& keyframe, const SurfaceMap& surface_K,
+/// `X_UK` and `X_UC`: of the keyframe and of the frame.
+std::optional<double> correlation_between(const Keyframe& keyframe, const Pose& X_UK,
+                                          const SurfaceMap& surface_K,
                                           const KeyframeAppearance& appearance,
-                                          const TrackingInput& frame, const Pose& X_WC) {
+                                          const TrackingInput& frame, const Pose& X_UC) {
   if (appearance.intensity.empty() || keyframe.appearance.intensity.empty()) return std::nullopt;
   return intensity_agreement(coarse(frame.surface_C), appearance.intensity, surface_K,
-                             keyframe.appearance.intensity, keyframe.X_WC.inverse() * X_WC);
+                             keyframe.appearance.intensity, X_UK.inverse(Eigen::Isometry) * X_UC);
+}
+
+TrackingResult found(TrackingResult result, std::optional<int> at_keyframe) {
+  result.state = TrackingState::kTracking;
+  result.loss_reason.reset();
+  result.found_by_keyframe = at_keyframe;
+  return result;
 }
 
 }  // namespace
@@ -50,43 +60,49 @@ std::optional<TrackingResult> Relocalizer::find(const TrackingInput& frame, cons
   const KeyframeAppearance appearance = appearance_of(frame, config_.keyframes.max_features);
   const std::vector<int> candidates = keyframes_.similar_to(appearance);
   if (candidates.empty()) return std::nullopt;
-  auto found = try_keyframe(candidates.front(), appearance, frame, tracker, model_from, place_of);
-  if (!found && candidates.size() > 1) {
+  auto result = try_keyframe(candidates.front(), appearance, frame, tracker, model_from, place_of);
+  if (!result && candidates.size() > 1) {
     const int other = candidates[1 + turn_++ % (candidates.size() - 1)];
-    found = try_keyframe(other, appearance, frame, tracker, model_from, place_of);
+    result = try_keyframe(other, appearance, frame, tracker, model_from, place_of);
   }
-  return found;
+  return result;
 }
 
 std::optional<TrackingResult> Relocalizer::try_keyframe(
     int number, const KeyframeAppearance& appearance, const TrackingInput& frame,
     const Tracker& tracker, const ModelFrom& model_from, const PlaceOf& place_of) const {
   const Keyframe& keyframe = keyframes_[number];
-  std::optional<Pose> X_WC_features;
+  const Pose& X_NK = keyframe.X_WC;  // N: as the keyframe was tracked
+  std::optional<Pose> X_NC_features;
   if (const auto X_KC = pose_from_features(keyframe.appearance.features, appearance.features)) {
-    X_WC_features = keyframe.X_WC * *X_KC;
+    X_NC_features = X_NK * *X_KC;
   }
   const int levels = static_cast<int>(frame.surface_C.size());
-  const Model seen_then{pyramid_from_surface(keyframe.surface(), levels), keyframe.X_WC};
-  const TrackingResult near =
-      tracker.register_anew(frame, seen_then, X_WC_features.value_or(keyframe.X_WC));
+  const Model seen_then{pyramid_from_surface(keyframe.surface(), levels), X_NK};
+  const SurfaceMap& surface_K = seen_then.surface_V.front();
+  TrackingResult near = tracker.register_anew(frame, seen_then, X_NC_features.value_or(X_NK));
   if (near.quality.overlap_share < config_.min_overlap_share) return std::nullopt;
   const Place place = place_of ? place_of(number) : Place{.way_m = tracker.path_m()};
   if (!tracker.can_be_at(place.motion * near.X_WC, frame.utime, place.way_m)) return std::nullopt;
 
-  const TrackingResult in_map = tracker.register_anew(frame, model_from(near.X_WC), near.X_WC);
-  const bool map_reaches = in_map.quality.overlap_share >= config_.min_overlap_share;
-  TrackingResult result = map_reaches ? in_map : near;
-  const auto correlation =
-      correlation_between(keyframe, seen_then.surface_V.front(), appearance, frame, result.X_WC);
-  // The lower requirements are for drift against the map; a keyframe's own surface has none.
-  if (!is_accepted(result, map_reaches ? X_WC_features : std::nullopt, correlation)) {
-    return std::nullopt;
+  // U: as the volume was. Of a released keyframe tracking has drifted since then.
+  const bool is_in_volume = !keyframes_.is_released()[number];
+  const Pose X_UN = is_in_volume ? Pose::Identity() : place.motion;
+  TrackingResult in_map =
+      tracker.register_anew(frame, model_from(X_UN * near.X_WC), X_UN * near.X_WC);
+  if (in_map.quality.overlap_share >= config_.min_overlap_share) {
+    std::optional<Pose> X_UC_features;
+    if (X_NC_features) X_UC_features = X_UN * *X_NC_features;
+    const auto correlation =
+        correlation_between(keyframe, X_UN * X_NK, surface_K, appearance, frame, in_map.X_WC);
+    if (!is_accepted(in_map, X_UC_features, correlation)) return std::nullopt;
+    return found(std::move(in_map), is_in_volume ? std::optional(number) : std::nullopt);
   }
-  result.state = TrackingState::kTracking;
-  result.loss_reason.reset();
-  result.found_by_keyframe = number;
-  return result;
+  const auto correlation =
+      correlation_between(keyframe, X_NK, surface_K, appearance, frame, near.X_WC);
+  // The lower requirements are for drift against the map; a keyframe's own surface has none.
+  if (!is_accepted(near, std::nullopt, correlation)) return std::nullopt;
+  return found(std::move(near), number);
 }
 
 bool Relocalizer::is_accepted(const TrackingResult& result,

@@ -17,7 +17,9 @@ namespace kintsugi::mapper {
 /// The frame is registered first with the keyframe's surface, from the pose that the features give
 /// or else from the keyframe's pose; then with the map as seen from the pose found. This second
 /// registration must pass the loss rule for poses found anew. Where the volume no longer covers the
-/// place, the first registration must pass it instead. If both frames have colour, their
+/// place, the first registration must pass it instead. With surface in the volume that is not the
+/// keyframe's, because that was released, the frame is registered where the corrected map has the
+/// keyframe, and the pose found is in the frame of the volume. If both frames have colour, their
 /// intensities must not contradict the pose. A pose from features that agrees with the registration
 /// is an independent second estimate; the requirements are then lower (with_features), because
 /// after a long loop the accumulated drift puts the frame a few centimetres off the map.

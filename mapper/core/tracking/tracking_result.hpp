@@ -18,7 +18,9 @@ struct TrackingResult {
   std::optional<LossReason> loss_reason;        ///< set when state is kLost
   std::optional<LossReason> first_loss_reason;  ///< why the pose that continues the motion was
                                                 ///< rejected, if it was
-  std::optional<int> found_by_keyframe;         ///< after a loss: the number of the keyframe
+  /// After a loss: the number of the keyframe that was compared, if X_WC is in the frame in which
+  /// that was tracked.
+  std::optional<int> found_by_keyframe;
   /// See Registration; zero where there was none.
   Matrix6d information_C = Matrix6d::Zero();
   TwistBasis open_to_depth_C;  ///< directions of motion that depth does not determine

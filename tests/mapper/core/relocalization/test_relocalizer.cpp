@@ -161,6 +161,7 @@ TEST(Relocalizer, FindsAPlaceThatTheVolumeHasLeft) {
   OfficeMap map(true);
   const auto found = find_without_volume(map, OfficeMap::office().frames[9]);
   ASSERT_TRUE(found);
+  EXPECT_TRUE(found->found_by_keyframe);
   const Pose& X_WC_true = OfficeMap::office().true_path[9].X_WC;
   EXPECT_LT((found->X_WC.translation() - X_WC_true.translation()).norm(), kFound_m);
 }
@@ -207,6 +208,28 @@ TEST(Relocalizer, RefusesAPlaceFartherAwayThanTrackingDriftsOnTheWay) {
   };
   EXPECT_FALSE(found_after(100.0));
   EXPECT_TRUE(found_after(200.0));
+}
+
+/// On the way back tracking has drifted by 0.3 m, and so has what the volume has of the place.
+TEST(Relocalizer, LeavesTheCameraInTheVolumeThatCoversThePlace) {
+  OfficeMap map(true);
+  map.relocalizer.keyframes().release_if([](const Keyframe&) { return true; });
+  const Pose X_UN(Eigen::Translation3d(0.3, 0.0, 0.0));  // N: as the keyframes were tracked
+  const auto seen_in_volume = [&](const Pose& X_UV) {
+    Model model = map.seen_from(X_UN.inverse() * X_UV);
+    model.X_WV = X_UV;
+    return model;
+  };
+  const auto place_of = [&](int /*keyframe*/) { return Relocalizer::Place{.motion = X_UN}; };
+  std::optional<TrackingResult> found;
+  for (int i = 0; i < 9 && !found; ++i) {
+    found = map.relocalizer.find(input_from(OfficeMap::office().frames[9]), map.tracker,
+                                 seen_in_volume, place_of);
+  }
+  ASSERT_TRUE(found);
+  EXPECT_FALSE(found->found_by_keyframe) << "the pose is not in its frame";
+  const Pose X_UC_true = X_UN * OfficeMap::office().true_path[9].X_WC;
+  EXPECT_LT((found->X_WC.translation() - X_UC_true.translation()).norm(), kFound_m);
 }
 
 }  // namespace
