@@ -13,6 +13,7 @@
 #include "mapper/core/frame/sensors.hpp"
 #include "mapper/core/fusion/truncation.hpp"
 #include "mapper/core/guests/keyframe_message.hpp"
+#include "mapper/core/registration/motion_size.hpp"
 
 namespace kintsugi::mapper {
 namespace {
@@ -235,9 +236,7 @@ bool MapperPipeline::go_over_to_known_surface(const TrackingInput& input) {
   const double limit_m =
       config_.same_surface.max_distance_vox * config_.volume.resolution_m +
       config_.loops.closer.verifier.max_disagreement_sigmas * found.quality.sigma_m;
-  if (std::max(difference.translation().norm(), rotation_angle_rad(difference)) > limit_m) {
-    return false;
-  }
+  if (motion_size(difference) > limit_m) return false;
   tracker_.change_frame(found.X_WC * X_WC_.inverse(Eigen::Isometry));
   go_over_to(*number, found.X_WC, input);
   return true;

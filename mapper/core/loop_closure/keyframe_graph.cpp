@@ -8,7 +8,7 @@
 #include <string>
 
 #include "lcmtypes/base/argument_check.hpp"
-#include "lcmtypes/trajectory.hpp"
+#include "mapper/core/registration/motion_size.hpp"
 
 namespace kintsugi::mapper {
 namespace {
@@ -16,10 +16,6 @@ namespace {
 /// Registrations have errors that are alike for all pixels, and so not in their information: of the
 /// surfaces that voxels describe.
 constexpr double kSurfaceError_vox = 0.25;
-
-/// The larger of the distance (m) and of the angle (rad), which are about the same for what is a
-/// metre away.
-double size_of(const Pose& X) { return std::max(X.translation().norm(), rotation_angle_rad(X)); }
 
 /// A further error, independent in each direction, m and rad.
 Matrix6d with_error(const Matrix6d& information, double sigma) {
@@ -93,7 +89,7 @@ int KeyframeGraph::offer(const Loop& loop) {
 
 bool KeyframeGraph::is_plausible(const Loop& loop) const {
   const Pose X_EL = X_WK_[loop.earlier].inverse(Eigen::Isometry) * X_WK_[loop.later];
-  const double drift_m = size_of(loop.X_EL.inverse(Eigen::Isometry) * X_EL);
+  const double drift_m = motion_size(loop.X_EL.inverse(Eigen::Isometry) * X_EL);
   return drift_m <= config_.max_drift_share * way_m(loop.later, loop.earlier) + config_.voxel_m;
 }
 
@@ -182,7 +178,7 @@ bool KeyframeGraph::are_rivals(const Loop& a, const Loop& b) const {
   const Pose X_EaEb = X_WK_[a.earlier].inverse(Eigen::Isometry) * X_WK_[b.earlier];
   const Pose X_LaLb_loops = a.X_EL.inverse(Eigen::Isometry) * X_EaEb * b.X_EL;
   const double tracked_m = way_m(a.later, b.later) + way_m(a.earlier, b.earlier);
-  return size_of(X_LaLb.inverse(Eigen::Isometry) * X_LaLb_loops) >
+  return motion_size(X_LaLb.inverse(Eigen::Isometry) * X_LaLb_loops) >
          uncertainty_m(a, b, X_LaLb_loops) + config_.max_drift_share * tracked_m;
 }
 
@@ -212,7 +208,8 @@ bool KeyframeGraph::agree(const Loop& a, const Loop& b) const {
   const Pose X_LaLb_tracked = nodes_[a.later].X_UK.inverse(Eigen::Isometry) * nodes_[b.later].X_UK;
   const Pose X_EaEb = nodes_[a.earlier].X_UK.inverse(Eigen::Isometry) * nodes_[b.earlier].X_UK;
   const Pose X_LaLb = a.X_EL.inverse(Eigen::Isometry) * X_EaEb * b.X_EL;
-  return size_of(X_LaLb_tracked.inverse(Eigen::Isometry) * X_LaLb) <= uncertainty_m(a, b, X_LaLb);
+  return motion_size(X_LaLb_tracked.inverse(Eigen::Isometry) * X_LaLb) <=
+         uncertainty_m(a, b, X_LaLb);
 }
 
 /// Of the way from one later keyframe to the other over both loops, metres (and radians).

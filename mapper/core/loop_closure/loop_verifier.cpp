@@ -6,6 +6,7 @@
 
 #include "lcmtypes/base/argument_check.hpp"
 #include "lcmtypes/trajectory.hpp"
+#include "mapper/core/registration/motion_size.hpp"
 #include "mapper/core/relocalization/feature_pose.hpp"
 #include "mapper/core/relocalization/intensity_agreement.hpp"
 
@@ -24,12 +25,7 @@ bool is_near(const Pose& X_AB, const Pose& X_AC, const LoopVerifier::Config& con
          rotation_angle_rad(X_BC) < config.feature_angle_rad;
 }
 
-/// Of both poses: the larger of the distance (m) and the angle (rad), which are about the same for
-/// what is a metre away.
-double difference(const Pose& X_AB, const Pose& X_AC) {
-  const Pose X_BC = X_AB.inverse() * X_AC;
-  return std::max(X_BC.translation().norm(), rotation_angle_rad(X_BC));
-}
+double difference(const Pose& X_AB, const Pose& X_AC) { return motion_size(X_AB.inverse() * X_AC); }
 
 }  // namespace
 

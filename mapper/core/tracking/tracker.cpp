@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "lcmtypes/base/argument_check.hpp"
-#include "lcmtypes/trajectory.hpp"
+#include "mapper/core/registration/motion_size.hpp"
 #include "mapper/core/registration/twist.hpp"
 
 namespace kintsugi::mapper {
@@ -143,8 +143,7 @@ bool Tracker::follows_motion(const Registration& registration, std::int64_t utim
   const double seconds = 1e-6 * static_cast<double>(utime - utime_followed_);
   const Pose X_PC = predict(utime).inverse() * registration.X_WC;  // P: the predicted camera
   const double noise_m = std::max(kPoseNoise_m, kPoseNoise_sigmas * registration.quality.sigma_m);
-  const double difference_m = std::max(X_PC.translation().norm(), rotation_angle_rad(X_PC));
-  return difference_m < noise_m + 0.5 * config_.max_acceleration * seconds * seconds;
+  return motion_size(X_PC) < noise_m + 0.5 * config_.max_acceleration * seconds * seconds;
 }
 
 bool Tracker::needs_new_reference(const Registration& registration) const {
@@ -152,7 +151,7 @@ bool Tracker::needs_new_reference(const Registration& registration) const {
   if (registration.photometric_reliability >= config_.min_reference_reliability) return false;
   // A nearby reference would hardly be more reliable, and each new one adds to the drift.
   const Pose X_KC = reference_->X_WK.inverse() * registration.X_WC;
-  return std::max(X_KC.translation().norm(), rotation_angle_rad(X_KC)) > kMinReferenceStep;
+  return motion_size(X_KC) > kMinReferenceStep;
 }
 
 void Tracker::update_reference(const Registration& registration, PhotometricPyramid frame) {
