@@ -12,6 +12,10 @@
 namespace kintsugi::mapper {
 namespace {
 
+/// From the worse of two starts there are this many times as many outliers, or both are alike:
+/// along a direction that nothing determines the same pixels fit, wherever one starts.
+constexpr double kMuchBetter = 2.0;
+
 /// The product of many rotations drifts off SO(3); this projects back to it.
 Pose orthonormal(const Pose& X) {
   Pose clean = X;
@@ -50,17 +54,35 @@ class CoarseToFine {
         solver_(frame.surface_C, model, colors, config.steps),
         X_VC_(model.X_WV.inverse() * X_WC_start) {}
 
-  Registration run() {
+  /// The coarsest level. Returns *this.
+  CoarseToFine& begin() {
     level_ = coarsest_;
-    bool solved = register_level();
-    while (solved && level_ > 0) {
+    solved_ = register_level();
+    return *this;
+  }
+
+  /// After begin(): the levels below.
+  Registration finish() {
+    while (solved_ && level_ > 0) {
       --level_;
-      solved = register_level();
+      solved_ = register_level();
     }
-    return result(solved);
+    return result();
+  }
+
+  /// After begin() of both, from two starts.
+  bool fits_much_better_than(const CoarseToFine& other) const {
+    if (!solved_ || !other.solved_) return solved_;
+    return equations_.inliers > other.equations_.inliers &&
+           kMuchBetter * outlier_share() < other.outlier_share();
   }
 
  private:
+  double outlier_share() const {
+    const auto overlap = static_cast<double>(equations_.agreement.overlap);
+    return 1.0 - static_cast<double>(equations_.inliers) / overlap;
+  }
+
   /// False if a step had no solution.
   bool register_level() {
     const bool widened = wide_ && level_ == coarsest_;
@@ -96,14 +118,14 @@ class CoarseToFine {
     step_.undetermined = solver_.open_to_depth();
   }
 
-  Registration result(bool solved) const {
+  Registration result() const {
     const std::size_t num_pixels = frame_C_[level_].depth_m.total();
     Registration registration;
     registration.X_WC = orthonormal(model_.X_WV * X_VC_);
     registration.iterations = iterations_;
     RegistrationQuality& quality = registration.quality;
     quality = quality_of(equations_, num_pixels);
-    quality.solved = solved;
+    quality.solved = solved_;
     quality.voxel_m = model_.voxel_m;
     quality.covered_share = covered_share(frame_C_.front(), registration.X_WC, model_.region_W);
     const Matrix6d A = equations_.A + step_.further_information;
@@ -128,6 +150,7 @@ class CoarseToFine {
   Pose X_VC_;
   NormalEquations equations_;  ///< before the last step
   Step step_;                  ///< the last one
+  bool solved_ = false;
   int iterations_ = 0;
 };
 
@@ -151,13 +174,23 @@ void RegistrationConfig::validate() const {
 Registration register_frame(const TrackingInput& frame, const Model& model,
                             const PhotometricPair& colors, const Pose& X_WC_start,
                             const RegistrationConfig& config) {
-  return CoarseToFine(frame, model, colors, X_WC_start, config, false).run();
+  return CoarseToFine(frame, model, colors, X_WC_start, config, false).begin().finish();
+}
+
+Registration register_frame(const TrackingInput& frame, const Model& model,
+                            const PhotometricPair& colors, const Pose& X_WC_start,
+                            const Pose& X_WC_other_start, const RegistrationConfig& config) {
+  CoarseToFine from_start(frame, model, colors, X_WC_start, config, false);
+  CoarseToFine from_other(frame, model, colors, X_WC_other_start, config, false);
+  const bool other = from_other.begin().fits_much_better_than(from_start.begin());
+  return (other ? from_other : from_start).finish();
 }
 
 Registration register_frame_widely(const TrackingInput& frame, const Model& model,
                                    const PhotometricPair& colors, const Pose& X_WC_start,
                                    const RegistrationConfig& config) {
-  Registration found = CoarseToFine(frame, model, colors, X_WC_start, config, true).run();
+  Registration found =
+      CoarseToFine(frame, model, colors, X_WC_start, config, true).begin().finish();
   if (!found.quality.solved) return found;
   return register_frame(frame, model, colors, found.X_WC, config);
 }

@@ -50,6 +50,12 @@ Registration register_frame(const TrackingInput& frame, const Model& model,
                             const PhotometricPair& colors, const Pose& X_WC_start,
                             const RegistrationConfig& config);
 
+/// The same, but from the other start if the frame fits much better from there at the coarsest
+/// level.
+Registration register_frame(const TrackingInput& frame, const Model& model,
+                            const PhotometricPair& colors, const Pose& X_WC_start,
+                            const Pose& X_WC_other_start, const RegistrationConfig& config);
+
 /// Registers from a pose that may be farther off: with a wider distance gate and more iterations at
 /// the coarsest level, and then once more, as register_frame(), from the pose found.
 Registration register_frame_widely(const TrackingInput& frame, const Model& model,

@@ -90,8 +90,7 @@ TrackingResult Tracker::track(const TrackingInput& frame, const Model& model) {
   PhotometricPyramid pyramid(frame.surface_C, frame.color_rgb);
   const PhotometricPair colors{&pyramid,
                                pyramid.has_color() && reference_ ? &*reference_ : nullptr};
-  Registration registration =
-      register_frame(frame, model, colors, predict(frame.utime), config_.registration);
+  Registration registration = register_by_motion(frame, model, colors);
   auto loss = follows_motion(registration, frame.utime)
                   ? loss_rule_.judge(registration.quality)
                   : loss_rule_.judge_found_anew(registration.quality);
@@ -111,6 +110,16 @@ TrackingResult Tracker::track(const TrackingInput& frame, const Model& model) {
     last_frame_ = Model{frame.surface_C, X_WC_followed_, model.voxel_m};
   }
   return result;
+}
+
+/// From the predicted pose, or from where the camera was: it may have stopped or turned back.
+Registration Tracker::register_by_motion(const TrackingInput& frame, const Model& model,
+                                         const PhotometricPair& colors) const {
+  const Pose X_WC = predict(frame.utime);
+  if (motion_size(X_WC_followed_.inverse(Eigen::Isometry) * X_WC) <= kPoseNoise_m) {
+    return register_frame(frame, model, colors, X_WC, config_.registration);
+  }
+  return register_frame(frame, model, colors, X_WC, X_WC_followed_, config_.registration);
 }
 
 TrackingResult Tracker::register_anew(const TrackingInput& frame, const Model& model,

@@ -92,6 +92,8 @@ class Tracker {
 
  private:
   bool motion_continues(std::int64_t utime) const;
+  Registration register_by_motion(const TrackingInput& frame, const Model& model,
+                                  const PhotometricPair& colors) const;
   bool needs_new_reference(const Registration& registration) const;
   void update_reference(const Registration& registration, PhotometricPyramid frame);
   bool follows_motion(const Registration& registration, std::int64_t utime) const;

@@ -1,4 +1,5 @@
 #include <stdexcept>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -47,6 +48,49 @@ TEST(Registration, IsNotDrawnByAStripOfTheModelInAWrongPlace) {
   EXPECT_GT(distance_m(drawn.X_WC, X_WC), 5e-3);
   // Limits change the pose, not the pairs: the strip still counts as inliers that do not fit.
   EXPECT_GT(limited.quality.rms_sigmas, 1.0);
+}
+
+constexpr double kExact_m = 1e-4;
+
+TrackingInput frame_of(const SurfaceMap& surface_C) {
+  return {0, pyramid_from_surface(surface_C, kLevels), {}};
+}
+
+/// The camera was expected to go on turning, and turned back.
+TEST(Registration, GoesOnFromTheStartThatFits) {
+  const Pose X_WV = testing::looking_at_the_crate();
+  const Intrinsics camera = testing::test_camera();
+  const Model model{pyramid_from_surface(testing::render_room(X_WV, camera), kLevels), X_WV};
+  const auto turned = [&](double angle_rad) {
+    Vector6d turn = Vector6d::Zero();
+    turn(4) = angle_rad;
+    return Pose(X_WV * se3_retract(turn));
+  };
+  const Pose X_WC = turned(-0.1);
+  const Pose X_WC_expected = turned(0.3);
+  const TrackingInput frame = frame_of(testing::render_room(X_WC, camera));
+  const Registration from_there = register_frame(frame, model, {}, X_WC_expected, {});
+  EXPECT_GT(distance_m(from_there.X_WC, X_WC), 0.1) << "or else this tests nothing";
+  for (const auto& [start, other] :
+       {std::pair(X_WC_expected, X_WV), std::pair(X_WV, X_WC_expected)}) {
+    const Registration found = register_frame(frame, model, {}, start, other, {});
+    EXPECT_LT(distance_m(found.X_WC, X_WC), kExact_m);
+    EXPECT_LT(angle_rad(found.X_WC, X_WC), kExact_m);
+  }
+}
+
+/// Before a bare wall a camera fits as well where it was as where it is expected.
+TEST(Registration, StaysAtTheFirstStartAlongWhatNothingDetermines) {
+  const Intrinsics camera = testing::test_camera();
+  SurfaceMap wall = testing::render_room(testing::looking_at_the_crate(), camera);
+  wall.depth_m.setTo(2.0F);
+  wall = pyramid_from_depth(wall.depth_m, camera, 0, 1, 10.0F).front();
+  const Pose X_WV = Pose::Identity();
+  const Model model{pyramid_from_surface(wall, kLevels), X_WV};
+  const Pose X_WC_expected(Eigen::Translation3d(0.05, 0.03, 0.01));
+  const Registration found = register_frame(frame_of(wall), model, {}, X_WC_expected, X_WV, {});
+  EXPECT_LT((found.X_WC.translation() - Eigen::Vector3d(0.05, 0.03, 0.0)).norm(), 1e-3);
+  EXPECT_EQ(found.quality.undetermined, 3);
 }
 
 TEST(Registration, RefusesLimitsInTheWrongOrder) {

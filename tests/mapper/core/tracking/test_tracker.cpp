@@ -74,6 +74,22 @@ TEST(Tracker, PredictsConstantVelocityAcrossMissingFrames) {
   EXPECT_LT(distance_m(tracker.predict(100 * kFrame_us), X_W1), kExactData_m);
 }
 
+/// At two frames a second, from which the prediction is 0.3 rad off.
+TEST(Tracker, FollowsACameraThatTurnsBack) {
+  constexpr std::int64_t kHalfSecond_us = 500'000;
+  const Pose X_W0 = testing::looking_at_the_crate();
+  const Pose X_W1 = X_W0 * se3_retract(twist(0, 0, 0, 0, 0.15, 0));
+  Tracker tracker({});
+  tracker.start_at(X_W0, frame_at(X_W0, 0), 1.0);
+  ASSERT_EQ(tracker.track(frame_at(X_W1, kHalfSecond_us), model_at(X_W0)).state,
+            TrackingState::kTracking);
+  ASSERT_GT(angle_rad(tracker.predict(2 * kHalfSecond_us), X_W0), 0.29);
+  const TrackingResult back = tracker.track(frame_at(X_W0, 2 * kHalfSecond_us), model_at(X_W1));
+  EXPECT_EQ(back.state, TrackingState::kTracking);
+  EXPECT_FALSE(back.first_loss_reason);
+  EXPECT_LT(distance_m(back.X_WC, X_W0), kExactData_m);
+}
+
 TEST(Tracker, KnowsWhereTheCameraCanHaveGot) {
   const Pose X_W0 = testing::looking_at_the_crate();
   const auto metres_away = [&](double x) { return X_W0 * se3_retract(twist(x, 0, 0, 0, 0, 0)); };
