@@ -41,31 +41,18 @@ class DistanceField {
         scale_(truncation_vox),
         weight_threshold_(weight_threshold) {}
 
-  /// Of voxel (x, y, z), counted from the origin; nothing where it was not observed.
-  std::optional<double> distance_vox(const Eigen::Vector3i& voxel) {
-    static_assert(kBlockSide == 8);
-    const BlockCoord coord = make_block_coord(voxel.x() >> 3, voxel.y() >> 3, voxel.z() >> 3);
-    if (coord != last_coord_ || !has_last_) {  // most are in the same one
-      last_ = find_block_(coord);
-      last_coord_ = coord;
-      has_last_ = true;
-    }
-    if (last_ == nullptr) return std::nullopt;
-    const Voxel value = last_->voxels[voxel_index(voxel.x() & 7, voxel.y() & 7, voxel.z() & 7)];
-    if (voxel_weight(value) <= weight_threshold_) return std::nullopt;
-    return scale_ * static_cast<double>(voxel_distance(value));
-  }
-
-  /// The surface near a voxel; nothing where none is within `max_distance_vox`.
+  /// The surface near a voxel; nothing where none is within `max_distance_vox`, or the voxel was
+  /// not observed more often than the threshold.
   std::optional<NearSurface> surface_near(const Eigen::Vector3i& voxel, double max_distance_vox) {
-    const auto here = distance_vox(voxel);
+    const auto here = distance_vox(voxel, weight_threshold_);
     if (!here || std::abs(*here) > max_distance_vox) return std::nullopt;
-    Eigen::Vector3d gradient;
+    // Around it any observation will do: surface ends where there are few.
+    Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
     for (int axis = 0; axis < 3; ++axis) {
       const Eigen::Vector3i step = Eigen::Vector3i::Unit(axis);
-      const auto after = distance_vox(voxel + step);
-      const auto before = distance_vox(voxel - step);
-      if (!after && !before) return std::nullopt;
+      const auto after = distance_vox(voxel + step, 0);
+      const auto before = distance_vox(voxel - step, 0);
+      if (!after && !before) continue;
       gradient[axis] =
           after && before ? 0.5 * (*after - *before) : (after ? *after - *here : *here - *before);
     }
@@ -77,6 +64,22 @@ class DistanceField {
 
  private:
   static constexpr double kLeastSlope = 0.1;  // below it distances are truncated, or noise
+
+  /// Of voxel (x, y, z), counted from the origin; nothing where it was not observed more often than
+  /// `threshold`.
+  std::optional<double> distance_vox(const Eigen::Vector3i& voxel, int threshold) {
+    static_assert(kBlockSide == 8);
+    const BlockCoord coord = make_block_coord(voxel.x() >> 3, voxel.y() >> 3, voxel.z() >> 3);
+    if (coord != last_coord_ || !has_last_) {  // most are in the same one
+      last_ = find_block_(coord);
+      last_coord_ = coord;
+      has_last_ = true;
+    }
+    if (last_ == nullptr) return std::nullopt;
+    const Voxel value = last_->voxels[voxel_index(voxel.x() & 7, voxel.y() & 7, voxel.z() & 7)];
+    if (voxel_weight(value) <= threshold) return std::nullopt;
+    return scale_ * static_cast<double>(voxel_distance(value));
+  }
 
   Find find_block_;
   double scale_;
@@ -198,6 +201,7 @@ class Comparison {
   };
   struct Placed {
     Pose X_OU;
+    double min_cosine;  ///< of the angle between the normals
     DistanceField<FindIn> distances_O;
   };
 
@@ -210,8 +214,9 @@ class Comparison {
     for (const Cover& cover : covers_) {
       const double limit_m = radius_m + cover.radius_m;
       if ((cover.center_U - center_U).squaredNorm() > limit_m * limit_m) continue;
-      near.push_back(
-          {cover.X_OU, {FindIn{&cover.blocks}, truncation_vox_, same_.weight_threshold}});
+      near.push_back({cover.X_OU,
+                      cover.is_in_place ? 0.0 : min_cosine_,
+                      {FindIn{&cover.blocks}, truncation_vox_, same_.weight_threshold}});
     }
     return near;
   }
@@ -227,7 +232,7 @@ class Comparison {
     const double distance_vox =
         ((p_O - center_O) / voxel_m_ - found->offset_vox).dot(found->normal);
     return std::abs(distance_vox) <= same_.max_distance_vox &&
-           found->normal.dot(cover.X_OU.linear() * surface.normal) >= min_cosine_;
+           found->normal.dot(cover.X_OU.linear() * surface.normal) >= cover.min_cosine;
   }
 
   const FindBlock find_;

@@ -26,6 +26,9 @@ struct Cover {
   Eigen::Vector3d center_U = Eigen::Vector3d::Zero();
   double radius_m = 0.0;            ///< of a ball around all of them
   std::vector<StoredBlock> blocks;  ///< ascending
+  /// It was seen in U. Then surface is the same, whatever the angle between the normals, but for
+  /// the other side: where a surface ends, they are noise.
+  bool is_in_place = false;
 };
 
 /// Clears the voxels of these blocks of the volume (U) whose surface a cover has, too, and discards

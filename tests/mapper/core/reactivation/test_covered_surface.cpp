@@ -35,8 +35,14 @@ class Floor : public ::testing::Test {
   /// Covers the floor with a plane in frame O.
   template <typename Function>
   void clear(Function signed_distance_m, const Pose& X_OU, int weight = 20) {
-    const TsdfVolume other = volume_of(signed_distance_m, weight);
-    Cover cover{.X_OU = X_OU, .center_U = Eigen::Vector3d::Zero(), .radius_m = 2.0, .blocks = {}};
+    clear(volume_of(signed_distance_m, weight), X_OU, false);
+  }
+  void clear(const TsdfVolume& other, const Pose& X_OU, bool is_in_place) {
+    Cover cover{.X_OU = X_OU,
+                .center_U = Eigen::Vector3d::Zero(),
+                .radius_m = 2.0,
+                .blocks = {},
+                .is_in_place = is_in_place};
     for (const BlockSlot slot : slots_of(other)) {
       cover.blocks.push_back({other.coord(slot), other.voxels(slot), other.colors(slot)});
     }
@@ -88,6 +94,41 @@ TEST_F(Floor, StaysWhereTheOtherSurfaceFacesElsewhere) {
       },
       Pose::Identity());
   EXPECT_EQ(points().size(), before) << "a ramp";
+}
+
+/// 40 degrees, whose axis is on the floor at x = 0: within a voxel and a half there.
+TEST_F(Floor, IsClearedByARampInPlaceButNotByTheOtherSide) {
+  const std::size_t before = points().size();
+  clear(volume_of([](const Eigen::Vector3d& p) { return -above_floor(p); }), Pose::Identity(),
+        true);
+  EXPECT_EQ(points().size(), before);
+  const double tilt = 40.0 * std::numbers::pi / 180.0;
+  clear(volume_of([&](const Eigen::Vector3d& p) {
+          return std::cos(tilt) * above_floor(p) + std::sin(tilt) * p.x();
+        }),
+        Pose::Identity(), true);
+  const auto left = points();
+  EXPECT_LT(left.size(), before);
+  EXPECT_GT(left.size(), before * 9 / 10);
+  for (const CloudPoint& point : left) EXPECT_GT(std::abs(point.x), 1.0 * kVoxel_m);
+}
+
+/// Of each pair of columns of voxels one was hardly seen, as where a surface ends.
+TEST_F(Floor, IsClearedWhereTheSurfaceEndsByTheSameSurface) {
+  const auto hardly_see = [](TsdfVolume& volume) {
+    for (const BlockSlot slot : slots_of(volume)) {
+      for (int i = 1; i < kBlockVoxels; i += 2) {
+        Voxel& voxel = volume.voxels(slot).voxels[i];
+        voxel = static_cast<Voxel>(5) << 16 | (voxel & 0xffff);
+      }
+    }
+  };
+  TsdfVolume other = volume_of(above_floor);
+  hardly_see(other);
+  hardly_see(floor_);
+  ASSERT_FALSE(points().empty());
+  clear(other, Pose::Identity(), false);
+  EXPECT_TRUE(points().empty());
 }
 
 TEST_F(Floor, StaysWhereTheOtherSurfaceWasHardlySeen) {
