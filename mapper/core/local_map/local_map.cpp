@@ -122,8 +122,8 @@ std::vector<BlockSlot> LocalMap::slots_of(const std::function<bool(BlockSlot)>& 
   return slots;
 }
 
-/// Of surface that is seen again after a long way one stays: the first one, to which the camera
-/// goes over.
+/// Of surface that is seen again one stays: the first one, to which the camera goes over after a
+/// long way.
 void LocalMap::clear_known(const std::vector<BlockSlot>& leaving) {
   std::vector<BlockCoord> coords;
   coords.reserve(leaving.size());
@@ -134,7 +134,7 @@ void LocalMap::clear_known(const std::vector<BlockSlot>& leaving) {
   patch_schedule_->note_left(coords, volume_);
 }
 
-/// By keyframe: where what it saw is compared with what leaves.
+/// By keyframe: where what it saw is compared with what leaves; nothing for a near one.
 Reactivation::PlaceOfKeyframe LocalMap::places_of_far_keyframes() const {
   return
       [this, is_near = loops_->near_keyframes(),

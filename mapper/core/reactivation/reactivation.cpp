@@ -79,34 +79,38 @@ std::shared_future<DetachedBlocks> Reactivation::keep_unknown(DetachedBlocks lef
 /// What is kept, as far as it may cover these blocks.
 Reactivation::Known Reactivation::known_in(const std::vector<BlockCoord>& places_U,
                                            double resolution_m, const PlaceOfKeyframe& place_of) {
-  const double block_m = kBlockSide * resolution_m;
-  Eigen::AlignedBox3d box_U;
-  for (const BlockCoord& coord : places_U) {
-    const Eigen::Vector3d corner_U = block_m * Eigen::Vector3d(coord.x, coord.y, coord.z);
-    box_U.extend(corner_U).extend(corner_U + Eigen::Vector3d::Constant(block_m));
-  }
-  Known known = find_known(box_U, resolution_m, place_of);
+  Known known = find_known(places_U, resolution_m, place_of);
   const auto waits = [this](const TileVisit& visit) {
     return std::ranges::binary_search(waiting_->visits, visit);
   };
   if (!waiting_ || std::ranges::none_of(known.visits, waits)) return known;
   settle();
-  return find_known(box_U, resolution_m, place_of);
+  return find_known(places_U, resolution_m, place_of);
 }
 
-Reactivation::Known Reactivation::find_known(const Eigen::AlignedBox3d& box_U, double resolution_m,
+Reactivation::Known Reactivation::find_known(const std::vector<BlockCoord>& places_U,
+                                             double resolution_m,
                                              const PlaceOfKeyframe& place_of) const {
+  const double block_m = kBlockSide * resolution_m;
+  Eigen::AlignedBox3d box_U;
+  std::set<TileCoord> tiles;
+  for (const BlockCoord& coord : places_U) {
+    const Eigen::Vector3d corner_U = block_m * Eigen::Vector3d(coord.x, coord.y, coord.z);
+    box_U.extend(corner_U).extend(corner_U + Eigen::Vector3d::Constant(block_m));
+    tiles.insert(tiles_.tile_of(coord));
+  }
   Known known;
   const double radius = radius_m(resolution_m);
   store_.for_each([&](const TileVisit& visit, int keyframe) {
     if (visit.number == TileVisit::kOpen) return;
-    const auto X_OU = place_of(keyframe);
-    if (!X_OU) return;
+    const auto X_OU_far = place_of(keyframe);
+    if (!X_OU_far && !tiles.contains(visit.tile)) return;
+    const Pose X_OU = X_OU_far.value_or(Pose::Identity());
     const Eigen::Vector3d center_U =
-        X_OU->inverse(Eigen::Isometry) * center_of(visit.tile, resolution_m);
+        X_OU.inverse(Eigen::Isometry) * center_of(visit.tile, resolution_m);
     if (box_U.exteriorDistance(center_U) > radius) return;
     known.visits.push_back(visit);
-    known.covers.push_back({*X_OU, center_U, radius, {}});
+    known.covers.push_back({X_OU, center_U, radius, {}, !X_OU_far});
     known.blocks.push_back(store_.blocks_of(visit));
   });
   return known;

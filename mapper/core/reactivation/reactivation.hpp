@@ -49,11 +49,13 @@ class Reactivation {
   /// To be called with each batch: its patches whose surface has left for good are closed.
   void close_departed(const PatchBatch& batch);
 
-  /// Where what a keyframe saw is, in the frame O in which it was seen: X_OU; nothing: it is not
-  /// compared, because it is near.
+  /// Where what a keyframe saw is, in the frame O in which it was seen: X_OU; nothing: it is near,
+  /// and so in the same frame.
   using PlaceOfKeyframe = std::function<std::optional<Pose>(int keyframe)>;
 
-  /// Clears surface of these blocks, which are about to leave, where the same is kept.
+  /// Clears surface of these blocks, which are about to leave, where the same is kept. Of what near
+  /// keyframes saw only visits of the same tiles are compared: those that did not come back,
+  /// because the volume had surface in their tiles before.
   void clear_known(TsdfVolume& volume, const std::vector<BlockSlot>& leaving,
                    const PlaceOfKeyframe& place_of, const SameSurface& same);
 
@@ -100,7 +102,7 @@ class Reactivation {
 
   Known known_in(const std::vector<BlockCoord>& places_U, double resolution_m,
                  const PlaceOfKeyframe& place_of);
-  Known find_known(const Eigen::AlignedBox3d& box_U, double resolution_m,
+  Known find_known(const std::vector<BlockCoord>& places_U, double resolution_m,
                    const PlaceOfKeyframe& place_of) const;
   void settle_near(const std::vector<bool>& is_near);
   void settle();

@@ -120,5 +120,17 @@ TEST_F(TwoFloors, AreComparedWithWhatWaits) {
   EXPECT_LT(num_points(third.snapshot()), num_all / 20) << "where two of the others meet";
 }
 
+/// The small floor did not come back, because the volume had surface in its tiles by then.
+TEST_F(TwoFloors, OfNearKeyframesStayOnceInTheSameTiles) {
+  const std::size_t num_all = num_points(large_.snapshot());
+  const auto is_near = [](int /*keyframe*/) { return std::optional<Pose>(); };
+  const DetachedBlocks rest =
+      reactivation_
+          .keep_unknown(large_.detach_all(SliceKind::kPatch), large_.config(), is_near, {}, 0)
+          .get();
+  EXPECT_LT(num_points(rest), num_all - num_small_ / 2);
+  EXPECT_GT(num_points(rest), num_all - num_small_ - 1) << "more at the edge of the small one";
+}
+
 }  // namespace
 }  // namespace kintsugi::mapper
