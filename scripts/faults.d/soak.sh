@@ -87,25 +87,25 @@ seconds_of_statuses() {
     END { printf "%.1f", 1e-6 * (last - start) }' faulty/status.csv
 }
 
-# memory_at PROCESS SHARE SECONDS: peak memory in MB, in the tenth of the time that ends at this share of it.
-memory_at() {
-  awk -F, -v process="$1" -v share="$2" -v seconds="$3" '
+# most_memory PROCESS FROM TO SECONDS: peak memory in MB between two shares of the time.
+most_memory() {
+  awk -F, -v process="$1" -v from="$2" -v to="$3" -v seconds="$4" '
     !start && $2 == "mapper" && $3 == "points_published" && $4 > 0 { start = $1 }
     { t = start ? 1e-6 * ($1 - start) : -1 }
-    t <= (share - 0.1) * seconds || t > share * seconds { next }
+    t <= from * seconds || t > to * seconds { next }
     $2 == process && $3 == "memory_bytes" && $4 > most { most = $4 }
     END { printf "%.0f", 1e-6 * most }' faulty/status.csv
 }
 memory_over_time() {
-  local share line=""
-  for share in 0.1 0.2 0.3 0.4 0.5 0.6 0.7 0.8 0.9 1.0; do line+=" $(memory_at "$1" "$share" "$2")"; done
+  local tenth line=""
+  for tenth in 1 2 3 4 5 6 7 8 9 10; do line+=" $(most_memory "$1" "0.$((tenth - 1))" "$(calculate "$tenth / 10" 1)" "$2")"; done
   note "$1, MB in each tenth:$line"
 }
 
-# is_flat PROCESS SECONDS [SHARE]: memory may grow by a twentieth and 16 MB from the middle to the end, or to this share of
-# the time: what an allocator keeps varies.
+# is_flat PROCESS SECONDS [SHARE]: in the second half of the time, up to this share of it, a process may take a twentieth and 16 MB
+# more than in the first. Single tenths say little: what waits, and what an allocator keeps, varies.
 is_flat() {
-  local middle end
-  middle="$(memory_at "$1" 0.6 "$2")" end="$(memory_at "$1" "${3:-1.0}" "$2")"
-  test "$end" -le "$((middle + middle / 20 + 16))"
+  local before after
+  before="$(most_memory "$1" 0 0.5 "$2")" after="$(most_memory "$1" 0.5 "${3:-1.0}" "$2")"
+  test "$after" -le "$((before + before / 20 + 16))"
 }
