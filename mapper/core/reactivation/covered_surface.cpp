@@ -166,7 +166,8 @@ class Comparison {
         voxel_m_(volume.resolution_m),
         truncation_vox_(volume.largest_truncation_vox()),
         reach_vox_(volume.truncation_vox),
-        min_cosine_(std::cos(same.max_angle_deg * std::numbers::pi / 180.0)) {}
+        min_cosine_(cosine(same.max_angle_deg)),
+        min_cosine_in_place_(cosine(2.0 * same.max_angle_deg)) {}
 
   /// About the voxels between which and the next one there is surface.
   Decision decide(const BlockCoord& coord) const {
@@ -205,6 +206,10 @@ class Comparison {
     DistanceField<FindIn> distances_O;
   };
 
+  static double cosine(double angle_deg) {
+    return std::cos(std::min(angle_deg, 180.0) * std::numbers::pi / 180.0);
+  }
+
   std::vector<Placed> covers_near(const BlockCoord& coord) const {
     const double block_m = kBlockSide * voxel_m_;
     const Eigen::Vector3d center_U =
@@ -215,7 +220,7 @@ class Comparison {
       const double limit_m = radius_m + cover.radius_m;
       if ((cover.center_U - center_U).squaredNorm() > limit_m * limit_m) continue;
       near.push_back({cover.X_OU,
-                      cover.is_in_place ? 0.0 : min_cosine_,
+                      cover.is_in_place ? min_cosine_in_place_ : min_cosine_,
                       {FindIn{&cover.blocks}, truncation_vox_, same_.weight_threshold}});
     }
     return near;
@@ -242,6 +247,7 @@ class Comparison {
   const double truncation_vox_;
   const double reach_vox_;  ///< no crossing is farther from a voxel
   const double min_cosine_;
+  const double min_cosine_in_place_;
 };
 
 }  // namespace

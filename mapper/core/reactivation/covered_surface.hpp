@@ -26,8 +26,8 @@ struct Cover {
   Eigen::Vector3d center_U = Eigen::Vector3d::Zero();
   double radius_m = 0.0;            ///< of a ball around all of them
   std::vector<StoredBlock> blocks;  ///< ascending
-  /// It was seen in U. Then surface is the same, whatever the angle between the normals, but for
-  /// the other side: where a surface ends, they are noise.
+  /// It was seen in U. Then the normals may have twice the angle, because where a surface ends they
+  /// are noise; but not that of a wall and a floor.
   bool is_in_place = false;
 };
 

@@ -97,8 +97,10 @@ TEST_F(Floor, StaysWhereTheOtherSurfaceFacesElsewhere) {
 }
 
 /// 40 degrees, whose axis is on the floor at x = 0: within a voxel and a half there.
-TEST_F(Floor, IsClearedByARampInPlaceButNotByTheOtherSide) {
+TEST_F(Floor, IsClearedByARampInPlaceButNotByAWallOrTheOtherSide) {
   const std::size_t before = points().size();
+  clear(volume_of([](const Eigen::Vector3d& p) { return p.x(); }), Pose::Identity(), true);
+  EXPECT_EQ(points().size(), before);
   clear(volume_of([](const Eigen::Vector3d& p) { return -above_floor(p); }), Pose::Identity(),
         true);
   EXPECT_EQ(points().size(), before);
