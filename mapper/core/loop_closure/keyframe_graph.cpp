@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -93,35 +92,13 @@ bool KeyframeGraph::is_plausible(const Loop& loop) const {
   return drift_m <= config_.max_drift_share * way_m(loop.later, loop.earlier) + config_.voxel_m;
 }
 
-/// The shortest way on which tracking may have drifted between two keyframes: from one part to
-/// another over the loops that join them. Infinite where none do.
+/// On which tracking may have drifted between two keyframes: from one part to another over the
+/// loops that join them. Infinite where none do.
 double KeyframeGraph::way_m(int a, int b) const {
-  if (nodes_[a].part == nodes_[b].part) return ways_.way_m(a, b);
-  std::vector<int> ends;        // of the loops between parts, two by two
-  std::vector<double> least_m;  // from a to each of them
-  for (const Loop& loop : confirmed_) {
-    if (nodes_[loop.later].part == nodes_[loop.earlier].part) continue;
-    for (const int end : {loop.later, loop.earlier}) {
-      ends.push_back(end);
-      least_m.push_back(ways_.way_m(a, end));
-    }
-  }
-  for (bool is_shorter = true; is_shorter;) {
-    is_shorter = false;
-    for (std::size_t i = 0; i < ends.size(); ++i) {
-      for (std::size_t j = 0; j < ends.size(); ++j) {
-        const double step_m = i / 2 == j / 2 ? 0.0 : ways_.way_m(ends[i], ends[j]);
-        if (!(least_m[i] + step_m < least_m[j])) continue;
-        least_m[j] = least_m[i] + step_m;
-        is_shorter = true;
-      }
-    }
-  }
-  double least_to_b_m = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < ends.size(); ++i) {
-    least_to_b_m = std::min(least_to_b_m, least_m[i] + ways_.way_m(ends[i], b));
-  }
-  return least_to_b_m;
+  std::vector<std::pair<int, int>> joins;
+  joins.reserve(confirmed_.size());
+  for (const Loop& loop : confirmed_) joins.emplace_back(loop.later, loop.earlier);
+  return ways_.way_m(a, b, joins);
 }
 
 std::pair<int, int> KeyframeGraph::later_and_earlier(int a, int b) const {

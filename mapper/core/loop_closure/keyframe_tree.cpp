@@ -1,13 +1,19 @@
 #include "mapper/core/loop_closure/keyframe_tree.hpp"
 
+#include <functional>
 #include <limits>
-#include <utility>
+#include <map>
+#include <queue>
 
 namespace kintsugi::mapper {
 
 void KeyframeTree::add(std::optional<int> from, double distance_m) {
   const int number = size();
-  nodes_.push_back({from.value_or(number), distance_m, from ? nodes_[*from].level + 1 : 0, {}});
+  nodes_.push_back({.from = from.value_or(number),
+                    .distance_m = distance_m,
+                    .level = from ? nodes_[*from].level + 1 : 0,
+                    .root = from ? nodes_[*from].root : number,
+                    .to = {}});
   if (from) nodes_[*from].to.push_back(number);
 }
 
@@ -28,15 +34,45 @@ std::vector<bool> KeyframeTree::within(int keyframe, double reach_m) const {
 }
 
 double KeyframeTree::way_m(int a, int b) const {
+  if (nodes_[a].root != nodes_[b].root) return std::numeric_limits<double>::infinity();
   double way_m = 0.0;
   while (a != b) {
     int& deeper = nodes_[a].level < nodes_[b].level ? b : a;
     const Node& node = nodes_[deeper];
-    if (node.level == 0) return std::numeric_limits<double>::infinity();  // two roots
     way_m += node.distance_m;
     deeper = node.from;
   }
   return way_m;
+}
+
+double KeyframeTree::way_m(int a, int b, std::span<const std::pair<int, int>> joins) const {
+  if (nodes_[a].root == nodes_[b].root) return way_m(a, b);
+  std::multimap<int, int> joined;
+  for (const auto& [c, d] : joins) {
+    if (nodes_[c].root == nodes_[d].root) continue;
+    joined.emplace(c, d);
+    joined.emplace(d, c);
+  }
+  // Dijkstra (1959), from a.
+  std::vector<double> least_m(nodes_.size(), std::numeric_limits<double>::infinity());
+  using Open = std::pair<double, int>;
+  std::priority_queue<Open, std::vector<Open>, std::greater<>> open;
+  const auto reach = [&](int keyframe, double way_m) {
+    if (!(way_m < least_m[keyframe])) return;
+    least_m[keyframe] = way_m;
+    open.emplace(way_m, keyframe);
+  };
+  reach(a, 0.0);
+  while (!open.empty() && open.top().second != b) {
+    const auto [way_m, at] = open.top();
+    open.pop();
+    const Node& node = nodes_[at];
+    reach(node.from, way_m + node.distance_m);
+    for (const int next : node.to) reach(next, way_m + nodes_[next].distance_m);
+    const auto [first, last] = joined.equal_range(at);
+    for (auto join = first; join != last; ++join) reach(join->second, way_m);
+  }
+  return least_m[b];
 }
 
 }  // namespace kintsugi::mapper

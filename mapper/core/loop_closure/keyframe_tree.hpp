@@ -1,11 +1,14 @@
 #pragma once
 
 #include <optional>
+#include <span>
+#include <utility>
 #include <vector>
 
 namespace kintsugi::mapper {
 
-/// From which keyframe the camera came to which.
+/// From which keyframe the camera came to which. Keyframes to which it came from elsewhere are
+/// roots of trees of their own.
 class KeyframeTree {
  public:
   /// Adds keyframe number size(), `distance_m` from that from which the camera came to it; without
@@ -18,6 +21,9 @@ class KeyframeTree {
 
   /// Length of the way between two keyframes; infinite where no way leads from one to the other.
   double way_m(int a, int b) const;
+  /// The same; from one tree to another the shortest way over these joins, pairs of keyframes that
+  /// saw the same surface.
+  double way_m(int a, int b, std::span<const std::pair<int, int>> joins) const;
 
   /// The keyframe from which the camera came to this one; itself for one without.
   int from(int keyframe) const { return nodes_[keyframe].from; }
@@ -28,6 +34,7 @@ class KeyframeTree {
     int from = 0;
     double distance_m = 0.0;
     int level = 0;  ///< steps from it to the root
+    int root = 0;
     std::vector<int> to;
   };
 

@@ -100,7 +100,11 @@ std::optional<int> LoopClosure::find_released_near(const Pose& X_WC) const {
 
 double LoopClosure::way_to_m(int keyframe) const {
   if (std::max(keyframe, last_at_) >= tree_.size()) return path_.length_m();  // a part begins
-  return std::min(tree_.way_m(keyframe, last_at_), path_.length_m());
+  std::vector<std::pair<int, int>> joins;
+  for (const MapDeformation::PartLoop& loop : deformation_.loops()) {
+    joins.emplace_back(loop.link.later, loop.link.earlier);
+  }
+  return std::min(tree_.way_m(keyframe, last_at_, joins), path_.length_m());
 }
 
 void LoopClosure::go_to(int keyframe) {

@@ -68,7 +68,8 @@ class LoopClosure {
   }
 
   /// Length of the way on which tracking may have drifted between a keyframe and the one near which
-  /// the camera is, or was: of all the camera's path, where neither was tracked from the other.
+  /// the camera is, or was: from one part to another over the loops that join them, and of all the
+  /// camera's path, where none do.
   double way_to_m(int keyframe) const;
 
   /// The nearest of the released keyframes that a camera at this pose is near, as corrected.
