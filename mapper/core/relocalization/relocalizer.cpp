@@ -49,6 +49,7 @@ Relocalizer::Relocalizer(const Config& config)
 
 bool Relocalizer::remember(const TrackingInput& frame, const Model& model) {
   turn_ = 0;
+  voxel_m_ = model.voxel_m;
   if (keyframes_.find_near(model.X_WV)) return false;
   keyframes_.add(model.X_WV, frame, coarse(model.surface_V));
   return true;
@@ -78,7 +79,7 @@ std::optional<TrackingResult> Relocalizer::try_keyframe(
     X_NC_features = X_NK * *X_KC;
   }
   const int levels = static_cast<int>(frame.surface_C.size());
-  const Model seen_then{pyramid_from_surface(keyframe.surface(), levels), X_NK};
+  const Model seen_then{pyramid_from_surface(keyframe.surface(), levels), X_NK, voxel_m_};
   const SurfaceMap& surface_K = seen_then.surface_V.front();
   TrackingResult near = tracker.register_anew(frame, seen_then, X_NC_features.value_or(X_NK));
   if (near.quality.overlap_share < config_.min_overlap_share) return std::nullopt;

@@ -86,7 +86,8 @@ class Relocalizer {
 
   Config config_;
   KeyframeMap keyframes_;
-  std::size_t turn_ = 0;  ///< chooses among the candidates after the best one
+  double voxel_m_ = Model().voxel_m;  ///< of the map, as in the last model that was remembered
+  std::size_t turn_ = 0;              ///< chooses among the candidates after the best one
 };
 
 }  // namespace kintsugi::mapper

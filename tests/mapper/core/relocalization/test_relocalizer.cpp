@@ -31,8 +31,8 @@ TsdfVolume::Config volume_config() {
 /// The office seen along a part of its path, every fourth frame, at known poses.
 class OfficeMap {
  public:
-  explicit OfficeMap(bool with_color)
-      : volume_(volume_config(), office().true_path.front().X_WC.translation()) {
+  explicit OfficeMap(bool with_color, double voxel_m = Model().voxel_m)
+      : voxel_m_(voxel_m), volume_(volume_config(), office().true_path.front().X_WC.translation()) {
     for (std::size_t i = 0; i < kSeen; i += 2) {
       const Pose& X_WC = office().true_path[i].X_WC;
       integrator_.integrate(office().frames[i], X_WC, volume_);
@@ -50,7 +50,7 @@ class OfficeMap {
   Model seen_from(const Pose& X_WV) const {
     return {
         pyramid_from_surface(raycaster_.raycast(volume_, X_WV, office().frames[0].intrinsics), 3),
-        X_WV};
+        X_WV, voxel_m_};
   }
   std::optional<TrackingResult> find(const TrackingInput& frame,
                                      const Relocalizer::PlaceOf& place_of = {}) {
@@ -70,6 +70,7 @@ class OfficeMap {
   Tracker tracker{Tracker::Config{}};
 
  private:
+  const double voxel_m_;  ///< by which residuals are judged
   TsdfVolume volume_;
   Integrator integrator_{Integrator::Config{}};
   Raycaster raycaster_{Raycaster::Config{}};
@@ -164,6 +165,13 @@ TEST(Relocalizer, FindsAPlaceThatTheVolumeHasLeft) {
   EXPECT_TRUE(found->found_by_keyframe);
   const Pose& X_WC_true = OfficeMap::office().true_path[9].X_WC;
   EXPECT_LT((found->X_WC.translation() - X_WC_true.translation()).norm(), kFound_m);
+}
+
+TEST(Relocalizer, JudgesWhatTheVolumeHasLeftByTheVoxelsOfTheMap) {
+  OfficeMap map(true, 0.02);
+  const auto found = find_without_volume(map, OfficeMap::office().frames[9]);
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->quality.voxel_m, 0.02) << "limits of residuals are multiples of it";
 }
 
 // Objects of one kind look alike anywhere: features alone do not identify a place.
