@@ -56,6 +56,10 @@ LoopClosure::LoopClosure(const Config& config, KeyframeMap& keyframes)
 
 int LoopClosure::begin_part() {
   if (begins_part_) return num_begun_ - 1;
+  if (newest_number_ >= 0) {
+    lost_utime_ = last_utime_;
+    lost_at_m_ = (X_WK(newest_number_).translation() - last_position_W()).norm();
+  }
   keyframes_.release_if([](const Keyframe&) { return true; });
   last_at_ = keyframes_.size();
   begins_part_ = true;
@@ -120,6 +124,8 @@ void LoopClosure::follow(const TrackingResult& located, bool is_keyframe, std::i
       std::exchange(went_, false) || begins_part_ || located.found_by_keyframe.has_value();
   if (located.found_by_keyframe) last_at_ = *located.found_by_keyframe;
   if (jumped && !begins_part_) note_near(last_at_, X_UC);
+  last_utime_ = utime;
+  last_position_U_ = X_UC.translation();
   if (is_keyframe) {
     compare_newest();
     const int number = keyframes_.size() - 1;
@@ -156,12 +162,17 @@ void LoopClosure::note_near(int keyframe, const Pose& X_UC) {
   length_at_last_m_ = path_.length_m();
 }
 
-/// Since the newest keyframe.
+/// From the newest keyframe to where the camera was seen last, and from there as far as it can have
+/// gone. On known surface there may have been no new keyframe for hours.
 std::optional<UnseenWay> LoopClosure::unseen_way(std::int64_t utime) const {
   if (newest_number_ < 0) return std::nullopt;
-  return UnseenWay{
-      .before = newest_number_,
-      .distance_m = config_.max_speed * 1e-6 * static_cast<double>(utime - newest_utime_)};
+  return UnseenWay{.before = newest_number_,
+                   .distance_m = lost_at_m_ + config_.max_speed * 1e-6 *
+                                                  static_cast<double>(utime - lost_utime_)};
+}
+
+Eigen::Vector3d LoopClosure::last_position_W() const {
+  return deformation_.at(last_at_) * last_position_U_;
 }
 
 std::optional<NewKeyframe> LoopClosure::take_new() {

@@ -133,6 +133,7 @@ class LoopClosure {
   void compare_newest();
   std::vector<int> similar_to(const NewKeyframe& added);
   std::optional<UnseenWay> unseen_way(std::int64_t utime) const;
+  Eigen::Vector3d last_position_W() const;
   void note_near(int keyframe, const Pose& X_UC);
   std::optional<MapCorrection> apply_if_above(double least_motion_vox);
   void note(std::optional<MapCorrection> newest);
@@ -145,7 +146,11 @@ class LoopClosure {
   /// The newest keyframe, until it is compared with others.
   std::optional<NewKeyframe> newest_;
   std::int64_t newest_utime_ = 0;
-  int newest_number_ = -1;  ///< of the camera's newest keyframe; those of guests may follow
+  int newest_number_ = -1;       ///< of the camera's newest keyframe; those of guests may follow
+  std::int64_t last_utime_ = 0;  ///< of the last located frame
+  Eigen::Vector3d last_position_U_ = Eigen::Vector3d::Zero();  ///< of the camera, then
+  std::int64_t lost_utime_ = 0;                                ///< last_utime_ when the part began
+  double lost_at_m_ = 0.0;             ///< from the newest keyframe to where the camera was then
   std::optional<NewKeyframe> untold_;  ///< to be given by take_new()
   int last_at_ = 0;                    ///< the keyframe near which the camera is, or was
   double way_at_last_m_ = 0.0;         ///< from that keyframe to where it was near it last

@@ -74,5 +74,33 @@ TEST(LoopClosure, CountsTheWayToAKeyframeAndNotHowFarTheCameraHasGone) {
   EXPECT_NEAR(loops.take_new()->way_m, 0.6, 1e-9) << "from the keyframe";
 }
 
+/// On known surface the camera gets no keyframe, for however long it goes there.
+TEST(LoopClosure, BoundsTheUnseenWayFromWhereTheCameraWasLost) {
+  const testing::SyntheticRun run = testing::synthetic_run("office", 2, true, 5);
+  const RgbdFrame& frame = run.frames[0];
+  const TrackingInput input{0, pyramid_from_depth(frame.depth_m, frame.intrinsics, 0, 3, 6.0F),
+                            frame.color_rgb};
+  KeyframeMap keyframes{{}};
+  LoopClosure::Config config;
+  config.max_speed = 2.0;
+  LoopClosure loops(config, keyframes);
+  const auto be_at = [&](double x_m, bool is_keyframe, double time_s) {
+    TrackingResult located;
+    located.X_WC.translation().x() = x_m;
+    if (is_keyframe) keyframes.add(located.X_WC, input, input.surface_C[1]);
+    loops.follow(located, is_keyframe, std::llround(1e6 * time_s), {});
+  };
+  be_at(0.0, true, 0.0);
+  be_at(1.0, true, 1.0);
+  EXPECT_FALSE(loops.take_new()->unseen);
+  be_at(0.1, false, 3'600.0);
+  loops.begin_part();
+  be_at(1'000.0, true, 3'607.0);
+  const auto unseen = loops.take_new()->unseen;
+  ASSERT_TRUE(unseen);
+  EXPECT_EQ(unseen->before, 1);
+  EXPECT_NEAR(unseen->distance_m, 0.9 + 2.0 * 7.0, 1e-6);
+}
+
 }  // namespace
 }  // namespace kintsugi::mapper
