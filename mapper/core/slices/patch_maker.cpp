@@ -191,12 +191,13 @@ std::vector<CloudSlice> PatchMaker::correct(const MapDeformation& deformation,
   for (auto& [number, place] : places_) {
     const auto [X_WU, part] = deformation.place(place.keyframe);
     const PatchPose X_WP = pose_of(place, X_WU);
-    if (place.id == kNoId || place.X_WP == X_WP) continue;
+    if (place.X_WP == X_WP) continue;
     const double moved_m =
         motion_m(box_P(place, header.resolution_m), place.X_WP.pose(), X_WP.pose());
     if (moved_m <= kLeastMotion_vox * header.resolution_m) continue;
     place.X_WP = X_WP;
     place.part = part;
+    if (place.id == kNoId) continue;  // it was never sent
     motions[part].push_back({place.id, X_WP});
   }
   std::vector<CloudSlice> slices;

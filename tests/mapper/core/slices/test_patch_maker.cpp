@@ -206,6 +206,15 @@ TEST_F(Patches, MoveAlsoAfterTheyHaveLeftForGood) {
   EXPECT_EQ(slices[0].motions[0].id, 0);
 }
 
+TEST_F(Patches, MoveAlsoBeforeTheyAreSent) {
+  maker.keep(surface({{0, {1}}}), {.keyframe = 0, .place = correction(1, 0.0, 0.0, 1, 1).place(0)});
+  EXPECT_THAT(maker.correct(correction(1, 0.02, 0.0), header()), IsEmpty());
+  const auto slices = maker.finish(header());
+  ASSERT_EQ(slices.size(), 2U);
+  EXPECT_FLOAT_EQ(slices[0].X_WP.t_WP[1], 0.02F);
+  EXPECT_EQ(slices[0].part, 0);
+}
+
 TEST_F(Patches, AreInThePartOfTheMapOfTheirKeyframe) {
   const auto seen = [](int keyframe, int part) {
     return correction(1, 0.01, 0.02, 0, part).place(keyframe);
