@@ -209,7 +209,10 @@ void MapperPipeline::update_model(const RgbdFrame& frame, const TrackingInput& i
   if (loops_) loops_->release_left(map_.volume(), X_WC_);
   if (map_.keeps_what_left()) {
     loops_->take_back(map_.volume(), X_WC_);
-    if (go_over_to_known_surface(input)) located.X_WC = X_WC_;
+    if (go_over_to_known_surface(input)) {
+      located.X_WC = X_WC_;
+      located.found_by_keyframe.reset();  // the pose is in another frame by now
+    }
   }
   model_ = model_from(X_WC_, input.surface_C.front().intrinsics, frame.depth_m);
   const bool is_keyframe = relocalizer_.remember(input, *model_);
