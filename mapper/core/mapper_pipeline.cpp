@@ -45,7 +45,8 @@ FrameResult MapperPipeline::process(const RgbdFrame& measured) {
   const TrackingInput input = prepare(frame);
   clock.end_of(&StageTimes::prepare_ms);
   result.tracking = locate(input);
-  if (restart_rule_.is_due(frame.utime, result.tracking.state)) {
+  if (restart_rule_.is_due(frame.utime, result.tracking.state) && can_be_tracked_in(input)) {
+    restart_rule_.count_anew();
     result.part_begun = begin_part(std::move(result.tracking));
     result.tracking = locate(input);
   }
@@ -95,6 +96,15 @@ std::optional<KeyframeMessage> MapperPipeline::take_keyframe() {
 
 std::map<int, Trajectory> MapperPipeline::corrected_paths() const {
   return loops_ ? loops_->corrected_paths() : paths_;
+}
+
+/// Whether what the frame shows determines how a camera moves: registers it with itself.
+bool MapperPipeline::can_be_tracked_in(const TrackingInput& input) const {
+  const Model model{input.surface_C, Pose::Identity(), config_.volume.resolution_m};
+  Tracker tracker(config_.tracker);
+  tracker.start_at(model.X_WV, input,
+                   covered_share(input.surface_C.front(), model.X_WV, Model().region_W));
+  return is_located(tracker.track(input, model).state);
 }
 
 /// The camera has been lost for long: what it sees from now on has a place of its own in W.

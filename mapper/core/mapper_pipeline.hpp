@@ -60,6 +60,9 @@ struct FrameResult {
 ///     Lost     --found near the last pose (Tracker), or by a keyframe (Relocalizer)--> Tracking
 ///     Lost     --for so long that RestartRule is due--> Starting, another part of the map
 ///
+/// A part begins only with a frame in whose surface a camera can be tracked: one that stands before
+/// a bare wall for hours would begin thousands of them.
+///
 /// Only frames whose pose is known are fused. A lost frame leaves map and last pose unchanged. When
 /// the camera is found elsewhere, the cube moves there, and the blocks that leave it become slices.
 /// With given poses there is no Starting and no Tracking: each frame is Given, or Lost.
@@ -150,6 +153,7 @@ class MapperPipeline {
   TrackingResult locate_on_given_path(std::int64_t utime) const;
   TrackingResult start(const TrackingInput& input);
   void learn_noise(const TrackingInput& input, const Pose& X_WC);
+  bool can_be_tracked_in(const TrackingInput& input) const;
   PartBegun begin_part(TrackingResult lost);
   std::optional<MapCorrection> correct(std::optional<MapCorrection> correction);
   std::optional<TrackingResult> find_again(const TrackingInput& input);

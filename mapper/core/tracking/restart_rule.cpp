@@ -12,13 +12,11 @@ RestartRule::RestartRule(double restart_after_s)
 bool RestartRule::is_due(std::int64_t utime, TrackingState state) {
   const std::int64_t step_us = utime - std::exchange(last_utime_, utime);
   if (restart_after_us_ == 0 || state != TrackingState::kLost) {
-    lost_us_ = -1;
+    count_anew();
     return false;
   }
   lost_us_ = lost_us_ < 0 ? 0 : lost_us_ + std::min(step_us, kLongestStep_us);
-  if (lost_us_ < restart_after_us_) return false;
-  lost_us_ = -1;
-  return true;
+  return lost_us_ >= restart_after_us_;
 }
 
 }  // namespace kintsugi::mapper

@@ -18,9 +18,12 @@ class RestartRule {
   /// @param restart_after_s how long the camera must be lost; 0: another part never begins
   explicit RestartRule(double restart_after_s);
 
-  /// To be called with each frame. True when the camera has been lost for so long: this frame is to
-  /// begin another part, and the time counts anew.
+  /// To be called with each frame. True when the camera has been lost for so long: this frame may
+  /// begin another part.
   bool is_due(std::int64_t utime, TrackingState state);
+
+  /// A part has begun: the time counts anew.
+  void count_anew() { lost_us_ = -1; }
 
  private:
   const std::int64_t restart_after_us_;

@@ -130,6 +130,24 @@ TEST(WallVisit, WithoutTextureIsLostOnTheBareStretchAndFoundAfterIt) {
   EXPECT_LT(tracked.end_error_m, 0.01);
 }
 
+/// However long the camera stands before it.
+TEST(BareWall, BeginsNoPartOfTheMap) {
+  MapperPipeline::Config config = small_config();
+  config.restart_after_s = 0.2;
+  MapperPipeline pipeline(config);
+  std::int64_t utime = 0;
+  const auto num_begun = [&](const SyntheticRun& run) {
+    int count = 0;
+    for (RgbdFrame frame : run.frames) {
+      frame.utime = utime += kFrame_us;
+      count += pipeline.process(frame).part_begun ? 1 : 0;
+    }
+    return count;
+  };
+  EXPECT_EQ(num_begun(synthetic_run("wall-plain", 40, true)), 0);
+  EXPECT_EQ(num_begun(synthetic_run("office", 10, true)), 1) << "where there is more to see";
+}
+
 TEST(DeterminedView, TakesNoNoticeOfColour) {
   const Intrinsics camera = testing::test_camera();
   const Pose X_WV = testing::looking_at_the_crate();

@@ -23,6 +23,8 @@ TEST(RestartRule, IsDueOnceTheCameraWasLostForSoLong) {
   std::int64_t utime = 1'700'000'000'000'000;
   EXPECT_EQ(frames_until_due(rule, utime, kTracking, 100), 100);
   EXPECT_EQ(frames_until_due(rule, utime, kLost, 100), 20) << "2 s after the first lost frame";
+  EXPECT_EQ(frames_until_due(rule, utime, kLost, 100), 0) << "until a part begins";
+  rule.count_anew();
   EXPECT_EQ(frames_until_due(rule, utime, kLost, 100), 20) << "and anew in the next part";
 }
 
