@@ -1,6 +1,7 @@
 #pragma once
 // Finds the objects of a library in a map while it grows, and tells what becomes of them.
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -51,6 +52,7 @@ class Detector {
   void set_views(std::span<const MapView> views);
   /// What they saw meanwhile.
   void add_views(std::span<const MapView> views);
+  [[nodiscard]] std::size_t num_views() const { return observed_.views().size(); }
   /// Lets all segments wait, those first that wait already: what depends on the whole map may have
   /// changed, also its light. Nothing is told before the light is known, or before it is certain,
   /// and nothing is gone before all was examined.

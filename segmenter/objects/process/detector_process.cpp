@@ -56,7 +56,7 @@ class DetectorProcess {
       : options_(options),
         bus_(options.lcm_url),
         client_(MapClient::connect({.url = options.lcm_url, .map_name = options.map_name})),
-        views_(options.lcm_url),
+        views_(FollowedViews::of_segmenter(options.lcm_url)),
         library_(read_library(options.library, {})),
         budget_(options.cpu_share) {}
 

@@ -36,11 +36,10 @@ MapView view_in_place(KeptView view) {
   return unpacked(view, [](std::int32_t) { return std::nullopt; });
 }
 
-}  // namespace
-
-FollowedViews::Answer FollowedViews::ask(const std::string& lcm_url, const Request& request) {
+FollowedViews::Answer ask_segmenter(const std::string& lcm_url,
+                                    const FollowedViews::Request& request) {
   lower_priority_of_thread();
-  Answer answer{.request = request, .views = {}, .problem = {}};
+  FollowedViews::Answer answer{.request = request};
   try {
     QueryClient segmenter(lcm_url);
     std::int64_t since_us = request.since_us;
@@ -51,8 +50,16 @@ FollowedViews::Answer FollowedViews::ask(const std::string& lcm_url, const Reque
       for (KeptView& view : later.views) answer.views.push_back(view_in_place(std::move(view)));
     }
   } catch (const std::exception& error) {
-    return {.request = request, .views = {}, .problem = error.what()};
+    return {.request = request, .problem = error.what()};
   }
+}
+
+}  // namespace
+
+FollowedViews::Ask FollowedViews::of_segmenter(std::string lcm_url) {
+  return [lcm_url = std::move(lcm_url)](const Request& request) {
+    return ask_segmenter(lcm_url, request);
+  };
 }
 
 void FollowedViews::begin(std::int64_t map_session) {
@@ -61,26 +68,27 @@ void FollowedViews::begin(std::int64_t map_session) {
   end_ = {};
 }
 
-void FollowedViews::update(bool map_has_ended, Detector& detector) {
+void FollowedViews::update(bool map_has_ended, Detector& detector, Clock::time_point now) {
   if (running_.valid()) {
     if (running_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
-    use(running_.get(), detector);
+    use(running_.get(), detector, now);
   }
-  const bool is_due = map_has_ended ? !end_.is_asked : Clock::now() >= due_;
+  const bool is_due = map_has_ended ? !end_.is_asked : now >= due_;
   if (!is_due) return;
-  due_ = Clock::now() + kPeriod;
+  due_ = now + kPeriod;
   if (map_has_ended) next_.since_us = 0;
   end_.is_asked = map_has_ended;
-  running_ = std::async(std::launch::async, ask, lcm_url_, next_);
+  running_ = std::async(std::launch::async, ask_, next_);
 }
 
-void FollowedViews::use(const Answer& answer, Detector& detector) {
-  if (answer.request.map_session != next_.map_session) return;
+void FollowedViews::use(const Answer& answer, Detector& detector, Clock::time_point now) {
+  // Of another map, or it lacks what a detector that was made meanwhile has to be told first.
+  if (answer.request != next_) return;
   end_.is_told = end_.is_asked;
   if (!answer.problem.empty()) {
     if (!has_warned_) spdlog::warn("what the cameras saw is not used: {}", answer.problem);
     has_warned_ = true;
-    due_ = Clock::now() + kSilence;
+    due_ = now + kSilence;
     return;
   }
   has_warned_ = false;

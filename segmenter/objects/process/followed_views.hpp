@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <future>
 #include <string>
 #include <utility>
@@ -19,35 +20,42 @@ namespace kintsugi::segmenter {
 /// are made in a thread of their own, because an answer takes up to some seconds.
 class FollowedViews {
  public:
-  /// @param lcm_url of the bus; empty: the default one
-  explicit FollowedViews(std::string lcm_url) : lcm_url_(std::move(lcm_url)) {}
-
-  /// Another map, or another detector, which knows of no views.
-  void begin(std::int64_t map_session);
-  /// The map was about to end, and goes on.
-  void go_on() { end_ = {}; }
-  /// To be called regularly.
-  void update(bool map_has_ended, Detector& detector);
-  /// The detector has all views of a map that has ended, or nobody tells them.
-  [[nodiscard]] bool are_complete() const { return end_.is_told; }
-
- private:
   using Clock = std::chrono::steady_clock;
 
   struct Request {
     std::int64_t map_session = 0;  // of the mapper
     std::int64_t since_us = 0;     // only views taken then or later, device time; 0: all
+
+    bool operator==(const Request&) const = default;
   };
   struct Answer {
-    Request request;
-    std::vector<MapView> views;  // by ascending time, where corrections have put them
-    std::string problem;         // empty: none
+    Request request{};
+    std::vector<MapView> views{};  // by ascending time, where corrections have put them
+    std::string problem{};         // empty: none
   };
+  /// Called in another thread. Must not throw.
+  using Ask = std::function<Answer(const Request&)>;
 
-  static Answer ask(const std::string& lcm_url, const Request& request);
-  void use(const Answer& answer, Detector& detector);
+  explicit FollowedViews(Ask ask) : ask_(std::move(ask)) {}
 
-  std::string lcm_url_;
+  /// Asks the segmenter on a bus. @param lcm_url of the bus; empty: the default one
+  static Ask of_segmenter(std::string lcm_url);
+
+  /// Another map, or another detector, which knows of no views.
+  void begin(std::int64_t map_session);
+  /// The map was about to end, and goes on.
+  void go_on() { end_ = {}; }
+  /// To be called regularly. @param now never goes back
+  void update(bool map_has_ended, Detector& detector, Clock::time_point now = Clock::now());
+  /// An answer is on its way.
+  [[nodiscard]] bool is_asking() const { return running_.valid(); }
+  /// The detector has all views of a map that has ended, or nobody tells them.
+  [[nodiscard]] bool are_complete() const { return end_.is_told; }
+
+ private:
+  void use(const Answer& answer, Detector& detector, Clock::time_point now);
+
+  Ask ask_;
   Request next_;
   Clock::time_point due_{};
   struct {

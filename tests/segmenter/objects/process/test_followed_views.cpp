@@ -1,0 +1,88 @@
+// What a detector is told of the views of a map on the bus.
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include <gmock/gmock.h>
+
+#include "segmenter/objects/process/followed_views.hpp"
+
+namespace kintsugi::segmenter {
+namespace {
+
+using std::chrono::seconds;
+using ::testing::ElementsAre;
+
+constexpr std::int64_t kSession = 5;
+
+/// Imitates a segmenter that has recorded a view for each of some times.
+class FollowedViewsTest : public ::testing::Test {
+ protected:
+  /// Until nothing is on its way. The clock stands still.
+  void settle(bool map_has_ended = false) {
+    do {
+      views_.update(map_has_ended, detector_, now_);
+      std::this_thread::yield();
+    } while (views_.is_asking());
+  }
+
+  static MapView view_at(std::int64_t utime) {
+    MapView view;
+    view.utime = utime;
+    view.intrinsics.fx = view.intrinsics.fy = 1.0;
+    view.intrinsics.width = view.intrinsics.height = 1;
+    view.depth_mm = {1000};
+    return view;
+  }
+
+  FollowedViews::Answer answer(const FollowedViews::Request& request) {
+    asked_.push_back(request.since_us);
+    FollowedViews::Answer answer{.request = request};
+    for (const std::int64_t utime : recorded_) {
+      if (utime >= request.since_us) answer.views.push_back(view_at(utime));
+    }
+    return answer;
+  }
+
+  // Nobody asks while the test changes these.
+  std::vector<std::int64_t> recorded_;  // by time
+  std::vector<std::int64_t> asked_;     // since when
+  FollowedViews::Clock::time_point now_{seconds(1000)};
+  Detector detector_{{}, 0.01F};
+  FollowedViews views_{[this](const FollowedViews::Request& request) { return answer(request); }};
+};
+
+TEST_F(FollowedViewsTest, AreAskedForSinceTheLastAnswer) {
+  views_.begin(kSession);
+  recorded_ = {10, 20};
+  settle();
+  EXPECT_EQ(detector_.num_views(), 2U);
+  settle();  // not yet again
+  recorded_ = {10, 20, 30};
+  now_ += seconds(1);
+  settle();
+  EXPECT_THAT(asked_, ElementsAre(0, 21));
+  EXPECT_EQ(detector_.num_views(), 3U);
+}
+
+TEST_F(FollowedViewsTest, OfANewDetectorAreNotWhatTheOldOneAwaited) {
+  views_.begin(kSession);
+  recorded_ = {10, 20};
+  settle();
+  now_ += seconds(1);
+  recorded_ = {10, 20, 30};
+  views_.update(false, detector_, now_);  // asks since 21
+  ASSERT_TRUE(views_.is_asking());
+  detector_.set_views({});
+  views_.begin(kSession);
+  settle();
+  EXPECT_THAT(asked_, ElementsAre(0, 21, 0));
+  EXPECT_EQ(detector_.num_views(), 3U);
+}
+
+}  // namespace
+}  // namespace kintsugi::segmenter
