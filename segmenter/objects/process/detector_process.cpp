@@ -246,7 +246,9 @@ class DetectorProcess {
     status.library = options_.library.string();
     // That there is no map yet is told by map_session.
     const bool has_map = source_.map_session != 0;
-    status.problem = problem_.empty() && has_map ? client_.problem() : problem_;
+    status.problem = problem_;
+    if (status.problem.empty() && has_map) status.problem = client_.problem();
+    if (status.problem.empty()) status.problem = views_.problem();
     report_refused(status);
     bus_.publish(channels::kDetectorStatus, status);
   }

@@ -5,6 +5,7 @@
 #include <spdlog/spdlog.h>
 
 #include "lcmtypes/base/thread_priority.hpp"
+#include "lcmtypes/codec/codec.hpp"
 #include "lcmtypes/segment_messages.hpp"
 #include "segmenter/io/views_file.hpp"
 #include "segmenter/tools/query/query_client.hpp"
@@ -18,6 +19,9 @@ constexpr std::chrono::seconds kPeriod(1);
 // A segmenter answers between two slices; where a log is replayed there may be none.
 constexpr QueryClient::Seconds kPatience(3.0);
 constexpr std::chrono::seconds kSilence(10);  // before one that did not answer is asked again
+// When the map has ended, its last examination waits for the views. Some answers may be lost, but a
+// segmenter that ended with its map gives none.
+constexpr int kLastTries = 3;
 
 /// The oldest views of this time and later, as many as one answer holds.
 ViewSet next_views(QueryClient& segmenter, std::int64_t map_session, std::int64_t since_us) {
@@ -50,7 +54,8 @@ FollowedViews::Answer ask_segmenter(const std::string& lcm_url,
       for (KeptView& view : later.views) answer.views.push_back(view_in_place(std::move(view)));
     }
   } catch (const std::exception& error) {
-    return {.request = request, .problem = error.what()};
+    answer.problem = error.what();
+    return answer;
   }
 }
 
@@ -65,7 +70,12 @@ FollowedViews::Ask FollowedViews::of_segmenter(std::string lcm_url) {
 void FollowedViews::begin(std::int64_t map_session) {
   next_ = {map_session, 0};
   due_ = {};
+  go_on();
+}
+
+void FollowedViews::go_on() {
   end_ = {};
+  problem_.clear();
 }
 
 void FollowedViews::update(bool map_has_ended, Detector& detector, Clock::time_point now) {
@@ -73,31 +83,44 @@ void FollowedViews::update(bool map_has_ended, Detector& detector, Clock::time_p
     if (running_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
     use(running_.get(), detector, now);
   }
-  const bool is_due = map_has_ended ? !end_.is_asked : now >= due_;
-  if (!is_due) return;
+  if (!map_has_ended && end_.is_asked) go_on();
+  if (map_has_ended && !end_.is_asked) {
+    end_.is_asked = true;
+    next_.since_us = 0;
+    due_ = now;
+  }
+  if (end_.is_told || now < due_) return;
   due_ = now + kPeriod;
-  if (map_has_ended) next_.since_us = 0;
-  end_.is_asked = map_has_ended;
   running_ = std::async(std::launch::async, ask_, next_);
 }
 
+/// What has come before a problem is kept: the next question begins behind it.
 void FollowedViews::use(const Answer& answer, Detector& detector, Clock::time_point now) {
   // Of another map, or it lacks what a detector that was made meanwhile has to be told first.
   if (answer.request != next_) return;
-  end_.is_told = end_.is_asked;
-  if (!answer.problem.empty()) {
+  if (answer.request.since_us > 0) {
+    detector.add_views(answer.views);
+  } else if (answer.problem.empty() || !answer.views.empty()) {
+    detector.set_views(answer.views);
+  }
+  if (!answer.views.empty()) next_.since_us = answer.views.back().utime + 1;
+  if (answer.problem.empty()) {
+    has_warned_ = false;
+    end_.is_told = end_.is_asked;
+  } else if (end_.is_asked) {
+    if (++end_.num_failures == kLastTries) give_up(answer.problem);
+  } else {
     if (!has_warned_) spdlog::warn("what the cameras saw is not used: {}", answer.problem);
     has_warned_ = true;
     due_ = now + kSilence;
-    return;
   }
-  has_warned_ = false;
-  if (answer.request.since_us == 0) {
-    detector.set_views(answer.views);
-  } else {
-    detector.add_views(answer.views);
-  }
-  if (!answer.views.empty()) next_.since_us = answer.views.back().utime + 1;
+}
+
+void FollowedViews::give_up(const std::string& reason) {
+  end_.is_told = true;
+  problem_ =
+      "what is found in the saved map may differ: not all that the cameras saw was told: " + reason;
+  spdlog::warn("{}", problem_);
 }
 
 }  // namespace kintsugi::segmenter

@@ -16,8 +16,9 @@ namespace kintsugi::segmenter {
 
 /// Asks the segmenter again and again, and tells a detector. While the map grows, for what was seen
 /// since the last answer; when it has ended, once for everything: corrections of the map have moved
-/// the views meanwhile, and what is detected in the end must not depend on when they came. Requests
-/// are made in a thread of their own, because an answer takes up to some seconds.
+/// the views meanwhile, and what is detected in the end must not depend on when they came. Then it
+/// asks some times before it gives up. Requests are made in a thread of their own, because an
+/// answer takes up to some seconds.
 class FollowedViews {
  public:
   using Clock = std::chrono::steady_clock;
@@ -31,7 +32,7 @@ class FollowedViews {
   struct Answer {
     Request request{};
     std::vector<MapView> views{};  // by ascending time, where corrections have put them
-    std::string problem{};         // empty: none
+    std::string problem{};         // why there are no further ones; empty: these are all
   };
   /// Called in another thread. Must not throw.
   using Ask = std::function<Answer(const Request&)>;
@@ -44,16 +45,19 @@ class FollowedViews {
   /// Another map, or another detector, which knows of no views.
   void begin(std::int64_t map_session);
   /// The map was about to end, and goes on.
-  void go_on() { end_ = {}; }
+  void go_on();
   /// To be called regularly. @param now never goes back
   void update(bool map_has_ended, Detector& detector, Clock::time_point now = Clock::now());
   /// An answer is on its way.
   [[nodiscard]] bool is_asking() const { return running_.valid(); }
   /// The detector has all views of a map that has ended, or nobody tells them.
   [[nodiscard]] bool are_complete() const { return end_.is_told; }
+  /// Why the detector does not have all views of a map that has ended; empty: it has, or may yet.
+  [[nodiscard]] const std::string& problem() const { return problem_; }
 
  private:
   void use(const Answer& answer, Detector& detector, Clock::time_point now);
+  void give_up(const std::string& reason);
 
   Ask ask_;
   Request next_;
@@ -61,7 +65,9 @@ class FollowedViews {
   struct {
     bool is_asked = false;  // for all views
     bool is_told = false;
+    int num_failures = 0;
   } end_;
+  std::string problem_;
   bool has_warned_ = false;
   std::future<Answer> running_;  // last: it is waited for before the others end
 };

@@ -1,6 +1,7 @@
 // What a detector is told of the views of a map on the bus.
 
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <thread>
@@ -16,6 +17,7 @@ namespace {
 
 using std::chrono::seconds;
 using ::testing::ElementsAre;
+using ::testing::HasSubstr;
 
 constexpr std::int64_t kSession = 5;
 
@@ -43,13 +45,19 @@ class FollowedViewsTest : public ::testing::Test {
     asked_.push_back(request.since_us);
     FollowedViews::Answer answer{.request = request};
     for (const std::int64_t utime : recorded_) {
-      if (utime >= request.since_us) answer.views.push_back(view_at(utime));
+      if (utime < request.since_us) continue;
+      if (answer.views.size() == most_) {
+        answer.problem = "silence";
+        break;
+      }
+      answer.views.push_back(view_at(utime));
     }
     return answer;
   }
 
   // Nobody asks while the test changes these.
   std::vector<std::int64_t> recorded_;  // by time
+  std::size_t most_ = 1000;             // it does not tell more views at once
   std::vector<std::int64_t> asked_;     // since when
   FollowedViews::Clock::time_point now_{seconds(1000)};
   Detector detector_{{}, 0.01F};
@@ -82,6 +90,61 @@ TEST_F(FollowedViewsTest, OfANewDetectorAreNotWhatTheOldOneAwaited) {
   settle();
   EXPECT_THAT(asked_, ElementsAre(0, 21, 0));
   EXPECT_EQ(detector_.num_views(), 3U);
+}
+
+TEST_F(FollowedViewsTest, OfAnAnswerThatBreaksOffAreKept) {
+  views_.begin(kSession);
+  recorded_ = {10, 20, 30};
+  most_ = 2;
+  settle();
+  EXPECT_EQ(detector_.num_views(), 2U);
+  now_ += seconds(60);
+  settle();
+  EXPECT_THAT(asked_, ElementsAre(0, 21));
+  EXPECT_EQ(detector_.num_views(), 3U);
+}
+
+TEST_F(FollowedViewsTest, OfAMapThatHasEndedAreAskedForUntilAllHaveCome) {
+  views_.begin(kSession);
+  recorded_ = {10, 20, 30};
+  settle();
+  most_ = 1;
+  settle(true);
+  EXPECT_FALSE(views_.are_complete());
+  EXPECT_EQ(detector_.num_views(), 1U);
+  most_ = 2;
+  now_ += seconds(1);
+  settle(true);
+  EXPECT_TRUE(views_.are_complete());
+  EXPECT_EQ(views_.problem(), "");
+  EXPECT_THAT(asked_, ElementsAre(0, 0, 11));
+  EXPECT_EQ(detector_.num_views(), 3U);
+  now_ += seconds(60);
+  settle(true);
+  EXPECT_EQ(asked_.size(), 3U);
+}
+
+TEST_F(FollowedViewsTest, OfAMapThatHasEndedAreGivenUpAfterSomeTries) {
+  views_.begin(kSession);
+  recorded_ = {10, 20};
+  settle();
+  most_ = 0;
+  for (int i = 0; i < 20; ++i) {
+    settle(true);
+    EXPECT_EQ(views_.are_complete(), !views_.problem().empty());
+    now_ += seconds(1);
+  }
+  EXPECT_TRUE(views_.are_complete());
+  EXPECT_THAT(views_.problem(), HasSubstr("silence"));
+  EXPECT_THAT(asked_, ElementsAre(0, 0, 0, 0));
+  EXPECT_EQ(detector_.num_views(), 2U);  // better than none
+
+  views_.go_on();
+  most_ = 1000;
+  settle();
+  EXPECT_EQ(views_.problem(), "");
+  settle(true);
+  EXPECT_TRUE(views_.are_complete());
 }
 
 }  // namespace
