@@ -133,6 +133,10 @@ class DetectorProcess {
     std::vector<std::uint32_t> labels = client_.labels(piece);
     const bool is_segmented = points_W->empty() || std::ranges::any_of(labels, is_segment);
     if (!is_segmented && !has_ended()) return false;
+    const LabelledMap::Points before_W = detector_->map().points_of_piece(piece);
+    if (before_W && before_W != points_W && is_moved(*before_W, *points_W)) {
+      views_.note_correction();
+    }
     detector_->set_piece(piece, std::move(points_W), std::move(labels), source_.utime);
     return true;
   }

@@ -1,5 +1,7 @@
 #include "segmenter/objects/process/followed_views.hpp"
 
+#include <algorithm>
+#include <cstddef>
 #include <stdexcept>
 
 #include <spdlog/spdlog.h>
@@ -10,6 +12,7 @@
 #include "segmenter/io/views_file.hpp"
 #include "segmenter/tools/query/query_client.hpp"
 #include "segmenter/views/kept_view.hpp"
+#include "segmenter/views/view_record.hpp"
 
 namespace kintsugi::segmenter {
 
@@ -22,6 +25,11 @@ constexpr std::chrono::seconds kSilence(10);  // before one that did not answer 
 // When the map has ended, its last examination waits for the views. Some answers may be lost, but a
 // segmenter that ended with its map gives none.
 constexpr int kLastTries = 3;
+// Between two questions for everything while the map grows: that may be 34 MB of views. Loops close
+// in series, and on a patrol in every round.
+constexpr std::chrono::seconds kWholePeriod(60);
+// With so many views there may be twice as many as the segmenter has: it has thinned out the rest.
+constexpr std::size_t kMostViews = 2 * ViewRecord::kMaxViews;
 
 /// The oldest views of this time and later, as many as one answer holds.
 ViewSet next_views(QueryClient& segmenter, std::int64_t map_session, std::int64_t since_us) {
@@ -70,7 +78,15 @@ FollowedViews::Ask FollowedViews::of_segmenter(std::string lcm_url) {
 void FollowedViews::begin(std::int64_t map_session) {
   next_ = {map_session, 0};
   due_ = {};
+  is_corrected_ = false;
+  whole_due_ = {};
   go_on();
+}
+
+/// The segmenter may hear of the correction a little later.
+void FollowedViews::note_correction(Clock::time_point now) {
+  if (!is_corrected_) due_ = std::max(due_, now + kPeriod);
+  is_corrected_ = true;
 }
 
 void FollowedViews::go_on() {
@@ -90,6 +106,12 @@ void FollowedViews::update(bool map_has_ended, Detector& detector, Clock::time_p
     due_ = now;
   }
   if (end_.is_told || now < due_) return;
+  const bool is_stale = is_corrected_ || detector.num_views() > kMostViews;
+  if (is_stale && !map_has_ended && now >= whole_due_) next_.since_us = 0;
+  if (next_.since_us == 0) {
+    is_corrected_ = false;
+    whole_due_ = now + kWholePeriod;
+  }
   due_ = now + kPeriod;
   running_ = std::async(std::launch::async, ask_, next_);
 }
@@ -121,6 +143,17 @@ void FollowedViews::give_up(const std::string& reason) {
   problem_ =
       "what is found in the saved map may differ: not all that the cameras saw was told: " + reason;
   spdlog::warn("{}", problem_);
+}
+
+bool is_moved(std::span<const CloudPoint> before_W, std::span<const CloudPoint> now_W) {
+  const auto is_same_point = [](const CloudPoint& a, const CloudPoint& b) {
+    return a.red == b.red && a.green == b.green && a.blue == b.blue && a.weight == b.weight;
+  };
+  const auto is_same_place = [](const CloudPoint& a, const CloudPoint& b) {
+    return a.x == b.x && a.y == b.y && a.z == b.z;
+  };
+  return std::ranges::equal(before_W, now_W, is_same_point) &&
+         !std::ranges::equal(before_W, now_W, is_same_place);
 }
 
 }  // namespace kintsugi::segmenter

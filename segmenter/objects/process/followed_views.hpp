@@ -5,18 +5,21 @@
 #include <cstdint>
 #include <functional>
 #include <future>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "lcmtypes/messages.hpp"
 #include "segmenter/objects/detection/detector.hpp"
 #include "segmenter/views/map_view.hpp"
 
 namespace kintsugi::segmenter {
 
 /// Asks the segmenter again and again, and tells a detector. While the map grows, for what was seen
-/// since the last answer; when it has ended, once for everything: corrections of the map have moved
-/// the views meanwhile, and what is detected in the end must not depend on when they came. Then it
+/// since the last answer, and at times for everything: corrections of the map move views, and the
+/// segmenter thins them out (ViewRecord). When the map has ended, once more for everything, since
+/// what is detected in the end must not depend on when views came. Then it
 /// asks some times before it gives up. Requests are made in a thread of their own, because an
 /// answer takes up to some seconds.
 class FollowedViews {
@@ -44,6 +47,9 @@ class FollowedViews {
 
   /// Another map, or another detector, which knows of no views.
   void begin(std::int64_t map_session);
+  /// A correction has moved pieces of the map, and with them what the cameras saw.
+  /// @param now never goes back
+  void note_correction(Clock::time_point now = Clock::now());
   /// The map was about to end, and goes on.
   void go_on();
   /// To be called regularly. @param now never goes back
@@ -62,6 +68,8 @@ class FollowedViews {
   Ask ask_;
   Request next_;
   Clock::time_point due_{};
+  bool is_corrected_ = false;      // since everything was asked for
+  Clock::time_point whole_due_{};  // not before, everything again
   struct {
     bool is_asked = false;  // for all views
     bool is_told = false;
@@ -71,5 +79,9 @@ class FollowedViews {
   bool has_warned_ = false;
   std::future<Answer> running_;  // last: it is waited for before the others end
 };
+
+/// Whether a correction has moved a piece: its points are elsewhere, and nothing else about them
+/// has changed.
+bool is_moved(std::span<const CloudPoint> before_W, std::span<const CloudPoint> now_W);
 
 }  // namespace kintsugi::segmenter

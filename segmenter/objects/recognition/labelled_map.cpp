@@ -109,6 +109,11 @@ std::set<BlockKey> LabelledMap::add_points(std::int32_t id, const Piece& piece) 
   return changed;
 }
 
+LabelledMap::Points LabelledMap::points_of_piece(std::int32_t id) const {
+  const auto piece = pieces_.find(id);
+  return piece == pieces_.end() ? nullptr : piece->second.points_W;
+}
+
 BlockKey LabelledMap::block_of(const Eigen::Vector3f& p_W) const {
   const Eigen::Vector3i key = (p_W / block_m_).array().floor().cast<int>();
   return {key.x(), key.y(), key.z()};

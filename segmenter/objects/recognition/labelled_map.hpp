@@ -64,6 +64,8 @@ class LabelledMap {
   /// @throws std::invalid_argument unless there is a label for each point
   Change set_piece(std::int32_t id, Points points_W, std::vector<std::uint32_t> segment_ids);
 
+  /// The points of a piece; null: there is none of this id.
+  [[nodiscard]] Points points_of_piece(std::int32_t id) const;
   [[nodiscard]] const CloudPoint& point_W(PointRef ref) const {
     return (*pieces_.at(ref.piece).points_W)[ref.index];
   }

@@ -1,8 +1,10 @@
 // What a detector is told of the views of a map on the bus.
 
+#include <algorithm>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <thread>
 #include <utility>
@@ -10,7 +12,9 @@
 
 #include <gmock/gmock.h>
 
+#include "lcmtypes/patch_motions.hpp"
 #include "segmenter/objects/process/followed_views.hpp"
+#include "segmenter/views/view_record.hpp"
 
 namespace kintsugi::segmenter {
 namespace {
@@ -57,7 +61,7 @@ class FollowedViewsTest : public ::testing::Test {
 
   // Nobody asks while the test changes these.
   std::vector<std::int64_t> recorded_;  // by time
-  std::size_t most_ = 1000;             // it does not tell more views at once
+  std::size_t most_ = 10'000;           // it does not tell more views at once
   std::vector<std::int64_t> asked_;     // since when
   FollowedViews::Clock::time_point now_{seconds(1000)};
   Detector detector_{{}, 0.01F};
@@ -140,11 +144,65 @@ TEST_F(FollowedViewsTest, OfAMapThatHasEndedAreGivenUpAfterSomeTries) {
   EXPECT_EQ(detector_.num_views(), 2U);  // better than none
 
   views_.go_on();
-  most_ = 1000;
+  most_ = 10'000;
   settle();
   EXPECT_EQ(views_.problem(), "");
   settle(true);
   EXPECT_TRUE(views_.are_complete());
+}
+
+TEST_F(FollowedViewsTest, OfACorrectedMapAreAllAskedForAgainAtMostOnceAMinute) {
+  views_.begin(kSession);
+  recorded_ = {10, 20};
+  settle();
+  now_ += seconds(60);
+  views_.note_correction(now_);
+  settle();
+  EXPECT_THAT(asked_, ElementsAre(0));  // the segmenter may not know of the correction yet
+  recorded_ = {20};                     // meanwhile it has thinned them out
+  now_ += seconds(1);
+  settle();
+  EXPECT_THAT(asked_, ElementsAre(0, 0));
+  EXPECT_EQ(detector_.num_views(), 1U);
+  asked_.clear();
+  for (int i = 0; i < 60; ++i) {
+    views_.note_correction(now_);
+    now_ += seconds(1);
+    settle();
+  }
+  EXPECT_EQ(std::ranges::count(asked_, 0), 1);
+  EXPECT_EQ(std::ranges::count(asked_, 21), 59);
+}
+
+TEST_F(FollowedViewsTest, AreBounded) {
+  views_.begin(kSession);
+  std::size_t most = 0;
+  for (std::int64_t utime = 1; utime <= 10'000; ++utime) {
+    recorded_.push_back(utime);
+    if (recorded_.size() > ViewRecord::kMaxViews) recorded_.erase(recorded_.begin());
+    if (utime % 100 != 0) continue;
+    now_ += seconds(10);
+    settle();
+    most = std::max(most, detector_.num_views());
+  }
+  EXPECT_GT(most, ViewRecord::kMaxViews);
+  EXPECT_LE(most, 2 * ViewRecord::kMaxViews + 700);  // what came in a minute
+}
+
+TEST(MovedPiece, HasTheSamePointsElsewhere) {
+  std::vector<CloudPoint> before_W(2);
+  before_W[0].red = 7;
+  before_W[1].weight = 3.0F;
+  before_W[1].y = 1.0F;
+  Pose X_WP = Pose::Identity();
+  X_WP.translation().x() = 0.5;
+  const std::vector<CloudPoint> now_W = moved(before_W, X_WP);
+  EXPECT_TRUE(is_moved(before_W, now_W));
+  EXPECT_FALSE(is_moved(before_W, before_W));
+  std::vector<CloudPoint> fused_W = now_W;
+  fused_W[0].weight = 1.0F;
+  EXPECT_FALSE(is_moved(before_W, fused_W));
+  EXPECT_FALSE(is_moved(before_W, std::span(now_W).first(1)));
 }
 
 }  // namespace
