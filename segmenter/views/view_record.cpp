@@ -117,7 +117,8 @@ void ViewRecord::add(const CloudSlice& slice) {
   const PatchPlace place = motions_.place_of(slice);
   PatchPlace& known = headers_[slice.id];
   if (place.correction >= known.correction) known = place;
-  last_patch_[slice.part] = slice.id;
+  // Those of another mapper move with its keyframes, wherever this camera is.
+  if (slice.keyframe >= 0) last_patch_[slice.part] = slice.id;
 }
 
 void ViewRecord::append(const ViewRecord& later) {

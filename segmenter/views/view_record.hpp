@@ -24,9 +24,9 @@ namespace kintsugi::segmenter {
 /// nearly the same, at nearly the same time.
 ///
 /// Corrections: the pose of a view is in W as of its frame. It hangs on the patch whose header came
-/// last before that frame, of the same part of the map, with the corrections up to that frame; so
-/// views wait for a slice that is later than they are. Slices come a little later than views, and
-/// in their order but for losses.
+/// last before that frame, of the same camera and part of the map, with the corrections up to that
+/// frame; so views wait for a slice that is later than they are. Slices come a little later than
+/// views, and in their order but for losses.
 class ViewRecord {
  public:
   static constexpr double kShare = 0.08;

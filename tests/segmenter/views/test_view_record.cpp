@@ -128,6 +128,17 @@ TEST(ViewRecord, AViewBeforeAllPatchesHangsOnTheFirst) {
   EXPECT_EQ(places_of(record), std::vector<double>{11.0});
 }
 
+TEST(ViewRecord, DoNotHangOnPatchesOfAnotherMapper) {
+  ViewRecord record(5, "map");
+  record.add(patch(0, 1 * kSecond));
+  CloudSlice of_guest = patch(1, 2 * kSecond);
+  of_guest.keyframe = -1;
+  record.add(of_guest);
+  record.add(view_at(1.0, 3 * kSecond));
+  record.add(correction(1, 4 * kSecond, {{0, shifted(10)}, {1, shifted(20)}}));
+  EXPECT_EQ(places_of(record), std::vector<double>{11.0});
+}
+
 TEST(ViewRecord, SlicesMayComeLaterThanTheViews) {
   // The same as they would be without delay: the view of second 5 is in the map before the
   // correction, that of second 7 in the map after it.
