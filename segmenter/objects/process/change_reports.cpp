@@ -62,10 +62,24 @@ std::optional<std::size_t> earlier_of(const ChangeReport& now,
 
 }  // namespace
 
+void ChangeReports::forget_withdrawn() {
+  std::vector<std::int64_t> events;
+  for (const ChangeReport& report : reports_) {
+    if (report.kind == ChangeKind::kWithdrawn) events.push_back(report.event_number);
+  }
+  if (events.size() <= kMaxWithdrawn) return;
+  const auto oldest_kept = events.end() - kMaxWithdrawn;
+  std::ranges::nth_element(events, oldest_kept);
+  std::erase_if(reports_, [&](const ChangeReport& report) {
+    return report.kind == ChangeKind::kWithdrawn && report.event_number < *oldest_kept;
+  });
+}
+
 void ChangeReports::update(const MapChanges& now, const ComparedMap& map) {
+  forget_withdrawn();
   std::set<std::size_t> taken;
   const auto set = [&](std::size_t i, ChangeReport report) {
-    report.change = static_cast<std::int32_t>(i + 1);
+    report.change = reports_[i].change;
     report.event_number = ++num_events_;
     reports_[i] = std::move(report);
   };
@@ -73,7 +87,7 @@ void ChangeReports::update(const MapChanges& now, const ComparedMap& map) {
     ChangeReport report = report_of(change);
     const std::optional<std::size_t> earlier = earlier_of(report, reports_, taken);
     const std::size_t i = earlier.value_or(reports_.size());
-    if (!earlier) reports_.emplace_back();
+    if (!earlier) reports_.emplace_back().change = ++num_changes_;
     taken.insert(i);
     if (!earlier || !is_as_reported(report, reports_[i])) set(i, std::move(report));
   }
@@ -89,7 +103,7 @@ void ChangeReports::update(const MapChanges& now, const ComparedMap& map) {
     report.map_session = map.map_session;
     report.map_name = map.map_name;
     report.before = before_;
-    report.num_changes = static_cast<std::int32_t>(reports_.size());
+    report.num_changes = num_changes_;
   }
 }
 

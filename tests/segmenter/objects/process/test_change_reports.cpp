@@ -93,6 +93,35 @@ TEST(ChangeReports, TellWhatHasBecomeOfAChange) {
   EXPECT_THAT(kinds_of(reports), ElementsAre(ChangeKind::kGone, ChangeKind::kNew));
 }
 
+TEST(ChangeReports, ForgetWhatWasWithdrawnLongAgo) {
+  ChangeReports reports(11, "before");
+  constexpr auto kMany = static_cast<int>(ChangeReports::kMaxWithdrawn);
+  std::vector<MapChange> changes{change_at(-1.0F, ChangeKind::kNew)};
+  for (int i = 0; i < 3 * kMany; ++i) {
+    changes.push_back(change_at(static_cast<float>(i), ChangeKind::kNew));
+  }
+  reports.update(changes_of(changes), kMap);
+  changes.resize(1);
+  reports.update(changes_of(changes), kMap);
+  EXPECT_EQ(kinds_of(reports).size(), 1U + 3 * kMany);  // each is told once
+  reports.update(changes_of(changes), kMap);
+  ASSERT_EQ(kinds_of(reports).size(), 1U + kMany);
+  EXPECT_EQ(reports.reports()[0].kind, ChangeKind::kNew);
+  EXPECT_EQ(reports.reports()[0].change, 1);
+  EXPECT_EQ(reports.reports()[1].change, 2 + 2 * kMany);  // the newest
+
+  // What was forgotten begins anew; what is known keeps its number.
+  changes.push_back(change_at(0.0F, ChangeKind::kNew));
+  changes.push_back(change_at(static_cast<float>(3 * kMany - 1), ChangeKind::kNew));
+  reports.update(changes_of(changes), kMap);
+  ASSERT_EQ(kinds_of(reports).size(), 2U + kMany);
+  EXPECT_EQ(reports.reports().back().change, 2 + 3 * kMany);
+  EXPECT_EQ(reports.reports().back().num_changes, 2 + 3 * kMany);
+  const ChangeReport& known = reports.reports()[kMany];
+  EXPECT_EQ(known.change, 1 + 3 * kMany);
+  EXPECT_EQ(known.kind, ChangeKind::kNew);
+}
+
 TEST(ChangeReports, OfVeryManySegmentsFitAMessage) {
   ChangeReports reports(11, "before");
   MapChange change = change_at(0.0F, ChangeKind::kNew);
