@@ -55,6 +55,19 @@ float squared(float distance) {
   return distance * distance * static_cast<float>(kViewDescriptorSize);
 }
 
+// Without colours the distance is a mean over two things that count alike instead of three.
+constexpr float kWithoutColors = 1.5F;
+
+/// Between descriptors that are scaled, squared. Colours count where both have some: their absolute
+/// values decide before all else, and those of a map without colours say nothing.
+float squared_distance(const ViewDescriptor& a, const ViewDescriptor& b) {
+  const ViewDescriptor d = a - b;
+  if (has_colors(a.head<kSizeAndColors>()) && has_colors(b.head<kSizeAndColors>())) {
+    return d.squaredNorm();
+  }
+  return kWithoutColors * (d.head<4>().squaredNorm() + d.tail<kShapeFeatureSize>().squaredNorm());
+}
+
 }  // namespace
 
 struct ModelIndex::Search {
@@ -65,14 +78,32 @@ struct ModelIndex::Search {
 
   /// The views that are nowhere near farther off than `most_squared`: those whose beginnings are
   /// nearer than that, ascending.
-  [[nodiscard]] std::vector<std::size_t> near(SizeAndColors scaled, float most_squared) const {
+  [[nodiscard]] std::vector<std::size_t> near(const SizeAndColors& scaled,
+                                              float most_squared) const {
+    const bool has_no_colors = !has_colors(scaled);
+    std::vector<std::size_t> near;
+    if (!has_no_colors) near = near_of_all(scaled, most_squared);
+    for (std::size_t i = 0; i < views.size(); ++i) {
+      const SizeAndColors beginning = views[i].descriptor.head<kSizeAndColors>();
+      if (!has_no_colors && has_colors(beginning)) continue;
+      const float size_squared = (beginning - scaled).head<4>().squaredNorm();
+      if (kWithoutColors * size_squared <= most_squared) near.push_back(i);
+    }
+    std::ranges::sort(near);
+    near.erase(std::ranges::unique(near).begin(), near.end());
+    return near;
+  }
+
+ private:
+  /// The same, as if all had colours.
+  [[nodiscard]] std::vector<std::size_t> near_of_all(SizeAndColors scaled,
+                                                     float most_squared) const {
     std::vector<std::vector<std::size_t>> found;
     std::vector<std::vector<float>> squares;
     flann::SearchParams parameters(flann::FLANN_CHECKS_UNLIMITED);
     parameters.sorted = false;
     index->radiusSearch(flann::Matrix<float>(scaled.data(), 1, kSizeAndColors), found, squares,
                         most_squared, parameters);
-    std::ranges::sort(found.front());
     return std::move(found.front());
   }
 };
@@ -115,7 +146,7 @@ std::vector<ModelMatch> ModelIndex::nearest(const ViewDescriptor& descriptor, st
   std::vector<ModelMatch> matches;  // the nearest view of each object; distances are squared yet
   for (const std::size_t i : search_->near(scaled.head<kSizeAndColors>(), most)) {
     const IndexedView& view = search_->views[i];
-    const float square = (view.descriptor - scaled).squaredNorm();
+    const float square = squared_distance(view.descriptor, scaled);
     if (square > most) continue;
     // Views of one object follow each other.
     if (matches.empty() || matches.back().model != view.model) {

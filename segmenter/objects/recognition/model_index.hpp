@@ -18,12 +18,13 @@ struct IndexedView {
 struct ModelMatch {
   std::size_t model = 0;
   /// Of the nearest of its views, in standard deviations between views of one object: root of the
-  /// mean over the elements of the descriptor.
+  /// mean over the elements of the descriptor that are compared.
   float distance = 0.0F;
 };
 
 /// Searches the views of all objects (FLANN). The elements of descriptors are scaled by how much
-/// they differ between views of one object, over all objects: what says little counts little.
+/// they differ between views of one object, over all objects: what says little counts little. With
+/// what has no colours, only size and shape are compared.
 class ModelIndex {
  public:
   /// By ascending model.

@@ -26,6 +26,8 @@ using ViewDescriptor = Eigen::Matrix<float, kViewDescriptorSize, 1>;
 ///   10-42  the mean of the shape features of its points
 /// @param spacing_m of the points
 SizeAndColors size_and_colors(const Surface& surface, float spacing_m);
+/// Some of those points had a colour: black has none.
+inline bool has_colors(const SizeAndColors& elements) { return !elements.tail<6>().isZero(0.0F); }
 /// @param mean_features of its points, see shape_features()
 ViewDescriptor view_descriptor(const SizeAndColors& beginning, const ShapeFeature& mean_features);
 

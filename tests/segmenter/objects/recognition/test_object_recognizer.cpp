@@ -375,6 +375,35 @@ TEST(ModelIndex, FindsTheObjectOfTheNearestViewAndBoundsItFromBelow) {
   }
   EXPECT_FALSE(index.has_near(SizeAndColors::Constant(1e3F), 1.0F));
   EXPECT_TRUE(ModelIndex({}).nearest(ViewDescriptor::Zero(), 3, 1.0F).empty());
+TEST(ModelIndex, ComparesSizeAndShapeWithWhatHasNoColours) {
+  constexpr std::size_t kWithout = 4;
+  std::vector<IndexedView> views;
+  for (std::size_t model = 0; model < 10; ++model) {
+    ViewDescriptor descriptor;
+    for (int k = 0; k < kViewDescriptorSize; ++k) {
+      descriptor[k] =
+          std::sin(1.0F + 7.0F * static_cast<float>(model) + 3.0F * static_cast<float>(k));
+    }
+    auto colors = descriptor.segment<6>(4);
+    colors =
+        model == kWithout ? Eigen::Matrix<float, 6, 1>::Zero().eval() : (60.0F * colors).eval();
+    views.push_back({model, descriptor});
+  }
+  const ModelIndex index(views);
+  for (const IndexedView& view : views) {
+    ViewDescriptor other = view.descriptor;
+    if (view.model == kWithout) {
+      other.segment<6>(4).setConstant(60.0F);
+    } else {
+      other.segment<6>(4).setZero();
+    }
+    constexpr float kNear = 0.1F;
+    EXPECT_TRUE(index.has_near(other.head<kSizeAndColors>(), kNear));
+    const std::vector<ModelMatch> matches = index.nearest(other, 2, kNear);
+    ASSERT_EQ(matches.size(), 1U);
+    EXPECT_EQ(matches[0].model, view.model);
+    EXPECT_FLOAT_EQ(matches[0].distance, 0.0F);
+  }
 }
 
 TEST(RecognizedPlacement, IsBetterThanOneOfAHigherScoreThatIsNot) {
