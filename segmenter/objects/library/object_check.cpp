@@ -1,5 +1,6 @@
 #include "segmenter/objects/library/object_check.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -52,9 +53,15 @@ void check(const KnownObject& object) {
     require(std::abs(view_O.norm() - 1.0F) < kNormalLengthTolerance, "the length of a view",
             view_O.norm(), "1");
   }
+  Eigen::AlignedBox3f box_O;
   for (std::size_t i = 0; i < model.points_O.size(); ++i) {
-    check_point(i, model.points_O[i], kMaxObjectVoxels * model.resolution_m);
+    const CloudPoint& point = model.points_O[i];
+    check_point(i, point, kMaxObjectVoxels * model.resolution_m);
+    box_O.extend(Eigen::Vector3f(point.x, point.y, point.z));
   }
+  const float radius_m = box_O.diagonal().norm() / 2;
+  require(radius_m <= kMaxObjectRadius_m, "half the diagonal of its box", radius_m,
+          "at most " + std::to_string(kMaxObjectRadius_m) + " m");
 }
 
 }  // namespace

@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <limits>
 
+#include "segmenter/objects/recognition/grid_cells.hpp"
+
 namespace kintsugi::segmenter {
 
 SurfaceField::SurfaceField(const Surface& surface, float cell_m, float reach_m) {
@@ -17,11 +19,7 @@ SurfaceField::SurfaceField(const Surface& surface, float cell_m, float reach_m) 
   }
   origin_ = low.array() - reach_m;
   const Eigen::Vector3f extent = (high - low).array() + 2 * reach_m;
-  const auto cells = [&extent](float cell) {
-    return (extent.array().cast<double>() / cell).ceil().max(1.0).prod();
-  };
-  while (cells(cell_m) > static_cast<double>(kMaxCells)) cell_m *= 1.26F;  // twice the volume
-  inverse_cell_ = 1.0F / cell_m;
+  inverse_cell_ = 1.0F / bounded_cell_m(cell_m, extent, kMaxCells);
   size_ = (extent * inverse_cell_).array().ceil().max(1.0F).matrix().cast<int>();
   const std::size_t num_cells =
       static_cast<std::size_t>(size_.x()) * size_.y() * static_cast<std::size_t>(size_.z());

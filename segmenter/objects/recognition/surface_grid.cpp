@@ -4,14 +4,16 @@
 #include <cstddef>
 #include <utility>
 
+#include "segmenter/objects/recognition/grid_cells.hpp"
+
 namespace kintsugi::segmenter {
 
-SurfaceGrid::SurfaceGrid(Surface surface, float cell_m)
-    : surface_(std::move(surface)), inverse_cell_(1.0F / cell_m) {
+SurfaceGrid::SurfaceGrid(Surface surface, float cell_m) : surface_(std::move(surface)) {
   if (surface_.empty()) return;
   Eigen::AlignedBox3f box;
   for (const SurfacePoint& point : surface_) box.extend(point.position);
   low_ = box.min();
+  inverse_cell_ = 1.0F / bounded_cell_m(cell_m, box.sizes(), kMaxCells);
   size_ = cell_of(box.max()) + Eigen::Vector3i::Ones();
   std::vector<std::size_t> cells;
   cells.reserve(surface_.size());

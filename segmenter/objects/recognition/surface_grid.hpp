@@ -18,10 +18,13 @@ struct NearestPoint {
 class SurfaceGrid {
  public:
   SurfaceGrid() = default;
-  /// @param cell_m side of a cell, > 0; searches are quickest within about as much
+  /// @param cell_m side of a cell, > 0; searches are quickest within about as much. It is enlarged
+  ///   where the grid would have more than kMaxCells cells
   SurfaceGrid(Surface surface, float cell_m);
 
   [[nodiscard]] const Surface& surface() const { return surface_; }
+
+  static constexpr std::int64_t kMaxCells = 4'000'000;  ///< 16 MB
 
   /// The nearest point that is at most `within_m` from `p` and wanted.
   template <class IsWanted>

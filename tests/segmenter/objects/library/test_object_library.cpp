@@ -11,6 +11,7 @@
 #include <zlib.h>
 
 #include "segmenter/objects/library/library_lock.hpp"
+#include "segmenter/objects/library/object_check.hpp"
 #include "segmenter/objects/library/object_files.hpp"
 #include "segmenter/objects/library/object_json.hpp"
 #include "segmenter/objects/library/object_library.hpp"
@@ -165,6 +166,15 @@ TEST_F(Library, RefusesAKeyThatIsMissingOrWrongWithItsPlace) {
   expect_refused_with("\"size\":[2,2,3]", "\"size\":[2,2,17]", "key 'size'");
   expect_refused_with("\"cell_m\":0.05", "\"cell_m\":0", "key 'cell_m'");
   expect_refused_with("\"has_up\": true,", "\"has_up\": true", "line 10, column");
+}
+
+TEST_F(Library, RefusesAnObjectAsLargeAsARoom) {
+  KnownObject large = example_object("cup");
+  large.model.points_O.front().x = 12.0F;
+  EXPECT_THAT([&] { check_object(large); }, ::testing::ThrowsMessage<std::runtime_error>(
+                                                HasSubstr("half the diagonal of its box is 5.99")));
+  large.model.points_O.front().x = 9.0F;
+  check_object(large);
 }
 
 TEST_F(Library, EveryTruncationIsRefused) {

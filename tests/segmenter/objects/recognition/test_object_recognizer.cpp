@@ -343,6 +343,16 @@ TEST(SurfaceGrid, FindsTheNearestOfManyPoints) {
   EXPECT_EQ(SurfaceGrid().nearest({0, 0, 0}, 1.0F, any_point).index, -1);
 }
 
+TEST(SurfaceGrid, HasLargerCellsWherePointsAreFarApart) {
+  Surface surface(3);
+  surface[1].position = {0.05F, 0.0F, 0.0F};
+  surface[2].position = {3e4F, -3e4F, 3e4F};
+  const SurfaceGrid grid(surface, 0.01F);
+  EXPECT_EQ(grid.nearest({0.04F, 0, 0}, 0.02F, any_point).index, 1);
+  EXPECT_EQ(grid.nearest(surface[2].position, 0.02F, any_point).index, 2);
+  EXPECT_EQ(grid.nearest({1, 1, 1}, 0.02F, any_point).index, -1);
+}
+
 TEST(ModelIndex, FindsTheObjectOfTheNearestViewAndBoundsItFromBelow) {
   std::vector<IndexedView> views;
   for (std::size_t model = 0; model < 30; ++model) {
@@ -375,6 +385,8 @@ TEST(ModelIndex, FindsTheObjectOfTheNearestViewAndBoundsItFromBelow) {
   }
   EXPECT_FALSE(index.has_near(SizeAndColors::Constant(1e3F), 1.0F));
   EXPECT_TRUE(ModelIndex({}).nearest(ViewDescriptor::Zero(), 3, 1.0F).empty());
+}
+
 TEST(ModelIndex, ComparesSizeAndShapeWithWhatHasNoColours) {
   constexpr std::size_t kWithout = 4;
   std::vector<IndexedView> views;
