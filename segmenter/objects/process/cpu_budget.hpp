@@ -9,6 +9,8 @@
 namespace kintsugi::segmenter {
 
 /// A share of one core on average. What is not used can be used later, up to kSaved_s: a burst.
+/// What is used beyond, because the map has to be followed, is paid back, but no more than
+/// kSaved_s: who joins a large map late would examine nothing for minutes.
 class CpuBudget {
  public:
   using Clock = std::chrono::steady_clock;
@@ -29,10 +31,14 @@ class CpuBudget {
   bool has_some() {
     const Clock::time_point now = Clock::now();
     const double used_s = cpu_s() - last_cpu_s_;
-    saved_s_ += share_ * std::chrono::duration<double>(now - last_time_).count() - used_s;
-    saved_s_ = std::min(saved_s_, kSaved_s);
+    const double elapsed_s = std::chrono::duration<double>(now - last_time_).count();
     last_time_ = now;
     last_cpu_s_ += used_s;
+    return has_some_after(elapsed_s, used_s);
+  }
+  /// The same when so much time has passed since, of which so much was used.
+  bool has_some_after(double elapsed_s, double used_s) {
+    saved_s_ = std::clamp(saved_s_ + share_ * elapsed_s - used_s, -kSaved_s, kSaved_s);
     return saved_s_ > 0.0;
   }
 
