@@ -6,7 +6,6 @@
 #include <deque>
 #include <memory>
 #include <optional>
-#include <set>
 #include <utility>
 #include <vector>
 
@@ -23,6 +22,7 @@
 #include "segmenter/objects/library/object_library.hpp"
 #include "segmenter/objects/process/cpu_budget.hpp"
 #include "segmenter/objects/process/detection_messages.hpp"
+#include "segmenter/objects/process/due_pieces.hpp"
 #include "segmenter/objects/process/followed_views.hpp"
 #include "segmenter/objects/process/map_detection.hpp"
 
@@ -89,12 +89,13 @@ class DetectorProcess {
         source_.utime = std::max(source_.utime, update.utime);
       }
     }
-    for (const std::int32_t piece : changes.pieces) dirty_.insert(piece);
+    for (const std::int32_t piece : changes.pieces) pieces_.add(piece);
     // Points may come before the first update, which tells whose map it is.
-    if (!dirty_.empty() && !detector_ && source_.map_session != 0) make_detector();
+    if (!pieces_.empty() && !detector_ && source_.map_session != 0) make_detector();
     if (!detector_) return;
+    if (has_ended()) pieces_.try_all();  // what has no segments yet gets none
     const std::size_t num_added =
-        std::erase_if(dirty_, [this](std::int32_t piece) { return add_piece(piece); });
+        pieces_.take_each([this](std::int32_t piece) { return add_piece(piece); });
     if (num_added > 0) {
       is_complete_pass_ = false;
       views_.go_on();
@@ -105,8 +106,8 @@ class DetectorProcess {
     source_ = {
         .map = newest.map_name, .map_session = newest.map_session, .session = source_.session};
     detector_.reset();
-    dirty_.clear();
-    for (const std::int32_t piece : client_.pieces()) dirty_.insert(piece);
+    pieces_.clear();
+    for (const std::int32_t piece : client_.pieces()) pieces_.add(piece);
   }
 
   /// Of another map, or with another library: a new session, since the numbers of detections begin
@@ -223,7 +224,7 @@ class DetectorProcess {
       return;
     }
     detector_.reset();
-    for (const std::int32_t piece : client_.pieces()) dirty_.insert(piece);
+    for (const std::int32_t piece : client_.pieces()) pieces_.add(piece);
   }
 
   void publish_status() {
@@ -299,8 +300,8 @@ class DetectorProcess {
   std::shared_ptr<const ObjectRecognizer> recognizer_;  // null: none was needed yet
   std::unique_ptr<Detector> detector_;                  // null: no map is known yet
   DetectionSource source_{.map = "", .session = new_session()};
-  bool has_numbers_ = false;      // detections were numbered in the session
-  std::set<std::int32_t> dirty_;  // pieces that the detector has not, or not as they are
+  bool has_numbers_ = false;  // detections were numbered in the session
+  DuePieces pieces_;          // that the detector has not, or not as they are
   bool is_complete_pass_ = false;
   bool is_finished_ = false;
   std::int64_t published_ = 0;  // the newest event
