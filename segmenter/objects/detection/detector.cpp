@@ -55,9 +55,13 @@ void Detector::set_piece(std::int32_t id, LabelledMap::Points points_W,
   std::set<std::uint32_t> changed_much;
   for (const std::uint32_t segment : changed) {
     if (waiting_.has_changed_much(segment, map().num_points(segment))) changed_much.insert(segment);
-    wait_for(segment);
+    if (map().num_points(segment) > 0) {
+      wait_for(segment);
+    } else {
+      waiting_.erase(segment);  // there is nothing to be examined
+    }
   }
-  // What was recognised depends on all of its segments.
+  // What was recognised depends on all of its segments, also on those that are gone.
   for (const std::uint32_t seed : recognitions_.seeds_of(changed_much)) wait_for(seed, true);
   for (const std::uint32_t seed : recognitions_.seeds_of(changed)) wait_for(seed);
 }

@@ -375,12 +375,49 @@ TEST(WaitingSegments, ComeFirstWhenTheyHaveChangedMuch) {
   EXPECT_EQ(waiting.pop(), 7U);
   EXPECT_TRUE(waiting.empty());
 
-  waiting.add(7, 0, 10);  // gone
+  waiting.add(7, 121, 10);
+  waiting.erase(7);
+  EXPECT_FALSE(waiting.contains(7));
+  EXPECT_FALSE(waiting.since_us().has_value());
+  EXPECT_TRUE(waiting.has_changed_much(7, 121));
   waiting.add(9, 50, 11);
-  EXPECT_EQ(waiting.pop(), 7U);
+  waiting.add(8, 0, 12);
+  EXPECT_THAT(waiting.in_order(), ElementsAre(8U, 9U));
   waiting.clear();
   EXPECT_FALSE(waiting.contains(9));
-  EXPECT_TRUE(waiting.has_changed_much(7, 1));
+}
+
+TEST(WaitingSegments, HaveEverySecondTurnWhenTheyHaveWaitedLong) {
+  WaitingSegments waiting;
+  for (const std::uint32_t id : {7U, 8U}) {
+    waiting.add(id, 100, 1);
+    waiting.pop();
+  }
+  constexpr std::int64_t kPatience_us = WaitingSegments::kPatience_us;
+  waiting.add(7, 120, 10);
+  waiting.add(8, 120, 20);
+  // A segment that is new comes all the time.
+  std::vector<std::uint32_t> order;
+  for (std::uint32_t i = 0; i < 6; ++i) {
+    waiting.add(100 + i, 50, 10 + kPatience_us * (i + 1) / 4);
+    order.push_back(waiting.pop());
+  }
+  EXPECT_THAT(order, ElementsAre(100, 101, 102, 7, 103, 8));
+  EXPECT_EQ(waiting.pop(), 104U);
+  EXPECT_EQ(waiting.pop(), 105U);
+}
+
+TEST(Detector, DoesNotLetSegmentsWaitThatAreGone) {
+  Detector detector(box_and_ball(), 0.01F);
+  give(detector, box_on_table(), kSecond_us);
+  examine(detector);
+  give(detector, box_on_table({"z", "-y"}), 2 * kSecond_us, {kBox});
+  take_away(detector, kTable, 2 * kSecond_us);
+  EXPECT_EQ(detector.num_waiting(), 1U);
+  take_away(detector, kBox, 3 * kSecond_us);
+  EXPECT_EQ(detector.num_waiting(), 1U);  // to tell that what was recognised there is gone
+  examine(detector);
+  EXPECT_THAT(names_of(detector), ElementsAre("ball"));
 }
 
 TEST(Detector, WaitsWithTheSegmentThatChangedFirst) {
