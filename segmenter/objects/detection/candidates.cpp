@@ -36,6 +36,7 @@ class Growth {
     std::optional<std::uint32_t> best;
     for (const auto& [id, count] : pairs) {
       if (best && count <= pairs[*best]) continue;
+      if (map_.num_points(id) == 0) continue;  // it was there when the neighbours were found
       if (only_smaller && map_.num_points(id) > count_) continue;
       if (box_.merged(map_.box_of(id)).diagonal().norm() > largest_m_) continue;
       best = id;

@@ -153,8 +153,15 @@ void Recognitions::forget_all() {
   by_candidate_.clear();
 }
 
+/// A segment that has changed may touch others than before. Then these have other neighbours, too.
 void Recognitions::forget(const std::set<std::uint32_t>& changed) {
-  for (const std::uint32_t segment : changed) neighbours_.unsafe_erase(segment);
+  std::set<std::uint32_t> stale = changed;
+  for (const std::uint32_t segment : changed) {
+    const auto known = neighbours_.find(segment);
+    if (known == neighbours_.end()) continue;
+    for (const SegmentNeighbour& neighbour : known->second) stale.insert(neighbour.segment_id);
+  }
+  for (const std::uint32_t segment : stale) neighbours_.unsafe_erase(segment);
   by_candidate_.clear();
 }
 

@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <memory>
 #include <random>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -20,6 +21,7 @@ using ::testing::ElementsAre;
 using testing::kBall;
 using testing::kBox;
 using testing::kTable;
+using testing::MapOfThings;
 
 constexpr std::int64_t kSecond_us = 1'000'000;
 
@@ -128,6 +130,44 @@ TEST(Candidates, GrowByNeighboursAndNotBeyondTheLargestObject) {
       ElementsAre(Candidate{kBox}, Candidate{kTable, kBox}, Candidate{kTable, kBox, kBall}));
   EXPECT_TRUE(candidates_of(kTable, labelled, neighbours, 0.5F).empty());
   EXPECT_TRUE(candidates_of(99, labelled, neighbours, 3.0F).empty());
+TEST(Candidates, DoNotGrowByWhatIsGone) {
+  const ObservedMap map = box_on_table();
+  LabelledMap labelled(0.2F);
+  labelled.set_piece(1, std::make_shared<const std::vector<CloudPoint>>(map.points_W),
+                     map.segment_ids);
+  constexpr std::uint32_t kNone = 99;
+  const std::vector<SegmentNeighbour> of_box{{kTable, 40}, {kNone, 80}};
+  const std::vector<SegmentNeighbour> of_others;
+  const NeighboursOf neighbours = [&](std::uint32_t id) -> const std::vector<SegmentNeighbour>& {
+    return id == kBox ? of_box : of_others;
+  };
+  EXPECT_THAT(candidates_of(kBox, labelled, neighbours, 3.0F),
+              ElementsAre(Candidate{kBox}, Candidate{kTable, kBox}));
+}
+
+TEST(Recognitions, KnowTheNeighboursOfWhatDidNotChangeItself) {
+  MapOfThings things;
+  std::vector<std::uint32_t> joined;  // the middle one becomes part of the last one
+  for (std::uint32_t id = 1; id <= 3; ++id) {
+    things.add_face({0.1F * static_cast<float>(id), 0, 0}, {0.1F, 0, 0}, {0, 0.1F, 0},
+                    {150, 140, 130}, id);
+  }
+  const ObservedMap map = things.take();
+  joined = map.segment_ids;
+  std::ranges::replace(joined, 2U, 3U);
+  const auto points = std::make_shared<const std::vector<CloudPoint>>(map.points_W);
+  const ObjectRecognizer recognizer(box_and_ball(), map.resolution_m);
+  Scene scene(map.resolution_m);
+  Recognitions recognitions(recognizer, scene);
+  scene.set_piece(1, points, map.segment_ids);
+  const std::uint32_t first = 1;
+  recognitions.examine(std::span(&first, 1));
+  EXPECT_EQ(recognitions.num_candidates(), 3);  // 1, 1 + 2, 1 + 2 + 3
+  recognitions.forget(scene.set_piece(1, points, joined));
+  recognitions.examine(std::span(&first, 1));
+  EXPECT_EQ(recognitions.num_candidates(), 5);  // 1, 1 + 3
+}
+
 }
 
 TEST(Detector, FindsTheObjectsOfAMapAndConfirmsThem) {
