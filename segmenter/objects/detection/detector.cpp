@@ -276,6 +276,7 @@ bool Detector::is_still_there(Detection& detection, const std::vector<Recognitio
       .model = detection.recognition.model,
       .placement = recognizer_->placement_at(detection.recognition.model,
                                              {.X_WO = last.X_WO, .light = last.light}, scene_)};
+  now.placement.light_agreement = recognitions_.scene_light().agreement(now.placement.light);
   const bool is_replaced = std::ranges::any_of(
       best, [&now](const Recognition& other) { return share_segments(now, other); });
   if (!is_recognized(now.placement) || is_replaced) return false;

@@ -7,8 +7,6 @@
 
 #include <oneapi/tbb/parallel_for.h>
 
-#include "segmenter/objects/recognition/scene_light.hpp"
-
 namespace kintsugi::segmenter {
 
 namespace {
@@ -120,8 +118,9 @@ void Recognitions::keep_best(std::uint32_t segment, const std::vector<Candidate>
 }
 
 void Recognitions::add(Recognition recognition) {
-  const std::uint32_t seed = recognition.placement.segment_ids.front();
-  by_segment_[seed].push_back(std::move(recognition));
+  std::vector<Recognition>& there = by_segment_[recognition.placement.segment_ids.front()];
+  std::erase_if(there, [&](const Recognition& old) { return old.model == recognition.model; });
+  there.push_back(std::move(recognition));
 }
 
 std::set<std::uint32_t> Recognitions::seeds() const {
@@ -142,8 +141,12 @@ std::set<std::uint32_t> Recognitions::seeds_of(const std::set<std::uint32_t>& pa
   return seeds;
 }
 
+SceneLight Recognitions::scene_light() const {
+  return light_of_recognitions(without_overlap(all_of(by_segment_)));
+}
+
 std::optional<LightChange> Recognitions::light() const {
-  const SceneLight light = light_of_recognitions(without_overlap(all_of(by_segment_)));
+  const SceneLight light = scene_light();
   if (!light.is_known) return std::nullopt;
   return LightChange{light.log_gain};
 }
@@ -167,7 +170,7 @@ void Recognitions::forget(const std::set<std::uint32_t>& changed) {
 
 std::vector<Recognition> Recognitions::best() const {
   std::vector<Recognition> all = all_of(by_segment_);
-  const SceneLight light = light_of_recognitions(without_overlap(all));
+  const SceneLight light = scene_light();
   for (Recognition& recognition : all) {
     recognition.placement.light_agreement = light.agreement(recognition.placement.light);
   }

@@ -12,6 +12,7 @@
 
 #include "segmenter/objects/detection/candidates.hpp"
 #include "segmenter/objects/recognition/object_recognizer.hpp"
+#include "segmenter/objects/recognition/scene_light.hpp"
 
 namespace kintsugi::segmenter {
 
@@ -29,7 +30,7 @@ class Recognitions {
   bool examine(std::span<const std::uint32_t> segments);
 
   /// Something that was recognised otherwise: it counts until the first of its segments is examined
-  /// again.
+  /// again, instead of what the same object was recognised as there.
   void add(Recognition recognition);
 
   /// The segments at which something was recognised.
@@ -41,8 +42,10 @@ class Recognitions {
   /// of the higher score counts. The highest score first.
   [[nodiscard]] std::vector<Recognition> best() const;
 
-  /// How the light of the map differs from that of the scene (Scene::set_light()) as far as what is
-  /// recognised tells; nothing: too little is.
+  /// The light of the map beside that of the scene (Scene::set_light()), as best() has it.
+  [[nodiscard]] SceneLight scene_light() const;
+  /// How it differs from that of the scene as far as what is recognised tells; nothing: too little
+  /// is.
   [[nodiscard]] std::optional<LightChange> light() const;
 
   /// All of the scene looks different.

@@ -130,6 +130,8 @@ TEST(Candidates, GrowByNeighboursAndNotBeyondTheLargestObject) {
       ElementsAre(Candidate{kBox}, Candidate{kTable, kBox}, Candidate{kTable, kBox, kBall}));
   EXPECT_TRUE(candidates_of(kTable, labelled, neighbours, 0.5F).empty());
   EXPECT_TRUE(candidates_of(99, labelled, neighbours, 3.0F).empty());
+}
+
 TEST(Candidates, DoNotGrowByWhatIsGone) {
   const ObservedMap map = box_on_table();
   LabelledMap labelled(0.2F);
@@ -168,6 +170,19 @@ TEST(Recognitions, KnowTheNeighboursOfWhatDidNotChangeItself) {
   EXPECT_EQ(recognitions.num_candidates(), 5);  // 1, 1 + 3
 }
 
+TEST(Recognitions, HaveOneOfEachObjectAtASegment) {
+  const ObjectRecognizer recognizer(box_and_ball(), 0.01F);
+  const Scene scene(0.01F);
+  Recognitions recognitions(recognizer, scene);
+  Recognition recognition;
+  recognition.placement.segment_ids = {5, 6};
+  recognition.placement.seen = 1.0F;
+  recognition.placement.explained = 0.9F;
+  recognitions.add(recognition);
+  recognition.placement.explained = 0.8F;  // less of it is there now
+  recognitions.add(recognition);
+  ASSERT_EQ(recognitions.best().size(), 1U);
+  EXPECT_EQ(recognitions.best()[0].placement.explained, 0.8F);
 }
 
 TEST(Detector, FindsTheObjectsOfAMapAndConfirmsThem) {
@@ -343,6 +358,27 @@ ObservedMap copies_of(const ObservedMap& map, std::uint32_t count) {
     }
   }
   return all;
+}
+
+TEST(Detector, DoesNotKeepWhatWouldStandInAnotherLightThanAllElse) {
+  ObservedMap map = box_on_table();
+  const std::vector<CloudPoint> points = map.points_W;
+  for (CloudPoint& p : map.points_W) {  // of linear colours 1.24, 0.89, 0.89: an orange lamp
+    p.red = static_cast<std::uint8_t>(1.10F * p.red);
+    p.green = static_cast<std::uint8_t>(0.95F * p.green);
+    p.blue = static_cast<std::uint8_t>(0.95F * p.blue);
+  }
+  Detector detector(box_and_ball(), 0.01F);
+  give(detector, map, kSecond_us, {kTable, kBox});
+  examine(detector);
+  ASSERT_THAT(names_of(detector), ElementsAre("box"));
+
+  map.points_W = points;
+  const ObservedMap many = copies_of(map, 6);
+  give(detector, many, 2 * kSecond_us,
+       {10 + kBall, 20 + kBall, 30 + kBall, 40 + kBall, 50 + kBall});
+  examine(detector);
+  EXPECT_THAT(names_of(detector), ElementsAre("ball", "ball", "ball", "ball", "ball"));
 }
 
 TEST(Detector, FindsTheSameOnAllCores) {
