@@ -35,6 +35,15 @@ class RecordingTest(FolderTest):
         Recording(self.folder.path).begin()
         self.assertEqual(self.log.read_bytes(), event(0))
 
+    def test_a_run_that_is_resumed_goes_on_with_its_recording(self):
+        for number in range(2):
+            recording = Recording(self.folder.path)
+            recording.begin()
+            with self.log.open("ab") as logger:
+                logger.write(event(number))
+            recording.end()
+        self.assertEqual((self.folder.path / "run.lcm").read_bytes(), event(0) + event(1))
+
     def test_a_durable_one_has_its_names_and_contents_on_the_disk(self):
         done = []
 

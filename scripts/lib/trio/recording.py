@@ -21,8 +21,11 @@ class Recording:
         self.durable = durable
 
     def begin(self):
-        """Before lcm-logger is started. What an earlier one has left half written is cut off: behind it nothing could
+        """Before lcm-logger is started. A run that is resumed goes on with its recording, which has got its name if
+        only another process failed. What an earlier logger has left half written is cut off: behind it nothing could
         be read."""
+        if self.file.exists() and not self.partial.exists():
+            self.file.rename(self.partial)
         if self.partial.exists():
             cut_after_last_event(self.partial)
         if self.durable:
