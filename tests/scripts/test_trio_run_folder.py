@@ -44,7 +44,8 @@ class RunFolderTest(FolderTest):
         os.close(other.lock_descriptor)
 
     def test_an_earlier_run_is_kept_and_foreign_files_stay(self):
-        for name in ("mapper.lcm", "mapper.1.lcm", "segments.ply", "snapshot_0001.png", "trio.options", "notes.txt"):
+        for name in ("mapper.lcm", "mapper.1.lcm", "segments.ply", "segments.partial.ply", "snapshot_0001.png",
+                     "highlight.png", "plots.png", "timeline_12.png", "run.partial.mp4", "trio.options", "notes.txt"):
             (self.folder.path / name).write_text(name)
         self.folder.keep_earlier_run()
         self.assertEqual([path.name for path in self.folder.path.iterdir() if path.is_file()], ["notes.txt"])

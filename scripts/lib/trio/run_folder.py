@@ -16,8 +16,9 @@ LOCK_TIMEOUT_S = 3.0  # the processes of a supervisor that was killed end soon
 RUN_FILES = (
     "mapper.lcm", "mapper.*.lcm", "segmenter.map", "segmenter.map.views", "run.lcm", "run.lcm.partial", "segments*.ply", "segments*.json",
     "segments*.csv", "final.png", "final.part*.png", "final_*.png", "map_final*.png", "segments_final*.png",
-    "snapshot_*.png", "run.mp4", "trajectory.txt", "trajectory.part*.txt", "status.csv", "mapper.log",
-    "segmenter.log", "viewer.log", "detector.log", "objects.json", "logger.log", "trio.options")
+    "snapshot_*.png", "highlight.png", "plots*.png", "timeline_*.png", "run.mp4", "*.partial.*", "trajectory.txt",
+    "trajectory.part*.txt", "status.csv", "mapper.log", "segmenter.log", "viewer.log",
+    "detector.log", "objects.json", "logger.log", "trio.options")
 PROCESSES_WITH_PID_FILE = ("mapper", "segmenter", "viewer", "detector", "logger", "player")
 
 
@@ -73,7 +74,7 @@ class RunFolder:
     def keep_earlier_run(self, durable=False):
         """Moves the files of a run that is there into earlier/DATE. `durable`: after a power cut, too, they are either
         here or there."""
-        found = [file for pattern in RUN_FILES for file in sorted(self.path.glob(pattern))]
+        found = list(dict.fromkeys(file for pattern in RUN_FILES for file in sorted(self.path.glob(pattern))))
         if not found:
             return
         date = time.strftime("%Y%m%d-%H%M%S", time.localtime(found[0].stat().st_mtime))
