@@ -71,6 +71,7 @@ check_route() {
 
 check_interface() {
   local mtu
+  [[ -n "$(link_of "$interface")" ]] || { unfit "interface: there is none to other hosts; name it with --interface"; return; }
   is_up "$interface" || { unfit "interface: $interface is down" "sudo ip link set dev $interface up"; return; }
   [[ "$(link_of "$interface")" == *MULTICAST* ]] || unfit "interface: $interface takes no multicast" \
     "sudo ip link set dev $interface multicast on"
@@ -88,7 +89,7 @@ multicast at its lowest speed and does not repeat what is lost: use a cable, or 
 check_peer() {
   local device gateway strict
   [[ "$mode" == several ]] || return 0
-  strict="$(cat "/proc/sys/net/ipv4/conf/"{all,"$interface"}/rp_filter 2>/dev/null | sort -n | tail -n 1)"
+  strict="$({ cat "/proc/sys/net/ipv4/conf/"{all,"$interface"}/rp_filter 2>/dev/null || true; } | sort -n | tail -n 1)"
   if [[ -z "$peer" ]]; then
     note "peer: not checked; --peer ADDRESS checks the way to one of the other hosts"
     return

@@ -82,5 +82,11 @@ expect_unfit 'route: none for multicast'
 LCM_DEFAULT_URL="" two_hosts_url="" expect_cured mapper --alone
 said 'ok +hearing: this machine hears itself'
 
+# And one without any interface to other hosts.
+code=0
+unshare --net "$root/scripts/check_host" --several --peer 10.77.0.1 --out "$work" >said.txt 2>&1 || code=$?
+expect_unfit 'interface: there is none'
+said '^This machine is not fit yet'
+
 check mapper --nonsense
 ((code == 2)) || fail "an unknown option was accepted"
