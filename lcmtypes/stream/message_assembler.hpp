@@ -81,16 +81,26 @@ class MessageAssembler {
     return dropped;
   }
 
+  /// Removes the message with the lowest numbers, except the one that begins at `kept`. Returns
+  /// false if there is none.
+  bool drop_lowest(std::optional<std::int64_t> kept) {
+    auto message = messages_.begin();
+    if (message != messages_.end() && message->first == kept) ++message;
+    if (message == messages_.end()) return false;
+    take(message->first);
+    return true;
+  }
+
   /// Memory of all chunks.
   std::size_t bytes() const { return bytes_; }
 
- private:
   /// The sequence number of the message's first chunk, which identifies the message: chunks of a
   /// message have consecutive numbers.
   static std::int64_t first_sequence(const Chunk<Message>& chunk) {
     return chunk.sequence - chunk.index;
   }
 
+ private:
   static std::vector<std::int64_t> numbers(const Chunks& chunks) {
     std::vector<std::int64_t> numbers;
     numbers.reserve(chunks.size());

@@ -1,6 +1,7 @@
 #include "lcmtypes/stream/stream_subscriber.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -94,11 +95,40 @@ std::vector<Chunk<Message>> StreamSubscriber<Message>::add(Chunk<Message> chunk)
     ++counts_.chunks_duplicate;
     return {};
   }
+  if (!kIsResent<Message> && room != StreamRoom::kNone) make_room(*session, chunk);
   if (!session->numbers.takes(chunk.sequence, less_when_full(room), config_.max_gaps_per_session)) {
     ++counts_.chunks_refused;
     return {};
   }
   return keep(*session, std::move(chunk));
+}
+
+/// Gives up the oldest of what waits for chunks that nobody sends again, as far as `chunk` of
+/// `session` needs its place.
+template <BulkMessage Message>
+void StreamSubscriber<Message>::make_room(Session& session, const Chunk<Message>& chunk) {
+  while (sessions_.pending_bytes() > config_.max_pending_bytes && drop_oldest(session, chunk)) {
+    ++counts_.messages_given_up;
+  }
+  StreamSession& numbers = session.numbers;
+  while (!numbers.takes(chunk.sequence, StreamRoom::kPlenty, config_.max_gaps_per_session)) {
+    numbers.replace(numbers.missing(1), std::numeric_limits<std::size_t>::max());
+  }
+}
+
+/// Drops an incomplete message of the session that was silent longest, but not that of `chunk` of
+/// `session`. Returns false if there is no other.
+template <BulkMessage Message>
+bool StreamSubscriber<Message>::drop_oldest(const Session& session, const Chunk<Message>& chunk) {
+  Session* oldest = nullptr;
+  for (auto& [id, other] : sessions_.all()) {
+    if (other.messages.bytes() == 0) continue;
+    if (oldest == nullptr || other.last_heard < oldest->last_heard) oldest = &other;
+  }
+  if (oldest == nullptr) return false;
+  std::optional<std::int64_t> kept;
+  if (oldest == &session) kept = MessageAssembler<Message>::first_sequence(chunk);
+  return oldest->messages.drop_lowest(kept);
 }
 
 template <BulkMessage Message>
@@ -172,7 +202,7 @@ StreamRoom StreamSubscriber<Message>::ask_for_room() const {
 
 template <BulkMessage Message>
 StreamRoom StreamSubscriber<Message>::less_when_full(StreamRoom room) const {
-  const bool is_full = sessions_.pending_bytes() > config_.max_pending_bytes;
+  const bool is_full = kIsResent<Message> && sessions_.pending_bytes() > config_.max_pending_bytes;
   return is_full && room == StreamRoom::kPlenty ? StreamRoom::kOnlyNext : room;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 // Receives a numbered stream of bulk messages, from the bus or from a log.
 
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -25,6 +26,8 @@ struct StreamCounts {
   std::int64_t chunks_unwanted = 0;  ///< of sessions that are not wanted
   std::int64_t messages_bad = 0;     ///< not decoded, or in conflict with other chunks
   std::int64_t messages_complete = 0;
+  /// Incomplete ones that were dropped for lack of memory, because nobody sends the rest again.
+  std::int64_t messages_given_up = 0;
   std::int64_t heartbeats = 0;
   std::int64_t requests_sent = 0;
 };
@@ -38,14 +41,23 @@ struct StreamGap {
   std::vector<SequenceRange> ranges;  ///< lowest first, at most kMaxResendRanges
 };
 
+/// Whether chunks are sent again on request: of the other messages the sender keeps none.
+template <BulkMessage Message>
+inline constexpr bool kIsResent =
+    std::same_as<Message, CloudSlice> || std::same_as<Message, SegmentUpdate> ||
+    std::same_as<Message, KeyframeMessage>;
+
 template <BulkMessage Message>
 struct StreamSubscriberConfig {
   /// Memory of incomplete messages. Beyond it only the missing chunks with the lowest numbers of a
-  /// session are kept, the others are requested again later. So the memory is bounded by this and
-  /// the size of one message.
-  std::size_t max_pending_bytes = std::size_t{1} << 30U;
+  /// session are kept, the others are requested again later. Where nothing is sent again, the
+  /// oldest incomplete message is dropped instead. So the memory is bounded by this and the size of
+  /// one message.
+  std::size_t max_pending_bytes =
+      kIsResent<Message> ? std::size_t{1} << 30U : std::size_t{1} << 24U;
   std::size_t max_sessions = 64;  ///< beyond it the one with the fewest chunks is dropped
-  /// Beyond it a chunk that would create another gap is not kept, but requested again later.
+  /// Beyond it a chunk that would create another gap is not kept, but requested again later. Where
+  /// nothing is sent again, the lowest gap is no longer waited for instead.
   std::size_t max_gaps_per_session = 65'536;
 
   ResendRequests::Config requests;
@@ -128,6 +140,8 @@ class StreamSubscriber {
   bool is_of_stream(const std::string& channel, const std::string& map_name) const;
   StreamRoom ask_for_room() const;
   // With the lock held:
+  void make_room(Session& session, const Chunk<Message>& chunk);
+  bool drop_oldest(const Session& session, const Chunk<Message>& chunk);
   Chunks keep(Session& session, Chunk<Message> chunk);
   StreamRoom less_when_full(StreamRoom room) const;
 

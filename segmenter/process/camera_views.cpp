@@ -9,23 +9,13 @@ namespace {
 
 constexpr std::size_t kMaxSessions = 64;  // as many as maps are kept
 
-// Views are small and not sent again: only those whose chunks arrive one after the other are used.
-StreamSubscriber<CameraView>::Config stream_config() {
-  StreamSubscriber<CameraView>::Config config;
-  config.max_pending_bytes = 4'000'000;
-  return config;
-}
-
 }  // namespace
 
 CameraViews::CameraViews(std::function<void(const CameraView&)> on_view)
-    : stream_(
-          channels::kCameraView,
-          [this, on_view = std::move(on_view)](CameraView view) {
-            if (on_view) on_view(view);
-            add(std::move(view), Clock::now());
-          },
-          {}, stream_config()) {}
+    : stream_(channels::kCameraView, [this, on_view = std::move(on_view)](CameraView view) {
+        if (on_view) on_view(view);
+        add(std::move(view), Clock::now());
+      }) {}
 
 void CameraViews::add(CameraView view, Clock::time_point now) {
   view.color_jpeg = {};

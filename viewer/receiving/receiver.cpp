@@ -11,7 +11,7 @@ StreamSubscriberConfig<Bulk> Receiver::stream_config(const Config& config) const
   StreamSubscriberConfig<Bulk> stream;
   stream.receiver = config.receiver;
   stream.max_request_bytes = config.max_request_bytes;
-  stream.max_pending_bytes = config.max_pending_bytes;
+  if (kIsResent<Bulk>) stream.max_pending_bytes = config.max_pending_bytes;
   if (config.has_room) {
     stream.room = [has_room = config.has_room] {
       return has_room() ? StreamRoom::kPlenty : StreamRoom::kNone;

@@ -23,7 +23,8 @@ class Receiver {
     std::int64_t receiver = 0;              ///< number of this process, sent with its requests
     std::size_t max_request_bytes = 1'400;  ///< size of a request, at most what the bus transports
     std::function<bool()> has_room;         ///< for slices and updates; empty: always
-    /// Memory for incomplete messages of each stream, bytes; a single larger message is accepted.
+    /// Memory for incomplete messages of each stream that is sent again, bytes; a single larger
+    /// message is accepted.
     std::size_t max_pending_bytes = std::size_t{1} << 28U;
   };
   using OnMessage = std::function<void(Message)>;

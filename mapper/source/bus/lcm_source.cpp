@@ -93,8 +93,9 @@ std::optional<RgbdFrame> LcmSource::next() {
 SourceStatus LcmSource::status() const {
   SourceStatus status = status_;
   const std::lock_guard lock(receiver_->mutex);
+  const StreamCounts counts = receiver_->subscriber.counts();
   status.counts.frames_dropped += receiver_->dropped;
-  status.counts.frames_bad += receiver_->subscriber.counts().messages_bad;
+  status.counts.frames_bad += counts.messages_bad + counts.messages_given_up;
   return status;
 }
 

@@ -267,6 +267,80 @@ TEST(StreamSubscriber, RefusesChunksThatWouldCreateTooManyGaps) {
   EXPECT_EQ(receiver.stream.counts().chunks_missing, 0);
 }
 
+/// The chunks of views with the times 0 to count - 1; each has as many.
+std::vector<Bytes> chunks_of_views(int count) {
+  Recording recording;
+  CameraView view = example_view(9'000);
+  StreamPublisher publisher(recording.transmit(), channels::kCameraView, view.session, fast());
+  for (view.utime = 0; view.utime < count; ++view.utime) publisher.publish(view);
+  publisher.flush();
+  return recording.chunks;
+}
+
+TEST(StreamSubscriber, DropsTheOldestIncompleteMessageWhereNothingIsSentAgain) {
+  constexpr int kViews = 600;
+  const std::vector<Bytes> chunks = chunks_of_views(kViews);
+  const std::size_t per_view = chunks.size() / kViews;
+  ASSERT_GE(per_view, 3U);
+  StreamSubscriber<CameraView>::Config config;
+  config.max_pending_bytes = 100'000;
+  std::vector<std::int64_t> times;
+  StreamSubscriber<CameraView> stream(
+      channels::kCameraView, [&](const CameraView& view) { times.push_back(view.utime); }, {},
+      config);
+  std::vector<std::int64_t> expected;
+  for (std::size_t view = 0; view < kViews; ++view) {
+    const bool is_damaged = view % 2 == 0 && view + 1 < kViews;
+    if (!is_damaged) expected.push_back(static_cast<std::int64_t>(view));
+    for (std::size_t i = 0; i < per_view; ++i) {
+      if (is_damaged && i == 1) continue;
+      stream.handle(channels::kCameraView, chunks[view * per_view + i]);
+    }
+    EXPECT_LE(stream.pending_bytes(), config.max_pending_bytes + 10'000);
+  }
+  EXPECT_EQ(times, expected);
+  const StreamCounts counts = stream.counts();
+  EXPECT_EQ(counts.chunks_refused, 0);
+  EXPECT_GT(counts.messages_given_up, 250);
+  EXPECT_LT(counts.messages_given_up, 300) << "the newest still wait";
+}
+
+TEST(StreamSubscriber, GapsOfAStreamOfWhichNothingIsSentAgainDoNotEndIt) {
+  constexpr int kViews = 200;
+  const std::vector<Bytes> chunks = chunks_of_views(kViews);
+  const std::size_t per_view = chunks.size() / kViews;
+  StreamSubscriber<CameraView>::Config config;
+  config.max_gaps_per_session = 4;
+  int views = 0;
+  StreamSubscriber<CameraView> stream(
+      channels::kCameraView, [&](const CameraView&) { ++views; }, {}, config);
+  for (std::size_t i = 0; i < chunks.size(); ++i) {
+    if (i / per_view % 2 == 0) continue;  // every other view is lost
+    stream.handle(channels::kCameraView, chunks[i]);
+  }
+  EXPECT_EQ(views, kViews / 2);
+  EXPECT_EQ(stream.counts().chunks_refused, 0);
+}
+
+TEST(StreamSubscriber, WhatAnEndedSessionLeftIncompleteMakesRoomForTheNext) {
+  const std::vector<Bytes> left = chunks_of_views(2);
+  StreamSubscriber<CameraView>::Config config;
+  config.max_pending_bytes = 1;
+  int views = 0;
+  StreamSubscriber<CameraView> stream(
+      channels::kCameraView, [&](const CameraView&) { ++views; }, {}, config);
+  stream.handle(channels::kCameraView, left.front());
+  Recording next;
+  CameraView view = example_view(9'000);
+  view.session += 1;
+  StreamPublisher publisher(next.transmit(), channels::kCameraView, view.session, fast());
+  publisher.publish(view);
+  publisher.flush();
+  for (const Bytes& chunk : next.chunks) stream.handle(channels::kCameraView, chunk);
+  EXPECT_EQ(views, 1);
+  EXPECT_EQ(stream.counts().messages_given_up, 1);
+}
+
 TEST(Stream, CarriesAllBulkMessages) {
   const auto carried = [](const auto& message) {
     using Message = std::remove_cvref_t<decltype(message)>;
