@@ -186,12 +186,14 @@ class SupervisorTest(FolderTest):
     def test_a_silent_camera_may_come_back(self):
         self.status.lingers = False
         mapper = self.until_term("mapper")
-        viewer = self.shell("viewer", "sleep 0.2")
+        came = self.folder.path / "came"
+        viewer = self.shell("viewer", f"until [ -e {came} ]; do sleep 0.02; done")
         supervisor = self.supervisor(mapper, viewer)
         self.up(mapper)
         self.status.results = [False]
+        show = self.status.show_progress = mock.Mock(side_effect=lambda _: show.call_count == 2 and came.touch())
         self.assertTrue(supervisor.watch())
-        self.assertEqual(len(self.status.shown), 2)
+        self.assertEqual(show.call_count, 2)
 
     def test_one_that_is_killed_while_it_is_closed_finishes_first(self):
         segmenter = self.once("segmenter", "kill -KILL $$", "echo finished; " + UNTIL_TERM)

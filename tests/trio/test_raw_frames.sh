@@ -10,8 +10,6 @@ cat >second.sh <<'SH'
 mapper=$!
 "$KINTSUGI_BIN/kintsugi-status" --until-ready mapper --timeout 20 >/dev/null
 lcm-logplayer -l "$LCM_DEFAULT_URL" -e '^RGBD_FRAME$' first/run.lcm >/dev/null
-sleep 2
-kill -INT "$mapper" 2>/dev/null
 wait "$mapper"
 SH
 "$root/scripts/private_bus" bash second.sh >second.log 2>&1 || {

@@ -47,7 +47,7 @@ expect_same_partition signed/segments.ply replayed/segments.ply
 
 # The same log twice to one process; and Python on the bus.
 cat >python_on_bus.py <<'PYTHON'
-"""python_on_bus.py KEY: receives and sends LCM's datagrams without LCM."""
+"""python_on_bus.py KEY sign|not: receives and sends LCM's datagrams without LCM, until it is ended."""
 import socket, struct, sys, time, zlib
 import kintsugi.lcm
 from kintsugi.lcm.signing import BusKey, Refused, Signer, Verifier
@@ -84,9 +84,12 @@ viewer.utime, viewer.session, viewer.map_name = 1, 1, "from python"
 encoded = bytearray(viewer.encode())
 encoded[8:12] = struct.pack(">I", zlib.crc32(encoded))
 signer = Signer(key) if sys.argv[2] == "sign" else None
-for number in range(20):
+number = 0
+while True:
     data = signer.sign("VIEWER_STATUS", bytes(encoded)) if signer else bytes(encoded)
     sender.sendto(struct.pack(">II", SHORT, number) + b"VIEWER_STATUS\0" + data, GROUP)
+    print(number, flush=True)
+    number += 1
     time.sleep(0.1)
 PYTHON
 cat >inside.sh <<'SHELL'
@@ -118,10 +121,17 @@ done
 if compgen -G "$PYTHONPATH/kintsugi/_kintsugi*.so" >/dev/null; then
   for how in sign not; do
     code=0
-    "$KINTSUGI_BIN/kintsugi-status" --until-ready viewer --timeout 4 >"heard-$how.txt" 2>&1 &
-    listening=$!
-    /usr/bin/python3 python_on_bus.py bus.key "$how"
-    wait "$listening" || code=$?
+    /usr/bin/python3 python_on_bus.py bus.key "$how" >"sent-$how.txt" &
+    sending=$!
+    until [[ -s "sent-$how.txt" ]]; do
+      kill -0 "$sending"
+      sleep 0.1
+    done
+    # What is signed is heard at once; what is not, not in all that time.
+    "$KINTSUGI_BIN/kintsugi-status" --until-ready viewer --timeout "$([[ $how == sign ]] && echo 60 || echo 4)" \
+      >"heard-$how.txt" 2>&1 || code=$?
+    kill "$sending"
+    wait "$sending" || true
     echo "$how $code" >>heard.txt
   done
 fi

@@ -7,20 +7,22 @@ if [[ -z "${KINTSUGI_TEST_TWO_RUNS:-}" ]]; then
   exit 1
 fi
 
-# run OUT FRAMES ARGS...: a run at the camera's rate. Runs of different lengths have different maps.
+# [beside=1] run OUT ARGS...: a run of the office. beside: in the place of this shell, which then is the one to be stopped.
 run() {
-  local out="$1" frames="$2"
-  shift 2
-  "$root/scripts/trio" --device 'synthetic://office?frames=200' --resolution 0.03 --volume-size 3.2 --no-log \
-    --max-frames "$frames" --mapper "--cloud $out.ply" --out "$out" "$@" >"$out.txt" 2>&1
+  local out="$1"
+  shift
+  ${beside:+exec} "$root/scripts/trio" --resolution 0.03 --volume-size 3.2 --no-log --mapper "--cloud $out.ply" --out "$out" "$@" \
+    >"$out.txt" 2>&1
 }
 
-run first 150 &
+# At the rate of the camera it takes longer than all that happens beside it.
+beside=1 run first --device 'synthetic://office?speed=0.1' &
 first=$!
 wait_for_file first/mapper.lcm
-sleep 1
+"$KINTSUGI_BIN/kintsugi-status" --until-ready mapper --timeout 60 || fail "the first run: $(cat first.txt)"
+room=(--device 'synthetic://office?frames=200' --replay --max-frames 60)
 
-run second 60 && fail "a second run with the same map name was started"
+run second "${room[@]}" && fail "a second run with the same map name was started"
 grep -q "another mapper makes a map called 'map' on this bus" second.txt || fail "the reason is not told: $(cat second.txt)"
 [[ ! -e second ]] || fail "a run that is refused has made its folder"
 "$KINTSUGI_BIN/kintsugi-mapper" --device 'synthetic://office?frames=30' --replay --store none.lcm >mapper.txt 2>&1 &&
@@ -28,12 +30,13 @@ grep -q "another mapper makes a map called 'map' on this bus" second.txt || fail
 grep -q "another mapper with the map name 'map'" mapper.txt || fail "the reason is not told: $(cat mapper.txt)"
 [[ ! -e none.lcm ]] || fail "a mapper that is refused has made its log"
 
-run other 60 --map-name other || fail "the run with another map name: $(cat other.txt)"
+run other "${room[@]}" --map-name other || fail "the run with another map name: $(cat other.txt)"
+kill -TERM "$first"
 wait "$first" || fail "the first run: $(cat first.txt)"
 
 # frames OUT: how many the mapper mapped.
 frames() { grep -oP '\d+(?= frames in )' "$1/mapper.log"; }
-[[ "$(frames first)" == 150 ]] || fail "the first run mapped $(frames first) of 150 frames"
+(($(frames first) > 0)) || fail "the first run mapped nothing"
 [[ "$(frames other)" == 60 ]] || fail "the other run mapped $(frames other) of 60 frames"
 for out in first other; do
   [[ "$(ls "$out"/segments*.ply)" == "$out/segments.ply" ]] || fail "$out has more than its own map: $(ls "$out")"
