@@ -282,6 +282,13 @@ class StatusTest(FolderTest):
         for call in calls.read_text().splitlines():
             self.assertIn("--timeout 7", call)
 
+    def test_a_display_that_was_killed_begins_again_and_tells_nothing(self):
+        mark = self.folder.path / "was_here"
+        status = self.status_of(f"[ -e {mark} ] && exit 0; touch {mark}; kill -KILL $$")
+        self.assertIsNone(self.result(status))
+        self.assertTrue(wait_until(lambda: not status.shows_progress))
+        self.assertIs(status.take_result(), True)
+
     def test_the_newest_value_of_this_run_counts(self):
         file = self.folder.path / "status.csv"
         file.write_text("utime_us,process,field,value\n1,mapper,finished,1\n")

@@ -43,7 +43,8 @@ class Status:
 
     def take_result(self):
         """When the display has ended: True if all have finished, False if there was no progress for too long. None
-        at other times. If the statuses cannot be recorded the display goes on without recording."""
+        at other times. If the statuses cannot be recorded the display goes on without recording, and if it was killed it
+        begins again."""
         if self._display is None or self.shows_progress:
             return None
         code = self._display.returncode
@@ -53,6 +54,7 @@ class Status:
         if code == FAILED:
             say(f"{self._csv_file}: the statuses are no longer recorded, see the message above")
             self._records = False
+        if code not in (0, NO_PROGRESS):
             self.show_progress(self._idle_s)
             return None
         return code == 0
