@@ -27,9 +27,6 @@ class FakeStatus:
     def take_result(self):
         return self.results.pop(0) if self.results else None
 
-    def mapper_lingers(self):
-        return self.lingers
-
     def mapper_has_finished(self):
         return self.lingers
 

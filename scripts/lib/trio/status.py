@@ -81,14 +81,11 @@ class Status:
             pass
         return value
 
-    def mapper_lingers(self):
-        """Whether the mapper has published everything and only answers requests."""
-        return self.last("mapper", "lingering") == "1"
-
     def mapper_has_finished(self):
         return self.last("mapper", "finished") == "1" or self.hears_lingering_mapper(2)
 
     def hears_lingering_mapper(self, timeout_s, give_up=lambda: False):
+        """Waits until the mapper has published everything and only answers requests."""
         return self._ask("--until-ready", "mapper", "--lingering", timeout_s=timeout_s, give_up=give_up)
 
     def hears(self, names, timeout_s, give_up=lambda: False):

@@ -134,8 +134,12 @@ class Supervisor:
         if self.leader.name == "player":  # nobody completes the map of a log that was not played to its end
             self.leader.tell_to_stop()
             self.status.show_progress(IDLE_AFTER_ERROR_S)
-        elif self.leader.name == "mapper" and self.status.shows_progress and not self.status.mapper_lingers():
+        elif self.leader.name == "mapper" and self.status.shows_progress and not self._mapper_lingers():
             self.leader.tell_to_stop()
+
+    def _mapper_lingers(self):
+        """Asked on the bus: what is recorded may be old, and a mapper that lingers would end when it is told to stop."""
+        return self.status.hears_lingering_mapper(2, give_up=lambda: self.num_stop_requests > 1)
 
     def _stands_still(self):
         """Whether the last process makes no progress any more although no more of the map will come. While the
