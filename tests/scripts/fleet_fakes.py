@@ -151,6 +151,12 @@ class WholeRuns:
         self.assertEqual(times, [1, 2, 2])
         self.assertEqual([run["tasks"] for run in self.runs()], [3, 2])
 
+    def test_a_key_of_the_bus_is_found_from_the_folders_of_the_tasks(self):
+        self.write_list(log='echo "$KINTSUGI_BUS_KEY" >$1.key')
+        with mock.patch.dict(os.environ, {"KINTSUGI_BUS_KEY": "my.key"}):
+            self.run_fleet()
+        self.assertEqual((self.here / "log.ply.key").read_text().strip(), str(self.here / "my.key"))
+
     def test_a_task_whose_worker_is_killed_is_done_again(self):
         self.write_list(**{f"cloud{number}": "" for number in range(4)},
                         victim="[ -e $1.killed ] || { touch $1.killed; echo half > labelled.ply; kill -KILL $PPID; sleep 60; }")

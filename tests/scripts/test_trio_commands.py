@@ -8,6 +8,7 @@ import subprocess
 import unittest
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from unittest import mock
 
 from trio_fakes import ROOT, UNTIL_TERM, environment, process_is_gone, wait_until, write_program
 
@@ -123,6 +124,9 @@ class Trio(CommandTest):
         self.assertEqual(keys(), {name: str(self.work / "my.key") for name in names})
         self.expect(0, "trio", "--out", "run", "--no-log")
         self.assertEqual(keys(), {name: "" for name in names})
+        with mock.patch.dict(os.environ, {"KINTSUGI_BUS_KEY": "its.key"}):
+            self.expect(0, "trio", "--out", "run", "--no-log", "--resume")
+        self.assertEqual(keys(), {name: str(self.work / "its.key") for name in names})
 
     def test_a_name_of_the_map_is_that_of_all_processes(self):
         for number, options in enumerate((["--map-name", "attic"], ["--mapper", "--map-name attic"],

@@ -8,6 +8,7 @@ import time
 
 from trio.check import reason
 from trio.messages import STDOUT, Problem, os_error_text, say, write
+from trio.network import use_bus_key
 from trio.programs import check_programs, program
 
 from . import slurm, table
@@ -45,6 +46,7 @@ def main(arguments):
 
 def run(arguments):
     choice = RunParser().parse(arguments)
+    use_bus_key()
     inputs, settings = read_list(choice.list), settings_of(choice)
     for name in NEEDED:
         check_program(name)

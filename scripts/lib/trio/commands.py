@@ -50,7 +50,7 @@ def trio(arguments):
     choice.started_in = None  # here
     if choice.resume:
         choice = recalled(choice.out, arguments)
-    use_bus_key(choice.bus_key, choice.started_in)
+    network.use_bus_key(choice.bus_key, choice.started_in)
     check_programs([*choice.only, "status"], ["setpriv"] if choice.no_log else ["setpriv", "lcm-logger"])
     network.choose_network(choice.private, this_command())
     if "mapper" in choice.only and not choice.private:  # nobody else is in a private network
@@ -66,13 +66,6 @@ def trio(arguments):
         folder.begin_run(arguments, choice.durable)
     network.tell_how_to_ask()
     return run_trio(choice, folder)
-
-
-def use_bus_key(file, folder=None):
-    """For every process of the run, and for the questions to them: they read the file. `folder`: for a relative
-    path; None: the current one."""
-    if file:
-        os.environ["KINTSUGI_BUS_KEY"] = os.path.abspath(os.path.join(folder or os.curdir, file))
 
 
 def words_to_check(name, choice, folder):
@@ -193,7 +186,7 @@ def end_recording(logger, recording):
 
 def replay(arguments):
     choice = options.parse_replay(arguments)
-    use_bus_key(choice.bus_key)
+    network.use_bus_key(choice.bus_key)
     if not (os.access(choice.log, os.R_OK) and os.path.getsize(choice.log)):
         raise Problem(f"{choice.log}: no such log, or it is empty")
     check_programs([*choice.only, "status"], ["setpriv", "lcm-logplayer"])

@@ -1,4 +1,4 @@
-"""Whether LCM can work on this machine, and the private network where it cannot."""
+"""Whether LCM can work on this machine, the private network where it cannot, and the key of the bus."""
 
 import os
 import socket
@@ -11,6 +11,7 @@ RECEIVE_BUFFER = 4194304  # bytes
 SMALL_RECEIVE_BUFFER = 2097152
 PRIVATE = "KINTSUGI_PRIVATE_BUS"  # in the environment of what runs in a private network
 OWN_USERS = "user"  # its value where that is in a namespace of users, too: private_bus makes one unless root calls it
+BUS_KEY = "KINTSUGI_BUS_KEY"  # in the environment of what signs
 RMEM_MAX = "/proc/sys/net/core/rmem_max"
 CURE_FOR_ROUTE = "sudo ip link set lo up && sudo ip route add 224.0.0.0/4 dev lo"
 
@@ -35,6 +36,15 @@ def tell_how_to_ask():
     user = " --user --preserve-credentials" if os.environ[PRIVATE] == OWN_USERS else ""
     say(f"in a private network. To ask the run from another terminal: nsenter --target {os.getpid()}{user} --net "
         f"{program('status')} --once (kintsugi-query and others alike)")
+
+
+def use_bus_key(file="", folder=None):
+    """For all that is started from here, in whichever folder: they read the file. `folder`: for a relative path; None:
+    the current one. Without a file the one in the environment remains."""
+    if not file:
+        file, folder = os.environ.get(BUS_KEY), None
+    if file:
+        os.environ[BUS_KEY] = os.path.abspath(os.path.join(folder or os.curdir, file))
 
 
 def enter_private_network(command):
