@@ -1,5 +1,6 @@
 """The command line of scripts/fleet: what is refused before anything is started, and the report of a folder."""
 
+import signal
 from unittest import mock
 
 from fleet_fakes import FleetTest
@@ -8,6 +9,7 @@ from fleet import commands, local, slurm
 from fleet.folder import FleetFolder
 from fleet.inputs import Input
 from fleet.options import RunParser
+from fleet.rounds import Rounds
 from fleet.task import do_task
 from trio.messages import Problem
 
@@ -71,6 +73,18 @@ class SchedulerTest(FleetTest):
                 local.Local(None, 0, 1, [])
             with self.assertRaisesRegex(Problem, "no controller of Slurm answers"):
                 slurm.Slurm(None, 0, 1, [])
+
+
+class RoundsTest(FleetTest):
+    def test_a_signal_after_the_tasks_is_handled_as_before_them(self):
+        scheduler = mock.Mock()
+        scheduler.is_at_work.return_value = False
+        scheduler.problem.return_value = ""
+        folder = FleetFolder(self.out)
+        folder.begin([], SETTINGS)
+        before = signal.getsignal(signal.SIGINT)
+        self.assertTrue(Rounds(folder, [], scheduler, 0, 1).run())
+        self.assertIs(signal.getsignal(signal.SIGINT), before)
 
 
 class ReportTest(FleetTest):

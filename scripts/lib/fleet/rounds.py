@@ -14,6 +14,7 @@ MAX_ROUNDS = 3  # a task whose worker was killed is done again
 POLL_S = 1.0
 TELL_S = 10.0  # between two lines about progress
 TODO = "todo.json"
+SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
 class Stopped(Exception):
@@ -35,8 +36,7 @@ class Rounds:
 
     def run(self):
         """Returns whether all ended, and not by a signal. Afterwards each input has a result, unless stopped."""
-        for signal_number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-            signal.signal(signal_number, stop_by_signal)
+        handlers = {number: signal.signal(number, stop_by_signal) for number in SIGNALS}
         left = self._inputs
         try:
             for number in range(MAX_ROUNDS):
@@ -47,12 +47,14 @@ class Rounds:
                 if number + 1 < MAX_ROUNDS:
                     say(f"tasks without a result, because their workers were killed: {len(left)}; once more")
         except Stopped:
-            for signal_number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-                signal.signal(signal_number, signal.SIG_IGN)  # until the tasks have ended
+            ignore_signals()
             say("stopping; a second run goes on with what is missing")
             return False
         finally:
+            ignore_signals()  # until the tasks have ended
             self._scheduler.stop()
+            for number, handler in handlers.items():
+                signal.signal(number, handler)
         for number, given in enumerate(left, 1):
             said = self._scheduler.last_words(number)
             reason = f"its worker ended {MAX_ROUNDS} times without a result"
@@ -95,6 +97,11 @@ class Rounds:
 
 def stop_by_signal(*_):
     raise Stopped
+
+
+def ignore_signals():
+    for number in SIGNALS:
+        signal.signal(number, signal.SIG_IGN)
 
 
 def todo(folder):
