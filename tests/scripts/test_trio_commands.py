@@ -311,6 +311,10 @@ class Replay(CommandTest):
         self.expect(0, "replay", "run.lcm", "--speed", "4", "--out", "again", "--preset", "paper")
         call = self.call("lcm-logplayer")
         self.assertEqual((call[call.index("-s") + 1], call[-1]), ("4", "run.lcm"))
+        played = call[call.index("-e") + 1]
+        for channel in ("CLOUD_SLICE", "CAMERA_VIEW"):
+            self.assertRegex(channel, played)
+        self.assertNotRegex("SEGMENT_UPDATE", played)
         self.assertIn("--preset=paper", self.call("kintsugi-segmenter"))
 
     def test_a_log_that_is_missing_or_empty_is_told(self):

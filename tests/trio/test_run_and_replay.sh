@@ -20,6 +20,11 @@ for speed in 1 4; do
   }
   expect_same_partition live/segments.ply "replay$speed/segments.ply"  # a datagram may be lost on the way
 done
+"$root/scripts/replay" live/mapper.lcm --private --speed 4 --out stored >replay.txt 2>&1 || {
+  cat replay.txt
+  fail "replay of the log of the mapper"
+}
+expect_same_partition live/segments.ply stored/segments.ply
 
 "$KINTSUGI_BIN/kintsugi-segment-cloud" live/segments.ply again.ply --mode batch --resolution 0.02 --json again.json \
   >again.txt 2>&1 || {

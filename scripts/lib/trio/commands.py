@@ -24,7 +24,7 @@ READY_TIMEOUT_S = 20
 INTERRUPTED = 130  # exit code, as shells have it
 NOTHING_TO_MAP = "is complete: its slices are only sent again"  # says a mapper
 # What the mapper published. Messages of the recorded segmenter would contradict those of the one that listens now.
-REPLAYED_CHANNELS = "^(CLOUD_SLICE|CAMERA_POSE|MAPPER_STATUS|CHUNKS_REPLACED)$"
+REPLAYED_CHANNELS = "^(CLOUD_SLICE|CAMERA_POSE|CAMERA_VIEW|MAPPER_STATUS|CHUNKS_REPLACED)$"
 LONG_RUN_STATUS_S = 10  # between the statuses of a process in status.csv: 40 MB a day, all are 1.4 GB
 
 
