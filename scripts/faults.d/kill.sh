@@ -14,21 +14,31 @@ kill_at() {
   pid="$(pid_of "$2")" && kill -KILL "$pid" 2>/dev/null || true
 }
 
-# A random number of seconds, in which the reference had not yet finished.
-random_moment() { calculate "0.95 * ${figure[reference_s]} * $RANDOM / 32768" 2; }
+# plan_kills PROCESS...: sets $planned to a line for each, `MOMENT PROCESS`, earliest first: a random number of seconds, in
+# which the reference had not yet finished.
+plan_kills() {
+  local process share
+  planned=""
+  for process in "$@"; do
+    draw_share
+    planned+="$(calculate "0.95 * ${figure[reference_s]} * $share" 2) $process"$'\n'
+  done
+  planned="$(sort -g <<<"${planned%$'\n'}")"
+}
 
 kill_row() {
-  local num_runs="${KINTSUGI_KILL_RUNS:-20}" run process kills=0 most_s=0 moments
+  local num_runs="${KINTSUGI_KILL_RUNS:-20}" run process kills=0 most_s=0 moments planned
   if_quick && num_runs="${KINTSUGI_KILL_RUNS:-2}"
   choose_scene
   reference
   for ((run = 1; run <= num_runs; ++run)); do
     moments=""
+    plan_kills "$@"
     faulty_start
     while read -r moment process; do
       moments+="${moments:+, }$process at $moment s"
       kill_at "$moment" "$process"
-    done < <(for process in "$@"; do echo "$(random_moment) $process"; done | sort -g)
+    done <<<"$planned"
     faulty_wait
     kills=$((kills + $(grep -c 'was killed' faulty.txt || true)))
     most_s="$(calculate "$most_s > ${figure[seconds]} ? $most_s : ${figure[seconds]}" 1)"

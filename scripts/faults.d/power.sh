@@ -33,10 +33,11 @@ power_cut_limit_row() {
 
 # cut_each_run [OPTION...]: further options of the runs.
 cut_each_run() {
-  local num_runs="${KINTSUGI_POWER_CUTS:-200}" run moment seed_of_cut resumed=0 most_s=0
+  local num_runs="${KINTSUGI_POWER_CUTS:-200}" run share moment seed_of_cut resumed=0 most_s=0
   if_quick && num_runs="${KINTSUGI_POWER_CUTS:-2}"
   for ((run = 1; run <= num_runs; ++run)); do
-    moment="$(calculate "$RANDOM / 32768" 4)" seed_of_cut="$RANDOM"
+    draw_share
+    moment="$share" seed_of_cut="$RANDOM"
     rm -rf faulty && mkdir faulty
     forgetful "$kintsugi_root/scripts/trio" --durable --out faulty "${scene[@]}" "$@" >faulty.txt 2>&1 ||
       { failures+=("the run failed: $PWD/faulty.txt"); return; }

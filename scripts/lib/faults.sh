@@ -89,6 +89,11 @@ choose_scene() {
 now_s() { printf '%s' "$EPOCHREALTIME"; }
 since_s() { awk -v a="$1" -v b="$EPOCHREALTIME" 'BEGIN { printf "%.1f", b - a }'; }
 calculate() { awk "BEGIN { printf \"%.${2:-2}f\", ($1) }"; }
+# draw_share: sets $share to a random number from 0 to 1. Not to be called in $(...), where bash seeds RANDOM anew.
+draw_share() {
+  share="$RANDOM"
+  share="$(calculate "$share / 32768" 4)"
+}
 
 # run_to_end NAME OPTION...: runs scripts/trio in the folder NAME; its output is in NAME.txt, the time it took in
 # NAME/seconds. Fails if it fails.
