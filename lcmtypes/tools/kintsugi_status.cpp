@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include "lcmtypes/base/command_line.hpp"
+#include "lcmtypes/base/patient_clock.hpp"
 #include "lcmtypes/base/stop_signal.hpp"
 #include "lcmtypes/bus/bus.hpp"
 #include "lcmtypes/bus/message_subscriber.hpp"
@@ -23,7 +24,6 @@
 namespace kintsugi {
 namespace {
 
-constexpr std::int64_t kSecond_us = 1'000'000;
 constexpr int kNoProgress = 2;     // exit status
 constexpr int kInterrupted = 130;  // the exit status that shells use
 
@@ -45,10 +45,12 @@ bool is_of(const std::string& map_name, const std::string& name_in_status) {
   return map_name.empty() || name_in_status.empty() || name_in_status == map_name;
 }
 
-void subscribe_statuses(Bus& bus, const std::string& map_name, Progress& progress,
-                        std::optional<StatusLog>& log) {
+std::int64_t now_us(PatientClock& clock) { return static_cast<std::int64_t>(1e6 * clock.now_s()); }
+
+void subscribe_statuses(Bus& bus, const std::string& map_name, PatientClock& clock,
+                        Progress& progress, std::optional<StatusLog>& log) {
   const auto keep = [&](const auto& status) {
-    progress.update(status, wall_clock_us());
+    progress.update(status, now_us(clock));
     if (log && is_of(map_name, status.map_name)) log->append(status);
   };
   subscribe<MapperStatus>(bus, channels::kMapperStatus, keep);
@@ -91,32 +93,27 @@ class LinePrinter {
   bool line_open_ = false;
 };
 
-/// Seconds since the last progress.
-double idle_s(const Progress& progress, std::int64_t start_us) {
-  const std::int64_t since_us = progress.last_progress_us().value_or(start_us);
-  return static_cast<double>(wall_clock_us() - since_us) / 1e6;
-}
-
 int watch(const Options& options) {
   Bus bus(options.url);
+  PatientClock clock;
   Progress progress(options.map_name);
   std::optional<StatusLog> log;
   if (!options.log_file.empty()) log.emplace(options.log_file, options.log_period_s);
-  subscribe_statuses(bus, options.map_name, progress, log);
+  subscribe_statuses(bus, options.map_name, clock, progress, log);
   LinePrinter printer;
-  const std::int64_t start_us = wall_clock_us();
-  std::int64_t next_line_us = start_us + kSecond_us;
+  double next_line_s = 1.0;
   const bool has_timeout = options.timeout_s > 0.0 && (options.once || options.until_finished);
   while (!stop_requested()) {
     bus.handle(std::chrono::milliseconds(100));
     const bool finished = options.until_finished && progress.finished(options.waited);
-    const std::int64_t now_us = wall_clock_us();
-    if (finished || now_us >= next_line_us) {
-      if (!options.once || progress.heard_anything()) printer.print(progress.line(now_us));
+    const double now_s = clock.now_s();
+    if (finished || now_s >= next_line_s) {
+      if (!options.once || progress.heard_anything()) printer.print(progress.line(now_us(clock)));
       if (finished || (options.once && progress.heard_anything())) return 0;
-      next_line_us = now_us + kSecond_us;
+      next_line_s = now_s + 1.0;
     }
-    if (has_timeout && idle_s(progress, start_us) >= options.timeout_s) {
+    const double progress_s = 1e-6 * static_cast<double>(progress.last_progress_us().value_or(0));
+    if (has_timeout && now_s - progress_s >= options.timeout_s) {
       printer.end_line();
       std::cerr << "kintsugi-status: no progress for " << options.timeout_s
                 << " s: " << progress.unfinished(options.waited) << std::endl;
@@ -146,10 +143,10 @@ int wait_until_ready(const Options& options) {
   subscribe<SegmenterStatus>(bus, channels::kSegmenterStatus, heard(SegmenterStatus::kProcess));
   subscribe<ViewerStatus>(bus, channels::kViewerStatus, heard(ViewerStatus::kProcess));
   subscribe<DetectorStatus>(bus, channels::kDetectorStatus, heard(DetectorStatus::kProcess));
-  const std::int64_t start_us = wall_clock_us();
+  PatientClock clock;
   while (!stop_requested()) {
     if (silent.empty()) return 0;
-    if (options.timeout_s > 0.0 && wall_clock_us() - start_us >= options.timeout_s * kSecond_us) {
+    if (options.timeout_s > 0.0 && clock.now_s() >= options.timeout_s) {
       std::cerr << "kintsugi-status: no status received from the " << silent.front() << " in "
                 << options.timeout_s << " s" << std::endl;
       return kNoProgress;

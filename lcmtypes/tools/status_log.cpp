@@ -55,7 +55,8 @@ void StatusLog::append(const Status& status) {
   process.waiting = text.str();
   const double since_us =
       static_cast<double>(status.utime) - static_cast<double>(process.written_utime);
-  if (since_us < period_us_) return;
+  const bool is_set_back = since_us < 0.0;  // the clock of the sender: its next period begins now
+  if (since_us < period_us_ && !is_set_back) return;
   write(process.waiting);
   process.waiting.clear();
   process.written_utime = status.utime;

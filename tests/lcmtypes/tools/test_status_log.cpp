@@ -86,6 +86,20 @@ TEST(StatusLog, HasWithAPeriodTheFirstOneThenOneOfEachPeriodAndTheLast) {
   EXPECT_EQ(segmenter, (std::set<std::string>{"1000000", "1000025"}));
 }
 
+TEST(StatusLog, GoesOnWhenTheClockIsSetBack) {
+  const testing::TemporaryFolder folder;
+  const auto file = folder / "status.csv";
+  StatusLog log(file, 10.0);
+  for (const std::int64_t utime_s : {3'600, 0, 5, 10}) {
+    MapperStatus status;
+    status.utime = 1'000'000 * utime_s;
+    log.append(status);
+  }
+  EXPECT_THAT(lines_of(file), Contains("0,mapper,finished,0"));
+  EXPECT_THAT(lines_of(file), Not(Contains("5000000,mapper,finished,0")));
+  EXPECT_THAT(lines_of(file), Contains("10000000,mapper,finished,0"));
+}
+
 TEST(StatusLog, ThrowsWhenTheFileCannotBeWritten) {
   EXPECT_THROW(StatusLog("/nonexistent/status.csv"), std::runtime_error);
 }
