@@ -82,6 +82,7 @@ class DetectorProcess {
   void receive() {
     const bool can_work = detector_ && detector_->num_waiting() > 0 && may_work();
     const MapChanges changes = client_.wait(can_work ? milliseconds(0) : kWait);
+    for (const std::int32_t piece : changes.pieces) pieces_.add(piece);
     if (const SegmentUpdate* newest = client_.newest_update()) {
       if (newest->map_session != source_.map_session) begin_map(*newest);
       updates_ += static_cast<std::int64_t>(changes.updates.size());
@@ -89,7 +90,6 @@ class DetectorProcess {
         source_.utime = std::max(source_.utime, update.utime);
       }
     }
-    for (const std::int32_t piece : changes.pieces) pieces_.add(piece);
     // Points may come before the first update, which tells whose map it is.
     if (!pieces_.empty() && !detector_ && source_.map_session != 0) make_detector();
     if (!detector_) return;
