@@ -14,14 +14,20 @@ kill_at() {
   pid="$(pid_of "$2")" && kill -KILL "$pid" 2>/dev/null || true
 }
 
-# plan_kills PROCESS...: sets $planned to a line for each, `MOMENT PROCESS`, earliest first: a random number of seconds, in
-# which the reference had not yet finished.
+# draw_moment: sets $moment to a random number of seconds, in which the reference had not yet finished. See draw_share.
+draw_moment() {
+  local share
+  draw_share
+  moment="$(calculate "0.95 * ${figure[reference_s]} * $share" 2)"
+}
+
+# plan_kills PROCESS...: sets $planned to a line for each, `MOMENT PROCESS`, earliest first.
 plan_kills() {
-  local process share
+  local process moment
   planned=""
   for process in "$@"; do
-    draw_share
-    planned+="$(calculate "0.95 * ${figure[reference_s]} * $share" 2) $process"$'\n'
+    draw_moment
+    planned+="$moment $process"$'\n'
   done
   planned="$(sort -g <<<"${planned%$'\n'}")"
 }

@@ -63,7 +63,7 @@ kill_detector_row() {
   if_quick && num_runs="${KINTSUGI_KILL_RUNS:-1}"
   whole_run
   for ((run = 1; run <= num_runs; ++run)); do
-    moment="$(random_moment)"
+    draw_moment
     faulty_start --objects "$library"
     pid_of detector >/dev/null
     kill_at "$moment" detector
