@@ -33,9 +33,9 @@ constexpr float kLeastSeen = 0.33F;
 // Otherwise the object is only a part of a larger thing that has the same surface.
 constexpr float kLeastOwn = 0.6F;
 
-/// On equal terms the one found first.
+/// Better: more agrees, and on equal terms the one found first.
 void keep_better(std::optional<Placement>& best, Placement placement) {
-  if (!best || is_better(placement, *best)) best = std::move(placement);
+  if (!best || placement.score() > best->score()) best = std::move(placement);
 }
 
 /// As far as recognition is concerned.
@@ -141,10 +141,6 @@ Placement ObjectRecognizer::placement_at(std::size_t model, const PoseHypothesis
 bool is_recognized(const Placement& placement) {
   return placement.is_distinct && placement.score() >= kLeastScore &&
          placement.seen >= kLeastSeen && placement.own >= kLeastOwn;
-}
-
-bool is_better(const Placement& a, const Placement& b) {
-  return std::pair(is_recognized(a), a.score()) > std::pair(is_recognized(b), b.score());
 }
 
 }  // namespace kintsugi::segmenter

@@ -69,8 +69,5 @@ class ObjectRecognizer {
 
 /// The placement is good enough to say that the object is there.
 bool is_recognized(const Placement& placement);
-/// Of two places of one object: it is recognised at `a` only, or at both or neither and more agrees
-/// with `a`.
-bool is_better(const Placement& a, const Placement& b);
 
 }  // namespace kintsugi::segmenter

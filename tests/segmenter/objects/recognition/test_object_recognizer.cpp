@@ -418,23 +418,6 @@ TEST(ModelIndex, ComparesSizeAndShapeWithWhatHasNoColours) {
   }
 }
 
-TEST(RecognizedPlacement, IsBetterThanOneOfAHigherScoreThatIsNot) {
-  Placement recognized;
-  recognized.seen = recognized.own = 1.0F;
-  recognized.explained = 0.7F;
-  recognized.is_distinct = true;
-  ASSERT_TRUE(is_recognized(recognized));
-  Placement flat = recognized;
-  flat.is_distinct = false;
-  flat.explained = 0.9F;
-  EXPECT_TRUE(is_better(recognized, flat));
-  EXPECT_FALSE(is_better(flat, recognized));
-  Placement more = recognized;
-  more.explained = 0.8F;
-  EXPECT_TRUE(is_better(more, recognized));
-  EXPECT_FALSE(is_better(more, more));
-}
-
 TEST(SceneLight, IsThatOfMostPlacements) {
   const auto with_light = [](const Eigen::Vector3f& log_gain) {
     Placement placement;
