@@ -58,7 +58,8 @@ int LoopClosure::begin_part() {
   if (begins_part_) return num_begun_ - 1;
   if (newest_number_ >= 0) {
     lost_utime_ = last_utime_;
-    lost_at_m_ = (X_WK(newest_number_).translation() - last_position_W()).norm();
+    const Eigen::Vector3d last_position_W = deformation_.at(last_at_) * last_position_U_;
+    lost_at_m_ = (X_WK(newest_number_).translation() - last_position_W).norm();
   }
   keyframes_.release_if([](const Keyframe&) { return true; });
   last_at_ = keyframes_.size();
@@ -169,10 +170,6 @@ std::optional<UnseenWay> LoopClosure::unseen_way(std::int64_t utime) const {
   return UnseenWay{.before = newest_number_,
                    .distance_m = lost_at_m_ + config_.max_speed * 1e-6 *
                                                   static_cast<double>(utime - lost_utime_)};
-}
-
-Eigen::Vector3d LoopClosure::last_position_W() const {
-  return deformation_.at(last_at_) * last_position_U_;
 }
 
 std::optional<NewKeyframe> LoopClosure::take_new() {

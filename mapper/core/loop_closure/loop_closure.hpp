@@ -133,7 +133,6 @@ class LoopClosure {
   void compare_newest();
   std::vector<int> similar_to(const NewKeyframe& added);
   std::optional<UnseenWay> unseen_way(std::int64_t utime) const;
-  Eigen::Vector3d last_position_W() const;
   void note_near(int keyframe, const Pose& X_UC);
   std::optional<MapCorrection> apply_if_above(double least_motion_vox);
   void note(std::optional<MapCorrection> newest);

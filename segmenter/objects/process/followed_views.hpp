@@ -19,9 +19,9 @@ namespace kintsugi::segmenter {
 /// Asks the segmenter again and again, and tells a detector. While the map grows, for what was seen
 /// since the last answer, and at times for everything: corrections of the map move views, and the
 /// segmenter thins them out (ViewRecord). When the map has ended, once more for everything, since
-/// what is detected in the end must not depend on when views came. Then it
-/// asks some times before it gives up. Requests are made in a thread of their own, because an
-/// answer takes up to some seconds.
+/// what is detected in the end must not depend on when views came. Then it asks some times before
+/// it gives up. Requests are made in a thread of their own, because an answer takes up to some
+/// seconds.
 class FollowedViews {
  public:
   using Clock = std::chrono::steady_clock;

@@ -21,6 +21,10 @@ Pose drift() {
   return X;
 }
 
+TrackingInput input_of(const RgbdFrame& frame, std::int64_t utime) {
+  return {utime, pyramid_from_depth(frame.depth_m, frame.intrinsics, 0, 3, 6.0F), frame.color_rgb};
+}
+
 TEST(LoopClosure, CorrectsInTimeAlsoIfNoKeyframeFollows) {
   const testing::SyntheticRun run = testing::synthetic_run("office", 2 * kKeyframes, true, 5);
   const LoopClosure::Config config;
@@ -32,9 +36,7 @@ TEST(LoopClosure, CorrectsInTimeAlsoIfNoKeyframeFollows) {
     if (number == kKeyframes) keyframes.release_if([](const Keyframe&) { return true; });
     // Frames 0, 10, 20.. for the first visit, 5, 15, 25.. for the second.
     const int i = is_back ? 2 * (number - kKeyframes) + 1 : 2 * number;
-    const RgbdFrame& frame = run.frames[i];
-    const TrackingInput input{
-        utime, pyramid_from_depth(frame.depth_m, frame.intrinsics, 0, 3, 6.0F), frame.color_rgb};
+    const TrackingInput input = input_of(run.frames[i], utime);
     TrackingResult located;
     located.X_WC = (is_back ? drift() : Pose::Identity()) * run.true_path[i].X_WC;
     // 1 mm from one keyframe to the next, and 0.2 m from the first visit to the second.
@@ -49,10 +51,7 @@ TEST(LoopClosure, CorrectsInTimeAlsoIfNoKeyframeFollows) {
 }
 
 TEST(LoopClosure, CountsTheWayToAKeyframeAndNotHowFarTheCameraHasGone) {
-  const testing::SyntheticRun run = testing::synthetic_run("office", 2, true, 5);
-  const RgbdFrame& frame = run.frames[0];
-  const TrackingInput input{0, pyramid_from_depth(frame.depth_m, frame.intrinsics, 0, 3, 6.0F),
-                            frame.color_rgb};
+  const TrackingInput input = input_of(testing::synthetic_run("office", 2, true, 5).frames[0], 0);
   KeyframeMap keyframes{{}};
   LoopClosure loops({}, keyframes);
   std::int64_t utime = 0;
@@ -76,10 +75,7 @@ TEST(LoopClosure, CountsTheWayToAKeyframeAndNotHowFarTheCameraHasGone) {
 
 /// On known surface the camera gets no keyframe, for however long it goes there.
 TEST(LoopClosure, BoundsTheUnseenWayFromWhereTheCameraWasLost) {
-  const testing::SyntheticRun run = testing::synthetic_run("office", 2, true, 5);
-  const RgbdFrame& frame = run.frames[0];
-  const TrackingInput input{0, pyramid_from_depth(frame.depth_m, frame.intrinsics, 0, 3, 6.0F),
-                            frame.color_rgb};
+  const TrackingInput input = input_of(testing::synthetic_run("office", 2, true, 5).frames[0], 0);
   KeyframeMap keyframes{{}};
   LoopClosure::Config config;
   config.max_speed = 2.0;
