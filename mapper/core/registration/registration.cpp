@@ -1,8 +1,10 @@
 #include "mapper/core/registration/registration.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <vector>
 
 #include "lcmtypes/base/argument_check.hpp"
 #include "mapper/core/frame/covered_share.hpp"
@@ -68,6 +70,24 @@ class CoarseToFine {
       solved_ = register_level();
     }
     return result();
+  }
+
+  /// Whether the levels so far had a solution.
+  bool is_solved() const { return solved_; }
+
+  /// So far.
+  Pose X_WC() const { return model_.X_WV * X_VC_; }
+
+  /// See RegistrationQuality; so far.
+  double support() const {
+    return quality_of(equations_, frame_C_[level_].depth_m.total()).support();
+  }
+
+  /// After begin(): a left increment of X_VC, 1 m or 1 rad, of which the surfaces tell least.
+  Vector6d least_known_motion() const {
+    const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(equations_.A);
+    const Vector6d xi = eigen.eigenvectors().col(0);  // of the least eigenvalue
+    return xi / std::max(xi.head<3>().norm(), xi.tail<3>().norm());
   }
 
   /// After begin() of both, from two starts.
@@ -154,6 +174,20 @@ class CoarseToFine {
   int iterations_ = 0;
 };
 
+/// `X_WC`, and poses on both sides of it, moved by a twist in V: as far as the wide gate reaches,
+/// the nearest first.
+std::vector<Pose> along(const Vector6d& twist_V, const Pose& X_WC, const Model& model,
+                        const RegistrationConfig& config) {
+  const Pose X_VC = model.X_WV.inverse() * X_WC;
+  std::vector<Pose> poses = {X_WC};
+  for (int i = 1; i <= config.wide_gate_factor; ++i) {
+    for (const double step : {i * config.gates.max_distance_m, -i * config.gates.max_distance_m}) {
+      poses.push_back(model.X_WV * se3_retract(step * twist_V) * X_VC);
+    }
+  }
+  return poses;
+}
+
 }  // namespace
 
 void RegistrationConfig::validate() const {
@@ -189,10 +223,17 @@ Registration register_frame(const TrackingInput& frame, const Model& model,
 Registration register_frame_widely(const TrackingInput& frame, const Model& model,
                                    const PhotometricPair& colors, const Pose& X_WC_start,
                                    const RegistrationConfig& config) {
-  Registration found =
-      CoarseToFine(frame, model, colors, X_WC_start, config, true).begin().finish();
-  if (!found.quality.solved) return found;
-  return register_frame(frame, model, colors, found.X_WC, config);
+  CoarseToFine wide(frame, model, colors, X_WC_start, config, true);
+  if (!wide.begin().is_solved()) return wide.finish();
+  std::optional<CoarseToFine> best;
+  for (const Pose& X_WC : along(wide.least_known_motion(), wide.X_WC(), model, config)) {
+    CoarseToFine from_there(frame, model, colors, X_WC, config, false);
+    from_there.begin();
+    if (!best || (from_there.is_solved() && from_there.support() > best->support())) {
+      best.emplace(from_there);
+    }
+  }
+  return best->finish();
 }
 
 }  // namespace kintsugi::mapper

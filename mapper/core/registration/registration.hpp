@@ -56,8 +56,11 @@ Registration register_frame(const TrackingInput& frame, const Model& model,
                             const PhotometricPair& colors, const Pose& X_WC_start,
                             const Pose& X_WC_other_start, const RegistrationConfig& config);
 
-/// Registers from a pose that may be farther off: with a wider distance gate and more iterations at
-/// the coarsest level, and then once more, as register_frame(), from the pose found.
+/// Registers from a pose that may be farther off: the coarsest level with a wider distance gate and
+/// more iterations, and then as register_frame() from the pose found. Along the motion of which the
+/// surfaces tell least (along a wall) few pixels say where the camera is, and only when it is near:
+/// so the coarsest level is solved from poses on both sides along it, too, and registration goes on
+/// from the one that is supported most.
 Registration register_frame_widely(const TrackingInput& frame, const Model& model,
                                    const PhotometricPair& colors, const Pose& X_WC_start,
                                    const RegistrationConfig& config);

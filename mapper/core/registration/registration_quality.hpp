@@ -20,6 +20,12 @@ struct RegistrationQuality {
   double noise_m = 0.0;         ///< typical noise of the inliers' depths
   bool solved = false;          ///< the normal equations had a solution at every step
   int undetermined = 0;         ///< directions of motion that neither depth nor colour determines
+
+  double outlier_share() const { return 1.0 - inlier_share; }  ///< of the overlap
+
+  /// Pairs that agree less those that do not, as a share of all pixels: of two poses of a frame
+  /// the one that is supported more fits better. Pixels without overlap have no voice.
+  double support() const { return overlap_share * (inlier_share - outlier_share()); }
 };
 
 }  // namespace kintsugi::mapper

@@ -93,6 +93,24 @@ TEST(Registration, StaysAtTheFirstStartAlongWhatNothingDetermines) {
   EXPECT_EQ(found.quality.undetermined, 3);
 }
 
+/// The crate and the walls beside it, few pixels of the view, say where the camera is along the
+/// wall behind.
+TEST(Registration, SearchesWidelyAlongTheWall) {
+  const Pose X_WV = testing::looking_at_the_crate();
+  const Intrinsics camera = testing::test_camera();
+  const Model model{pyramid_from_surface(testing::render_room(X_WV, camera), kLevels), X_WV};
+  for (const double along_m : {-0.3, 0.3}) {
+    const Pose X_WC = X_WV * Eigen::Translation3d(along_m, 0.0, 0.0);
+    const TrackingInput frame = frame_of(testing::render_room(X_WC, camera));
+    const Registration nearby = register_frame(frame, model, {}, X_WV, {});
+    EXPECT_GT(distance_m(nearby.X_WC, X_WC), 0.1) << "or else this tests nothing";
+    const Registration found = register_frame_widely(frame, model, {}, X_WV, {});
+    EXPECT_LT(distance_m(found.X_WC, X_WC), kExact_m);
+    EXPECT_LT(angle_rad(found.X_WC, X_WC), kExact_m);
+    EXPECT_GT(found.quality.support(), nearby.quality.support());
+  }
+}
+
 TEST(Registration, RefusesLimitsInTheWrongOrder) {
   RegistrationConfig config;
   EXPECT_NO_THROW(config.validate());
