@@ -43,6 +43,7 @@ void LossRule::Config::validate() const {
   found_anew.validate("found_anew");
   check_range("usual_decay", usual_decay, 0.0, 1.0);
   check_range("max_usual_share", max_usual_share, 0.0, 1.0);
+  check_range("unusual_factor", unusual_factor, 1.0, 1e3);
   check_range("grace_frames", grace_frames, 0, 1'000'000);
 }
 
@@ -87,6 +88,12 @@ std::optional<LossReason> LossRule::judge_found_anew(const RegistrationQuality& 
   return find_fault(quality, allow_usual(config_.found_anew));
 }
 
+bool LossRule::fits_worse_than_usual(const RegistrationQuality& quality) const {
+  if (!usual_fit_) return false;
+  return quality.outlier_share() > config_.unusual_factor * usual_fit_->outlier_share ||
+         quality.rms_sigmas > config_.unusual_factor * usual_fit_->rms_sigmas;
+}
+
 void LossRule::remember(const RegistrationQuality& quality, bool accepted) {
   recent_covered_share_ =
       std::max(quality.covered_share, config_.recent_view_decay * recent_covered_share_);
@@ -97,6 +104,9 @@ void LossRule::remember(const RegistrationQuality& quality, bool accepted) {
   };
   mix(usual_behind_share_, quality.behind_share);
   mix(usual_in_front_share_, quality.in_front_share);
+  if (!usual_fit_) usual_fit_ = {quality.outlier_share(), quality.rms_sigmas};
+  mix(usual_fit_->outlier_share, quality.outlier_share());
+  mix(usual_fit_->rms_sigmas, quality.rms_sigmas);
 }
 
 Evidence LossRule::allow_usual(Evidence needed) const {

@@ -76,6 +76,7 @@ class LossRule {
                         .max_sigma_noises = 0.5};
     double usual_decay = 0.98;     ///< of what the usual shares were, per accepted frame
     double max_usual_share = 0.2;  ///< the usual shares count up to this
+    double unusual_factor = 1.5;   ///< on the usual outliers and residuals: more is unusual
     int grace_frames = 10;  ///< accepted frames before min_inlier_share applies, because the model
                             ///< is noisy at the start
 
@@ -92,6 +93,10 @@ class LossRule {
   /// Why this registration, found anew, is rejected; nothing if it is accepted.
   std::optional<LossReason> judge_found_anew(const RegistrationQuality& quality) const;
 
+  /// Whether so many more pairs than usual are outliers, or residuals are so much larger, that
+  /// another pose may fit better. Without an accepted frame nothing is usual yet.
+  bool fits_worse_than_usual(const RegistrationQuality& quality) const;
+
   /// To be called once for each frame, after it was judged.
   void remember(const RegistrationQuality& quality, bool accepted);
 
@@ -101,10 +106,16 @@ class LossRule {
   /// shares of points behind and in front of surfaces may exceed the limits by what is usual.
   Evidence allow_usual(Evidence needed) const;
 
+  struct Fit {
+    double outlier_share;
+    double rms_sigmas;
+  };
+
   Config config_;
   double recent_covered_share_ = 0.0;
   double usual_behind_share_ = 0.0;  ///< of the accepted frames
   double usual_in_front_share_ = 0.0;
+  std::optional<Fit> usual_fit_;  ///< likewise; none before the first of them
   int accepted_frames_ = 0;
 };
 

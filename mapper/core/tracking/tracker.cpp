@@ -95,10 +95,17 @@ TrackingResult Tracker::track(const TrackingInput& frame, const Model& model) {
                   ? loss_rule_.judge(registration.quality)
                   : loss_rule_.judge_found_anew(registration.quality);
   const std::optional<LossReason> first_loss = loss;
-  if (loss) {
-    if (*loss == LossReason::kUndetermined) follow_partly(registration, frame.utime);
-    registration = register_frame_widely(frame, model, colors, X_WC_, config_.registration);
-    loss = loss_rule_.judge_found_anew(registration.quality);
+  if (loss == LossReason::kUndetermined) follow_partly(registration, frame.utime);
+  if (loss || !motion_known_ || loss_rule_.fits_worse_than_usual(registration.quality)) {
+    Registration wide = register_frame_widely(frame, model, colors, X_WC_, config_.registration);
+    const auto loss_of_wide = loss_rule_.judge_found_anew(wide.quality);
+    const bool is_other = motion_size(registration.X_WC.inverse() * wide.X_WC) > kPoseNoise_m;
+    const bool fits_better =
+        !loss_of_wide && is_other && wide.quality.support() > registration.quality.support();
+    if ((loss || fits_better) && can_be_at(wide.X_WC, frame.utime, 0.0)) {
+      registration = std::move(wide);
+      loss = loss_of_wide;
+    }
   }
   loss_rule_.remember(registration.quality, !loss);
   if (!loss) update_reference(registration, std::move(pyramid));

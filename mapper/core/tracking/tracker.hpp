@@ -19,9 +19,10 @@ namespace kintsugi::mapper {
 /// Follows the camera by registering each frame with the model, from a constant-velocity
 /// prediction: point-to-plane ICP, coarse to fine. Directions of motion that the geometry in view
 /// does not determine are determined by colour, against an earlier frame (the photometric
-/// reference); without colour or texture they stay undetermined. A frame that the loss rule rejects
-/// is tried again from the last good pose with a wide search; if that is rejected too, the state is
-/// kLost and the last good pose stays.
+/// reference); without colour or texture they stay undetermined. A frame that the loss rule
+/// rejects, that fits worse than usual, or before which the motion is unknown, is tried again from
+/// the last good pose with a wide search, and the pose that fits better is taken. If that is
+/// rejected too, the state is kLost and the last good pose stays.
 class Tracker {
  public:
   struct Config {

@@ -191,6 +191,30 @@ TEST(LossRule, GetsUsedToAViewThatStaysSmall) {
   EXPECT_EQ(frames, 8);
 }
 
+// Of good() a fifth are outliers, and residuals are as large as the noise; 1.5 times that is
+// unusual.
+TEST(LossRule, KnowsWhatFitsWorseThanUsual) {
+  RegistrationQuality quality = good();
+  quality.inlier_share = 0.71;
+  EXPECT_FALSE(settled().fits_worse_than_usual(quality));
+  quality.inlier_share = 0.69;
+  EXPECT_TRUE(settled().fits_worse_than_usual(quality));
+  EXPECT_FALSE(LossRule({}).fits_worse_than_usual(quality)) << "nothing is usual yet";
+  RegistrationQuality large_residuals = good();
+  large_residuals.rms_sigmas = 1.4;
+  EXPECT_FALSE(settled().fits_worse_than_usual(large_residuals));
+  large_residuals.rms_sigmas = 1.6;
+  EXPECT_TRUE(settled().fits_worse_than_usual(large_residuals));
+
+  LossRule rule({});
+  rule.remember(quality, false);
+  EXPECT_FALSE(rule.fits_worse_than_usual(quality)) << "what is rejected says nothing";
+  rule.remember(good(), true);
+  EXPECT_TRUE(rule.fits_worse_than_usual(quality));
+  for (int i = 0; i < 100; ++i) rule.remember(quality, true);
+  EXPECT_FALSE(rule.fits_worse_than_usual(quality)) << "by now it is usual";
+}
+
 TEST(LossRule, RefusesSettingsOutOfRange) {
   LossRule::Config config;
   config.following.min_inlier_share = 1.5;
