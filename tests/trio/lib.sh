@@ -38,6 +38,16 @@ wait_for_file() {
   fail "$1 did not appear"
 }
 
+# wait_for_text TEXT FILE: waits until a line of FILE matches TEXT, at most 60 s.
+wait_for_text() {
+  local i
+  for ((i = 0; i < 600; i++)); do
+    grep -q "$1" "$2" 2>/dev/null && return
+    sleep 0.1
+  done
+  fail "$2 does not say '$1': $(cat "$2")"
+}
+
 # A short run of the synthetic office with large voxels: it takes seconds, and some slices leave the volume before the
 # end. The session number is fixed, because it is part of the map.
 small_room=(--private --device 'synthetic://office?frames=120' --resolution 0.02 --volume-size 3.2 --every 2

@@ -8,15 +8,6 @@ if [[ -z "${KINTSUGI_TEST_JOIN:-}" ]]; then
   exit 1
 fi
 
-# wait_for_text TEXT FILE: at most 60 s.
-wait_for_text() {
-  for ((i = 0; i < 600; i++)); do
-    grep -q "$1" "$2" 2>/dev/null && return
-    sleep 0.1
-  done
-  fail "$2 does not say '$1': $(cat "$2")"
-}
-
 # It begins where the other one is after 50 frames, maps without anybody else, and stays to be asked.
 "$KINTSUGI_BIN/kintsugi-mapper" --device 'synthetic://loop?speed=3&covered=0:50' --replay --max-frames 250 \
   --resolution 0.02 --map-name second --join first --store second.lcm --linger -1 >second.txt 2>&1 &

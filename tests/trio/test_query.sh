@@ -17,8 +17,7 @@ grep -q 'is kintsugi-segmenter running?' silent.txt || fail "silence is not told
 
 "$KINTSUGI_BIN/kintsugi-segmenter" --out live --save live/segmenter.map --exit-on-final --linger=10 >segmenter.log 2>&1 &
 segmenter=$!
-sleep 1
-query --largest 1 >empty.txt 2>&1 && fail "an answer, and there is no map"
+query --largest 1 --timeout 30 >empty.txt 2>&1 && fail "an answer, and there is no map"
 grep -q 'no map is kept yet' empty.txt || fail "it does not say that there is no map: $(cat empty.txt)"
 
 "$KINTSUGI_BIN/kintsugi-mapper" --replay --device 'synthetic://office?frames=120' --resolution 0.02 --volume-size 3.2 \

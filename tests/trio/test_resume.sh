@@ -7,8 +7,7 @@ run_trio "${small_room[@]}" --replay --no-log --out quiet
 
 "$root/scripts/trio" "${small_room[@]}" --replay --no-log --out run >trio.txt 2>&1 &
 trio=$!
-wait_for_file run/mapper.lcm
-sleep 1
+wait_for_text 'segmenter,slices_segmented,[1-9]' run/status.csv
 kill -STOP "$trio" # so that it restarts nothing
 kill -KILL "$(<run/mapper.pid)" "$(<run/segmenter.pid)" "$(<run/viewer.pid)"
 kill -KILL "$trio"
