@@ -75,13 +75,14 @@ class CoarseToFine {
   /// Whether the levels so far had a solution.
   bool is_solved() const { return solved_; }
 
+  /// After begin() of both, from two starts.
+  bool is_supported_more_than(const CoarseToFine& other) const {
+    if (!solved_ || !other.solved_) return solved_ && !other.solved_;
+    return support() > other.support();
+  }
+
   /// So far.
   Pose X_WC() const { return model_.X_WV * X_VC_; }
-
-  /// See RegistrationQuality; so far.
-  double support() const {
-    return quality_of(equations_, frame_C_[level_].depth_m.total()).support();
-  }
 
   /// After begin(): a left increment of X_VC, 1 m or 1 rad, of which the surfaces tell least.
   Vector6d least_known_motion() const {
@@ -98,6 +99,10 @@ class CoarseToFine {
   }
 
  private:
+  double support() const {
+    return quality_of(equations_, frame_C_[level_].depth_m.total()).support();
+  }
+
   double outlier_share() const {
     const auto overlap = static_cast<double>(equations_.agreement.overlap);
     return 1.0 - static_cast<double>(equations_.inliers) / overlap;
@@ -229,9 +234,7 @@ Registration register_frame_widely(const TrackingInput& frame, const Model& mode
   for (const Pose& X_WC : along(wide.least_known_motion(), wide.X_WC(), model, config)) {
     CoarseToFine from_there(frame, model, colors, X_WC, config, false);
     from_there.begin();
-    if (!best || (from_there.is_solved() && from_there.support() > best->support())) {
-      best.emplace(from_there);
-    }
+    if (!best || from_there.is_supported_more_than(*best)) best.emplace(from_there);
   }
   return best->finish();
 }

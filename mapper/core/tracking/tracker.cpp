@@ -90,23 +90,11 @@ TrackingResult Tracker::track(const TrackingInput& frame, const Model& model) {
   PhotometricPyramid pyramid(frame.surface_C, frame.color_rgb);
   const PhotometricPair colors{&pyramid,
                                pyramid.has_color() && reference_ ? &*reference_ : nullptr};
-  Registration registration = register_by_motion(frame, model, colors);
-  auto loss = follows_motion(registration, frame.utime)
-                  ? loss_rule_.judge(registration.quality)
-                  : loss_rule_.judge_found_anew(registration.quality);
-  const std::optional<LossReason> first_loss = loss;
-  if (loss == LossReason::kUndetermined) follow_partly(registration, frame.utime);
-  if (loss || !motion_known_ || loss_rule_.fits_worse_than_usual(registration.quality)) {
-    Registration wide = register_frame_widely(frame, model, colors, X_WC_, config_.registration);
-    const auto loss_of_wide = loss_rule_.judge_found_anew(wide.quality);
-    const bool is_other = motion_size(registration.X_WC.inverse() * wide.X_WC) > kPoseNoise_m;
-    const bool fits_better =
-        !loss_of_wide && is_other && wide.quality.support() > registration.quality.support();
-    if ((loss || fits_better) && can_be_at(wide.X_WC, frame.utime, 0.0)) {
-      registration = std::move(wide);
-      loss = loss_of_wide;
-    }
-  }
+  Judged judged = register_by_motion(frame, model, colors);
+  const std::optional<LossReason> first_loss = judged.loss;
+  if (first_loss == LossReason::kUndetermined) follow_partly(judged.registration, frame.utime);
+  if (is_doubtful(judged)) judged = better_of(judged, register_widely(frame, model, colors), frame);
+  const auto& [registration, loss] = judged;
   loss_rule_.remember(registration.quality, !loss);
   if (!loss) update_reference(registration, std::move(pyramid));
   TrackingResult result = loss ? lose(registration, *loss) : accept(registration, frame);
@@ -120,13 +108,41 @@ TrackingResult Tracker::track(const TrackingInput& frame, const Model& model) {
 }
 
 /// From the predicted pose, or from where the camera was: it may have stopped or turned back.
-Registration Tracker::register_by_motion(const TrackingInput& frame, const Model& model,
-                                         const PhotometricPair& colors) const {
+Tracker::Judged Tracker::register_by_motion(const TrackingInput& frame, const Model& model,
+                                            const PhotometricPair& colors) const {
   const Pose X_WC = predict(frame.utime);
-  if (motion_size(X_WC_followed_.inverse(Eigen::Isometry) * X_WC) <= kPoseNoise_m) {
-    return register_frame(frame, model, colors, X_WC, config_.registration);
-  }
-  return register_frame(frame, model, colors, X_WC, X_WC_followed_, config_.registration);
+  const bool moves = motion_size(X_WC_followed_.inverse(Eigen::Isometry) * X_WC) > kPoseNoise_m;
+  const Registration registration =
+      moves ? register_frame(frame, model, colors, X_WC, X_WC_followed_, config_.registration)
+            : register_frame(frame, model, colors, X_WC, config_.registration);
+  return {registration, follows_motion(registration, frame.utime)
+                            ? loss_rule_.judge(registration.quality)
+                            : loss_rule_.judge_found_anew(registration.quality)};
+}
+
+Tracker::Judged Tracker::register_widely(const TrackingInput& frame, const Model& model,
+                                         const PhotometricPair& colors) const {
+  const Registration registration =
+      register_frame_widely(frame, model, colors, X_WC_, config_.registration);
+  return {registration, loss_rule_.judge_found_anew(registration.quality)};
+}
+
+/// A wrong pose may fit well enough to be accepted, too: nothing but the fit speaks for a pose
+/// where the motion is unknown.
+bool Tracker::is_doubtful(const Judged& by_motion) const {
+  return by_motion.loss || !motion_known_ ||
+         loss_rule_.fits_worse_than_usual(by_motion.registration.quality);
+}
+
+Tracker::Judged Tracker::better_of(const Judged& by_motion, const Judged& wide,
+                                   const TrackingInput& frame) const {
+  if (!can_be_at(wide.registration.X_WC, frame.utime, 0.0)) return by_motion;
+  if (by_motion.loss) return wide;
+  const Pose difference = by_motion.registration.X_WC.inverse() * wide.registration.X_WC;
+  const bool fits_better =
+      wide.registration.quality.support() > by_motion.registration.quality.support();
+  const bool is_other = motion_size(difference) > kPoseNoise_m;
+  return !wide.loss && is_other && fits_better ? wide : by_motion;
 }
 
 TrackingResult Tracker::register_anew(const TrackingInput& frame, const Model& model,

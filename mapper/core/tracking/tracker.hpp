@@ -92,9 +92,19 @@ class Tracker {
   bool is_coasting(std::int64_t utime) const { return lost_ && motion_continues(utime); }
 
  private:
+  /// A pose, and why it is rejected; nothing if it is accepted.
+  struct Judged {
+    Registration registration;
+    std::optional<LossReason> loss;
+  };
+
   bool motion_continues(std::int64_t utime) const;
-  Registration register_by_motion(const TrackingInput& frame, const Model& model,
-                                  const PhotometricPair& colors) const;
+  Judged register_by_motion(const TrackingInput& frame, const Model& model,
+                            const PhotometricPair& colors) const;
+  Judged register_widely(const TrackingInput& frame, const Model& model,
+                         const PhotometricPair& colors) const;
+  bool is_doubtful(const Judged& by_motion) const;
+  Judged better_of(const Judged& by_motion, const Judged& wide, const TrackingInput& frame) const;
   bool needs_new_reference(const Registration& registration) const;
   void update_reference(const Registration& registration, PhotometricPyramid frame);
   bool follows_motion(const Registration& registration, std::int64_t utime) const;
