@@ -78,7 +78,7 @@ class CoarseToFine {
   /// After begin() of both, from two starts.
   bool is_supported_more_than(const CoarseToFine& other) const {
     if (!solved_ || !other.solved_) return solved_ && !other.solved_;
-    return support() > other.support();
+    return quality().support() > other.quality().support();
   }
 
   /// So far.
@@ -95,17 +95,12 @@ class CoarseToFine {
   bool fits_much_better_than(const CoarseToFine& other) const {
     if (!solved_ || !other.solved_) return solved_;
     return equations_.inliers > other.equations_.inliers &&
-           kMuchBetter * outlier_share() < other.outlier_share();
+           kMuchBetter * quality().outlier_share() < other.quality().outlier_share();
   }
 
  private:
-  double support() const {
-    return quality_of(equations_, frame_C_[level_].depth_m.total()).support();
-  }
-
-  double outlier_share() const {
-    const auto overlap = static_cast<double>(equations_.agreement.overlap);
-    return 1.0 - static_cast<double>(equations_.inliers) / overlap;
+  RegistrationQuality quality() const {
+    return quality_of(equations_, frame_C_[level_].depth_m.total());
   }
 
   /// False if a step had no solution.
@@ -149,7 +144,7 @@ class CoarseToFine {
     registration.X_WC = orthonormal(model_.X_WV * X_VC_);
     registration.iterations = iterations_;
     RegistrationQuality& quality = registration.quality;
-    quality = quality_of(equations_, num_pixels);
+    quality = this->quality();
     quality.solved = solved_;
     quality.voxel_m = model_.voxel_m;
     quality.covered_share = covered_share(frame_C_.front(), registration.X_WC, model_.region_W);

@@ -22,7 +22,8 @@ struct RegistrationConfig {
   /// fit then is no motion.
   InfluenceLimits influence;
   double early_exit = 3e-5;  ///< norm of the increment (m, rad) at the finest level, x2 a level
-  double wide_gate_factor = 3.0;  ///< on max_distance_m, at the coarsest level of a wide search
+  /// On max_distance_m, at the coarsest level of a wide search: how far that looks, also sideways.
+  double wide_gate_factor = 3.0;
   int wide_iteration_factor = 3;  ///< on the iterations of the coarsest level of a wide search
   StepSolver::Config steps;
 
