@@ -43,7 +43,7 @@ std::vector<PatchRun> PatchMaker::keep(const ExtractedSurface& left, const SeenA
   return runs;
 }
 
-std::vector<PatchRun> PatchMaker::patches_of(const MeshPiece& piece, double resolution_m) const {
+std::vector<PatchRun> PatchMaker::patches_of(const MeshPiece& piece, double resolution_m) {
   std::vector<PatchRun> runs;
   const double block_m = kBlockSide * resolution_m;
   for (const MeshPiece::Vertex& vertex : piece.vertices) {
@@ -51,7 +51,11 @@ std::vector<PatchRun> PatchMaker::patches_of(const MeshPiece& piece, double reso
     const auto found = newest_.find(
         grid_.tile_of(make_block_coord(block(vertex.x), block(vertex.y), block(vertex.z))));
     const int patch = found == newest_.end() ? kNoPatch : found->second;
-    if (runs.empty() || runs.back().patch != patch) runs.push_back({0, patch});
+    if (runs.empty() || runs.back().patch != patch) {
+      runs.push_back({0, patch});
+      const auto place = places_.find(patch);
+      if (place != places_.end()) place->second.has_vertices = true;
+    }
     ++runs.back().num_points;
   }
   return runs;
@@ -78,9 +82,14 @@ std::vector<CloudSlice> PatchMaker::reopen(std::span<const TileVisit> visits,
     if (visit.number != TileVisit::kOpen) {
       if (places_.at(patch.number).id != kNoId) ended.push_back(revision_of(patch, header));
       places_.erase(patch.number);
-      const Closed closed = closed_.extract(visit).mapped();
-      patch.number = closed.number;
-      patch.revision = closed.revision;
+      const auto closed = closed_.extract(visit);
+      if (closed.empty()) {  // forgotten: it begins anew
+        patch = Patch();
+        patch_at(visit.tile, seen_at);
+        continue;
+      }
+      patch.number = closed.mapped().number;
+      patch.revision = closed.mapped().revision;
     }
     go_on(patch, visit);
   }
@@ -141,12 +150,23 @@ std::vector<CloudSlice> PatchMaker::make(const PatchBatch& batch, const Extracte
       slice.in_volume = due.in_volume;
       slice.points_W = std::move(points_W);
     }
-    if (due.in_volume) continue;
-    closed_[{due.tile, num_closed_[due.tile]++}] = {patch.number, patch.revision};
-    patches_.erase(due.tile);
+    if (!due.in_volume) close(due.tile);
   }
   if (!slices.empty()) slices.back().ends_batch = true;
   return slices;
+}
+
+/// A patch is forgotten if nothing of it was given: most places that the camera sees only once, and
+/// from afar, never have a point.
+void PatchMaker::close(const TileCoord& tile) {
+  const Patch patch = std::move(patches_.extract(tile).mapped());
+  const int visit = num_closed_[tile]++;
+  const Place& place = places_.at(patch.number);
+  if (place.id != kNoId || place.has_vertices) {
+    closed_[{tile, visit}] = {patch.number, patch.revision};
+  } else {
+    places_.erase(patch.number);
+  }
 }
 
 std::vector<CloudSlice> PatchMaker::take_in(std::vector<GuestPatch> patches,

@@ -38,7 +38,7 @@ class PatchMaker {
 
   /// The patches of the vertices of a mesh: that of the tile in which each one is, as it is now or
   /// was when it left.
-  std::vector<PatchRun> patches_of(const MeshPiece& piece, double resolution_m) const;
+  std::vector<PatchRun> patches_of(const MeshPiece& piece, double resolution_m);
 
   /// Continues the patches of visits that are in the volume again, with all their blocks. Where
   /// there was another patch until now, which has no surface any more, it ends: gives its last
@@ -69,7 +69,8 @@ class PatchMaker {
   /// The last revision of every patch that is not departed, and the final slice.
   std::vector<CloudSlice> finish(const CloudSlice& header);
 
-  /// How many have a place in the map, departed or not: those that ended are forgotten.
+  /// How many have a place in the map, departed or not. Those that ended are forgotten, and those
+  /// that departed before they had points.
   std::size_t num_placed() const { return places_.size(); }
 
  private:
@@ -95,6 +96,7 @@ class PatchMaker {
     int keyframe = 0;  ///< with which it moves
     PatchPose X_WP = {};
     int part = 0;  ///< of the map
+    bool has_vertices = false;
   };
 
   struct Closed {
@@ -105,6 +107,7 @@ class PatchMaker {
   std::map<TileCoord, std::vector<CloudPoint>> by_tile(const ExtractedSurface& surface) const;
   Patch& patch_at(const TileCoord& tile, const SeenAt& seen_at);
   void go_on(Patch& patch, const TileVisit& visit);
+  void close(const TileCoord& tile);
   CloudSlice revision_of(Patch& patch, const CloudSlice& header);
   static PatchPose pose_of(const Place& place, const Pose& X_WU);
   Eigen::AlignedBox3d box_P(const Place& place, double resolution_m) const;
@@ -113,7 +116,7 @@ class PatchMaker {
   std::map<int, Place> places_;  ///< by the number of the patch
   int next_number_ = 0;
   std::map<TileCoord, int> newest_;              ///< the number of the newest patch of each tile
-  std::map<TileVisit, Closed> closed_;           ///< those that may be reopened
+  std::map<TileVisit, Closed> closed_;           ///< those that go on when they are reopened
   std::map<TileCoord, int> num_closed_;          ///< visits, those that were reopened as well
   std::int32_t correction_ = 0;                  ///< number of the last one
   std::map<TileCoord, Patch> patches_;           ///< those that may be sent again

@@ -111,12 +111,10 @@ void PatchSchedule::look_at(const TsdfVolume& volume) {
     const BlockSurface now(volume, slot, rule_);
     const TileCoord tile_coord = grid_.tile_of(coord);
     if (seen.empty() || *seen.rbegin() != tile_coord) seen.insert(tile_coord);
-    const auto tile = tiles_.find(tile_coord);
-    if (now.num_voxels() == 0 && (tile == tiles_.end() || !tile->second.blocks.contains(coord)))
-      continue;
-    Tile& seen_tile = tiles_[tile_coord];
-    seen_tile.keyframe = keyframe_;
-    Block& block = seen_tile.blocks[coord];
+    Tile& tile = tiles_[tile_coord];
+    tile.keyframe = keyframe_;
+    if (now.num_voxels() == 0 && !tile.blocks.contains(coord)) continue;
+    Block& block = tile.blocks[coord];
     block.now = now;
     block.change = change_between(block.sent, now);
   }
@@ -124,7 +122,7 @@ void PatchSchedule::look_at(const TsdfVolume& volume) {
   forget_discarded(seen, volume);
 }
 
-/// A block that turned out to be free space is no longer in the volume.
+/// Blocks that turned out to be free space are no longer in the volume.
 void PatchSchedule::forget_discarded(const std::set<TileCoord>& seen, const TsdfVolume& volume) {
   for (const TileCoord& coord : seen) {
     const auto tile = tiles_.find(coord);
@@ -135,6 +133,9 @@ void PatchSchedule::forget_discarded(const std::set<TileCoord>& seen, const Tsdf
       block.change = change_between(block.sent, block.now);
     }
   }
+  std::erase_if(tiles_, [&](const auto& entry) {
+    return entry.second.blocks.empty() && !is_in_volume(entry.first, volume);
+  });
 }
 
 double PatchSchedule::cost_of_waiting(const Tile& tile, double waited_s) const {

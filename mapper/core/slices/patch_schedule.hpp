@@ -65,9 +65,11 @@ class PatchSchedule {
     BlockChange change;
   };
   struct Tile {
-    std::map<BlockCoord, Block> blocks;  ///< those that have surface, or had when they were sent
-    double debt = 0.0;                   ///< cost of waiting over the cost of sending
-    int keyframe = 0;                    ///< at which it was seen last
+    /// Those that have surface, or had when they were sent. A tile without any still tells where it
+    /// was seen, for what will come back.
+    std::map<BlockCoord, Block> blocks;
+    double debt = 0.0;  ///< cost of waiting over the cost of sending
+    int keyframe = 0;   ///< at which it was seen last
   };
 
   void look_at(const TsdfVolume& volume);

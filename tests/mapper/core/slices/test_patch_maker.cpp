@@ -151,6 +151,26 @@ TEST_F(Patches, AreForgottenWhenTheyHaveEnded) {
   }
 }
 
+TEST_F(Patches, AreForgottenWhenTheyDepartWithoutPoints) {
+  for (int round = 0; round < 20; ++round) {
+    maker.make({{{kHere, false}}}, {}, header());
+    EXPECT_EQ(maker.num_placed(), 0U);
+    maker.reopen(std::vector<TileVisit>{{kHere, 2 * round}}, header());
+    EXPECT_THAT(maker.make({{{kHere, false}}}, {}, header()), IsEmpty());
+  }
+  maker.reopen(std::vector<TileVisit>{{kHere, 39}}, header());
+  EXPECT_EQ(maker.make({{{kHere}}}, surface({{0, {1}}}), header()).at(0).id, 0);
+}
+
+TEST_F(Patches, WithVerticesButNoPointsStay) {
+  maker.make({{{kHere}}}, {}, header());
+  MeshPiece piece;
+  piece.vertices.push_back({.x = 0.01F});
+  const int patch = maker.patches_of(piece, 0.01).at(0).patch;
+  maker.make({{{kHere, false}}}, {}, header());
+  EXPECT_TRUE(maker.place_of(patch).has_value());
+}
+
 TEST_F(Patches, EndWithTheirLastRevisionsAndTheirSum) {
   maker.make({{{kHere}}}, surface({{0, {1}}}), header());
   maker.make({{{kHere}, {kThere}}}, surface({{0, {1}}, {1, {2}}}), header());

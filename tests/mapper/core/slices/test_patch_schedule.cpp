@@ -28,13 +28,13 @@ class SchedulePlane : public ::testing::Test {
       return is_above ? p_W.z() - 0.363 : p_W.z() - 0.303;
     });
   }
-  std::optional<PatchBatch> frame() {
+  std::optional<PatchBatch> frame(int keyframe = 0) {
     volume_.shift_to(Eigen::Vector3d::Zero());
     for (BlockSlot slot = 0; slot < volume_.slots_end(); ++slot) {
       if (volume_.in_use(slot)) volume_.mark_seen(slot);
     }
     utime_ += 100'000;
-    return schedule_.next(volume_, utime_);
+    return schedule_.next(volume_, utime_, keyframe);
   }
   /// The number of frames until the next batch; 0: none in 200 frames.
   int frames_until_batch() {
@@ -126,6 +126,23 @@ TEST_F(SchedulePlane, SendsAPatchALastTimeWhenItsTileHasLeft) {
   EXPECT_THAT(batch->patches, Each(Field(&PatchBatch::Patch::in_volume, false)));
   utime_ += 200'000;
   EXPECT_FALSE(schedule_.next(volume_, utime_));
+}
+
+TEST_F(SchedulePlane, TellsWhereATileWithoutSurfaceWasSeen) {
+  const int seen_at = 3;
+  const int later = 8;
+  set_plane(0.303, 4);  // too few observations
+  for (int i = 0; i < 5; ++i) EXPECT_FALSE(frame(seen_at));
+  volume_.shift_to(Eigen::Vector3d::Zero());  // nothing is seen
+  utime_ += 200'000;
+  EXPECT_FALSE(schedule_.next(volume_, utime_, later));
+  for (const DetachedBlocks& left : volume_.shift_to({10.0, 0.0, 0.0})) {
+    schedule_.note_left(left.coords, volume_);
+  }
+  utime_ += 200'000;
+  const auto batch = schedule_.next(volume_, utime_, later);
+  ASSERT_TRUE(batch);
+  EXPECT_THAT(batch->patches, Each(Field(&PatchBatch::Patch::keyframe, seen_at)));
 }
 
 TEST(PatchScheduleConfig, RefusesTimesThatAreNone) {
