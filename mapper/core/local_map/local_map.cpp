@@ -152,8 +152,9 @@ void LocalMap::take_left(DetachedBlocks left, const StampedPose& camera_U) {
 
 void LocalMap::bring_back_visible(const SurfacePyramid& seen_C, const StampedPose& camera_U) {
   if (!reactivation_) return;
-  restore(reactivation_->take_visible(seen_C.front(), camera_U.X_WC, loops_->near_keyframes(),
-                                      loops_->keyframe(), volume_),
+  restore(reactivation_->take_visible(
+              seen_C.front(), camera_U.X_WC, loops_->near_keyframes(), loops_->keyframe(), volume_,
+              [this](const TileCoord& tile) { return patch_schedule_->has_surface(tile); }),
           camera_U);
 }
 

@@ -145,7 +145,8 @@ void Reactivation::settle() {
 
 Reactivation::Returned Reactivation::take_visible(const SurfaceMap& seen_C, const Pose& X_UC,
                                                   const std::vector<bool>& is_near, int keyframe,
-                                                  const TsdfVolume& volume) {
+                                                  const TsdfVolume& volume,
+                                                  const HasSurface& has_surface) {
   settle_near(is_near);
   const double resolution_m = volume.config().resolution_m;
   const double radius = radius_m(resolution_m);
@@ -167,14 +168,15 @@ Reactivation::Returned Reactivation::take_visible(const SurfaceMap& seen_C, cons
     const bool is_open = visit.number == TileVisit::kOpen;
     visits.push_back({visit, is_open ? keyframe : seen_at});
   });
-  return take(visits, is_near, volume);
+  return take(visits, is_near, volume, has_surface);
 }
 
 /// Of several visits of a tile only the open one or else the last comes back, and none of a tile in
-/// which the volume holds other surface by now.
+/// which the volume holds other surface by now. Blocks without surface are no reason to stay away:
+/// noise allocates some a frame before the tile is visible.
 Reactivation::Returned Reactivation::take(const std::vector<Returned::Visit>& visits,
                                           const std::vector<bool>& is_near,
-                                          const TsdfVolume& volume) {
+                                          const TsdfVolume& volume, const HasSurface& has_surface) {
   Returned returned;
   bool is_open_taken = false;
   for (std::size_t i = 0; i < visits.size(); ++i) {
@@ -183,15 +185,12 @@ Reactivation::Returned Reactivation::take(const std::vector<Returned::Visit>& vi
     const bool is_last = i + 1 == visits.size() || visits[i + 1].visit.tile != visit.tile;
     if (is_first) is_open_taken = visit.number == TileVisit::kOpen;  // open ones come first
     if (is_open_taken ? !is_first : !is_last) continue;
-    const std::vector<BlockCoord> coords = store_.coords_of(visit);
     const auto is_in_volume = [&](const BlockCoord& coord) {
       return volume.find(coord) != kNoBlock;
     };
-    bool is_taken = std::ranges::any_of(coords, is_in_volume);
-    if (visit.number != TileVisit::kOpen) {
-      tiles_.for_each_block(
-          visit.tile, [&](const BlockCoord& coord) { is_taken = is_taken || is_in_volume(coord); });
-    }
+    const bool is_taken = visit.number == TileVisit::kOpen
+                              ? std::ranges::any_of(store_.coords_of(visit), is_in_volume)
+                              : has_surface(visit.tile);
     if (is_taken) continue;
     returned.visits.push_back(visits[i]);
   }

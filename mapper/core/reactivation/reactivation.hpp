@@ -67,10 +67,15 @@ class Reactivation {
                                                   const PlaceOfKeyframe& place_of,
                                                   const SameSurface& same, std::int64_t utime);
 
+  /// Of a tile in the volume: whether it has surface.
+  using HasSurface = std::function<bool(const TileCoord&)>;
+
   /// Takes out what a frame is about to change. `is_near`: by keyframe, whether its surface is
-  /// where this camera sees it; `keyframe`: at which the camera is.
+  /// where this camera sees it; `keyframe`: at which the camera is. Blocks of the volume that are
+  /// in their places have no surface, and are to be replaced.
   Returned take_visible(const SurfaceMap& seen_C, const Pose& X_UC,
-                        const std::vector<bool>& is_near, int keyframe, const TsdfVolume& volume);
+                        const std::vector<bool>& is_near, int keyframe, const TsdfVolume& volume,
+                        const HasSurface& has_surface);
 
   /// Whether blocks are kept at most of these places, which near keyframes saw.
   bool has_most_of(const std::vector<BlockCoord>& places, const std::vector<bool>& is_near);
@@ -107,7 +112,7 @@ class Reactivation {
   void settle_near(const std::vector<bool>& is_near);
   void settle();
   Returned take(const std::vector<Returned::Visit>& visits, const std::vector<bool>& is_near,
-                const TsdfVolume& volume);
+                const TsdfVolume& volume, const HasSurface& has_surface);
   void add_around(const std::vector<bool>& is_near, const TsdfVolume& volume, Returned& returned);
   Eigen::Vector3d center_of(const TileCoord& tile, double resolution_m) const;
   double radius_m(double resolution_m) const;

@@ -25,6 +25,11 @@ void PatchSchedule::Config::validate() const {
 PatchSchedule::PatchSchedule(const Config& config, const TileGrid& grid, const CrossingRule& rule)
     : config_((config.validate(), config)), grid_(grid), rule_(rule) {}
 
+bool PatchSchedule::has_surface(const TileCoord& tile) const {
+  const auto found = tiles_.find(tile);
+  return found != tiles_.end() && !found->second.blocks.empty();
+}
+
 void PatchSchedule::note_left(const std::vector<BlockCoord>& left, const TsdfVolume& volume) {
   std::set<TileCoord> touched;
   for (const BlockCoord& coord : left) {

@@ -43,6 +43,9 @@ class PatchSchedule {
 
   PatchSchedule(const Config& config, const TileGrid& grid, const CrossingRule& rule);
 
+  /// Whether a tile in the volume has surface, or was sent with surface: by the last look at it.
+  bool has_surface(const TileCoord& tile) const;
+
   /// To be called when blocks have left the volume, with their coordinates.
   void note_left(const std::vector<BlockCoord>& left, const TsdfVolume& volume);
 

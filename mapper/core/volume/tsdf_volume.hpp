@@ -150,8 +150,8 @@ class TsdfVolume {
   /// Writes block i of those that come back, and then of those around them, as it was when it left.
   using WriteBlock = std::function<void(std::size_t i, VoxelBlock&, ColorBlock&)>;
   /// Puts blocks of a ball back as they were when they left; in view. They are in the region, and
-  /// the volume has none at these places. `around`: blocks that left, too, and share a face, an
-  /// edge or a corner with those. `write` is called from several threads.
+  /// replace what the volume has at their places. `around`: blocks that left, too, and share a
+  /// face, an edge or a corner with those. `write` is called from several threads.
   void restore(std::span<const BlockCoord> blocks, std::span<const BlockCoord> around,
                const WriteBlock& write);
 

@@ -13,6 +13,8 @@ void TsdfVolume::restore(std::span<const BlockCoord> blocks, std::span<const Blo
                          const WriteBlock& write) {
   std::vector<std::pair<std::size_t, BlockSlot>> to_write;
   for (std::size_t i = 0; i < blocks.size(); ++i) {
+    const BlockSlot before = find(blocks[i]);
+    if (before != kNoBlock) discard(before);
     const BlockSlot slot = pool_.take_unset(blocks[i]);
     add(slot);
     to_write.emplace_back(i, slot);

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <memory>
+#include <numbers>
 #include <optional>
 #include <vector>
 
@@ -118,6 +119,24 @@ TEST_F(TwoFloors, AreComparedWithWhatWaits) {
   for (const BlockCoord& coord : all) slots.push_back(third.find(coord));
   reactivation_.clear_known(third, slots, [](int /*keyframe*/) { return Pose::Identity(); }, {});
   EXPECT_LT(num_points(third.snapshot()), num_all / 20) << "where two of the others meet";
+}
+
+/// The volume has blocks in all tiles of the small floor.
+TEST_F(TwoFloors, ComeBackWhereTheVolumeHasNoSurface) {
+  const Intrinsics camera{
+      .fx = 160, .fy = 160, .cx = 79.5, .cy = 59.5, .width = 160, .height = 120};
+  SurfaceMap seen_C(camera);
+  const double height_m = 0.5;
+  seen_C.depth_m.setTo(static_cast<float>(height_m));
+  Pose X_UC(Eigen::AngleAxisd(std::numbers::pi, Eigen::Vector3d::UnitX()));  // looks down
+  X_UC.translation().z() = kFloor_m + height_m;
+  const auto take = [&](bool has_surface) {
+    return reactivation_.take_visible(seen_C, X_UC, {true}, 0, large_,
+                                      [&](const TileCoord& /*tile*/) { return has_surface; });
+  };
+  EXPECT_TRUE(take(true).blocks.empty());
+  EXPECT_GT(take(false).blocks.size(), places_.size() / 2) << "those in view";
+  EXPECT_TRUE(take(false).blocks.empty()) << "they are no longer kept";
 }
 
 /// The small floor did not come back, because the volume had surface in its tiles by then.

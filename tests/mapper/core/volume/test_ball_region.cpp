@@ -170,6 +170,7 @@ TEST(BallRegion, TakesBlocksBackAsTheyWere) {
   ASSERT_EQ(left.coords, (std::vector{here, beside}));
   EXPECT_EQ(left.kind, SliceKind::kPatch);
   volume.shift_to(Eigen::Vector3d(1e-3, 0, 0));
+  volume.voxels(volume.allocate(here)).voxels.fill(0x00020000U);  // is replaced
 
   volume.restore(std::vector{here}, std::vector{beside},
                  [&](std::size_t i, VoxelBlock& voxels, ColorBlock& colors) {
