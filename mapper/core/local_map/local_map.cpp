@@ -1,6 +1,7 @@
 #include "mapper/core/local_map/local_map.hpp"
 
 #include <algorithm>
+#include <map>
 #include <utility>
 
 #include "lcmtypes/base/argument_check.hpp"
@@ -104,7 +105,7 @@ int LocalMap::let_go_of_far_surface(const StampedPose& camera_U) {
   if (!is_new_keyframe) return 0;
   const std::vector<bool> is_near = loops_->near_keyframes();
   std::vector<BlockSlot> far = slots_of([&](BlockSlot slot) {
-    const auto keyframe = static_cast<std::size_t>(keyframe_at_move_[volume_.last_seen(slot)]);
+    const auto keyframe = static_cast<std::size_t>(keyframe_seen_at(slot));
     return keyframe < is_near.size() && !is_near[keyframe];
   });
   if (far.empty()) return 0;
@@ -128,20 +129,38 @@ void LocalMap::clear_known(const std::vector<BlockSlot>& leaving) {
   std::vector<BlockCoord> coords;
   coords.reserve(leaving.size());
   for (const BlockSlot slot : leaving) coords.push_back(volume_.coord(slot));
-  reactivation_->clear_known(volume_, leaving, places_of_far_keyframes(), config_.same_surface);
+  reactivation_->clear_known(volume_, by_keyframe(leaving), config_.same_surface);
   std::erase_if(coords,
                 [this](const BlockCoord& coord) { return volume_.find(coord) != kNoBlock; });
   patch_schedule_->note_left(coords, volume_);
 }
 
-/// By keyframe: where what it saw is compared with what leaves; nothing for a near one.
-Reactivation::PlaceOfKeyframe LocalMap::places_of_far_keyframes() const {
-  return
-      [this, is_near = loops_->near_keyframes(),
-       X_WU = loops_->deformation().at(loops_->keyframe())](int keyframe) -> std::optional<Pose> {
-        if (is_near[keyframe]) return std::nullopt;
-        return loops_->deformation().at(keyframe).inverse(Eigen::Isometry) * X_WU;
-      };
+/// The keyframe at which the camera was when it saw a block last.
+int LocalMap::keyframe_seen_at(BlockSlot slot) const {
+  return keyframe_at_move_[volume_.last_seen(slot)];
+}
+
+/// Where surface is in the corrected map is told by the keyframe at which it was seen, and not by
+/// that at which the camera is when it leaves.
+std::vector<Reactivation::SeenBlocks> LocalMap::by_keyframe(
+    const std::vector<BlockSlot>& slots) const {
+  std::map<int, std::vector<BlockCoord>> coords;
+  for (const BlockSlot slot : slots) coords[keyframe_seen_at(slot)].push_back(volume_.coord(slot));
+  std::vector<Reactivation::SeenBlocks> seen;
+  for (auto& [keyframe, of_keyframe] : coords) {
+    seen.push_back({std::move(of_keyframe), places_of_keyframes_far_from(keyframe)});
+  }
+  return seen;
+}
+
+/// By keyframe: where what it saw is compared with what was seen at this one; nothing for a near
+/// one.
+Reactivation::PlaceOfKeyframe LocalMap::places_of_keyframes_far_from(int keyframe) const {
+  return [this, is_near = loops_->keyframes_near(keyframe),
+          X_WU = loops_->deformation().at(keyframe)](int other) -> std::optional<Pose> {
+    if (is_near[other]) return std::nullopt;
+    return loops_->deformation().at(other).inverse(Eigen::Isometry) * X_WU;
+  };
 }
 
 void LocalMap::take_left(DetachedBlocks left, const StampedPose& camera_U) {
@@ -181,9 +200,10 @@ bool LocalMap::keeps_most_of(const Keyframe& keyframe, const std::vector<bool>& 
 }
 
 void LocalMap::leave(const StampedPose& camera_U) {
+  const auto seen = by_keyframe(slots_of([](BlockSlot) { return true; }));
   slice_worker_.submit(
-      reactivation_->keep_unknown(volume_.detach_all(SliceKind::kPatch), config_.volume,
-                                  places_of_far_keyframes(), config_.same_surface, camera_U.utime),
+      reactivation_->keep_unknown(volume_.detach_all(SliceKind::kPatch), config_.volume, seen,
+                                  config_.same_surface, camera_U.utime),
       slice_camera(camera_U));
   depart_all(camera_U);
 }

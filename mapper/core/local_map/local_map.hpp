@@ -113,7 +113,9 @@ class LocalMap {
   int let_go_of_far_surface(const StampedPose& camera_U);
   void take_left(DetachedBlocks left, const StampedPose& camera_U);
   void clear_known(const std::vector<BlockSlot>& leaving);
-  Reactivation::PlaceOfKeyframe places_of_far_keyframes() const;
+  int keyframe_seen_at(BlockSlot slot) const;
+  std::vector<Reactivation::SeenBlocks> by_keyframe(const std::vector<BlockSlot>& slots) const;
+  Reactivation::PlaceOfKeyframe places_of_keyframes_far_from(int keyframe) const;
   std::vector<BlockSlot> slots_of(const std::function<bool(BlockSlot)>& is_chosen) const;
   void restore(const Reactivation::Returned& returned, const StampedPose& camera_U);
   void depart_all(const StampedPose& camera_U);

@@ -158,10 +158,8 @@ void clear(VoxelBlock& block, const std::bitset<kBlockVoxels>& covered) {
 /// Decides about the voxels of a volume.
 class Comparison {
  public:
-  Comparison(FindBlock find, const TsdfVolume::Config& volume, const std::vector<Cover>& covers,
-             const SameSurface& same)
+  Comparison(FindBlock find, const TsdfVolume::Config& volume, const SameSurface& same)
       : find_(std::move(find)),
-        covers_(covers),
         same_(same),
         voxel_m_(volume.resolution_m),
         truncation_vox_(volume.largest_truncation_vox()),
@@ -169,10 +167,28 @@ class Comparison {
         min_cosine_(cosine(same.max_angle_deg)),
         min_cosine_in_place_(cosine(2.0 * same.max_angle_deg)) {}
 
+  /// About all blocks of these groups, in their order.
+  std::vector<Decision> decide(const std::vector<BlocksUnderCovers>& groups) const {
+    struct Question {
+      BlockCoord coord;
+      const std::vector<Cover>* covers;
+    };
+    std::vector<Question> questions;
+    for (const auto& [coords, covers] : groups) {
+      for (const BlockCoord& coord : coords) questions.push_back({coord, &covers});
+    }
+    std::vector<Decision> decisions(questions.size());
+    tbb::parallel_for(std::size_t{0}, questions.size(), [&](std::size_t i) {
+      decisions[i] = decide(questions[i].coord, *questions[i].covers);
+    });
+    return decisions;
+  }
+
+ private:
   /// About the voxels between which and the next one there is surface.
-  Decision decide(const BlockCoord& coord) const {
+  Decision decide(const BlockCoord& coord, const std::vector<Cover>& covers) const {
     Decision decision;
-    std::vector<Placed> near = covers_near(coord);
+    std::vector<Placed> near = covers_near(coord, covers);
     if (near.empty()) return decision;
     const Signs signs(find_, coord);
     DistanceField own(find_, truncation_vox_, 0);
@@ -184,7 +200,7 @@ class Comparison {
           kBlockSide * Eigen::Vector3i(coord.x, coord.y, coord.z) + in_block;
       const auto surface = own.surface_near(voxel, reach_vox_);
       const bool is_covered = surface && std::ranges::any_of(near, [&](Placed& cover) {
-                                return covers(cover, voxel, *surface);
+                                return has_surface_there(cover, voxel, *surface);
                               });
       decision.covered[index] = is_covered;
       decision.has_rest = decision.has_rest || !is_covered;
@@ -192,7 +208,6 @@ class Comparison {
     return decision;
   }
 
- private:
   struct FindIn {
     const std::vector<StoredBlock>* blocks;
     const VoxelBlock* operator()(const BlockCoord& coord) const {
@@ -210,23 +225,24 @@ class Comparison {
     return std::cos(std::min(angle_deg, 180.0) * std::numbers::pi / 180.0);
   }
 
-  std::vector<Placed> covers_near(const BlockCoord& coord) const {
+  std::vector<Placed> covers_near(const BlockCoord& coord, const std::vector<Cover>& covers) const {
     const double block_m = kBlockSide * voxel_m_;
     const Eigen::Vector3d center_U =
         block_m * (Eigen::Vector3d(coord.x, coord.y, coord.z).array() + 0.5).matrix();
     const double radius_m = 0.5 * std::sqrt(3.0) * block_m + same_.max_distance_vox * voxel_m_;
     std::vector<Placed> near;
-    for (const Cover& cover : covers_) {
+    for (const Cover& cover : covers) {
       const double limit_m = radius_m + cover.radius_m;
       if ((cover.center_U - center_U).squaredNorm() > limit_m * limit_m) continue;
       near.push_back({cover.X_OU,
                       cover.is_in_place ? min_cosine_in_place_ : min_cosine_,
-                      {FindIn{&cover.blocks}, truncation_vox_, same_.weight_threshold}});
+                      {FindIn{cover.blocks.get()}, truncation_vox_, same_.weight_threshold}});
     }
     return near;
   }
 
-  bool covers(Placed& cover, const Eigen::Vector3i& voxel, const NearSurface& surface) const {
+  bool has_surface_there(Placed& cover, const Eigen::Vector3i& voxel,
+                         const NearSurface& surface) const {
     const Eigen::Vector3d p_U =
         voxel_m_ * (voxel.cast<double>().array() + 0.5 + surface.offset_vox.array()).matrix();
     const Eigen::Vector3d p_O = cover.X_OU * p_U;
@@ -241,7 +257,6 @@ class Comparison {
   }
 
   const FindBlock find_;
-  const std::vector<Cover>& covers_;
   const SameSurface& same_;
   const double voxel_m_;
   const double truncation_vox_;
@@ -258,44 +273,51 @@ void SameSurface::validate() const {
   check_range("weight_threshold", weight_threshold, 0, 65534);
 }
 
-void clear_covered(TsdfVolume& volume, const std::vector<BlockSlot>& slots,
-                   const std::vector<Cover>& covers, const SameSurface& same) {
-  if (covers.empty()) return;
+void clear_covered(TsdfVolume& volume, const std::vector<BlocksUnderCovers>& groups,
+                   const SameSurface& same) {
   // All are looked at before any is changed: the gradients need the blocks around as they are.
   const Comparison comparison(
       [&](const BlockCoord& coord) {
         const BlockSlot slot = volume.find(coord);
         return slot == kNoBlock ? nullptr : &std::as_const(volume).voxels(slot);
       },
-      volume.config(), covers, same);
-  std::vector<Decision> decisions(slots.size());
-  tbb::parallel_for(std::size_t{0}, slots.size(), [&](std::size_t i) {
-    decisions[i] = comparison.decide(volume.coord(slots[i]));
-  });
-  for (std::size_t i = 0; i < slots.size(); ++i) {
-    const auto& [covered, has_rest] = decisions[i];
-    if (covered.none()) continue;
-    if (!has_rest) {
-      volume.discard(slots[i]);
-      continue;
+      volume.config(), same);
+  const std::vector<Decision> decisions = comparison.decide(groups);
+  auto decision = decisions.begin();
+  for (const BlocksUnderCovers& group : groups) {
+    for (const BlockCoord& coord : group.coords) {
+      const auto& [covered, has_rest] = *decision++;
+      if (covered.none()) continue;
+      const BlockSlot slot = volume.find(coord);
+      if (has_rest) {
+        clear(volume.voxels(slot), covered);
+      } else {
+        volume.discard(slot);
+      }
     }
-    clear(volume.voxels(slots[i]), covered);
   }
 }
 
 DetachedBlocks without_covered(DetachedBlocks blocks, const TsdfVolume::Config& volume,
-                               const std::vector<Cover>& covers, const SameSurface& same) {
-  if (covers.empty()) return blocks;
+                               const std::vector<BlocksUnderCovers>& groups,
+                               const SameSurface& same) {
+  const auto number_of = [&](const BlockCoord& coord) -> std::optional<std::size_t> {
+    const auto found = std::ranges::lower_bound(blocks.coords, coord);
+    if (found == blocks.coords.end() || *found != coord) return std::nullopt;
+    return found - blocks.coords.begin();
+  };
   const Comparison comparison(
       [&](const BlockCoord& coord) -> const VoxelBlock* {
-        const auto found = std::ranges::lower_bound(blocks.coords, coord);
-        if (found == blocks.coords.end() || *found != coord) return nullptr;
-        return blocks.voxels[found - blocks.coords.begin()];
+        const auto number = number_of(coord);
+        return number ? blocks.voxels[*number] : nullptr;
       },
-      volume, covers, same);
+      volume, same);
+  const std::vector<Decision> in_groups = comparison.decide(groups);
   std::vector<Decision> decisions(blocks.coords.size());
-  tbb::parallel_for(std::size_t{0}, decisions.size(),
-                    [&](std::size_t i) { decisions[i] = comparison.decide(blocks.coords[i]); });
+  auto next = in_groups.begin();
+  for (const BlocksUnderCovers& group : groups) {
+    for (const BlockCoord& coord : group.coords) decisions[number_of(coord).value()] = *next++;
+  }
   struct Storage {
     std::shared_ptr<const void> before;
     std::deque<VoxelBlock> cleared;

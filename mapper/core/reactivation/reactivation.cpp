@@ -49,22 +49,18 @@ void Reactivation::close_departed(const PatchBatch& batch) {
   }
 }
 
-void Reactivation::clear_known(TsdfVolume& volume, const std::vector<BlockSlot>& leaving,
-                               const PlaceOfKeyframe& place_of, const SameSurface& same) {
-  std::vector<BlockCoord> places;
-  places.reserve(leaving.size());
-  for (const BlockSlot slot : leaving) places.push_back(volume.coord(slot));
-  Known known = known_in(places, volume.config().resolution_m, place_of);
-  clear_covered(volume, leaving, std::move(known).unpacked(), same);
+void Reactivation::clear_known(TsdfVolume& volume, const std::vector<SeenBlocks>& leaving,
+                               const SameSurface& same) {
+  clear_covered(volume, known_in(leaving, volume.config().resolution_m).unpacked(), same);
 }
 
 std::shared_future<DetachedBlocks> Reactivation::keep_unknown(DetachedBlocks left,
                                                               const TsdfVolume::Config& volume,
-                                                              const PlaceOfKeyframe& place_of,
+                                                              const std::vector<SeenBlocks>& seen,
                                                               const SameSurface& same,
                                                               std::int64_t utime) {
   settle();
-  Known known = known_in(left.coords, volume.resolution_m, place_of);
+  Known known = known_in(seen, volume.resolution_m);
   std::vector<TileVisit> visits = store_.expect(left.coords);
   auto rest =
       in_background([left = std::move(left), volume, known = std::move(known), same]() mutable {
@@ -77,50 +73,58 @@ std::shared_future<DetachedBlocks> Reactivation::keep_unknown(DetachedBlocks lef
 }
 
 /// What is kept, as far as it may cover these blocks.
-Reactivation::Known Reactivation::known_in(const std::vector<BlockCoord>& places_U,
-                                           double resolution_m, const PlaceOfKeyframe& place_of) {
-  Known known = find_known(places_U, resolution_m, place_of);
-  const auto waits = [this](const TileVisit& visit) {
-    return std::ranges::binary_search(waiting_->visits, visit);
+Reactivation::Known Reactivation::known_in(const std::vector<SeenBlocks>& seen_U,
+                                           double resolution_m) {
+  Known known = find_known(seen_U, resolution_m);
+  const auto waits = [this](const KnownVisit& known_visit) {
+    return std::ranges::binary_search(waiting_->visits, known_visit.visit);
   };
   if (!waiting_ || std::ranges::none_of(known.visits, waits)) return known;
   settle();
-  return find_known(places_U, resolution_m, place_of);
+  return find_known(seen_U, resolution_m);
 }
 
-Reactivation::Known Reactivation::find_known(const std::vector<BlockCoord>& places_U,
-                                             double resolution_m,
-                                             const PlaceOfKeyframe& place_of) const {
+Reactivation::Known Reactivation::find_known(const std::vector<SeenBlocks>& seen_U,
+                                             double resolution_m) const {
   const double block_m = kBlockSide * resolution_m;
-  Eigen::AlignedBox3d box_U;
-  std::set<TileCoord> tiles;
-  for (const BlockCoord& coord : places_U) {
-    const Eigen::Vector3d corner_U = block_m * Eigen::Vector3d(coord.x, coord.y, coord.z);
-    box_U.extend(corner_U).extend(corner_U + Eigen::Vector3d::Constant(block_m));
-    tiles.insert(tiles_.tile_of(coord));
-  }
-  Known known;
   const double radius = radius_m(resolution_m);
+  struct Extent {
+    Eigen::AlignedBox3d box_U;
+    std::set<TileCoord> tiles;
+  };
+  Known known;
+  std::vector<Extent> extents(seen_U.size());
+  for (std::size_t i = 0; i < seen_U.size(); ++i) {
+    for (const BlockCoord& coord : seen_U[i].coords) {
+      const Eigen::Vector3d corner_U = block_m * Eigen::Vector3d(coord.x, coord.y, coord.z);
+      extents[i].box_U.extend(corner_U).extend(corner_U + Eigen::Vector3d::Constant(block_m));
+      extents[i].tiles.insert(tiles_.tile_of(coord));
+    }
+    known.groups.push_back({seen_U[i].coords, {}});
+  }
   store_.for_each([&](const TileVisit& visit, int keyframe) {
     if (visit.number == TileVisit::kOpen) return;
-    const auto X_OU_far = place_of(keyframe);
-    if (!X_OU_far && !tiles.contains(visit.tile)) return;
-    const Pose X_OU = X_OU_far.value_or(Pose::Identity());
-    const Eigen::Vector3d center_U =
-        X_OU.inverse(Eigen::Isometry) * center_of(visit.tile, resolution_m);
-    if (box_U.exteriorDistance(center_U) > radius) return;
-    known.visits.push_back(visit);
-    known.covers.push_back({X_OU, center_U, radius, {}, !X_OU_far});
-    known.blocks.push_back(store_.blocks_of(visit));
+    std::shared_ptr<std::vector<StoredBlock>> blocks;
+    for (std::size_t i = 0; i < seen_U.size(); ++i) {
+      const auto X_OU_far = seen_U[i].place_of(keyframe);
+      if (!X_OU_far && !extents[i].tiles.contains(visit.tile)) continue;
+      const Pose X_OU = X_OU_far.value_or(Pose::Identity());
+      const Eigen::Vector3d center_U =
+          X_OU.inverse(Eigen::Isometry) * center_of(visit.tile, resolution_m);
+      if (extents[i].box_U.exteriorDistance(center_U) > radius) continue;
+      if (!blocks) blocks = std::make_shared<std::vector<StoredBlock>>();
+      known.groups[i].covers.push_back({X_OU, center_U, radius, blocks, !X_OU_far});
+    }
+    if (blocks) known.visits.push_back({visit, store_.blocks_of(visit), std::move(blocks)});
   });
   return known;
 }
 
-std::vector<Cover> Reactivation::Known::unpacked() && {
-  tbb::parallel_for(std::size_t{0}, covers.size(), [&](std::size_t i) {
-    for (const KeptBlock& block : blocks[i]) covers[i].blocks.push_back(block.copy());
+std::vector<BlocksUnderCovers> Reactivation::Known::unpacked() && {
+  tbb::parallel_for(std::size_t{0}, visits.size(), [&](std::size_t i) {
+    for (const KeptBlock& block : visits[i].packed) visits[i].blocks->push_back(block.copy());
   });
-  return std::move(covers);
+  return std::move(groups);
 }
 
 void Reactivation::tidy(std::int64_t utime) {

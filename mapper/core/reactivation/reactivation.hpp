@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <future>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -53,18 +54,25 @@ class Reactivation {
   /// and so in the same frame.
   using PlaceOfKeyframe = std::function<std::optional<Pose>(int keyframe)>;
 
+  /// Blocks of the volume that were seen at the same keyframe, and where what others saw is from
+  /// there.
+  struct SeenBlocks {
+    std::vector<BlockCoord> coords;
+    PlaceOfKeyframe place_of;
+  };
+
   /// Clears surface of these blocks, which are about to leave, where the same is kept. Of what near
   /// keyframes saw only visits of the same tiles are compared: those that did not come back,
   /// because the volume had surface in their tiles before.
-  void clear_known(TsdfVolume& volume, const std::vector<BlockSlot>& leaving,
-                   const PlaceOfKeyframe& place_of, const SameSurface& same);
+  void clear_known(TsdfVolume& volume, const std::vector<SeenBlocks>& leaving,
+                   const SameSurface& same);
 
   /// The same of all that was in the volume, and keeps the rest. There is much of it, so this is
   /// done on a thread of its own, which also packs the blocks: they are kept from some time after
-  /// `utime` on, or from when they are asked for. Returns the rest.
+  /// `utime` on, or from when they are asked for. Returns the rest. `seen`: all blocks of `left`.
   std::shared_future<DetachedBlocks> keep_unknown(DetachedBlocks left,
                                                   const TsdfVolume::Config& volume,
-                                                  const PlaceOfKeyframe& place_of,
+                                                  const std::vector<SeenBlocks>& seen,
                                                   const SameSurface& same, std::int64_t utime);
 
   /// Of a tile in the volume: whether it has surface.
@@ -96,19 +104,21 @@ class Reactivation {
     std::future<TileStore::BlocksByTile> blocks;
     std::int64_t due_utime = 0;
   };
-  /// Visits of the store as covers, which have no blocks yet, and their blocks.
+  /// A visit of the store, and where its blocks are once they are unpacked.
+  struct KnownVisit {
+    TileVisit visit;
+    std::vector<KeptBlock> packed;
+    std::shared_ptr<std::vector<StoredBlock>> blocks;
+  };
   struct Known {
-    std::vector<TileVisit> visits;
-    std::vector<Cover> covers;
-    std::vector<std::vector<KeptBlock>> blocks;
+    std::vector<BlocksUnderCovers> groups;
+    std::vector<KnownVisit> visits;  ///< of the covers, ascending
 
-    std::vector<Cover> unpacked() &&;
+    std::vector<BlocksUnderCovers> unpacked() &&;
   };
 
-  Known known_in(const std::vector<BlockCoord>& places_U, double resolution_m,
-                 const PlaceOfKeyframe& place_of);
-  Known find_known(const std::vector<BlockCoord>& places_U, double resolution_m,
-                   const PlaceOfKeyframe& place_of) const;
+  Known known_in(const std::vector<SeenBlocks>& seen_U, double resolution_m);
+  Known find_known(const std::vector<SeenBlocks>& seen_U, double resolution_m) const;
   void settle_near(const std::vector<bool>& is_near);
   void settle();
   Returned take(const std::vector<Returned::Visit>& visits, const std::vector<bool>& is_near,

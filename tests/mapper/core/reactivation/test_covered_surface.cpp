@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <memory>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -38,16 +40,17 @@ class Floor : public ::testing::Test {
     clear(volume_of(signed_distance_m, weight), X_OU, false);
   }
   void clear(const TsdfVolume& other, const Pose& X_OU, bool is_in_place) {
-    Cover cover{.X_OU = X_OU,
-                .center_U = Eigen::Vector3d::Zero(),
-                .radius_m = 2.0,
-                .blocks = {},
-                .is_in_place = is_in_place};
+    auto blocks = std::make_shared<std::vector<StoredBlock>>();
     for (const BlockSlot slot : slots_of(other)) {
-      cover.blocks.push_back({other.coord(slot), other.voxels(slot), other.colors(slot)});
+      blocks->push_back({other.coord(slot), other.voxels(slot), other.colors(slot)});
     }
-    std::ranges::sort(cover.blocks, {}, &StoredBlock::coord);
-    clear_covered(floor_, slots_of(floor_), {cover}, {});
+    std::ranges::sort(*blocks, {}, &StoredBlock::coord);
+    const Cover cover{.X_OU = X_OU,
+                      .center_U = Eigen::Vector3d::Zero(),
+                      .radius_m = 2.0,
+                      .blocks = std::move(blocks),
+                      .is_in_place = is_in_place};
+    clear_covered(floor_, {{floor_.snapshot().coords, {cover}}}, {});
   }
   std::vector<CloudPoint> points() const {
     return SurfaceExtractor({}).extract_blocks(floor_.snapshot()).points_W;

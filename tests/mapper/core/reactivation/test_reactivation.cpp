@@ -40,15 +40,12 @@ class TwoFloors : public ::testing::Test {
   std::size_t num_points(const DetachedBlocks& blocks) const {
     return SurfaceExtractor({}).extract_blocks(blocks).points_W.size();
   }
+  static std::optional<Pose> first_is_far(int keyframe) {
+    return keyframe == 0 ? std::optional<Pose>(Pose::Identity()) : std::nullopt;
+  }
   DetachedBlocks leave(DetachedBlocks left, std::int64_t utime) {
-    return reactivation_
-        .keep_unknown(
-            std::move(left), large_.config(),
-            [](int keyframe) {
-              return keyframe == 0 ? std::optional<Pose>(Pose::Identity()) : std::nullopt;
-            },
-            {}, utime)
-        .get();
+    const Reactivation::SeenBlocks seen = {left.coords, first_is_far};
+    return reactivation_.keep_unknown(std::move(left), large_.config(), {seen}, {}, utime).get();
   }
   void close_all(int keyframe) {
     PatchBatch batch;
@@ -80,12 +77,7 @@ TEST_F(TwoFloors, KeepTheFirstAndWhatOnlyTheSecondHas) {
 /// As clear_known() does it in the volume.
 TEST_F(TwoFloors, LoseTheSameInTheVolumeAndOnTheWayOut) {
   TsdfVolume volume = floor_of(1.0);
-  const auto place_of = [](int keyframe) -> std::optional<Pose> {
-    return keyframe == 0 ? std::optional<Pose>(Pose::Identity()) : std::nullopt;
-  };
-  std::vector<BlockSlot> slots;
-  for (const BlockCoord& coord : coords_of(volume)) slots.push_back(volume.find(coord));
-  reactivation_.clear_known(volume, slots, place_of, {});
+  reactivation_.clear_known(volume, {{coords_of(volume), first_is_far}}, {});
   const DetachedBlocks expected = volume.detach_all(SliceKind::kPatch);
 
   const DetachedBlocks rest = leave(large_.detach_all(SliceKind::kPatch), 0);
@@ -108,6 +100,30 @@ TEST_F(TwoFloors, CountWhatIsKeptAtATimeThatNoThreadDecides) {
   EXPECT_GT(reactivation_.bytes(), before);
 }
 
+/// The left half was seen at another keyframe, from which the first one is 5 cm higher.
+TEST_F(TwoFloors, AreComparedWhereEachBlockWasSeen) {
+  TsdfVolume volume = floor_of(1.0);
+  Reactivation::SeenBlocks left{{}, [](int /*keyframe*/) {
+                                  Pose X_OU = Pose::Identity();
+                                  X_OU.translation().z() = -0.05;
+                                  return X_OU;
+                                }};
+  Reactivation::SeenBlocks right{{}, first_is_far};
+  for (const BlockCoord& coord : coords_of(volume)) {
+    (coord.x < 0 ? left : right).coords.push_back(coord);
+  }
+  const auto num_on_left = [&] {
+    return std::ranges::count_if(SurfaceExtractor({}).extract_blocks(volume.snapshot()).points_W,
+                                 [](const CloudPoint& point) { return point.x < 0.0F; });
+  };
+  const auto num_before = static_cast<std::int64_t>(num_points(volume.snapshot()));
+  const auto num_on_left_before = num_on_left();
+  reactivation_.clear_known(volume, {left, right}, {});
+  EXPECT_EQ(num_on_left(), num_on_left_before);
+  EXPECT_LT(static_cast<std::int64_t>(num_points(volume.snapshot())),
+            num_before - static_cast<std::int64_t>(num_small_) / 3);
+}
+
 /// A third floor leaves before the second one is kept.
 TEST_F(TwoFloors, AreComparedWithWhatWaits) {
   const std::vector<BlockCoord> all = coords_of(large_);
@@ -115,9 +131,7 @@ TEST_F(TwoFloors, AreComparedWithWhatWaits) {
   const std::size_t num_all = num_points(third.snapshot());
   leave(large_.detach_all(SliceKind::kPatch), 0);
   close_all(1);
-  std::vector<BlockSlot> slots;
-  for (const BlockCoord& coord : all) slots.push_back(third.find(coord));
-  reactivation_.clear_known(third, slots, [](int /*keyframe*/) { return Pose::Identity(); }, {});
+  reactivation_.clear_known(third, {{all, [](int /*keyframe*/) { return Pose::Identity(); }}}, {});
   EXPECT_LT(num_points(third.snapshot()), num_all / 20) << "where two of the others meet";
 }
 
@@ -143,9 +157,9 @@ TEST_F(TwoFloors, ComeBackWhereTheVolumeHasNoSurface) {
 TEST_F(TwoFloors, OfNearKeyframesStayOnceInTheSameTiles) {
   const std::size_t num_all = num_points(large_.snapshot());
   const auto is_near = [](int /*keyframe*/) { return std::optional<Pose>(); };
+  const std::vector<Reactivation::SeenBlocks> seen = {{coords_of(large_), is_near}};
   const DetachedBlocks rest =
-      reactivation_
-          .keep_unknown(large_.detach_all(SliceKind::kPatch), large_.config(), is_near, {}, 0)
+      reactivation_.keep_unknown(large_.detach_all(SliceKind::kPatch), large_.config(), seen, {}, 0)
           .get();
   EXPECT_LT(num_points(rest), num_all - num_small_ / 2);
   EXPECT_GT(num_points(rest), num_all - num_small_ - 1) << "more at the edge of the small one";
