@@ -127,6 +127,10 @@ class ReplayOptions(unittest.TestCase):
         with self.assertRaisesRegex(Problem, "which log"):
             parse_replay([])
 
+    def test_the_map_may_be_saved(self):
+        options = parse_replay(["run.lcm", "--segmenter", "--save x.map"])
+        self.assertEqual(options.segmenter, ["--save", "x.map"])
+
     def test_there_is_no_mapper(self):
         with self.assertRaisesRegex(Problem, "unknown option --mapper"):
             parse_replay(["run.lcm", "--mapper", "x"])

@@ -6,13 +6,16 @@ from .programs import called
 
 # Without these a run would not be watched, stopped, resumed or summed up any more.
 KEPT_BY_RUN = {
-    "mapper": {"--store": "the log is mapper.lcm in the folder of the run; --out chooses the folder",
-               "--resume": "scripts/trio --resume continues the run in --out"},
-    "segmenter": {"--out": "--out of {command} chooses the folder of the run",
-                  "--save": "the map is saved as segmenter.map in the folder of the run; --out chooses the folder",
-                  "--resume": "the map is resumed from segmenter.map in the folder of the run"},
+    "segmenter": {"--out": "--out of {command} chooses the folder of the run"},
     "viewer": {"--out": "--out of {command} chooses the folder of the run"},
     "detector": {"--library": "--objects of {command} chooses the library"},
+}
+# scripts/replay saves and resumes nothing.
+KEPT_BY_TRIO = {
+    "mapper": {"--store": "the log is mapper.lcm in the folder of the run; --out chooses the folder",
+               "--resume": "scripts/trio --resume continues the run in --out"},
+    "segmenter": {"--save": "the map is saved as segmenter.map in the folder of the run; --out chooses the folder",
+                  "--resume": "the map is resumed from segmenter.map in the folder of the run"},
 }
 ENDS_AT_ONCE = ("-h", "--help", "--version", "--print-config", "--list-devices", "--check")
 
@@ -48,7 +51,7 @@ class ProcessOptions:
 
         `kept`: options of the command, with the reason (None: those of scripts/trio and scripts/replay); `where`:
         what the options were given by (None: the flag with the name of the process)."""
-        kept = KEPT_BY_RUN[self.name] if kept is None else kept
+        kept = kept_by(command, self.name) if kept is None else kept
         for flag, words in self._options:
             option = f"{where or '--' + self.name} '{' '.join(words)}'"
             if flag in kept:
@@ -58,6 +61,12 @@ class ProcessOptions:
 
     def words(self):
         return [word for _, words in self._options for word in words]
+
+
+def kept_by(command, name):
+    """The options of a process that scripts/trio or scripts/replay sets itself, with the reason."""
+    of_trio = KEPT_BY_TRIO.get(name, {}) if command == "scripts/trio" else {}
+    return {**KEPT_BY_RUN.get(name, {}), **of_trio}
 
 
 def is_flag(word):
