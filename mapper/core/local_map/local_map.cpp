@@ -147,6 +147,7 @@ std::vector<Reactivation::SeenBlocks> LocalMap::by_keyframe(
   std::map<int, std::vector<BlockCoord>> coords;
   for (const BlockSlot slot : slots) coords[keyframe_seen_at(slot)].push_back(volume_.coord(slot));
   std::vector<Reactivation::SeenBlocks> seen;
+  seen.reserve(coords.size());
   for (auto& [keyframe, of_keyframe] : coords) {
     seen.push_back({std::move(of_keyframe), places_of_keyframes_far_from(keyframe)});
   }
