@@ -192,10 +192,10 @@ std::optional<TrackingResult> MapperPipeline::find_again(const TrackingInput& in
   };
   Relocalizer::PlaceOf place_of;
   if (loops_) {
-    place_of = [&](int keyframe) -> Relocalizer::Place {
+    place_of = [this, ways_m = loops_->ways_m()](int keyframe) -> Relocalizer::Place {
       return {.motion = map_.camera_at().place.X_WU.inverse(Eigen::Isometry) *
                         map_.place_of(keyframe).X_WU,
-              .way_m = loops_->way_to_m(keyframe)};
+              .way_m = ways_m[keyframe]};
     };
   }
   auto found = relocalizer_.find(input, tracker_, model_from_pose, place_of);

@@ -46,14 +46,29 @@ double KeyframeTree::way_m(int a, int b) const {
 }
 
 double KeyframeTree::way_m(int a, int b, std::span<const std::pair<int, int>> joins) const {
-  if (nodes_[a].root == nodes_[b].root) return way_m(a, b);
+  return nodes_[a].root == nodes_[b].root ? way_m(a, b) : least_ways_m(a, joins, b)[b];
+}
+
+std::vector<double> KeyframeTree::ways_m(int from,
+                                         std::span<const std::pair<int, int>> joins) const {
+  std::vector<double> ways_m = least_ways_m(from, {});
+  const std::vector<double> over_joins_m = least_ways_m(from, joins);
+  for (int i = 0; i < size(); ++i) {
+    if (nodes_[i].root != nodes_[from].root) ways_m[i] = over_joins_m[i];
+  }
+  return ways_m;
+}
+
+/// Over joins of different trees, by number; right for `until` and all that are nearer, or for all.
+std::vector<double> KeyframeTree::least_ways_m(int from, std::span<const std::pair<int, int>> joins,
+                                               std::optional<int> until) const {
   std::multimap<int, int> joined;
   for (const auto& [c, d] : joins) {
     if (nodes_[c].root == nodes_[d].root) continue;
     joined.emplace(c, d);
     joined.emplace(d, c);
   }
-  // Dijkstra (1959), from a.
+  // Dijkstra (1959).
   std::vector<double> least_m(nodes_.size(), std::numeric_limits<double>::infinity());
   using Open = std::pair<double, int>;
   std::priority_queue<Open, std::vector<Open>, std::greater<>> open;
@@ -62,8 +77,8 @@ double KeyframeTree::way_m(int a, int b, std::span<const std::pair<int, int>> jo
     least_m[keyframe] = way_m;
     open.emplace(way_m, keyframe);
   };
-  reach(a, 0.0);
-  while (!open.empty() && open.top().second != b) {
+  reach(from, 0.0);
+  while (!open.empty() && open.top().second != until) {
     const auto [way_m, at] = open.top();
     open.pop();
     const Node& node = nodes_[at];
@@ -72,7 +87,7 @@ double KeyframeTree::way_m(int a, int b, std::span<const std::pair<int, int>> jo
     const auto [first, last] = joined.equal_range(at);
     for (auto join = first; join != last; ++join) reach(join->second, way_m);
   }
-  return least_m[b];
+  return least_m;
 }
 
 }  // namespace kintsugi::mapper

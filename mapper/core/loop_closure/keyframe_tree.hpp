@@ -24,6 +24,8 @@ class KeyframeTree {
   /// The same; from one tree to another the shortest way over these joins, pairs of keyframes that
   /// saw the same surface.
   double way_m(int a, int b, std::span<const std::pair<int, int>> joins) const;
+  /// The same to all keyframes, by number.
+  std::vector<double> ways_m(int from, std::span<const std::pair<int, int>> joins) const;
 
   /// The keyframe from which the camera came to this one; itself for one without.
   int from(int keyframe) const { return nodes_[keyframe].from; }
@@ -37,6 +39,9 @@ class KeyframeTree {
     int root = 0;
     std::vector<int> to;
   };
+
+  std::vector<double> least_ways_m(int from, std::span<const std::pair<int, int>> joins,
+                                   std::optional<int> until = {}) const;
 
   std::vector<Node> nodes_;
 };

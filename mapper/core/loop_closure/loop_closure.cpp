@@ -103,13 +103,16 @@ std::optional<int> LoopClosure::find_released_near(const Pose& X_WC) const {
   return nearest;
 }
 
-double LoopClosure::way_to_m(int keyframe) const {
-  if (std::max(keyframe, last_at_) >= tree_.size()) return path_.length_m();  // a part begins
+std::vector<double> LoopClosure::ways_m() const {
+  std::vector<double> ways_m(keyframes_.size(), path_.length_m());
+  if (last_at_ >= tree_.size()) return ways_m;  // a part begins
   std::vector<std::pair<int, int>> joins;
   for (const MapDeformation::PartLoop& loop : deformation_.loops()) {
     joins.emplace_back(loop.link.later, loop.link.earlier);
   }
-  return std::min(tree_.way_m(keyframe, last_at_, joins), path_.length_m());
+  const std::vector<double> in_tree_m = tree_.ways_m(last_at_, joins);
+  for (std::size_t i = 0; i < in_tree_m.size(); ++i) ways_m[i] = std::min(ways_m[i], in_tree_m[i]);
+  return ways_m;
 }
 
 void LoopClosure::go_to(int keyframe) {

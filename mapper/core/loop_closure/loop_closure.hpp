@@ -67,10 +67,10 @@ class LoopClosure {
     return tree_.within(keyframe, config_.reach_m);
   }
 
-  /// Length of the way on which tracking may have drifted between a keyframe and the one near which
-  /// the camera is, or was: from one part to another over the loops that join them, and of all the
-  /// camera's path, where none do.
-  double way_to_m(int keyframe) const;
+  /// By keyframe, length of the way on which tracking may have drifted between it and the one near
+  /// which the camera is, or was: from one part to another over the loops that join them, and of
+  /// all the camera's path, where none do.
+  std::vector<double> ways_m() const;
 
   /// The nearest of the released keyframes that a camera at this pose is near, as corrected.
   std::optional<int> find_released_near(const Pose& X_WC) const;

@@ -30,6 +30,13 @@ std::vector<int> smallest(std::vector<std::pair<double, int>> keys, int count) {
   return numbers;
 }
 
+std::vector<int> without_duplicates(std::vector<int> numbers, const std::vector<int>& more) {
+  for (const int number : more) {
+    if (std::ranges::find(numbers, number) == numbers.end()) numbers.push_back(number);
+  }
+  return numbers;
+}
+
 }  // namespace
 
 SurfaceMap Keyframe::surface() const {
@@ -94,25 +101,20 @@ void KeyframeMap::add_guest(std::shared_ptr<Keyframe> keyframe) {
   is_guest_.push_back(true);
 }
 
-std::vector<int> KeyframeMap::similar_to(const KeyframeAppearance& appearance) {
+std::vector<int> KeyframeMap::similar_to(const KeyframeAppearance& appearance,
+                                         const std::function<bool(int)>& is_near) {
   finish_last();
-  return similar_to(appearance, [this](int number) { return !is_guest_[number]; });
+  const auto is_own = [this](int number) { return !is_guest_[number]; };
+  return without_duplicates(by_features(appearance, is_own), by_depth(appearance, [&](int number) {
+                              return is_own(number) && is_near(number);
+                            }));
 }
 
 std::vector<int> KeyframeMap::similar_to(int number, const std::function<bool(int)>& is_candidate) {
   finish_last();
-  return similar_to(keyframes_[number]->appearance, is_candidate);
-}
-
-std::vector<int> KeyframeMap::similar_to(const KeyframeAppearance& appearance,
-                                         const std::function<bool(int)>& is_candidate) const {
-  std::vector<int> numbers = by_features(appearance, is_candidate);
-  for (const int number : by_depth(appearance, is_candidate)) {
-    if (std::find(numbers.begin(), numbers.end(), number) == numbers.end()) {
-      numbers.push_back(number);
-    }
-  }
-  return numbers;
+  const KeyframeAppearance& appearance = keyframes_[number]->appearance;
+  return without_duplicates(by_features(appearance, is_candidate),
+                            by_depth(appearance, is_candidate));
 }
 
 void KeyframeMap::finish_last() {

@@ -86,8 +86,10 @@ class KeyframeMap {
   bool is_guest(int number) const { return is_guest_[number]; }
 
   /// Numbers of the most similar keyframes, without duplicates: first by the number of shared
-  /// features, most first, then by depth thumbnail, most similar first. Not those of guests.
-  std::vector<int> similar_to(const KeyframeAppearance& appearance);
+  /// features, most first, then by depth thumbnail, most similar first: of those for which
+  /// `is_near` is true. Not those of guests.
+  std::vector<int> similar_to(const KeyframeAppearance& appearance,
+                              const std::function<bool(int)>& is_near);
 
   /// The same for keyframe `number`, of all for which `is_candidate` is true.
   std::vector<int> similar_to(int number, const std::function<bool(int)>& is_candidate);
@@ -102,8 +104,6 @@ class KeyframeMap {
   std::shared_ptr<const Keyframe> share(int number) const { return keyframes_[number]; }
 
  private:
-  std::vector<int> similar_to(const KeyframeAppearance& appearance,
-                              const std::function<bool(int)>& is_candidate) const;
   std::vector<int> by_features(const KeyframeAppearance& appearance,
                                const std::function<bool(int)>& is_candidate) const;
   std::vector<int> by_depth(const KeyframeAppearance& appearance,

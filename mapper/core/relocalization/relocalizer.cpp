@@ -11,6 +11,8 @@
 namespace kintsugi::mapper {
 namespace {
 
+constexpr int kTries = 2;  // for a frame
+
 /// The level to which KeyframeAppearance::intensity belongs.
 const SurfaceMap& coarse(const SurfacePyramid& pyramid) {
   return pyramid[std::min<std::size_t>(1, pyramid.size() - 1)];
@@ -59,31 +61,42 @@ std::optional<TrackingResult> Relocalizer::find(const TrackingInput& frame, cons
                                                 const ModelFrom& model_from,
                                                 const PlaceOf& place_of) {
   const KeyframeAppearance appearance = appearance_of(frame, config_.keyframes.max_features);
-  const std::vector<int> candidates = keyframes_.similar_to(appearance);
-  if (candidates.empty()) return std::nullopt;
-  auto result = try_keyframe(candidates.front(), appearance, frame, tracker, model_from, place_of);
-  if (!result && candidates.size() > 1) {
-    const int other = candidates[1 + turn_++ % (candidates.size() - 1)];
-    result = try_keyframe(other, appearance, frame, tracker, model_from, place_of);
+  const auto place = [&](int number) {
+    return place_of ? place_of(number) : Place{.way_m = tracker.path_m()};
+  };
+  const auto is_in_reach = [&](const Place& place, const Pose& X_NC) {
+    return tracker.can_be_at(place.motion * X_NC, frame.utime, place.way_m, tracker.reach_m());
+  };
+  const std::vector<int> candidates = keyframes_.similar_to(
+      appearance, [&](int number) { return is_in_reach(place(number), keyframes_[number].X_WC); });
+  int num_tried = 0;
+  for (std::size_t i = 0; i < candidates.size() && num_tried < kTries; ++i) {
+    const int number = candidates[i == 0 ? 0 : 1 + turn_++ % (candidates.size() - 1)];
+    const Keyframe& keyframe = keyframes_[number];
+    Candidate candidate{number, place(number), {}};
+    if (const auto X_KC = pose_from_features(keyframe.appearance.features, appearance.features)) {
+      candidate.X_NC_features = keyframe.X_WC * *X_KC;
+    }
+    if (!is_in_reach(candidate.place, candidate.X_NC_features.value_or(keyframe.X_WC))) continue;
+    ++num_tried;
+    if (auto found = try_candidate(candidate, appearance, frame, tracker, model_from)) return found;
   }
-  return result;
+  return std::nullopt;
 }
 
-std::optional<TrackingResult> Relocalizer::try_keyframe(
-    int number, const KeyframeAppearance& appearance, const TrackingInput& frame,
-    const Tracker& tracker, const ModelFrom& model_from, const PlaceOf& place_of) const {
+std::optional<TrackingResult> Relocalizer::try_candidate(const Candidate& candidate,
+                                                         const KeyframeAppearance& appearance,
+                                                         const TrackingInput& frame,
+                                                         const Tracker& tracker,
+                                                         const ModelFrom& model_from) const {
+  const auto& [number, place, X_NC_features] = candidate;
   const Keyframe& keyframe = keyframes_[number];
   const Pose& X_NK = keyframe.X_WC;  // N: as the keyframe was tracked
-  std::optional<Pose> X_NC_features;
-  if (const auto X_KC = pose_from_features(keyframe.appearance.features, appearance.features)) {
-    X_NC_features = X_NK * *X_KC;
-  }
   const int levels = static_cast<int>(frame.surface_C.size());
   const Model seen_then{pyramid_from_surface(keyframe.surface(), levels), X_NK, voxel_m_};
   const SurfaceMap& surface_K = seen_then.surface_V.front();
   TrackingResult near = tracker.register_anew(frame, seen_then, X_NC_features.value_or(X_NK));
   if (near.quality.overlap_share < config_.min_overlap_share) return std::nullopt;
-  const Place place = place_of ? place_of(number) : Place{.way_m = tracker.path_m()};
   if (!tracker.can_be_at(place.motion * near.X_WC, frame.utime, place.way_m)) return std::nullopt;
 
   // U: as the volume was. Of a released keyframe tracking has drifted since then.

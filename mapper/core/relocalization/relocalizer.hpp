@@ -24,6 +24,9 @@ namespace kintsugi::mapper {
 /// is an independent second estimate; the requirements are then lower (with_features), because
 /// after a long loop the accumulated drift puts the frame a few centimetres off the map.
 ///
+/// A candidate is tried only where the camera can have got: otherwise rooms that look alike take
+/// the turns of the right one until the camera has been lost for long enough to be in them.
+///
 /// The work for one frame is bounded: the best candidate is tried, and one of the others in turn,
 /// so that all candidates are tried within as many frames.
 class Relocalizer {
@@ -76,10 +79,15 @@ class Relocalizer {
   int num_keyframes() const { return keyframes_.size(); }
 
  private:
-  std::optional<TrackingResult> try_keyframe(int number, const KeyframeAppearance& appearance,
-                                             const TrackingInput& frame, const Tracker& tracker,
-                                             const ModelFrom& model_from,
-                                             const PlaceOf& place_of) const;
+  struct Candidate {
+    int number = 0;  ///< of the keyframe
+    Place place;
+    std::optional<Pose> X_NC_features;  ///< from features, in the frame N of the keyframe
+  };
+  std::optional<TrackingResult> try_candidate(const Candidate& candidate,
+                                              const KeyframeAppearance& appearance,
+                                              const TrackingInput& frame, const Tracker& tracker,
+                                              const ModelFrom& model_from) const;
   /// `X_WC_features`: the pose from features, if there is one.
   bool is_accepted(const TrackingResult& result, const std::optional<Pose>& X_WC_features,
                    std::optional<double> correlation) const;
@@ -87,7 +95,7 @@ class Relocalizer {
   Config config_;
   KeyframeMap keyframes_;
   double voxel_m_ = Model().voxel_m;  ///< of the map, as in the last model that was remembered
-  std::size_t turn_ = 0;              ///< chooses among the candidates after the best one
+  std::size_t turn_ = 0;              ///< chooses among the candidates after the first one
 };
 
 }  // namespace kintsugi::mapper

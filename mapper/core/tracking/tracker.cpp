@@ -162,11 +162,12 @@ void Tracker::change_frame(const Pose& X_NW) {
   if (last_frame_) last_frame_->X_WV = X_NW * last_frame_->X_WV;
 }
 
-bool Tracker::can_be_at(const Pose& X_WC, std::int64_t utime, double way_m) const {
+bool Tracker::can_be_at(const Pose& X_WC, std::int64_t utime, double way_m, double reach_m) const {
   if (!has_pose_) return true;
   const double distance_m = (X_WC.translation() - X_WC_.translation()).norm();
   const double seconds = 1e-6 * static_cast<double>(utime - utime_);
-  return distance_m <= kPoseNoise_m + config_.max_speed * seconds + config_.max_drift_share * way_m;
+  return distance_m - reach_m <=
+         kPoseNoise_m + config_.max_speed * seconds + config_.max_drift_share * way_m;
 }
 
 bool Tracker::follows_motion(const Registration& registration, std::int64_t utime) const {

@@ -81,8 +81,13 @@ class Tracker {
 
   /// Whether the camera, which was at the last good pose, can be here at this device time
   /// (microseconds), where tracking has drifted on a way of `way_m` between the two. Before the
-  /// first pose it can be anywhere.
-  bool can_be_at(const Pose& X_WC, std::int64_t utime, double way_m) const;
+  /// first pose it can be anywhere. With `reach_m`: here or so near to it.
+  bool can_be_at(const Pose& X_WC, std::int64_t utime, double way_m, double reach_m = 0.0) const;
+
+  /// How far from its start register_anew() looks, metres.
+  double reach_m() const {
+    return config_.registration.wide_gate_factor * config_.registration.gates.max_distance_m;
+  }
 
   /// Length of the path to the last good pose, without jumps.
   double path_m() const { return path_m_; }

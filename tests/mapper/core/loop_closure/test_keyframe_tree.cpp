@@ -60,6 +60,10 @@ TEST(KeyframeTree, GoesToOtherTreesOverJoins) {
   EXPECT_EQ(tree.way_m(22, 1, Joins{{2, 10}, {12, 20}, {7, 23}}), 5.0);
   EXPECT_EQ(tree.way_m(0, 7, Joins{{0, 8}, {8, 7}}), 7.0) << "of one tree, that of the tree";
   EXPECT_EQ(tree.way_m(2, 30, Joins{{15, 0}, {3, 18}}), kNoWay);
+
+  const Joins joins = {{2, 10}, {12, 20}, {7, 23}, {0, 8}, {8, 7}};
+  const std::vector<double> ways_m = tree.ways_m(1, joins);
+  for (int i = 0; i < tree.size(); ++i) EXPECT_EQ(ways_m[i], tree.way_m(1, i, joins)) << i;
 }
 
 TEST(KeyframeTree, IsEmptyAtFirst) { EXPECT_TRUE(KeyframeTree().within(0, 10.0).empty()); }

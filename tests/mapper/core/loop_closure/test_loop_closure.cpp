@@ -64,10 +64,10 @@ TEST(LoopClosure, CountsTheWayToAKeyframeAndNotHowFarTheCameraHasGone) {
   go_to(0.0, true);
   for (const double x_m : {0.3, 0.6, 0.9}) go_to(x_m, false);
   go_to(1.0, true);
-  EXPECT_NEAR(loops.way_to_m(0), 1.0, 1e-9);
+  EXPECT_NEAR(loops.ways_m()[0], 1.0, 1e-9);
   for (int i = 0; i < 100; ++i) go_to(i % 2 == 0 ? 1.05 : 1.0, false);  // 5 m at the second one
-  EXPECT_NEAR(loops.way_to_m(0), 1.0, 1e-9);
-  EXPECT_EQ(loops.way_to_m(1), 0.0);
+  EXPECT_NEAR(loops.ways_m()[0], 1.0, 1e-9);
+  EXPECT_EQ(loops.ways_m()[1], 0.0);
   go_to(1.1, false);  // still near it
   go_to(1.6, true);
   EXPECT_NEAR(loops.take_new()->way_m, 0.6, 1e-9) << "from the keyframe";

@@ -71,7 +71,9 @@ TEST(KeyframeMap, StaysSmallWhileTheCameraStaysInOnePlace) {
 TEST(KeyframeMap, RanksByDepthAndPrefersTheEarlierOfEquals) {
   KeyframeMap map({});
   for (const float depth_m : {3.0F, 1.0F, 2.0F, 1.0F}) add(map, moved(map.size()), depth_m);
-  EXPECT_THAT(map.similar_to(appearance_of(flat_frame(1.1F), 0)), ElementsAre(1, 3, 2, 0));
+  const KeyframeAppearance appearance = appearance_of(flat_frame(1.1F), 0);
+  EXPECT_THAT(map.similar_to(appearance, [](int) { return true; }), ElementsAre(1, 3, 2, 0));
+  EXPECT_THAT(map.similar_to(appearance, [](int i) { return i != 3; }), ElementsAre(1, 2, 0));
 }
 
 TEST(KeyframeMap, KeepsTheSurfaceToAQuarterOfAMillimetre) {
@@ -79,7 +81,7 @@ TEST(KeyframeMap, KeepsTheSurfaceToAQuarterOfAMillimetre) {
   TrackingInput frame = flat_frame(1.2345F);
   frame.surface_C[1].depth_m(0, 0) = std::numeric_limits<float>::quiet_NaN();
   map.add(Pose::Identity(), frame, frame.surface_C[1]);
-  map.similar_to(appearance_of(frame, 0));
+  map.finish_last();
   const SurfaceMap surface = map[0].surface();
   EXPECT_EQ(surface.intrinsics, frame.surface_C[1].intrinsics);
   EXPECT_NEAR(surface.depth_m(60, 80), 1.2345, 0.000126);

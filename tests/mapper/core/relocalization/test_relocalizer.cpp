@@ -218,6 +218,26 @@ TEST(Relocalizer, RefusesAPlaceFartherAwayThanTrackingDriftsOnTheWay) {
   EXPECT_TRUE(found_after(200.0));
 }
 
+/// The other keyframes are in other rooms, which the camera cannot have reached.
+TEST(Relocalizer, TriesAtOnceWhatTheCameraCanHaveReached) {
+  OfficeMap map(false);  // without features
+  const RgbdFrame& frame = OfficeMap::office().frames[1];
+  const Pose& X_WC = OfficeMap::office().true_path[1].X_WC;
+  map.tracker.start_at(X_WC, input_from(frame, false), 1.0);
+  const Pose X_away(Eigen::Translation3d(10.0, 0.0, 0.0));
+  int num_near = 0;
+  for (int only = 0; only < map.relocalizer.num_keyframes(); ++only) {
+    const double distance_m =
+        (map.relocalizer.keyframes()[only].X_WC.translation() - X_WC.translation()).norm();
+    if (distance_m > 0.2) continue;
+    ++num_near;
+    EXPECT_TRUE(map.find(input_from(frame, false), [&](int number) {
+      return Relocalizer::Place{.motion = number == only ? Pose::Identity() : X_away};
+    })) << only;
+  }
+  EXPECT_GT(num_near, 1);
+}
+
 /// On the way back tracking has drifted by 0.3 m, and so has what the volume has of the place.
 TEST(Relocalizer, LeavesTheCameraInTheVolumeThatCoversThePlace) {
   OfficeMap map(true);

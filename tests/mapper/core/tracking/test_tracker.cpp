@@ -138,6 +138,8 @@ TEST(Tracker, KnowsWhereTheCameraCanHaveGot) {
   EXPECT_FALSE(tracker.can_be_at(metres_away(0.3), 100'000, 0.0));
   EXPECT_TRUE(tracker.can_be_at(metres_away(0.3), 200'000, 0.0));
   EXPECT_TRUE(tracker.can_be_at(metres_away(0.3), 100'000, 10.0)) << "after a drift of 2 %";
+  EXPECT_TRUE(tracker.can_be_at(metres_away(0.5), 100'000, 0.0, 0.3)) << "near to it";
+  EXPECT_FALSE(tracker.can_be_at(metres_away(0.6), 100'000, 0.0, 0.3));
 }
 
 TEST(Tracker, IsLostOnABlankFrameAndRecoversWhenTheViewReturns) {
