@@ -28,25 +28,21 @@ run_trio() {
   }
 }
 
-# wait_for_file FILE: waits until FILE is not empty, at most 30 s.
-wait_for_file() {
-  local i
-  for ((i = 0; i < 300; i++)); do
-    [[ -s "$1" ]] && return
-    sleep 0.1
-  done
-  fail "$1 did not appear"
-}
-
-# wait_for_text TEXT FILE: waits until a line of FILE matches TEXT, at most 60 s.
-wait_for_text() {
+# wait_until COMMAND...: waits until COMMAND succeeds, at most 60 s; false when it has not.
+wait_until() {
   local i
   for ((i = 0; i < 600; i++)); do
-    grep -q "$1" "$2" 2>/dev/null && return
+    "$@" && return
     sleep 0.1
   done
-  fail "$2 does not say '$1': $(cat "$2")"
+  return 1
 }
+
+# wait_for_file FILE: waits until FILE is not empty.
+wait_for_file() { wait_until test -s "$1" || fail "$1 did not appear"; }
+
+# wait_for_text TEXT FILE: waits until a line of FILE matches TEXT.
+wait_for_text() { wait_until grep -qs "$1" "$2" || fail "$2 does not say '$1': $(cat "$2")"; }
 
 # A short run of the synthetic office with large voxels: it takes seconds, and some slices leave the volume before the
 # end. The session number is fixed, because it is part of the map.
