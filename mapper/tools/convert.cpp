@@ -14,9 +14,12 @@
 #include "mapper/conversion/recording_writer.hpp"
 #include "mapper/source/open_source.hpp"
 #include "mapper/source/recorded_poses.hpp"
+#include "mapper/tools/progress.hpp"
 
 namespace {
 
+using kintsugi::mapper::FrameSource;
+using kintsugi::mapper::RecordingWriter;
 using kintsugi::mapper::RgbdFrame;
 using kintsugi::mapper::SourceConfig;
 using kintsugi::mapper::SourceNotice;
@@ -28,18 +31,24 @@ struct Options {
   int max_frames = 0;
 };
 
+/// At most `max_frames`, if that is not 0; returns how many there were.
+int copy_frames(FrameSource& source, RecordingWriter& writer, int max_frames) {
+  const int total = static_cast<int>(source.status().frames_total);
+  kintsugi::mapper::Progress progress;
+  int num_frames = 0;
+  while (max_frames == 0 || num_frames < max_frames) {
+    const std::optional<RgbdFrame> frame = source.next();
+    if (!frame) break;
+    writer.add(*frame);
+    progress.show(++num_frames, total);
+  }
+  return num_frames;
+}
+
 int convert(const Options& options) {
   const auto source = kintsugi::mapper::open_frame_source(options.source);
   const auto writer = kintsugi::mapper::open_recording_writer(options.output, options.writing);
-  const int total = static_cast<int>(source->status().frames_total);
-  int num_frames = 0;
-  while (options.max_frames == 0 || num_frames < options.max_frames) {
-    const std::optional<RgbdFrame> frame = source->next();
-    if (!frame) break;
-    writer->add(*frame);
-    std::fprintf(stderr, "\rframe %d of %d", ++num_frames, total);
-  }
-  std::fputc('\n', stderr);
+  const int num_frames = copy_frames(*source, *writer, options.max_frames);
   if (kintsugi::stop_requested()) throw std::runtime_error("stopped; nothing was written");
   if (num_frames == 0) throw std::runtime_error("no frame can be read; nothing was written");
   const auto poses = kintsugi::mapper::recorded_poses(options.source.device);

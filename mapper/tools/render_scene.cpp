@@ -11,6 +11,7 @@
 #include "mapper/openni2_driver/recording/recording_uri.hpp"
 #include "mapper/synthetic/render/folder_writer.hpp"
 #include "mapper/synthetic/render/ground_truth.hpp"
+#include "mapper/tools/progress.hpp"
 
 namespace {
 
@@ -30,12 +31,15 @@ void render(const std::string& address, const std::string& folder, const std::st
   if (!config.ground_truth.empty()) write_ground_truth(sequence, config.ground_truth);
   const FrameRange range = FrameRange::parse(frames, sequence.num_frames());
   FolderWriter writer(sequence, folder);
-  for (int frame = range.first; frame < range.end; frame += range.step) {
-    writer.write_frame(frame);
-    std::fprintf(stderr, "\rframe %d of %d", frame + 1, range.end);
+  {
+    kintsugi::mapper::Progress progress;
+    for (int frame = range.first; frame < range.end; frame += range.step) {
+      writer.write_frame(frame);
+      progress.show(frame + 1, range.end);
+    }
   }
   writer.finish();
-  std::fprintf(stderr, "\nwrote %s\n", folder.c_str());
+  std::fprintf(stderr, "wrote %s\n", folder.c_str());
 }
 
 std::string scenes_and_options() {
