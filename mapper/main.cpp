@@ -2,6 +2,8 @@
 
 #include <variant>
 
+#include <malloc.h>
+
 #include "lcmtypes/base/run_main.hpp"
 #include "lcmtypes/base/stop_signal.hpp"
 #include "mapper/process/options.hpp"
@@ -10,6 +12,9 @@
 int main(int argc, char** argv) {
   using namespace kintsugi;
   install_stop_signals();
+  // Each thread would keep memory of its own that the others cannot use: after ten rounds of a
+  // room as much as the map takes.
+  mallopt(M_ARENA_MAX, 1);
   return run_main(argv, [&] {
     const auto parsed = mapper::parse_options(argc, argv);
     if (const int* exit_code = std::get_if<int>(&parsed)) return *exit_code;

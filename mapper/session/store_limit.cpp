@@ -33,7 +33,7 @@ void StoreLimit::poll() {
   thread_ = std::thread([this] {
     lower_priority_of_thread();
     rewrite();
-    malloc_trim(0);  // what a thread has freed stays with it, and the next one takes more
+    malloc_trim(0);  // by itself the heap gives back only what is free at its end
     is_working_ = false;
   });
 }

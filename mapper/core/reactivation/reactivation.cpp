@@ -31,7 +31,7 @@ auto in_background(Function function) {
       Function captured = std::move(function);  // is destroyed on this thread, too
       return alone.execute(captured);
     }();
-    malloc_trim(0);  // what a thread has freed stays with it, and the next one takes more
+    malloc_trim(0);  // by itself the heap gives back only what is free at its end
     return result;
   });
 }
