@@ -27,9 +27,14 @@ class FakeRun:
     def inputs(self, *rooms):
         return [Input("kitchen", "/somewhere"), *map(Input, rooms)]
 
+    def rendered(self, source):
+        return Input(source.name, f"/rendered/{source.name}")
+
     def trio(self, name, source, *options):
         (self.folder / name).mkdir()
-        (self.folder / name / "mapper.log").write_text("500 frames in 16.7 s (1 ms each): 500 located, 2 dropped\n")
+        loops = "4 loops closed, 0 contradicted; the map was corrected 3 times\n" if source.name == "loop" else ""
+        (self.folder / name / "mapper.log").write_text(
+            "500 frames in 16.7 s (1 ms each): 500 located, 2 dropped\n" + loops)
         return "  CPU: mapper 10.00 s, segmenter 2.00 s, viewer 1.00 s\n"
 
     def kintsugi(self, name, *arguments, may_fail):
@@ -44,7 +49,8 @@ class Live(unittest.TestCase):
 
     def test_a_line_for_each_input_in_both_tables(self):
         costs, measures = tables.parse_tables(self.section(TOLD))
-        self.assertEqual([row["recording"] for row in costs], ["kitchen", "office"])
+        self.assertEqual([row["recording"] for row in costs], ["kitchen", "office", "loop"])
+        self.assertEqual([row["corrections of the map"] for row in costs], ["0", "0", "3"])
         self.assertEqual(costs[0]["dropped"], "2")
         self.assertEqual(costs[0]["mapper, CPU-ms a frame"], "20.0")
         self.assertEqual(costs[0]["all three, CPU-ms a frame"], "26.0")

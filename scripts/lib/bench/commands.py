@@ -36,7 +36,7 @@ OBJECTS = (*TRIO, "kintsugi-diff", "kintsugi-evaluate", "kintsugi-ground-truth",
 
 SECTIONS = (
     Section("live", "mapper, segmenter and viewer at the camera's rate: CPU, frames dropped, what of the view is segmented",
-            live.live, (*TRIO, "kintsugi-evaluate")),
+            live.live, (*TRIO, "kintsugi-evaluate", "kintsugi-render-scene")),
     Section("paths", "the mapper alone: time of a frame, error of the camera's path", mapping.paths, MAPPER),
     Section("recordings", "every recording: frames located, parts of the map, error of the path, cost",
             recordings.recordings, MAPPER, needs_recording=True),

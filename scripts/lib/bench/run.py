@@ -149,6 +149,13 @@ class Run:
                           "--max-frames", "1", "--ground-truth", truth])
         return truth / "groundtruth.txt"
 
+    def rendered(self, source):
+        """A synthetic room as a recording."""
+        name = f"rendered_{source.name}"
+        frames = ["--frames", f"0:{self.frames}:1"] if self.frames else []
+        self.kintsugi("render-scene", "--out", self.folder / name, *frames, source.device, log=f"{name}_messages")
+        return Input(source.name, str(self.folder / name))
+
     def trio(self, name, source, *options):
         """scripts/trio in the folder NAME; returns what it prints."""
         return self.execute([f"{SCRIPTS}/trio", "--private", "--device", source.device, "--out", name,
