@@ -12,8 +12,8 @@
 int main(int argc, char** argv) {
   using namespace kintsugi;
   install_stop_signals();
-  // Each thread would keep memory of its own that the others cannot use: after ten rounds of a
-  // room as much as the map takes.
+  // Each thread would keep memory of its own that the others cannot use: after four rounds of a
+  // room more than all that is in use.
   mallopt(M_ARENA_MAX, 1);
   return run_main(argv, [&] {
     const auto parsed = mapper::parse_options(argc, argv);

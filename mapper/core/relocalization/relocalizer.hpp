@@ -27,8 +27,8 @@ namespace kintsugi::mapper {
 /// A candidate is tried only where the camera can have got: otherwise rooms that look alike take
 /// the turns of the right one until the camera has been lost for long enough to be in them.
 ///
-/// The work for one frame is bounded: the best candidate is tried, and one of the others in turn,
-/// so that all candidates are tried within as many frames.
+/// The work for one frame is bounded: two candidates are tried, the best one and the others in
+/// turn, so that all candidates are tried within as many frames.
 class Relocalizer {
  public:
   struct Config {
