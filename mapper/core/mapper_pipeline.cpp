@@ -250,6 +250,9 @@ bool MapperPipeline::go_over_to_known_surface(const TrackingInput& input) {
       config_.same_surface.max_distance_vox * config_.volume.resolution_m +
       config_.loops.closer.verifier.max_disagreement_sigmas * found.quality.sigma_m;
   if (motion_size(difference) > limit_m) return false;
+  if (motion_size(difference) > config_.volume.resolution_m) {
+    loops_->measure_anew(*number, found, X_WC_, input.utime);
+  }
   tracker_.change_frame(found.X_WC * X_WC_.inverse(Eigen::Isometry));
   go_over_to(*number, found.X_WC, input);
   return true;

@@ -86,6 +86,36 @@ int KeyframeGraph::offer(const Loop& loop) {
   return num_confirmed + (is_confirmed ? 1 : 0);
 }
 
+bool KeyframeGraph::renew(const SharedView& view) {
+  const auto [later, earlier] = later_and_earlier(view.tracked_near, view.found_by);
+  // Keyframes that are near each other were tracked in one surface, and move with it.
+  const Pose X_TuC = nodes_[view.tracked_near].X_UK * view.X_TC;
+  const Pose X_FuC = nodes_[view.found_by].X_UK * view.X_FC;
+  const Pose X_FuTu = X_FuC * X_TuC.inverse(Eigen::Isometry);
+  const Pose X_EuLu = earlier == view.found_by ? X_FuTu : X_FuTu.inverse(Eigen::Isometry);
+  const auto as_measured = [&](int a, int b) -> Pose {
+    return nodes_[a].X_UK.inverse(Eigen::Isometry) * X_EuLu * nodes_[b].X_UK;
+  };
+  bool any = false;
+  bool is_there = false;
+  for (Loop& loop : confirmed_) {
+    if (ways_.way_m(later, loop.later) > config_.near_m) continue;
+    if (ways_.way_m(earlier, loop.earlier) > config_.near_m) continue;
+    loop.X_EL = as_measured(loop.earlier, loop.later);
+    any = true;
+    is_there = is_there || (loop.later == later && loop.earlier == earlier);
+  }
+  if (!any || is_there) return any;
+  const Matrix6d to_C =
+      adjoint((later == view.found_by ? view.X_FC : view.X_TC).inverse(Eigen::Isometry));
+  confirmed_.push_back({.later = later,
+                        .earlier = earlier,
+                        .X_EL = as_measured(earlier, later),
+                        .information_L = to_C.transpose() * view.information_C * to_C,
+                        .sigma_m = view.sigma_m});
+  return true;
+}
+
 bool KeyframeGraph::is_plausible(const Loop& loop) const {
   const Pose X_EL = X_WK_[loop.earlier].inverse(Eigen::Isometry) * X_WK_[loop.later];
   const double drift_m = motion_size(loop.X_EL.inverse(Eigen::Isometry) * X_EL);

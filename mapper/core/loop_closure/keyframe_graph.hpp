@@ -77,6 +77,12 @@ class KeyframeGraph {
   /// when it agrees with confirmed ones. A loop between two parts confirms none.
   int offer(const Loop& loop);
 
+  /// Takes a view that two places share. Confirmed loops between them are from now on as it has
+  /// them, and it is one more: without that the motions that were tracked would pull the places
+  /// apart again, and surface that is observed for hours moves by centimetres. Returns whether
+  /// there are any such loops.
+  bool renew(const SharedView& view);
+
   /// After a loop between two parts was offered: the loops that agree with it, itself among them,
   /// if they are to be preferred to those that do not; else none. Of a loop in one part none.
   std::vector<Loop> agreeing_to_join(const Loop& loop) const;

@@ -38,8 +38,16 @@ LoopCloser::~LoopCloser() {
 }
 
 void LoopCloser::add(NewKeyframe added, std::int64_t utime) {
+  append({std::move(added), utime + std::llround(1e6 * config_.delay_s)});
+}
+
+void LoopCloser::add(SharedView view, std::int64_t utime) {
+  append({std::move(view), utime + std::llround(1e6 * config_.delay_s)});
+}
+
+void LoopCloser::append(Job job) {
   const std::scoped_lock lock(mutex_);
-  queue_.push_back({std::move(added), utime + std::llround(1e6 * config_.delay_s)});
+  queue_.push_back(std::move(job));
   work_.notify_one();
 }
 
@@ -79,7 +87,9 @@ void LoopCloser::run() {
     std::exception_ptr failure;
     std::optional<MapCorrection> correction;
     try {
-      correction = work_on(job.added);
+      if (std::visit([this](const auto& added) { return work_on(added); }, job.added)) {
+        correction = this->correction();
+      }
     } catch (...) {
       failure = std::current_exception();
     }
@@ -94,7 +104,8 @@ void LoopCloser::run() {
   }
 }
 
-std::optional<MapCorrection> LoopCloser::work_on(const NewKeyframe& added) {
+/// Returns whether loops count that did not before.
+bool LoopCloser::work_on(const NewKeyframe& added) {
   keyframes_.push_back(added.keyframe);
   graph_.add(added.keyframe->X_WC, added.from, added.way_m, added.unseen);
   add_tracked(added);
@@ -106,7 +117,10 @@ std::optional<MapCorrection> LoopCloser::work_on(const NewKeyframe& added) {
     if (agreeing.size() > joining.size()) joining = std::move(agreeing);
   }
   num_confirmed += join(joining, added.noise);
-  if (num_confirmed == 0) return std::nullopt;
+  return num_confirmed > 0;
+}
+
+MapCorrection LoopCloser::correction() {
   const double largest_motion_m = graph_.optimize();
   return MapCorrection{.X_WK = graph_.poses_W(),
                        .parts = graph_.parts(),

@@ -10,6 +10,7 @@
 #include <mutex>
 #include <optional>
 #include <thread>
+#include <variant>
 #include <vector>
 
 #include "mapper/core/loop_closure/join_rule.hpp"
@@ -81,6 +82,9 @@ class LoopCloser {
   /// Keyframes come in the order of their numbers, from 0.
   void add(NewKeyframe added, std::int64_t utime);
 
+  /// Of keyframes that were added.
+  void add(SharedView view, std::int64_t utime);
+
   /// The newest correction that is due at this time; waits for it.
   /// @throws what the thread threw
   std::optional<MapCorrection> take_due(std::int64_t utime);
@@ -97,12 +101,15 @@ class LoopCloser {
 
  private:
   struct Job {
-    NewKeyframe added;
+    std::variant<NewKeyframe, SharedView> added;
     std::int64_t due_utime = 0;
   };
 
   void run();
-  std::optional<MapCorrection> work_on(const NewKeyframe& added);
+  bool work_on(const NewKeyframe& added);
+  bool work_on(const SharedView& view) { return graph_.renew(view); }
+  MapCorrection correction();
+  void append(Job job);
   int join(const std::vector<Loop>& loops, const DepthNoise& noise);
   void add_tracked(const NewKeyframe& added);
   std::vector<int> candidates_for(const NewKeyframe& added) const;

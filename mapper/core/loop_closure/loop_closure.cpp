@@ -121,6 +121,18 @@ void LoopClosure::go_to(int keyframe) {
   went_ = true;
 }
 
+void LoopClosure::measure_anew(int keyframe, const TrackingResult& found, const Pose& X_UC,
+                               std::int64_t utime) {
+  compare_newest();
+  closer_.add(SharedView{.tracked_near = last_at_,
+                         .X_TC = keyframes_[last_at_].X_WC.inverse(Eigen::Isometry) * X_UC,
+                         .found_by = keyframe,
+                         .X_FC = keyframes_[keyframe].X_WC.inverse(Eigen::Isometry) * found.X_WC,
+                         .information_C = found.information_C,
+                         .sigma_m = found.quality.sigma_m},
+              utime);
+}
+
 void LoopClosure::follow(const TrackingResult& located, bool is_keyframe, std::int64_t utime,
                          const DepthNoise& noise) {
   const Pose& X_UC = located.X_WC;

@@ -81,6 +81,11 @@ class LoopClosure {
   /// released until take_back().
   void go_to(int keyframe);
 
+  /// To be called before go_to(): the surface of this keyframe has found the camera. Loops between
+  /// the two places are as measured now.
+  void measure_anew(int keyframe, const TrackingResult& found, const Pose& X_UC,
+                    std::int64_t utime);
+
   /// To be called after each located frame; `is_keyframe`: it has become the newest keyframe.
   void follow(const TrackingResult& located, bool is_keyframe, std::int64_t utime,
               const DepthNoise& noise);

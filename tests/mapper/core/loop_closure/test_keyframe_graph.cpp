@@ -116,6 +116,54 @@ TEST_F(OutAndBack, ALoopThatTheOthersContradictIsGivenUpAndCounted) {
   EXPECT_NEAR(graph.X_WK(40).translation().y(), 0.0, 0.005);
 }
 
+/// The surface has moved by 3 cm since the loops were found.
+TEST_F(OutAndBack, LoopsAreAsMeasuredAnew) {
+  for (const int later : {36, 38, 40}) graph.offer(loop(later));
+  graph.optimize();
+  const Pose X_39C = at(0.1, 0.2);
+  const Pose X_2_39 = drifted(2).inverse() * drifted(39) * at(0.0, 0.03);
+  ASSERT_TRUE(
+      graph.renew({.tracked_near = 39, .X_TC = X_39C, .found_by = 2, .X_FC = X_2_39 * X_39C}));
+  ASSERT_EQ(graph.loops().size(), 4U) << "and the view is one more";
+  EXPECT_EQ(graph.loops().back().later, 39);
+  EXPECT_EQ(graph.loops().back().earlier, 2);
+  for (const Loop& each : graph.loops()) {
+    const Pose X_2E = drifted(2).inverse() * drifted(each.earlier);
+    const Pose X_L39 = drifted(each.later).inverse() * drifted(39);
+    EXPECT_TRUE((X_2E * each.X_EL * X_L39).isApprox(X_2_39, 1e-9)) << each.later;
+  }
+  const std::vector<Loop> loops = graph.loops();
+  ASSERT_TRUE(
+      graph.renew({.tracked_near = 2, .X_TC = X_2_39 * X_39C, .found_by = 39, .X_FC = X_39C}));
+  ASSERT_EQ(graph.loops().size(), 4U) << "the same view again";
+  for (std::size_t i = 0; i < loops.size(); ++i) {
+    EXPECT_TRUE(graph.loops()[i].X_EL.isApprox(loops[i].X_EL, 1e-9)) << "the other way round";
+  }
+}
+
+TEST_F(OutAndBack, TheMapFollowsWhatIsMeasuredAnew) {
+  for (const int later : {36, 38, 40}) graph.offer(loop(later));
+  graph.optimize();
+  const Pose X_2_39 = drifted(2).inverse() * drifted(39) * at(0.0, 0.03);
+  const auto left_m = [&] {
+    return (X_2_39.inverse() * graph.X_WK(2).inverse() * graph.X_WK(39)).translation().norm();
+  };
+  ASSERT_GT(left_m(), 0.02);
+  SharedView view{.tracked_near = 39, .found_by = 2, .X_FC = X_2_39, .information_C = precise()};
+  view.sigma_m = kSigma_m;
+  graph.renew(view);
+  graph.optimize();
+  EXPECT_LT(left_m(), 0.005);
+  EXPECT_EQ(graph.num_contradicted(), 0);
+}
+
+TEST_F(OutAndBack, NoLoopIsMeasuredAnewWhereNoneCounts) {
+  graph.offer(loop(38));
+  EXPECT_FALSE(graph.renew({.tracked_near = 39, .found_by = 2})) << "not confirmed";
+  for (const int later : {26, 27}) graph.offer(loop(later));
+  EXPECT_FALSE(graph.renew({.tracked_near = 39, .found_by = 2})) << "6 m of path away";
+}
+
 TEST_F(OutAndBack, WhatComesAfterACorrectionMovesWithTheKeyframeItComesFrom) {
   for (const int later : {38, 40}) graph.offer(loop(later));
   graph.optimize();

@@ -108,6 +108,29 @@ TEST(LoopCloser, ClosesNoLoopBetweenDifferentPlaces) {
   }
 }
 
+TEST(LoopCloser, MovesTheSecondVisitToWhereAViewOfBothHasIt) {
+  constexpr int kFirst = 3;
+  constexpr int kSecond = kKeyframes + 3;
+  TwoVisits visits("office", "office", true);
+  const auto before = visits.finish();
+  ASSERT_TRUE(before);
+  SharedView view{.tracked_near = kSecond, .found_by = kFirst};
+  view.X_FC = before->X_WK[kFirst].inverse() * before->X_WK[kSecond];
+  view.X_FC.translation() += Eigen::Vector3d(0.0, 0.03, 0.0);
+  view.information_C = Matrix6d::Identity() * kNear;
+  view.sigma_m = 0.001;
+  visits.closer.add(view, 0);
+  const auto after = visits.finish();
+  ASSERT_TRUE(after);
+  EXPECT_EQ(after->num_contradicted, 0);
+  const Pose left = view.X_FC.inverse() * after->X_WK[kFirst].inverse() * after->X_WK[kSecond];
+  EXPECT_LT(left.translation().norm(), 0.005);
+
+  TwoVisits elsewhere("office", "kitchen", true);
+  elsewhere.closer.add(view, 0);
+  EXPECT_FALSE(elsewhere.finish()) << "no loop was closed there";
+}
+
 TEST(LoopCloser, CorrectionsComeOutAtATimeThatDependsOnTheFramesAlone) {
   TwoVisits visits("office", "office", true);
   const std::int64_t delay_us = std::llround(1e6 * LoopCloser::Config{}.delay_s);

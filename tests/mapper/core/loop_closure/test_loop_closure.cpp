@@ -25,29 +25,55 @@ TrackingInput input_of(const RgbdFrame& frame, std::int64_t utime) {
   return {utime, pyramid_from_depth(frame.depth_m, frame.intrinsics, 0, 3, 6.0F), frame.color_rgb};
 }
 
-TEST(LoopClosure, CorrectsInTimeAlsoIfNoKeyframeFollows) {
-  const testing::SyntheticRun run = testing::synthetic_run("office", 2 * kKeyframes, true, 5);
+/// The camera comes back after a way on which it drifted.
+class TwoVisits : public ::testing::Test {
+ protected:
+  TwoVisits() {
+    const testing::SyntheticRun run = testing::synthetic_run("office", 2 * kKeyframes, true, 5);
+    for (int number = 0; number < 2 * kKeyframes; ++number) {
+      const bool is_back = number >= kKeyframes;
+      if (number == kKeyframes) keyframes.release_if([](const Keyframe&) { return true; });
+      // Frames 0, 10, 20.. for the first visit, 5, 15, 25.. for the second.
+      const int i = is_back ? 2 * (number - kKeyframes) + 1 : 2 * number;
+      const TrackingInput input = input_of(run.frames[i], utime);
+      TrackingResult located;
+      located.X_WC = (is_back ? drift() : Pose::Identity()) * run.true_path[i].X_WC;
+      // 1 mm from one keyframe to the next, and 0.2 m from the first visit to the second.
+      located.information_C = Matrix6d::Identity() * (number == kKeyframes ? 25.0 : 1e6);
+      keyframes.add(located.X_WC, input, input.surface_C[1]);
+      utime = number * kSecond_us;
+      loops.follow(located, true, utime, {});
+    }
+  }
+
   const LoopClosure::Config config;
   KeyframeMap keyframes{{}};
-  LoopClosure loops(config, keyframes);
+  LoopClosure loops{config, keyframes};
   std::int64_t utime = 0;
-  for (int number = 0; number < 2 * kKeyframes; ++number) {
-    const bool is_back = number >= kKeyframes;
-    if (number == kKeyframes) keyframes.release_if([](const Keyframe&) { return true; });
-    // Frames 0, 10, 20.. for the first visit, 5, 15, 25.. for the second.
-    const int i = is_back ? 2 * (number - kKeyframes) + 1 : 2 * number;
-    const TrackingInput input = input_of(run.frames[i], utime);
-    TrackingResult located;
-    located.X_WC = (is_back ? drift() : Pose::Identity()) * run.true_path[i].X_WC;
-    // 1 mm from one keyframe to the next, and 0.2 m from the first visit to the second.
-    located.information_C = Matrix6d::Identity() * (number == kKeyframes ? 25.0 : 1e6);
-    keyframes.add(located.X_WC, input, input.surface_C[1]);
-    utime = number * kSecond_us;
-    loops.follow(located, true, utime, {});
-  }
+};
+
+TEST_F(TwoVisits, AreCorrectedInTimeAlsoIfNoKeyframeFollows) {
   const auto correction = loops.take_due(utime + std::llround(1e6 * config.closer.delay_s));
   ASSERT_TRUE(correction);
   EXPECT_EQ(correction->X_WK.size(), 2U * kKeyframes) << "with what the last keyframe brought";
+}
+
+TEST_F(TwoVisits, AreWhereTheSurfaceOfTheFirstFindsTheCameraOfTheSecond) {
+  constexpr int kFirst = 3;
+  constexpr int kSecond = 2 * kKeyframes - 1;
+  const auto before = loops.finish();
+  ASSERT_TRUE(before);
+  Pose X_FC = before->X_WK[kFirst].inverse() * before->X_WK[kSecond];
+  X_FC.translation() += Eigen::Vector3d(0.03, 0.0, 0.0);
+  TrackingResult found;
+  found.X_WC = keyframes[kFirst].X_WC * X_FC;
+  found.information_C = Matrix6d::Identity() * 1e6;
+  found.quality.sigma_m = 0.001;
+  loops.measure_anew(kFirst, found, keyframes[kSecond].X_WC, utime);
+  const auto after = loops.finish();
+  ASSERT_TRUE(after);
+  const Pose left = X_FC.inverse() * after->X_WK[kFirst].inverse() * after->X_WK[kSecond];
+  EXPECT_LT(left.translation().norm(), 0.005);
 }
 
 TEST(LoopClosure, CountsTheWayToAKeyframeAndNotHowFarTheCameraHasGone) {
