@@ -104,7 +104,7 @@ void LoopCloser::run() {
   }
 }
 
-/// Returns whether loops count that did not before.
+/// Returns whether loops count that did not before; of a view, whether it has changed any.
 bool LoopCloser::work_on(const NewKeyframe& added) {
   keyframes_.push_back(added.keyframe);
   graph_.add(added.keyframe->X_WC, added.from, added.way_m, added.unseen);

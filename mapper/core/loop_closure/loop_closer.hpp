@@ -82,7 +82,8 @@ class LoopCloser {
   /// Keyframes come in the order of their numbers, from 0.
   void add(NewKeyframe added, std::int64_t utime);
 
-  /// Of keyframes that were added.
+  /// Loops between both places are as this view has them, see KeyframeGraph::renew(). Its keyframes
+  /// have been added before.
   void add(SharedView view, std::int64_t utime);
 
   /// The newest correction that is due at this time; waits for it.

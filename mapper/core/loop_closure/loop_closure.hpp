@@ -81,8 +81,8 @@ class LoopClosure {
   /// released until take_back().
   void go_to(int keyframe);
 
-  /// To be called before go_to(): the surface of this keyframe has found the camera. Loops between
-  /// the two places are as measured now.
+  /// To be called before go_to(): the surface of this keyframe has found the camera, which is
+  /// tracked at X_UC. Loops between the two places are from now on as measured here.
   void measure_anew(int keyframe, const TrackingResult& found, const Pose& X_UC,
                     std::int64_t utime);
 
