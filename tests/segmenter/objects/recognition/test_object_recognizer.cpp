@@ -22,6 +22,7 @@ using testing::box_on_table;
 using testing::kBall;
 using testing::kBox;
 using testing::kBoxSize_m;
+using testing::kTable;
 using testing::MapOfThings;
 
 const Eigen::Vector3d kUp_W = -Eigen::Vector3d::UnitY();
@@ -168,6 +169,43 @@ TEST(ObjectRecognizer, DoesNotKnowAFlatPatchOfOneColour) {
   EXPECT_FALSE(is_known(board_with(tan, 0.0F)));
   EXPECT_TRUE(is_known(board_with({60, 80, 160}, 0.0F)));
   EXPECT_TRUE(is_known(board_with(tan, 0.04F)));
+}
+
+TEST(ObjectRecognizer, DoesNotKnowAFlatPatchByItsRim) {
+  // Where the faces of a box meet, normals are between theirs.
+  const Eigen::Vector3i tan(200, 170, 120);
+  const Eigen::Vector3f corner(0.0F, 0.0F, 0.1F);
+  const Eigen::Vector3f x(0.2F, 0.0F, 0.0F);
+  const Eigen::Vector3f y(0.0F, 0.2F, 0.0F);
+  const Eigen::Vector3f up(0.0F, 0.007F, 0.007F);
+  const Eigen::Vector3f down(0.0F, 0.007F, -0.007F);
+  MapOfThings things;
+  things.add_face(corner - up, x, up, tan, kBox);
+  things.add_face(corner, x, y, tan, kBox);
+  things.add_face(corner + y, x, down, tan, kBox);
+  const ObservedMap map = things.take();
+  const ObjectRecognizer recognizer({taught(map, kBox, "lid").model}, map.resolution_m);
+  EXPECT_THAT(recognized(recognizer, map, {kBox}), ::testing::IsEmpty());
+}
+
+TEST(ObjectRecognizer, KnowsAFlatThingByColoursThatAreOtherSegments) {
+  const auto keyboard_with_keys_in = [](std::uint32_t segment) {
+    MapOfThings things;
+    const Eigen::Vector3f corner(0.0F, 0.0F, 0.1F);
+    const Eigen::Vector3f x(0.3F, 0.0F, 0.0F);
+    const Eigen::Vector3f y(0.0F, 0.1F, 0.0F);
+    things.add_face(corner, x, y, {40, 40, 45}, kBox);
+    things.add_face(corner + 1.2F * y, x, 0.5F * y, {190, 190, 190}, segment);
+    things.add_face({-0.6F, -0.5F, 0.0F}, {1.2F, 0.0F, 0.0F}, {0.0F, 1.0F, 0.0F}, {150, 140, 130},
+                    kTable);
+    return things.take();
+  };
+  const ObservedMap whole = keyboard_with_keys_in(kBox);
+  const ObjectRecognizer recognizer({taught(whole, kBox, "keyboard").model}, whole.resolution_m);
+  const ObservedMap divided = keyboard_with_keys_in(kTable);
+  const std::vector<Recognition> found = recognized(recognizer, divided, {kBox});
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_THAT(found[0].placement.segment_ids, ::testing::ElementsAre(kBox));
 }
 
 TEST(ObjectRecognizer, FindsNothingWithoutObjectsOrSurface) {
