@@ -21,8 +21,8 @@ constexpr std::size_t kSeenNormals = 100;
 constexpr float kDoubtful = 0.5F;
 
 // The normals of a flat patch deviate less than this from their axis: sine of 15 degrees. Along its
-// rim they are between those of two faces: at 45 degrees in the outermost points, which deviate by
-// 11 degrees in the mean where a face is 25 points wide, and by 15 where it is 15.
+// rim they are between those of two faces: 45 degrees in the outermost points are a root mean
+// square of 11 degrees in a face 25 points wide, and of 15 in one 15 points wide.
 constexpr float kFlat = 0.26F;
 // And the colours of a plain one from their mean (CIELAB), by shades and noise.
 constexpr float kPlain = kSameColor / 3;
@@ -250,7 +250,8 @@ Placement placement_of(const PreparedModel& model, const Scene& scene,
   const SeenSurface seen = seen_surface(model, scene, hypothesis.X_WO, lit);
   placement.points = static_cast<std::int32_t>(seen.explained_W.size());
   add_segments(seen, scene.map(), placement);
-  // What has another colour is often another segment, and so is a wall behind a flat thing.
+  // Normals of its own segments, since what is beside a flat thing faces elsewhere; colours of all,
+  // since what has another colour is often another segment.
   const Surface own_W = explained_of(seen, placement.segment_ids);
   placement.is_distinct = !own_W.empty() && !(is_flat(own_W) && is_plain(seen.explained_W));
   add_evidence(model, scene, seen.explained_W, lit, placement);
