@@ -13,6 +13,7 @@
 
 #include "lcmtypes/scene/up_direction.hpp"
 #include "segmenter/objects/maps/surface_samples.hpp"
+#include "segmenter/objects/model/shortest_rotation.hpp"
 
 namespace kintsugi::segmenter {
 namespace {
@@ -30,8 +31,7 @@ const cv::Vec3f kLightBlue(255, 200, 150);
 
 /// From W to the picture: x right, y down, z away from the viewer.
 Eigen::Matrix3f rotation_to_picture(const Eigen::Vector3d& up_W) {
-  const Eigen::Quaterniond level =
-      Eigen::Quaterniond::FromTwoVectors(up_W, -Eigen::Vector3d::UnitY());
+  const Eigen::Quaterniond level = shortest_rotation(up_W, -Eigen::Vector3d::UnitY());
   const Eigen::AngleAxisd pitch(kPitch_rad, Eigen::Vector3d::UnitX());
   const Eigen::AngleAxisd yaw(kYaw_rad, Eigen::Vector3d::UnitY());
   return (pitch * yaw * level).toRotationMatrix().cast<float>();

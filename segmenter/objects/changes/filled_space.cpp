@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "segmenter/objects/maps/surface_samples.hpp"
+#include "segmenter/objects/model/shortest_rotation.hpp"
 
 namespace kintsugi::segmenter {
 namespace {
@@ -33,9 +34,7 @@ const std::array<Eigen::Vector3f, kDirections>& directions() {
 }  // namespace
 
 FilledSpace::FilledSpace(std::span<const CloudPoint> surface, const Eigen::Vector3d& up)
-    : R_UW_(Eigen::Quaterniond::FromTwoVectors(up, Eigen::Vector3d::UnitZ())
-                .toRotationMatrix()
-                .cast<float>()) {
+    : R_UW_(shortest_rotation(up, Eigen::Vector3d::UnitZ()).toRotationMatrix().cast<float>()) {
   bounds_.reserve(kDirections);
   for (const Eigen::Vector3f& direction : directions()) {
     Bounds bounds{std::numeric_limits<float>::max(), std::numeric_limits<float>::lowest()};

@@ -7,6 +7,7 @@
 
 #include "segmenter/objects/changes/motion_evidence.hpp"
 #include "segmenter/objects/maps/surface_samples.hpp"
+#include "segmenter/objects/model/shortest_rotation.hpp"
 
 namespace kintsugi::segmenter {
 namespace {
@@ -172,7 +173,7 @@ void drop_what_stays(Thing& thing, const MapSide& map, const Pose& X, const MapS
 }
 
 Eigen::Vector3d size_of(std::span<const CloudPoint> points, const Eigen::Vector3d& up) {
-  const Eigen::Quaterniond R_UW = Eigen::Quaterniond::FromTwoVectors(up, Eigen::Vector3d::UnitZ());
+  const Eigen::Quaterniond R_UW = shortest_rotation(up, Eigen::Vector3d::UnitZ());
   Eigen::AlignedBox3d box_U;
   for (const CloudPoint& point : points) {
     box_U.extend(Eigen::Vector3d(R_UW * position_of(point).cast<double>()));

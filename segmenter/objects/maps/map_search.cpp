@@ -12,6 +12,7 @@
 
 #include "segmenter/core/points/transformed_points.hpp"
 #include "segmenter/objects/maps/surface_samples.hpp"
+#include "segmenter/objects/model/shortest_rotation.hpp"
 
 namespace kintsugi::segmenter {
 namespace {
@@ -56,8 +57,7 @@ std::vector<Peak> peaks_of(const std::vector<double>& row, int apart, int most, 
 
 Pose level_pose(const Eigen::Vector3d& up) {
   Pose X_LW = Pose::Identity();
-  X_LW.linear() =
-      Eigen::Quaterniond::FromTwoVectors(up, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  X_LW.linear() = shortest_rotation(up, Eigen::Vector3d::UnitZ()).toRotationMatrix();
   return X_LW;
 }
 

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "segmenter/objects/model/shortest_rotation.hpp"
 #include "segmenter/objects/recognition/pose_refinement.hpp"
 
 namespace kintsugi::segmenter {
@@ -154,8 +155,7 @@ Eigen::AlignedBox3f origins_of(const Surface& surface_O, const Surface& voters_U
 std::vector<Vote> votes_for_turns(const PreparedModel& model, const Surface& seen_W,
                                   const Eigen::Vector3d& up_W) {
   Pose X_UW = Pose::Identity();
-  X_UW.linear() =
-      Eigen::Quaterniond::FromTwoVectors(up_W, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  X_UW.linear() = shortest_rotation(up_W, Eigen::Vector3d::UnitZ()).toRotationMatrix();
   const Surface voters_U = transformed(every_few(seen_W, kVotersSeen), X_UW);
   const Surface voters_O = every_few(model.surface_O, kVotersOfModel);
   const float cell_m = std::max(2 * model.spacing_m, model.radius_m / kCellsInRadius);

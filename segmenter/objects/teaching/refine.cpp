@@ -18,6 +18,7 @@
 #include "segmenter/objects/model/make_model.hpp"
 #include "segmenter/objects/model/merged_points.hpp"
 #include "segmenter/objects/model/object_views.hpp"
+#include "segmenter/objects/model/shortest_rotation.hpp"
 #include "segmenter/objects/recognition/agreement.hpp"
 #include "segmenter/objects/recognition/lit_model.hpp"
 #include "segmenter/objects/recognition/pose_refinement.hpp"
@@ -43,8 +44,7 @@ Pose leveling(const ObjectModel& model) {
   Pose X_LO = Pose::Identity();
   if (!model.has_up) {
     X_LO.linear() =
-        Eigen::Quaterniond::FromTwoVectors(-Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitZ())
-            .toRotationMatrix();
+        shortest_rotation(-Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitZ()).toRotationMatrix();
   }
   return X_LO;
 }
