@@ -5,8 +5,8 @@
 #include <stdexcept>
 
 #include <spdlog/fmt/fmt.h>
-#include <spdlog/spdlog.h>
 
+#include "lcmtypes/base/logger.hpp"
 #include "lcmtypes/base/process_memory.hpp"
 #include "mapper/process/state_text.hpp"
 

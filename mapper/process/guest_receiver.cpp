@@ -2,8 +2,7 @@
 
 #include <utility>
 
-#include <spdlog/spdlog.h>
-
+#include "lcmtypes/base/logger.hpp"
 #include "lcmtypes/channels.hpp"
 
 namespace kintsugi::mapper {

@@ -1,6 +1,6 @@
 #include "mapper/process/map_files.hpp"
 
-#include <spdlog/spdlog.h>
+#include "lcmtypes/base/logger.hpp"
 
 namespace kintsugi::mapper {
 

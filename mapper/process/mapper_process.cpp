@@ -7,9 +7,9 @@
 #include <utility>
 
 #include <spdlog/fmt/fmt.h>
-#include <spdlog/spdlog.h>
 
 #include "lcmtypes/base/atomic_file.hpp"
+#include "lcmtypes/base/logger.hpp"
 #include "lcmtypes/base/stop_signal.hpp"
 #include "lcmtypes/channels.hpp"
 #include "mapper/output/part_file.hpp"

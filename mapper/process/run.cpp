@@ -6,9 +6,9 @@
 #include <string>
 #include <utility>
 
-#include <spdlog/spdlog.h>
 #include <tbb/global_control.h>
 
+#include "lcmtypes/base/logger.hpp"
 #include "mapper/process/linger.hpp"
 #include "mapper/process/map_name_claim.hpp"
 #include "mapper/process/map_publisher.hpp"

@@ -5,9 +5,8 @@
 #include <system_error>
 #include <utility>
 
-#include <spdlog/spdlog.h>
-
 #include "lcmtypes/base/argument_check.hpp"
+#include "lcmtypes/base/logger.hpp"
 #include "lcmtypes/bus/bus.hpp"
 
 namespace kintsugi::mapper {

@@ -4,8 +4,7 @@
 #include <string>
 #include <utility>
 
-#include <spdlog/spdlog.h>
-
+#include "lcmtypes/base/logger.hpp"
 #include "lcmtypes/bus/bus.hpp"
 #include "lcmtypes/channels.hpp"
 #include "mapper/session/mapping_options.hpp"

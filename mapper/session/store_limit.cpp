@@ -6,8 +6,8 @@
 #include <vector>
 
 #include <malloc.h>
-#include <spdlog/spdlog.h>
 
+#include "lcmtypes/base/logger.hpp"
 #include "lcmtypes/base/thread_priority.hpp"
 
 namespace kintsugi::mapper {

@@ -9,10 +9,9 @@
 #include <string_view>
 #include <utility>
 
-#include <spdlog/spdlog.h>
-
 #include "lcmtypes/base/argument_check.hpp"
 #include "lcmtypes/base/choice_check.hpp"
+#include "lcmtypes/base/logger.hpp"
 #include "segmenter/io/formats/cloud_file.hpp"
 #include "segmenter/preprocess/cloud_preparation.hpp"
 

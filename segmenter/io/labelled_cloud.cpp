@@ -8,8 +8,7 @@
 #include <optional>
 #include <utility>
 
-#include <spdlog/spdlog.h>
-
+#include "lcmtypes/base/logger.hpp"
 #include "lcmtypes/base/ply_writer.hpp"
 #include "segmenter/io/ply/labelled_ply_writer.hpp"
 

@@ -3,9 +3,8 @@
 #include <bit>
 #include <exception>
 
-#include <spdlog/spdlog.h>
-
 #include "lcmtypes/base/file_sync.hpp"
+#include "lcmtypes/base/logger.hpp"
 #include "segmenter/io/map_files.hpp"
 #include "segmenter/io/saved_map.hpp"
 #include "segmenter/io/views_file.hpp"

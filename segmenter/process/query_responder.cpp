@@ -6,9 +6,9 @@
 #include <vector>
 
 #include <oneapi/tbb/task_arena.h>
-#include <spdlog/spdlog.h>
 #include <sys/resource.h>
 
+#include "lcmtypes/base/logger.hpp"
 #include "lcmtypes/bus/message_subscriber.hpp"
 #include "lcmtypes/channels.hpp"
 #include "segmenter/io/views_file.hpp"

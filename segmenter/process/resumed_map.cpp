@@ -5,8 +5,8 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
+#include "lcmtypes/base/logger.hpp"
 #include "segmenter/io/saved_map.hpp"
 #include "segmenter/io/views_file.hpp"
 

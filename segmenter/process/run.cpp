@@ -1,8 +1,8 @@
 #include "segmenter/process/run.hpp"
 
 #include <spdlog/sinks/stdout_color_sinks.h>
-#include <spdlog/spdlog.h>
 
+#include "lcmtypes/base/logger.hpp"
 #include "segmenter/process/segmenter_process.hpp"
 
 namespace kintsugi::segmenter {

@@ -2,9 +2,8 @@
 
 #include <utility>
 
-#include <spdlog/spdlog.h>
-
 #include "lcmtypes/base/argument_check.hpp"
+#include "lcmtypes/base/logger.hpp"
 #include "lcmtypes/base/service_notice.hpp"
 #include "lcmtypes/base/stop_signal.hpp"
 #include "segmenter/output/map_stem.hpp"

@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <thread>
 
-#include <spdlog/spdlog.h>
-
 #include "lcmtypes/base/argument_check.hpp"
+#include "lcmtypes/base/logger.hpp"
 #include "lcmtypes/base/stop_signal.hpp"
 #include "lcmtypes/channels.hpp"
 #include "segmenter/process/process_status.hpp"

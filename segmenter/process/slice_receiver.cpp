@@ -7,8 +7,7 @@
 #include <memory>
 #include <utility>
 
-#include <spdlog/spdlog.h>
-
+#include "lcmtypes/base/logger.hpp"
 #include "lcmtypes/channels.hpp"
 #include "lcmtypes/log/log_reader.hpp"
 

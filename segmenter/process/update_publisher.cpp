@@ -7,8 +7,7 @@
 #include <thread>
 #include <utility>
 
-#include <spdlog/spdlog.h>
-
+#include "lcmtypes/base/logger.hpp"
 #include "lcmtypes/channels.hpp"
 
 namespace kintsugi::segmenter {

@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-#include <spdlog/spdlog.h>
+#include "lcmtypes/base/logger.hpp"
 
 namespace kintsugi::viewer {
 

@@ -3,7 +3,8 @@
 #include <system_error>
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
+
+#include "lcmtypes/base/logger.hpp"
 
 namespace kintsugi::viewer {
 namespace {

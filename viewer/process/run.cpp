@@ -7,8 +7,7 @@
 #include <thread>
 #include <utility>
 
-#include <spdlog/spdlog.h>
-
+#include "lcmtypes/base/logger.hpp"
 #include "lcmtypes/base/patient_clock.hpp"
 #include "lcmtypes/base/stop_signal.hpp"
 #include "lcmtypes/bus/bus.hpp"

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include "lcmtypes/base/argument_check.hpp"
+#include "lcmtypes/base/logger.hpp"
 #include "lcmtypes/base/process_memory.hpp"
 
 namespace kintsugi::viewer {

@@ -1,7 +1,8 @@
 #include "viewer/receiving/map_choice.hpp"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
+
+#include "lcmtypes/base/logger.hpp"
 
 namespace kintsugi::viewer {
 

@@ -1,6 +1,6 @@
 #include "viewer/session/map_sessions.hpp"
 
-#include <spdlog/spdlog.h>
+#include "lcmtypes/base/logger.hpp"
 
 namespace kintsugi::viewer {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <variant>
 
-#include <spdlog/spdlog.h>
+#include "lcmtypes/base/logger.hpp"
 
 namespace kintsugi::viewer {
 

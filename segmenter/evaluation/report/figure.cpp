@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <exception>
 
-#include <spdlog/spdlog.h>
-
+#include "lcmtypes/base/logger.hpp"
 #include "segmenter/evaluation/report/text_file.hpp"
 
 namespace kintsugi::segmenter {

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
+#include "lcmtypes/base/logger.hpp"
 #include "lcmtypes/scene/up_direction.hpp"
 #include "segmenter/objects/maps/map_agreement.hpp"
 #include "segmenter/objects/maps/map_search.hpp"

@@ -9,9 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include <spdlog/spdlog.h>
-
 #include "lcmtypes/base/atomic_file.hpp"
+#include "lcmtypes/base/logger.hpp"
 #include "lcmtypes/base/process_memory.hpp"
 #include "lcmtypes/base/service_notice.hpp"
 #include "lcmtypes/base/stop_signal.hpp"

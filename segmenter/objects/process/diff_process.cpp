@@ -9,8 +9,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include <spdlog/spdlog.h>
-
+#include "lcmtypes/base/logger.hpp"
 #include "lcmtypes/base/stop_signal.hpp"
 #include "lcmtypes/base/thread_priority.hpp"
 #include "lcmtypes/bus/bus.hpp"

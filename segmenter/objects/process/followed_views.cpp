@@ -4,8 +4,7 @@
 #include <cstddef>
 #include <stdexcept>
 
-#include <spdlog/spdlog.h>
-
+#include "lcmtypes/base/logger.hpp"
 #include "lcmtypes/base/thread_priority.hpp"
 #include "lcmtypes/codec/codec.hpp"
 #include "lcmtypes/segment_messages.hpp"

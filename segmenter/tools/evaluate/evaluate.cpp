@@ -10,10 +10,10 @@
 
 #include <CLI/CLI.hpp>
 #include <spdlog/sinks/stdout_color_sinks.h>
-#include <spdlog/spdlog.h>
 
 #include "lcmtypes/base/atomic_file.hpp"
 #include "lcmtypes/base/command_line.hpp"
+#include "lcmtypes/base/logger.hpp"
 #include "lcmtypes/base/run_main.hpp"
 #include "lcmtypes/base/version.hpp"
 #include "lcmtypes/signing/process_key.hpp"

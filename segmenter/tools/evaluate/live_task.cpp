@@ -2,8 +2,7 @@
 
 #include <iostream>
 
-#include <spdlog/spdlog.h>
-
+#include "lcmtypes/base/logger.hpp"
 #include "segmenter/evaluation/live/live_report.hpp"
 #include "segmenter/evaluation/report/text_file.hpp"
 

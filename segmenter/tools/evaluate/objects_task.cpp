@@ -4,8 +4,8 @@
 #include <vector>
 
 #include <CLI/CLI.hpp>
-#include <spdlog/spdlog.h>
 
+#include "lcmtypes/base/logger.hpp"
 #include "segmenter/evaluation/objects/change_scores.hpp"
 #include "segmenter/evaluation/objects/detection_pictures.hpp"
 #include "segmenter/evaluation/objects/detection_reasons.hpp"

@@ -4,8 +4,7 @@
 #include <string>
 #include <utility>
 
-#include <spdlog/spdlog.h>
-
+#include "lcmtypes/base/logger.hpp"
 #include "segmenter/evaluation/paper/page.hpp"
 #include "segmenter/evaluation/paper/report.hpp"
 #include "segmenter/evaluation/paper/result_tables.hpp"

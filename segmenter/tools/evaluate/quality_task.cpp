@@ -1,8 +1,8 @@
 #include "segmenter/tools/evaluate/quality_task.hpp"
 
 #include <CLI/CLI.hpp>
-#include <spdlog/spdlog.h>
 
+#include "lcmtypes/base/logger.hpp"
 #include "segmenter/evaluation/comparison/comparison_report.hpp"
 
 namespace kintsugi::segmenter {

@@ -10,9 +10,9 @@
 
 #include <CLI/CLI.hpp>
 #include <spdlog/sinks/stdout_color_sinks.h>
-#include <spdlog/spdlog.h>
 
 #include "lcmtypes/base/command_line.hpp"
+#include "lcmtypes/base/logger.hpp"
 #include "lcmtypes/base/run_main.hpp"
 #include "segmenter/io/graph_file.hpp"
 #include "segmenter/io/map_files.hpp"

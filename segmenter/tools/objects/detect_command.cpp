@@ -7,9 +7,9 @@
 #include <stdexcept>
 
 #include <CLI/CLI.hpp>
-#include <spdlog/spdlog.h>
 
 #include "lcmtypes/base/atomic_file.hpp"
+#include "lcmtypes/base/logger.hpp"
 #include "lcmtypes/base/stop_signal.hpp"
 #include "lcmtypes/signing/process_key.hpp"
 #include "segmenter/objects/library/object_library.hpp"

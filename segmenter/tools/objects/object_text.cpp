@@ -6,7 +6,8 @@
 #include <stdexcept>
 
 #include <spdlog/fmt/fmt.h>
-#include <spdlog/spdlog.h>
+
+#include "lcmtypes/base/logger.hpp"
 
 namespace kintsugi::segmenter {
 namespace {

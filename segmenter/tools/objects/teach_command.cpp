@@ -12,8 +12,8 @@
 #include <vector>
 
 #include <CLI/CLI.hpp>
-#include <spdlog/spdlog.h>
 
+#include "lcmtypes/base/logger.hpp"
 #include "lcmtypes/signing/process_key.hpp"
 #include "segmenter/objects/library/library_lock.hpp"
 #include "segmenter/objects/library/object_files.hpp"

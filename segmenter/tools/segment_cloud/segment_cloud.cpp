@@ -11,9 +11,9 @@
 
 #include <CLI/CLI.hpp>
 #include <spdlog/sinks/stdout_color_sinks.h>
-#include <spdlog/spdlog.h>
 
 #include "lcmtypes/base/command_line.hpp"
+#include "lcmtypes/base/logger.hpp"
 #include "lcmtypes/base/run_main.hpp"
 #include "segmenter/io/cloud_input.hpp"
 #include "segmenter/io/cloud_slices.hpp"
