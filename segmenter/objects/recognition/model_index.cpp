@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
+#include <ranges>
 #include <tuple>
 #include <utility>
 
@@ -72,30 +74,58 @@ float squared_distance(const ViewDescriptor& a, const ViewDescriptor& b) {
 
 struct ModelIndex::Search {
   ViewDescriptor inverse_deviation;
-  std::vector<IndexedView> views;  // scaled
-  std::vector<float> data;         // how their descriptors begin, one after the other
+  std::vector<IndexedView> views;           // scaled
+  std::vector<std::size_t> without_colors;  // of these
+  std::vector<float> data;                  // how their descriptors begin, one after the other
   std::unique_ptr<flann::Index<flann::L2<float>>> index;  // of `data`
+
+  /// Whether near() finds any.
+  [[nodiscard]] bool has_near(const SizeAndColors& scaled, float most_squared) const {
+    const auto is_near = [&](std::size_t i) { return is_of_like_size(i, scaled, most_squared); };
+    if (has_colors(scaled)) {
+      return least_squared(scaled) < most_squared || std::ranges::any_of(without_colors, is_near);
+    }
+    return std::ranges::any_of(std::views::iota(std::size_t{0}, views.size()), is_near);
+  }
 
   /// The views that are nowhere near farther off than `most_squared`: those whose beginnings are
   /// nearer than that, ascending.
   [[nodiscard]] std::vector<std::size_t> near(const SizeAndColors& scaled,
                                               float most_squared) const {
-    const bool has_no_colors = !has_colors(scaled);
     std::vector<std::size_t> near;
-    if (!has_no_colors) near = near_of_all(scaled, most_squared);
-    for (std::size_t i = 0; i < views.size(); ++i) {
-      const SizeAndColors beginning = views[i].descriptor.head<kSizeAndColors>();
-      if (!has_no_colors && has_colors(beginning)) continue;
-      const float size_squared = (beginning - scaled).head<4>().squaredNorm();
-      if (kWithoutColors * size_squared <= most_squared) near.push_back(i);
+    const auto is_near = [&](std::size_t i) { return is_of_like_size(i, scaled, most_squared); };
+    if (!has_colors(scaled)) {
+      std::ranges::copy_if(std::views::iota(std::size_t{0}, views.size()), std::back_inserter(near),
+                           is_near);
+      return near;
     }
+    near = near_of_all(scaled, most_squared);
+    std::ranges::copy_if(without_colors, std::back_inserter(near), is_near);
     std::ranges::sort(near);
     near.erase(std::ranges::unique(near).begin(), near.end());
     return near;
   }
 
  private:
-  /// The same, as if all had colours.
+  /// Where one of two has no colours.
+  [[nodiscard]] bool is_of_like_size(std::size_t view, const SizeAndColors& scaled,
+                                     float most_squared) const {
+    const SizeAndColors beginning = views[view].descriptor.head<kSizeAndColors>();
+    return kWithoutColors * (beginning - scaled).head<4>().squaredNorm() <= most_squared;
+  }
+
+  /// Of the nearest beginning, as if all had colours.
+  [[nodiscard]] float least_squared(SizeAndColors scaled) const {
+    std::size_t view = 0;
+    float squared = 0.0F;
+    flann::Matrix<std::size_t> views_of_query(&view, 1, 1);
+    flann::Matrix<float> squares_of_query(&squared, 1, 1);
+    index->knnSearch(flann::Matrix<float>(scaled.data(), 1, kSizeAndColors), views_of_query,
+                     squares_of_query, 1, flann::SearchParams(flann::FLANN_CHECKS_UNLIMITED));
+    return squared;
+  }
+
+  /// The views whose beginnings are nearer, as if all had colours.
   [[nodiscard]] std::vector<std::size_t> near_of_all(SizeAndColors scaled,
                                                      float most_squared) const {
     std::vector<std::vector<std::size_t>> found;
@@ -115,10 +145,12 @@ ModelIndex::ModelIndex(const std::vector<IndexedView>& views)
       deviation_between_views(views).cwiseInverse().cwiseProduct(weights());
   search_->views = views;
   search_->data.reserve(views.size() * kSizeAndColors);
-  for (IndexedView& view : search_->views) {
-    view.descriptor = view.descriptor.cwiseProduct(search_->inverse_deviation);
-    const auto beginning = view.descriptor.head<kSizeAndColors>();
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    ViewDescriptor& descriptor = search_->views[i].descriptor;
+    descriptor = descriptor.cwiseProduct(search_->inverse_deviation);
+    const SizeAndColors beginning = descriptor.head<kSizeAndColors>();
     search_->data.insert(search_->data.end(), beginning.begin(), beginning.end());
+    if (!has_colors(beginning)) search_->without_colors.push_back(i);
   }
   // Exact, so that the result is the same in every run: FLANN's trees for approximate search are
   // random. Of the beginnings only, so that has_near() can ask it, too.
@@ -135,7 +167,7 @@ ModelIndex& ModelIndex::operator=(ModelIndex&&) noexcept = default;
 bool ModelIndex::has_near(const SizeAndColors& beginning, float distance) const {
   if (search_->views.empty()) return false;
   const auto scale = search_->inverse_deviation.head<kSizeAndColors>();
-  return !search_->near(beginning.cwiseProduct(scale), squared(distance)).empty();
+  return search_->has_near(beginning.cwiseProduct(scale), squared(distance));
 }
 
 std::vector<ModelMatch> ModelIndex::nearest(const ViewDescriptor& descriptor, std::size_t count,
