@@ -48,6 +48,7 @@ class BenchDocument(unittest.TestCase):
                     commands.Section("two", "", failing),
                     commands.Section("three", "", lambda run: "new three"))
         self.addCleanup(mock.patch.stopall)
+        mock.patch.object(commands, "machine", lambda: "2 cores").start()
         mock.patch.object(commands, "SECTIONS", sections).start()
         self.said = mock.patch.object(commands, "say").start()
 
@@ -65,9 +66,18 @@ class BenchDocument(unittest.TestCase):
         self.assertEqual(code, 0)
         self.assertIn("## one\n\n| a |", printed)
         text = self.file.read_text()
-        self.assertIn("Above one.\n<!-- bench:one -->\n\n| a |\n|---|\n| \\1 |\n\n<!-- /bench:one -->\nBelow one.\n", text)
+        self.assertIn("Above one.\n<!-- bench:one -->\n\n| a |\n|---|\n| \\1 |\n\nMeasured on 2 cores.\n\n<!-- /bench:one -->\n"
+                      "Below one.\n", text)
         self.assertNotIn("old one", text)
         self.assertIn("<!-- bench:two -->\nold two\n<!-- /bench:two -->\n", text)
+
+    def test_a_whole_run_says_once_on_which_machine(self):
+        mock.patch.object(commands, "SECTIONS", commands.SECTIONS[:1]).start()
+        self.file.write_text(TEXT + "<!-- bench:machine -->\n<!-- /bench:machine -->\n")
+        self.assertEqual(self.bench()[0], 0)
+        text = self.file.read_text()
+        self.assertIn("| \\1 |\n\n<!-- /bench:one -->", text)
+        self.assertIn("<!-- bench:machine -->\n\n2 cores; load before the run", text)
 
     def test_writing_again_changes_nothing(self):
         self.bench("--only", "one")

@@ -131,15 +131,18 @@ def build(sections):
 
 
 def machine():
-    """One line: cores, processor, memory, system, load."""
+    """Cores, processor, memory, system."""
     def field(file, key, separator):
         with open(file) as lines:
             return next((line.split(separator, 1)[1].strip().strip('"') for line in lines if line.startswith(key)), "?")
 
     memory_GB = int(field("/proc/meminfo", "MemTotal", ":").split()[0]) / 1024**2
-    load = ", ".join(f"{value:.1f}" for value in os.getloadavg())
     return (f"{os.cpu_count()} cores of {field('/proc/cpuinfo', 'model name', ':')}, {memory_GB:.0f} GiB, "
-            f"{field('/etc/os-release', 'PRETTY_NAME', '=')}; load before the run (1, 5, 15 minutes): {load}.\n")
+            f"{field('/etc/os-release', 'PRETTY_NAME', '=')}")
+
+
+def load():
+    return ", ".join(f"{value:.1f}" for value in os.getloadavg())
 
 
 def measure(section, run):
@@ -157,13 +160,14 @@ def measure(section, run):
 
 
 def run_sections(options, run):
-    """The exit code: 1 if a section failed. In FILE, what stands there of such a section is kept."""
+    """The exit code: 1 if a section failed. In FILE, what stands there of such a section is kept. What is measured by
+    itself says on which machine: that may be another one than the rest is from."""
     document = Document(options.write) if options.write else None
     is_whole = options.only is None
     if document:
         document.check([section.name for section in options.sections] + ["summary"] + ["machine"] * is_whole)
     build(options.sections)
-    texts = {"machine": machine()}
+    texts = {"machine": f"{machine()}; load before the run (1, 5, 15 minutes): {load()}.\n"}
     print(texts["machine"], flush=True)
     if document and is_whole:
         document.replace("machine", texts["machine"])
@@ -176,7 +180,7 @@ def run_sections(options, run):
         texts[section.name] = text
         print(f"## {section.name}\n\n{text}", flush=True)
         if document:
-            document.replace(section.name, text)
+            document.replace(section.name, text if is_whole else f"{text.strip()}\n\nMeasured on {machine()}.")
     if document:
         texts = document.sections()
         document.replace("summary", summary(texts))

@@ -453,6 +453,9 @@ TEST(ModelIndex, ComparesSizeAndShapeWithWhatHasNoColours) {
     ASSERT_EQ(matches.size(), 1U);
     EXPECT_EQ(matches[0].model, view.model);
     EXPECT_FLOAT_EQ(matches[0].distance, 0.0F);
+    other.head<4>().setConstant(1e3F);
+    EXPECT_FALSE(index.has_near(other.head<kSizeAndColors>(), kNear)) << "of another size";
+    EXPECT_TRUE(index.nearest(other, 2, kNear).empty());
   }
 }
 
