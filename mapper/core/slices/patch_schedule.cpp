@@ -109,20 +109,29 @@ std::optional<PatchBatch> PatchSchedule::next(const TsdfVolume& volume, std::int
 
 /// Compares the blocks that were seen since the last time with what was sent of them.
 void PatchSchedule::look_at(const TsdfVolume& volume) {
-  std::set<TileCoord> seen;
+  std::vector<BlockSlot> slots;
   for (BlockSlot slot = 0; slot < volume.slots_end(); ++slot) {
-    if (!volume.in_use(slot) || !volume.seen_since(slot, num_moves_)) continue;
-    const BlockCoord& coord = volume.coord(slot);
-    const BlockSurface now(volume, slot, rule_);
+    if (volume.in_use(slot) && volume.seen_since(slot, num_moves_)) slots.push_back(slot);
+  }
+  std::vector<BlockSurface> surfaces(slots.size());
+  tbb::parallel_for(std::size_t{0}, slots.size(),
+                    [&](std::size_t i) { surfaces[i] = BlockSurface(volume, slots[i], rule_); });
+  std::set<TileCoord> seen;
+  std::vector<Block*> blocks;
+  for (std::size_t i = 0; i < slots.size(); ++i) {
+    const BlockCoord& coord = volume.coord(slots[i]);
     const TileCoord tile_coord = grid_.tile_of(coord);
-    if (seen.empty() || *seen.rbegin() != tile_coord) seen.insert(tile_coord);
+    seen.insert(tile_coord);
     Tile& tile = tiles_[tile_coord];
     tile.keyframe = keyframe_;
-    if (now.num_voxels() == 0 && !tile.blocks.contains(coord)) continue;
+    if (surfaces[i].num_voxels() == 0 && !tile.blocks.contains(coord)) continue;
     Block& block = tile.blocks[coord];
-    block.now = now;
-    block.change = change_between(block.sent, now);
+    block.now = surfaces[i];
+    blocks.push_back(&block);
   }
+  tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t i) {
+    blocks[i]->change = change_between(blocks[i]->sent, blocks[i]->now);
+  });
   num_moves_ = volume.num_moves();
   forget_discarded(seen, volume);
 }
