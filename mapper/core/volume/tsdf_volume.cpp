@@ -117,8 +117,9 @@ VolumeAccess TsdfVolume::kernel_access() const {
 }
 
 std::size_t TsdfVolume::memory_bytes() const {
-  return pool_.memory_bytes() + table_.memory_bytes() + in_use_.capacity() +
-         last_seen_.capacity() * sizeof(std::uint32_t) + departed_.capacity() * sizeof(BlockSlot);
+  return pool_.memory_bytes() + copies_.memory_bytes() + table_.memory_bytes() +
+         in_use_.capacity() + last_seen_.capacity() * sizeof(std::uint32_t) +
+         departed_.capacity() * sizeof(BlockSlot);
 }
 
 void TsdfVolume::check_position(const Eigen::Vector3d& position_W) {

@@ -139,9 +139,9 @@ class TsdfVolume {
                                        const BeforeLeaving& before_leaving = {});
 
   /// A copy of all blocks, as a final slice; the volume is unchanged.
-  DetachedBlocks snapshot() const;
+  DetachedBlocks snapshot();
   /// A copy of these blocks, in any order, as a patch; the volume is unchanged.
-  DetachedBlocks snapshot(std::vector<BlockSlot> slots) const;
+  DetachedBlocks snapshot(std::vector<BlockSlot> slots);
   /// These blocks, in any order, which the volume then has no more.
   DetachedBlocks detach(std::vector<BlockSlot> slots, SliceKind kind);
   /// All blocks; the volume is empty afterwards.
@@ -173,7 +173,7 @@ class TsdfVolume {
   /// ascending.
   std::vector<BlockSlot> slots_around(const std::vector<BlockSlot>& leaving) const;
   SliceKind kind_of(const std::vector<BlockSlot>& leaving, const BlockRegion& region) const;
-  DetachedBlocks copy(const std::vector<BlockSlot>& slots, SliceKind kind) const;
+  DetachedBlocks copy(const std::vector<BlockSlot>& slots, SliceKind kind);
   template <typename Keep>
   DetachedBlocks describe(const std::vector<BlockSlot>& leaving, SliceKind kind, Keep keep) const;
   DetachedBlocks detach(const std::vector<BlockSlot>& leaving, SliceKind kind,
@@ -191,6 +191,7 @@ class TsdfVolume {
   BlockRegion region_;
   BlockTable table_;
   TsdfBlockPool pool_;
+  TsdfBlockPool copies_;                  ///< of snapshots: those that end make room for the next
   std::vector<std::uint8_t> in_use_;      ///< by slot: whether it is a block of the volume
   std::vector<std::uint32_t> last_seen_;  ///< by slot: num_moves_ when it was last in view
   std::size_t num_blocks_ = 0;

@@ -19,22 +19,23 @@ struct KeptBlock {
 
 }  // namespace
 
-DetachedBlocks TsdfVolume::snapshot() const { return copy(slots_outside({}), SliceKind::kFinal); }
+DetachedBlocks TsdfVolume::snapshot() { return copy(slots_outside({}), SliceKind::kFinal); }
 
-DetachedBlocks TsdfVolume::snapshot(std::vector<BlockSlot> slots) const {
+DetachedBlocks TsdfVolume::snapshot(std::vector<BlockSlot> slots) {
   sort_by_coord(slots);
   return copy(slots, SliceKind::kPatch);
 }
 
-DetachedBlocks TsdfVolume::copy(const std::vector<BlockSlot>& slots, SliceKind kind) const {
-  auto copies = std::make_shared<TsdfBlockPool>();
+DetachedBlocks TsdfVolume::copy(const std::vector<BlockSlot>& slots, SliceKind kind) {
+  std::vector<BlockSlot> lent;
   DetachedBlocks blocks = describe(slots, kind, [&](BlockSlot slot, bool stays) -> KeptBlock {
-    const BlockSlot copy = copies->take(coord(slot));
-    copies->voxels(copy) = voxels(slot);
-    if (!stays) copies->colors(copy) = colors(slot);
-    return {&copies->voxels(copy), &copies->colors(copy)};
+    const BlockSlot copy = copies_.take_unset(coord(slot));
+    copies_.voxels(copy) = voxels(slot);
+    if (!stays) copies_.colors(copy) = colors(slot);
+    lent.push_back(copy);
+    return {&copies_.voxels(copy), &copies_.colors(copy)};
   });
-  blocks.storage = std::move(copies);
+  blocks.storage = copies_.lend(std::move(lent));
   return blocks;
 }
 

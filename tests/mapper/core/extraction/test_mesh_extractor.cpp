@@ -144,7 +144,7 @@ TEST(CubeTriangles, NeighboursMeetInTheSameLinesWhateverTheirCorners) {
 TEST(MeshExtractor, ClosesAnExactSphere) {
   constexpr double kRadius_m = 0.3;
   const Eigen::Vector3d center_W(0.013, -0.021, 0.037);
-  const TsdfVolume volume = exact_volume(1.0, kResolution_m, 10, [&](const Eigen::Vector3d& p_W) {
+  TsdfVolume volume = exact_volume(1.0, kResolution_m, 10, [&](const Eigen::Vector3d& p_W) {
     return (p_W - center_W).norm() - kRadius_m;
   });
   const MeshPiece mesh = mesh_of(volume.snapshot());

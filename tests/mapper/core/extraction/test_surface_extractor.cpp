@@ -67,7 +67,7 @@ TsdfVolume exact_volume(double size_m, int weight, Function signed_distance_m) {
 TEST(SurfaceExtractor, FindsAnExactSphere) {
   constexpr double kRadius_m = 0.3;
   const Eigen::Vector3d center_W(0.013, -0.021, 0.037);
-  const TsdfVolume volume = exact_volume(
+  TsdfVolume volume = exact_volume(
       1.0, 10, [&](const Eigen::Vector3d& p_W) { return (p_W - center_W).norm() - kRadius_m; });
   const Cloud points = extract(volume.snapshot());
   // Between two voxels the distance bends by 1/(8 R) = 0.4 % of a voxel; the mean of up to three
@@ -91,8 +91,7 @@ TEST(SurfaceExtractor, FindsAnExactSphere) {
 
 TEST(SurfaceExtractor, GivesOnePointForEachColumnOfAPlaneBetweenBlocks) {
   // z = 0 is a face of blocks, half way between voxels: the crossing must not appear in both.
-  const TsdfVolume volume =
-      exact_volume(0.64, 10, [](const Eigen::Vector3d& p_W) { return p_W.z(); });
+  TsdfVolume volume = exact_volume(0.64, 10, [](const Eigen::Vector3d& p_W) { return p_W.z(); });
   const Cloud points = extract(volume.snapshot());
   std::map<std::pair<int, int>, int> columns;
   for (const CloudPoint& p : points) {

@@ -52,7 +52,7 @@ class Floor : public ::testing::Test {
                       .is_in_place = is_in_place};
     clear_covered(floor_, {{floor_.snapshot().coords, {cover}}}, {});
   }
-  std::vector<CloudPoint> points() const {
+  std::vector<CloudPoint> points() {
     return SurfaceExtractor({}).extract_blocks(floor_.snapshot()).points_W;
   }
 

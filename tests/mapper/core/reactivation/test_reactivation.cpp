@@ -34,9 +34,7 @@ class TwoFloors : public ::testing::Test {
     close_all(0);
   }
 
-  std::vector<BlockCoord> coords_of(const TsdfVolume& volume) const {
-    return volume.snapshot().coords;
-  }
+  std::vector<BlockCoord> coords_of(TsdfVolume& volume) { return volume.snapshot().coords; }
   std::size_t num_points(const DetachedBlocks& blocks) const {
     return SurfaceExtractor({}).extract_blocks(blocks).points_W.size();
   }
