@@ -37,7 +37,7 @@ MapperPipeline::MapperPipeline(const Config& config)
       restart_rule_(config.given_path.empty() ? config.restart_after_s : 0.0),
       map_(config, loops_.get()) {}
 
-FrameResult MapperPipeline::process(const RgbdFrame& measured) {
+FrameResult MapperPipeline::process(const RgbdFrame& measured, bool fuse) {
   FrameResult result;
   StageClock clock;
   const RgbdFrame frame = cleaned(measured);
@@ -51,15 +51,13 @@ FrameResult MapperPipeline::process(const RgbdFrame& measured) {
     result.tracking = locate(input);
   }
   clock.end_of(&StageTimes::track_ms);
-  if (is_located(result.tracking.state)) {
-    move_to(result.tracking, input);
-    result.slices_left = map_.follow(camera());
-    map_.bring_back_visible(input.surface_C, camera());
-    clock.end_of(&StageTimes::shift_ms);
-    integrator_.integrate(frame, X_WC_, map_.volume(), noise_.noise());
-    clock.end_of(&StageTimes::integrate_ms);
-    update_model(frame, input, result.tracking);
-    clock.end_of(&StageTimes::raycast_ms);
+  const bool located = is_located(result.tracking.state);
+  result.is_fused = located && (fuse || !model_ || result.tracking.found_by_keyframe);
+  if (result.is_fused) {
+    fuse_into_map(frame, input, result, clock);
+  } else if (located) {
+    X_WC_ = result.tracking.X_WC;
+    follow(result.tracking, false, input.utime);
   } else if (model_) {
     look_where_expected(input);
     clock.end_of(&StageTimes::raycast_ms);
@@ -77,6 +75,18 @@ FrameResult MapperPipeline::process(const RgbdFrame& measured) {
   result.cpu_times = clock.cpu();
   result.slices = map_.take_finished();
   return result;
+}
+
+void MapperPipeline::fuse_into_map(const RgbdFrame& frame, const TrackingInput& input,
+                                   FrameResult& result, StageClock& clock) {
+  move_to(result.tracking, input);
+  result.slices_left = map_.follow(camera());
+  map_.bring_back_visible(input.surface_C, camera());
+  clock.end_of(&StageTimes::shift_ms);
+  integrator_.integrate(frame, X_WC_, map_.volume(), noise_.noise());
+  clock.end_of(&StageTimes::integrate_ms);
+  update_model(frame, input, result.tracking);
+  clock.end_of(&StageTimes::raycast_ms);
 }
 
 std::vector<CloudSlice> MapperPipeline::finish() {
@@ -214,8 +224,10 @@ void MapperPipeline::move_to(const TrackingResult& located, const TrackingInput&
 
 void MapperPipeline::update_model(const RgbdFrame& frame, const TrackingInput& input,
                                   TrackingResult& located) {
-  if (!loops_) paths_[map_.part()].push_back({input.utime, X_WC_});
-  if (!config_.given_path.empty()) return;  // the model is only for tracking
+  if (!config_.given_path.empty()) {  // the model is only for tracking
+    follow(located, false, input.utime);
+    return;
+  }
   if (loops_) loops_->release_left(map_.volume(), X_WC_);
   if (map_.keeps_what_left()) {
     loops_->take_back(map_.volume(), X_WC_);
@@ -225,8 +237,16 @@ void MapperPipeline::update_model(const RgbdFrame& frame, const TrackingInput& i
     }
   }
   model_ = model_from(X_WC_, input.surface_C.front().intrinsics, frame.depth_m);
-  const bool is_keyframe = relocalizer_.remember(input, *model_);
-  if (loops_) loops_->follow(located, is_keyframe, input.utime, noise_.noise());
+  follow(located, relocalizer_.remember(input, *model_), input.utime);
+}
+
+/// Adds the camera's pose to its path.
+void MapperPipeline::follow(const TrackingResult& located, bool is_keyframe, std::int64_t utime) {
+  if (loops_) {
+    loops_->follow(located, is_keyframe, utime, noise_.noise());
+  } else {
+    paths_[map_.part()].push_back({utime, X_WC_});
+  }
 }
 
 /// Where a keyframe would be due but is there already, and its surface is kept: the frame is

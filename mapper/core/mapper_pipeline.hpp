@@ -38,7 +38,8 @@ struct PartBegun {
 /// The result of one frame.
 struct FrameResult {
   TrackingResult tracking;
-  int part = 0;  ///< of the map, in which the camera is
+  int part = 0;           ///< of the map, in which the camera is
+  bool is_fused = false;  ///< into the map
   std::optional<PartBegun> part_begun;
   std::vector<CloudSlice>
       slices;  ///< finished since the frame before; they left at any earlier frame
@@ -63,9 +64,10 @@ struct FrameResult {
 /// A part begins only with a frame in whose surface a camera can be tracked: one that stands before
 /// a bare wall for hours would begin thousands of them.
 ///
-/// Only frames whose pose is known are fused. A lost frame leaves map and last pose unchanged. When
-/// the camera is found elsewhere, the cube moves there, and the blocks that leave it become slices.
-/// With given poses there is no Starting and no Tracking: each frame is Given, or Lost.
+/// Only frames whose pose is known are fused, and not all of them where the caller is in a hurry. A
+/// lost frame leaves map and last pose unchanged. When the camera is found elsewhere, the cube
+/// moves there, and the blocks that leave it become slices. With given poses there is no Starting
+/// and no Tracking: each frame is Given, or Lost.
 class MapperPipeline {
  public:
   struct Config : LocalMap::Config {
@@ -103,9 +105,12 @@ class MapperPipeline {
   explicit MapperPipeline(const Config& config);
 
   /// Frames must be in order of time and have the same intrinsics.
+  /// @param fuse false: the frame is only tracked, in less than half of the time. It is fused
+  /// nevertheless where tracking goes on with it: the first one, one that a keyframe has found, and
+  /// with a given path
   /// @throws std::invalid_argument if the sizes of an image and of the intrinsics differ; the map
   /// and the pose are unchanged then
-  FrameResult process(const RgbdFrame& measured);
+  FrameResult process(const RgbdFrame& measured, bool fuse = true);
 
   /// The newest keyframe, once, for the mapper whose map this one joins; nothing if there is none
   /// since the last call. To be called before each frame and before finish().
@@ -157,6 +162,10 @@ class MapperPipeline {
   PartBegun begin_part(TrackingResult lost);
   std::optional<MapCorrection> correct(std::optional<MapCorrection> correction);
   std::optional<TrackingResult> find_again(const TrackingInput& input);
+  /// Moves the volume with the camera, fuses the frame and makes the model for the next one.
+  void fuse_into_map(const RgbdFrame& frame, const TrackingInput& input, FrameResult& result,
+                     StageClock& clock);
+  void follow(const TrackingResult& located, bool is_keyframe, std::int64_t utime);
   void move_to(const TrackingResult& located, const TrackingInput& input);
   void update_model(const RgbdFrame& frame, const TrackingInput& input, TrackingResult& located);
   bool go_over_to_known_surface(const TrackingInput& input);

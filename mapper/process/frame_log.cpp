@@ -15,18 +15,19 @@ namespace {
 
 std::string header() {
   std::string line =
-      "frame_index,utime_us,part,state,reason,first_reason,frame_ms,cpu_ms,read_ms,convert_ms";
+      "frame_index,utime_us,part,state,reason,first_reason,fused,frame_ms,cpu_ms,read_ms,convert_"
+      "ms";
   for (const Stage& stage : kStages) line += std::string(",") + stage.name;
   return line +
          ",extract_ms,publish_ms,covered_share,overlap_share,inlier_share,behind_share,"
          "in_front_share,rms_m,sigma_m,rms_sigmas,iterations,undetermined,slices,memory_mb\n";
 }
 
-std::string line_of(const RgbdFrame& frame, int part, const TrackingResult& tracking,
+std::string line_of(const RgbdFrame& frame, int part, const TrackingResult& tracking, bool is_fused,
                     std::size_t num_slices, const FrameTimings& timings) {
-  std::string line =
-      fmt::format("{},{},{},{},{},{}", frame.frame_index, frame.utime, part,
-                  to_string(tracking.state), reason_text(tracking), first_reason_text(tracking));
+  std::string line = fmt::format("{},{},{},{},{},{},{:d}", frame.frame_index, frame.utime, part,
+                                 to_string(tracking.state), reason_text(tracking),
+                                 first_reason_text(tracking), is_fused);
   const auto add_ms = [&line](double ms) { line += fmt::format(",{:.3f}", ms); };
   add_ms(timings.frame_ms);
   add_ms(timings.cpu_ms);
@@ -57,9 +58,9 @@ FrameLog::FrameLog(const std::filesystem::path& path) : path_(path), out_(path) 
 }
 
 void FrameLog::append(const RgbdFrame& frame, int part, const TrackingResult& tracking,
-                      std::size_t num_slices, const FrameTimings& timings) {
+                      bool is_fused, std::size_t num_slices, const FrameTimings& timings) {
   if (!out_) return;
-  if (out_ << line_of(frame, part, tracking, num_slices, timings) << std::flush) return;
+  if (out_ << line_of(frame, part, tracking, is_fused, num_slices, timings) << std::flush) return;
   spdlog::error("{}: {}; it ends before frame {}, mapping goes on", path_.string(),
                 std::strerror(errno), frame.frame_index);
 }

@@ -22,7 +22,7 @@ class FrameLog {
 
   /// @param part of the map, from 0
   /// @param num_slices published with this frame
-  void append(const RgbdFrame& frame, int part, const TrackingResult& tracking,
+  void append(const RgbdFrame& frame, int part, const TrackingResult& tracking, bool is_fused,
               std::size_t num_slices, const FrameTimings& timings);
 
  private:

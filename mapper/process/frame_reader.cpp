@@ -7,7 +7,8 @@
 
 namespace kintsugi::mapper {
 
-FrameReader::FrameReader(SourceConfig config, const Attach& attach) {
+FrameReader::FrameReader(SourceConfig config, const Attach& attach, std::size_t max_waiting)
+    : max_waiting_(max_waiting) {
   config.stop_requested = [this, outer = std::move(config.stop_requested)] {
     return stop_ || outer();
   };
@@ -22,8 +23,11 @@ FrameReader::FrameReader(SourceConfig config, const Attach& attach) {
   thread_ = std::thread([this] { run(); });
 }
 
-FrameReader::FrameReader(std::unique_ptr<FrameSource> source)
-    : source_(std::move(source)), status_(source_->status()), thread_([this] { run(); }) {}
+FrameReader::FrameReader(std::unique_ptr<FrameSource> source, std::size_t max_waiting)
+    : max_waiting_(max_waiting),
+      source_(std::move(source)),
+      status_(source_->status()),
+      thread_([this] { run(); }) {}
 
 FrameReader::~FrameReader() {
   stop_ = true;
@@ -33,15 +37,18 @@ FrameReader::~FrameReader() {
 
 std::optional<TimedFrame> FrameReader::next(std::chrono::milliseconds timeout) {
   std::unique_lock lock(mutex_);
-  changed_.wait_for(lock, timeout, [this] { return frame_ || ended_; });
-  auto frame = std::exchange(frame_, std::nullopt);
+  changed_.wait_for(lock, timeout, [this] { return !frames_.empty() || ended_; });
+  if (frames_.empty()) return std::nullopt;
+  TimedFrame frame = std::move(frames_.front());
+  frames_.pop_front();
+  frame.num_waiting = frames_.size();
   changed_.notify_all();
   return frame;
 }
 
 bool FrameReader::finished() const {
   const std::scoped_lock lock(mutex_);
-  return ended_ && !frame_;
+  return ended_ && frames_.empty();
 }
 
 void FrameReader::rethrow_failure() const {
@@ -80,10 +87,12 @@ void FrameReader::run() {
       changed_.notify_all();
       return;
     }
-    frame_ = std::move(frame);
+    frames_.push_back(*std::move(frame));
     changed_.notify_all();
     // stop_ is set without the lock, so its notification may come before this wait begins.
-    while (frame_ && !stop_) changed_.wait_for(lock, std::chrono::milliseconds(100));
+    while (frames_.size() >= max_waiting_ && !stop_) {
+      changed_.wait_for(lock, std::chrono::milliseconds(100));
+    }
     if (stop_) return;
   }
 }

@@ -15,6 +15,7 @@
 #include "mapper/output/part_file.hpp"
 #include "mapper/process/linger.hpp"
 #include "mapper/process/state_text.hpp"
+#include "mapper/session/mapped_frames.hpp"
 #include "mapper/source/frames/paced_source.hpp"
 
 namespace kintsugi::mapper {
@@ -71,9 +72,12 @@ void write_path_files(const std::string& name, std::map<int, Trajectory> paths) 
 
 MapperProcess::MapperProcess(const Options& options, SessionStore& store, Resumption& resumption)
     : options_(options),
+      store_(store),
       resumption_(resumption),
-      reader_(source_config(options),
-              [&](auto source) { return session_source(std::move(source), options, resumption); }),
+      reader_(
+          source_config(options),
+          [&](auto source) { return session_source(std::move(source), options, resumption); },
+          options.source.replay ? 1 : FusionPace::kMaxWaiting),
       map_files_(options.cloud_file, options.mesh_file),
       pipeline_(pipeline_config(options, map_files_)),
       publisher_(publisher_config(options, resumption.session()), store),
@@ -121,7 +125,7 @@ void MapperProcess::map_frame(const TimedFrame& read) {
   if (frame_store_) frame_store_->add(frame);
   publish_new_keyframe();
   take_guests();
-  FrameResult result = pipeline_.process(frame);
+  FrameResult result = pipeline_.process(frame, is_to_be_fused(read));
   const TrackingResult& tracking = result.tracking;
   part_ = result.part;
   if (result.part_begun) {
@@ -146,10 +150,19 @@ void MapperProcess::map_frame(const TimedFrame& read) {
   timings.frame_ms = stopwatch.elapsed_ms();
   timings.publish_ms = timings.frame_ms - mapped_ms;
   measure(read, timings);
-  statistics_.add(tracking, timings);
-  if (frame_log_) frame_log_->append(frame, result.part, tracking, num_slices, timings);
+  statistics_.add(tracking, result.is_fused, timings);
+  if (frame_log_) {
+    frame_log_->append(frame, result.part, tracking, result.is_fused, num_slices, timings);
+  }
   if (resumption_.was_mapped(frame.utime)) ++frames_resumed_;
   last_utime_ = frame.utime;
+}
+
+/// A resumed session repeats what was done; a replay fuses every frame.
+bool MapperProcess::is_to_be_fused(const TimedFrame& read) {
+  if (options_.source.replay) return true;
+  const auto was_fused = resumption_.was_fused(read.frame.utime);
+  return was_fused ? *was_fused : pace_.fuses(read.num_waiting);
 }
 
 /// For the mapper whose map this one joins.
@@ -168,6 +181,10 @@ void MapperProcess::take_guests() {
 void MapperProcess::publish_result(const RgbdFrame& frame, FrameResult& result) {
   const TrackingResult& tracking = result.tracking;
   if (!resumption_.was_mapped(frame.utime)) {
+    if (is_located(tracking.state) && !result.is_fused) {
+      store_.add(kTrackedOnlyChannel,
+                 encode_mapped_frames(resumption_.session(), {&frame.utime, 1}));
+    }
     publisher_.publish_pose(
         {frame.utime, 0, frame.frame_index, tracking.state, tracking.X_WC, result.part});
   }
@@ -322,11 +339,13 @@ void MapperProcess::log_summary() const {
   const SourceCounts& counts = source.counts;
   if (reader_.finished()) spdlog::info("end: {}", source.end_reason);
   spdlog::info(
-      "{} frames in {:.1f} s ({:.1f} ms each, {:.1f} ms of CPU): {} located, {} lost, found again "
-      "{} times, {} dropped, {} bad, {} interruptions",
+      "{} frames in {:.1f} s ({:.1f} ms each, {:.1f} ms of CPU): {} located ({} not fused for lack "
+      "of "
+      "time), {} lost, found again {} times, {} dropped, {} bad, {} interruptions",
       statistics_.frames(), elapsed_s, statistics_.mean_frame_ms(), statistics_.mean_cpu_ms(),
-      statistics_.frames_tracked(), statistics_.frames_lost(), statistics_.frames_relocalised(),
-      counts.frames_dropped, counts.frames_bad, counts.interruptions);
+      statistics_.frames_tracked(), statistics_.frames_tracked_only(), statistics_.frames_lost(),
+      statistics_.frames_relocalised(), counts.frames_dropped, counts.frames_bad,
+      counts.interruptions);
   const MapPublisher::Published published = publisher_.published();
   spdlog::info("{} slices, {} points, {} messages published", published.slices, published.points,
                published.chunks);

@@ -10,6 +10,7 @@
 #include "mapper/process/camera_views.hpp"
 #include "mapper/process/frame_log.hpp"
 #include "mapper/process/frame_reader.hpp"
+#include "mapper/process/fusion_pace.hpp"
 #include "mapper/process/guest_receiver.hpp"
 #include "mapper/process/map_files.hpp"
 #include "mapper/process/map_publisher.hpp"
@@ -39,6 +40,7 @@ class MapperProcess {
  private:
   void map_frames();
   void map_frame(const TimedFrame& read);
+  bool is_to_be_fused(const TimedFrame& read);
   void publish_new_keyframe();
   void take_guests();
   void publish_result(const RgbdFrame& frame, FrameResult& result);
@@ -59,6 +61,7 @@ class MapperProcess {
   void throw_failures() const;
 
   const Options options_;
+  SessionStore& store_;
   Resumption& resumption_;
   FrameReader reader_;
   MapFiles map_files_;  ///< before pipeline_, whose worker writes to it
@@ -68,6 +71,7 @@ class MapperProcess {
   std::set<std::int64_t> guests_named_;          ///< sessions that the log has named
   std::set<std::int64_t> guests_refused_;
   CameraViews views_;
+  FusionPace pace_;
   RunStatistics statistics_;
   std::optional<FrameLog> frame_log_;
   std::optional<FrameStore> frame_store_;

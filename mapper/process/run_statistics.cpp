@@ -23,7 +23,8 @@ void RunStatistics::begin_part() {
   state_ = TrackingState::kStarting;  // the end of the loss is not a relocalisation
 }
 
-void RunStatistics::add(const TrackingResult& tracking, const FrameTimings& timings) {
+void RunStatistics::add(const TrackingResult& tracking, bool is_fused,
+                        const FrameTimings& timings) {
   if (state_ == TrackingState::kLost && tracking.state == TrackingState::kTracking) {
     ++frames_relocalised_;
   }
@@ -35,6 +36,7 @@ void RunStatistics::add(const TrackingResult& tracking, const FrameTimings& timi
   if (is_located(state_)) {
     ++frames_tracked_;
     ++parts_.back().frames_tracked;
+    if (!is_fused) ++frames_tracked_only_;
   }
   if (state_ == TrackingState::kLost) ++frames_lost_;
   frame_ms_ += timings.frame_ms;

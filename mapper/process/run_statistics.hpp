@@ -22,12 +22,14 @@ class RunStatistics {
   /// The frames that follow are of another part, as far as is known.
   void begin_part();
   /// One mapped frame.
-  void add(const TrackingResult& tracking, const FrameTimings& timings);
+  void add(const TrackingResult& tracking, bool is_fused, const FrameTimings& timings);
 
   /// As they began; loops may have joined some.
   const std::vector<Part>& parts() const { return parts_; }
   std::int64_t frames() const { return frames_; }
   std::int64_t frames_tracked() const { return frames_tracked_; }
+  /// Of these, those that were not fused.
+  std::int64_t frames_tracked_only() const { return frames_tracked_only_; }
   std::int64_t frames_lost() const { return frames_lost_; }
   std::int64_t frames_relocalised() const { return frames_relocalised_; }
   /// Means over the run, milliseconds a frame.
@@ -43,6 +45,7 @@ class RunStatistics {
   std::vector<Part> parts_{1};
   std::int64_t frames_ = 0;
   std::int64_t frames_tracked_ = 0;
+  std::int64_t frames_tracked_only_ = 0;
   std::int64_t frames_lost_ = 0;
   std::int64_t frames_relocalised_ = 0;
   double frame_ms_ = 0.0;  ///< of the whole run

@@ -16,11 +16,6 @@ bool PlacedSlice::is_whole() const {
 
 void LogContents::read(const LogEvent& event, const LogPlace& place) {
   const PlacedEvent placed{place, event.utime};
-  const auto add_frame = [](SessionContents& of, std::int64_t utime) {
-    if (of.mapped_utimes.empty() || utime > of.mapped_utimes.back()) {
-      of.mapped_utimes.push_back(utime);
-    }
-  };
   if (event.channel == kOptionsChannel) {
     const StoredSession begun = decode_options(event.data);
     const auto name = begun.options.find(kMapNameOption);
@@ -36,11 +31,15 @@ void LogContents::read(const LogEvent& event, const LogPlace& place) {
     read_other_chunk<RgbdFrameMessage>(event, placed);
   } else if (event.channel == channels::kCameraPose) {
     const auto pose = decode<CameraPose>(event.data);
-    add_frame(session(pose.session), pose.utime);
+    add_ascending(session(pose.session).mapped_utimes, pose.utime);
   } else if (event.channel == kMappedFramesChannel) {
     const MappedFrames frames = decode_mapped_frames(event.data);
+    add_ascending(session(frames.session).mapped_utimes, frames.utimes);
+  } else if (event.channel == kTrackedOnlyChannel) {
+    const MappedFrames frames = decode_mapped_frames(event.data);
     SessionContents& of = session(frames.session);
-    for (const std::int64_t utime : frames.utimes) add_frame(of, utime);
+    add_ascending(of.mapped_utimes, frames.utimes);
+    add_ascending(of.tracked_only_utimes, frames.utimes);
   } else if (event.channel == channels::kMapperStatus) {
     const auto status = decode<MapperStatus>(event.data);
     session(status.session).last_messages[event.channel] = placed;

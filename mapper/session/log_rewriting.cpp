@@ -60,7 +60,8 @@ class Rewriting {
   void write(const SessionContents& session) {
     const SliceNeeds needs(session, [this](const LogPlace& place) { return data_of(place); });
     copy(kOptionsChannel, session.options);
-    write_frames(session);
+    write_frames(kMappedFramesChannel, session.mapped_utimes, session);
+    write_frames(kTrackedOnlyChannel, session.tracked_only_utimes, session);
     write_fates(session, needs);
     for (const auto& [channel, chunks] : session.other_chunks) {
       for (const auto& [sequence, chunk] : chunks) {
@@ -73,11 +74,11 @@ class Rewriting {
     }
   }
 
-  void write_frames(const SessionContents& session) {
-    const std::vector<std::int64_t>& utimes = session.mapped_utimes;
+  void write_frames(const std::string& channel, const std::vector<std::int64_t>& utimes,
+                    const SessionContents& session) {
     for (std::size_t from = 0; from < utimes.size(); from += kMaxFramesOfEvent) {
       const std::size_t count = std::min(kMaxFramesOfEvent, utimes.size() - from);
-      base_.append(session.options.utime, kMappedFramesChannel,
+      base_.append(session.options.utime, channel,
                    encode_mapped_frames(session.session, {&utimes[from], count}));
     }
   }

@@ -20,7 +20,7 @@ std::int64_t take(ByteView& data) {
     number |= std::uint64_t{byte & 127U} << shift;
     if (byte < 128) return static_cast<std::int64_t>(number);
   }
-  throw std::runtime_error(std::string("its ") + kMappedFramesChannel + " cannot be read");
+  throw std::runtime_error("its list of mapped frames cannot be read");
 }
 
 }  // namespace
@@ -42,12 +42,18 @@ MappedFrames decode_mapped_frames(ByteView data) {
   while (!data.empty()) {
     const std::int64_t step = take(data);
     if (step > std::numeric_limits<std::int64_t>::max() - last) {
-      throw std::runtime_error(std::string("its ") + kMappedFramesChannel + " cannot be read");
+      throw std::runtime_error("its list of mapped frames cannot be read");
     }
     last += step;
     frames.utimes.push_back(last);
   }
   return frames;
+}
+
+void add_ascending(std::vector<std::int64_t>& to, std::span<const std::int64_t> utimes) {
+  for (const std::int64_t utime : utimes) {
+    if (to.empty() || utime > to.back()) to.push_back(utime);
+  }
 }
 
 }  // namespace kintsugi::mapper

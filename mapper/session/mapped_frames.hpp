@@ -1,6 +1,5 @@
 #pragma once
-// The times of the frames that a session has mapped, as one event of a log that was rewritten: in
-// place of their poses.
+// The times of frames that a session has mapped, as one event of its log.
 
 #include <cstdint>
 #include <span>
@@ -10,8 +9,12 @@
 
 namespace kintsugi::mapper {
 
-/// Channel of these events, in the log only.
+/// Channels of these events, in the log only. In a log that was rewritten: all frames, in place of
+/// their poses.
 inline constexpr char kMappedFramesChannel[] = "MAPPER_MAPPED_FRAMES";
+/// Those of them that were only tracked, not fused. Stored before the pose of the frame: so a frame
+/// is never known as mapped without how.
+inline constexpr char kTrackedOnlyChannel[] = "MAPPER_TRACKED_ONLY";
 
 struct MappedFrames {
   std::int64_t session = 0;
@@ -23,5 +26,11 @@ Bytes encode_mapped_frames(std::int64_t session, std::span<const std::int64_t> u
 
 /// @throws std::runtime_error when they are damaged
 MappedFrames decode_mapped_frames(ByteView data);
+
+/// Adds those that are later than all in the list. A log may tell of a frame more than once.
+void add_ascending(std::vector<std::int64_t>& to, std::span<const std::int64_t> utimes);
+inline void add_ascending(std::vector<std::int64_t>& to, std::int64_t utime) {
+  add_ascending(to, {&utime, 1});
+}
 
 }  // namespace kintsugi::mapper

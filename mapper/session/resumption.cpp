@@ -1,5 +1,6 @@
 #include "mapper/session/resumption.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -99,6 +100,11 @@ std::unique_ptr<FrameSource> Resumption::stored_frames_before(
       store_.stream(channels::kRgbdFrame, session_), continued_->frame_chunks_end,
       config_.max_range_m, std::move(camera), std::max(pause_us, kShortestPause_us),
       continued_->final_slice_begun);
+}
+
+std::optional<bool> Resumption::was_fused(std::int64_t utime) const {
+  if (!was_mapped(utime)) return std::nullopt;
+  return !std::ranges::binary_search(continued_->tracked_only_utimes, utime);
 }
 
 bool Resumption::has_caught_up(std::int64_t last_utime) const {

@@ -44,6 +44,8 @@ class Resumption {
   std::int64_t last_stored_utime() const { return continued_ ? continued_->last_frame_utime : -1; }
   /// Whether the frame of this time was mapped before the interruption.
   bool was_mapped(std::int64_t utime) const { return utime <= last_mapped_utime_; }
+  /// Whether it was fused then, or only tracked; nullopt: it was not mapped.
+  std::optional<bool> was_fused(std::int64_t utime) const;
   /// Whether a run whose last mapped frame has this time has repeated all frames that were mapped
   /// before the interruption.
   bool has_caught_up(std::int64_t last_utime) const;

@@ -49,10 +49,15 @@ std::optional<StoredChunk> StoredSessionReader::read(const LogEvent& event) {
   if (event.channel == channels::kKeyframe) return read_keyframe_chunk(event);
   if (event.channel == channels::kCameraPose) {
     const auto pose = decode<CameraPose>(event.data);
-    add_frame(session(pose.session), pose.utime);
+    add_ascending(session(pose.session).mapped_utimes, pose.utime);
   } else if (event.channel == kMappedFramesChannel) {
     const MappedFrames frames = decode_mapped_frames(event.data);
-    for (const std::int64_t utime : frames.utimes) add_frame(session(frames.session), utime);
+    add_ascending(session(frames.session).mapped_utimes, frames.utimes);
+  } else if (event.channel == kTrackedOnlyChannel) {
+    const MappedFrames frames = decode_mapped_frames(event.data);
+    StoredSession& of = session(frames.session);
+    add_ascending(of.mapped_utimes, frames.utimes);
+    add_ascending(of.tracked_only_utimes, frames.utimes);
   } else if (event.channel == channels::kMapperStatus) {
     auto status = decode<MapperStatus>(event.data);
     session(status.session).last_status = std::move(status);
@@ -84,11 +89,6 @@ StoredSession& StoredSessionReader::session(std::int64_t number) {
                              ", which did not begin in this log");
   }
   return *found;
-}
-
-void StoredSessionReader::add_frame(StoredSession& of, std::int64_t utime) {
-  if (of.mapped_utimes.empty() || utime > of.mapped_utimes.back())
-    of.mapped_utimes.push_back(utime);
 }
 
 StoredChunk StoredSessionReader::read_slice_chunk(const LogEvent& event) {

@@ -23,12 +23,13 @@ Bytes encode_options(std::int64_t session, const MappingOptions& options);
 struct StoredSession {
   std::int64_t session = 0;
   MappingOptions options;
-  std::vector<std::int64_t> mapped_utimes;  ///< times of the mapped frames, ascending
-  bool final_slice_begun = false;           ///< mapping had ended, the rest was being published
-  std::int64_t slice_chunks_end = 0;        ///< one past the last chunk of the final slice; 0: open
-  std::int64_t frame_chunks_end = 0;        ///< one past the last chunk of a raw frame stored whole
-  std::int64_t last_frame_utime = -1;       ///< of that frame
-  std::int64_t last_event_utime = 0;        ///< wall clock
+  std::vector<std::int64_t> mapped_utimes;        ///< times of the mapped frames, ascending
+  std::vector<std::int64_t> tracked_only_utimes;  ///< of those of them that were not fused
+  bool final_slice_begun = false;      ///< mapping had ended, the rest was being published
+  std::int64_t slice_chunks_end = 0;   ///< one past the last chunk of the final slice; 0: open
+  std::int64_t frame_chunks_end = 0;   ///< one past the last chunk of a raw frame stored whole
+  std::int64_t last_frame_utime = -1;  ///< of that frame
+  std::int64_t last_event_utime = 0;   ///< wall clock
   std::optional<MapperStatus> last_status;
 };
 
@@ -58,7 +59,6 @@ class StoredSessionReader {
  private:
   void begin_session(const LogEvent& event);
   StoredSession& session(std::int64_t number);
-  static void add_frame(StoredSession& of, std::int64_t utime);
   StoredChunk read_slice_chunk(const LogEvent& event);
   StoredChunk read_keyframe_chunk(const LogEvent& event);
   StoredChunk read_frame_chunk(const LogEvent& event);

@@ -112,7 +112,9 @@ Seeds stored_session_seeds() {
   std::vector<LoggedMessage> rewritten = {
       events.front(),
       {mapper::kMappedFramesChannel,
-       mapper::encode_mapped_frames(slice.session, std::vector<std::int64_t>{5, 33'005, 70'000})}};
+       mapper::encode_mapped_frames(slice.session, std::vector<std::int64_t>{5, 33'005, 70'000})},
+      {mapper::kTrackedOnlyChannel,
+       mapper::encode_mapped_frames(slice.session, std::vector<std::int64_t>{33'005})}};
   mapper::ChunkFates fates;
   fates.replaced.insert({2, 5});
   fates.superseded.insert({4, 5});

@@ -34,7 +34,7 @@ class FakeRun:
         (self.folder / name).mkdir()
         loops = "4 loops closed, 0 contradicted; the map was corrected 3 times\n" if source.name == "loop" else ""
         (self.folder / name / "mapper.log").write_text(
-            "500 frames in 16.7 s (1 ms each): 500 located, 2 dropped\n" + loops)
+            "500 frames in 16.7 s (1 ms each): 500 located (7 not fused for lack of time), 2 dropped\n" + loops)
         return "  CPU: mapper 10.00 s, segmenter 2.00 s, viewer 1.00 s\n"
 
     def kintsugi(self, name, *arguments, may_fail):
@@ -52,6 +52,7 @@ class Live(unittest.TestCase):
         self.assertEqual([row["recording"] for row in costs], ["kitchen", "office", "loop"])
         self.assertEqual([row["corrections of the map"] for row in costs], ["0", "0", "3"])
         self.assertEqual(costs[0]["dropped"], "2")
+        self.assertEqual(costs[0]["not fused"], "7")
         self.assertEqual(costs[0]["mapper, CPU-ms a frame"], "20.0")
         self.assertEqual(costs[0]["all three, CPU-ms a frame"], "26.0")
         self.assertEqual(list(measures[1].values()),

@@ -7,8 +7,8 @@
 namespace kintsugi::mapper {
 namespace {
 
-/// A sleeping thread wakes up a little late.
-constexpr std::chrono::milliseconds kTolerance(10);
+/// So late a thread may come on a busy machine. Drivers of cameras keep a few images for it.
+constexpr std::chrono::milliseconds kTolerance(100);
 
 }  // namespace
 
@@ -22,7 +22,7 @@ std::optional<RgbdFrame> PacedSource::next() {
   auto frame = next_frame_ ? std::exchange(next_frame_, std::nullopt) : read();
   if (!frame || frame->utime <= free_until_utime_) return frame;
   wait_until(due(*frame));
-  // This frame is overdue if the next one is due, too.
+  // This frame is overdue if the next one has been due for long, too.
   while ((next_frame_ = read()) && due(*next_frame_) + kTolerance <= Clock::now()) {
     frame = std::exchange(next_frame_, std::nullopt);
     ++num_dropped_;

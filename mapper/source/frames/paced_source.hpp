@@ -11,7 +11,7 @@
 namespace kintsugi::mapper {
 
 /// Plays a recording at the speed at which it was recorded. next() returns a frame when it is due;
-/// like with a camera, frames that are overdue are dropped when a newer one is due, too. Depth and
+/// like with a camera, frames that are long overdue are dropped when newer ones are due. Depth and
 /// colour of a frame are dropped together, so the remaining frames are the same as without pacing.
 class PacedSource : public FrameSource {
  public:

@@ -21,7 +21,7 @@ def live(run):
         log = (run.folder / name / "mapper.log").read_text()
         costs.append([source.name, *cost(printed, log), corrections(log)])
         measures.append([source.name, *in_view(measured(run, name))])
-    return (markdown(["recording", "frames", "dropped", *(f"{process}, CPU-ms a frame" for process in PROCESSES),
+    return (markdown(["recording", "frames", "dropped", "not fused", *(f"{process}, CPU-ms a frame" for process in PROCESSES),
                       "all three, CPU-ms a frame", "corrections of the map"], costs) + "\n" +
             markdown(["recording", "centre pixel has its right segment, %", "visible surface in a segment, mean, %",
                       "from seen to labelled, median (p99), s", "`--pixel` answered (wrong), %",
@@ -29,11 +29,12 @@ def live(run):
 
 
 def cost(printed, log):
-    """Frames, frames dropped, and CPU-ms a frame of each process and of all."""
-    frames, dropped = (int(re.findall(rf"(\d+) {what}", log)[-1]) for what in ("frames in", "dropped"))
+    """Frames, those of them that were dropped or not fused, and CPU-ms a frame of each process and of all."""
+    frames, dropped, not_fused = (int(re.findall(rf"(\d+) {what}", log)[-1])
+                                  for what in ("frames in", "dropped", "not fused"))
     cpu = re.findall(r"(?m)^ *CPU: .*", printed)[-1]
     cpu_ms = [1e3 * float(re.search(rf"{process} ([0-9.]+) s", cpu)[1]) / frames for process in PROCESSES]
-    return [frames, dropped, *(fixed(each, 1) for each in [*cpu_ms, sum(cpu_ms)])]
+    return [frames, dropped, not_fused, *(fixed(each, 1) for each in [*cpu_ms, sum(cpu_ms)])]
 
 
 def corrections(log):

@@ -84,6 +84,27 @@ TEST(MapperPipeline, FollowsTheCameraWithNoise) {
             0.010);
 }
 
+TEST(MapperPipeline, FollowsTheCameraAlsoWhereMostFramesAreOnlyTracked) {
+  MapperPipeline pipeline(small_config());
+  Trajectory path;
+  std::int64_t num_blocks = 0;
+  const std::vector<RgbdFrame>& frames = noisy_office().frames;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const bool fuse = i % 4 == 2;
+    const FrameResult result = pipeline.process(frames[i], fuse);
+    EXPECT_EQ(result.tracking.state, TrackingState::kTracking);
+    EXPECT_EQ(result.is_fused, fuse || i == 0) << "the first frame is what others are tracked in";
+    if (!result.is_fused) {
+      EXPECT_EQ(pipeline.num_blocks(), num_blocks);
+    }
+    num_blocks = pipeline.num_blocks();
+    path.push_back({frames[i].utime, result.tracking.X_WC});
+  }
+  EXPECT_LT(absolute_trajectory_error(path, noisy_office().true_path).translation_m.rmse, 0.010);
+  const Trajectory corrected = pipeline.corrected_paths().at(0);
+  ASSERT_EQ(corrected.size(), frames.size()) << "the path has every frame";
+}
+
 TEST(MapperPipeline, NumbersSlicesFromZeroAndEndsWithTheFinalOne) {
   // Every twelfth frame: the camera moves a metre and more, and the cube with it.
   const SyntheticRun office = synthetic_run("office", 40, false, 12);

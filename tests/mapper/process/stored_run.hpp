@@ -15,6 +15,7 @@
 #include "lcmtypes/channels.hpp"
 #include "lcmtypes/codec/codec.hpp"
 #include "lcmtypes/log/log_reader.hpp"
+#include "mapper/session/mapped_frames.hpp"
 
 namespace kintsugi::mapper::testing {
 
@@ -22,6 +23,7 @@ struct StoredRun {
   /// By session and sequence number. A chunk that is there twice is the same both times.
   std::map<std::pair<std::int64_t, std::int64_t>, Bytes> slice_chunks;
   std::vector<std::int64_t> pose_utimes;
+  std::vector<std::int64_t> tracked_only_utimes;
   std::vector<MapperStatus> statuses;
   std::int64_t events = 0;
   std::vector<std::int64_t> event_utimes;  ///< when each was appended
@@ -46,6 +48,8 @@ inline StoredRun read_stored_run(const std::filesystem::path& path) {
       EXPECT_EQ(place->second, data);
     } else if (event->channel == channels::kCameraPose) {
       run.pose_utimes.push_back(decode<CameraPose>(event->data).utime);
+    } else if (event->channel == kTrackedOnlyChannel) {
+      add_ascending(run.tracked_only_utimes, decode_mapped_frames(event->data).utimes);
     } else if (event->channel == channels::kMapperStatus) {
       run.statuses.push_back(decode<MapperStatus>(event->data));
     }

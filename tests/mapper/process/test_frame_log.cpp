@@ -46,7 +46,7 @@ void append_to_a_file_that_cannot_grow(const std::filesystem::path& path) {
   std::signal(SIGXFSZ, SIG_IGN);
   const rlimit limit{std::filesystem::file_size(path) + 10, RLIM_INFINITY};
   setrlimit(RLIMIT_FSIZE, &limit);
-  for (int i = 0; i < 3; ++i) log.append({}, 0, {}, 0, {});
+  for (int i = 0; i < 3; ++i) log.append({}, 0, {}, true, 0, {});
   std::exit(0);
 }
 
@@ -63,7 +63,7 @@ TEST(FrameLog, HasALineForEachFrameAsSoonAsItIsAppended) {
   FrameTimings timings;
   timings.stages.raycast_ms = 4.25;
   timings.cpu_ms = 31.5;
-  log.append(frame, 3, tracking, 2, timings);
+  log.append(frame, 3, tracking, true, 2, timings);
 
   // The log is still open: nothing waits in a buffer that a crash would lose.
   const auto lines = lines_of(folder / "frames.csv");
@@ -74,6 +74,7 @@ TEST(FrameLog, HasALineForEachFrameAsSoonAsItIsAppended) {
   EXPECT_EQ(cell(lines, 1, "part"), "3");
   EXPECT_EQ(cell(lines, 1, "state"), "tracking");
   EXPECT_EQ(cell(lines, 1, "reason"), "");
+  EXPECT_EQ(cell(lines, 1, "fused"), "1");
   EXPECT_EQ(cell(lines, 1, "raycast_ms"), "4.250");
   EXPECT_EQ(cell(lines, 1, "cpu_ms"), "31.500");
   EXPECT_EQ(cell(lines, 1, "rms_m"), "0.001500");
@@ -88,11 +89,12 @@ TEST(FrameLog, SaysWhyAFrameIsLost) {
   TrackingResult lost;
   lost.state = TrackingState::kLost;
   lost.loss_reason = LossReason::kLargeResidual;
-  log.append({}, 0, lost, 0, {});
+  log.append({}, 0, lost, false, 0, {});
   lost.loss_reason.reset();
-  log.append({}, 0, lost, 0, {});
+  log.append({}, 0, lost, false, 0, {});
   const auto lines = lines_of(folder / "frames.csv");
   EXPECT_EQ(cell(lines, 1, "reason"), to_string(LossReason::kLargeResidual));
+  EXPECT_EQ(cell(lines, 1, "fused"), "0");
   EXPECT_EQ(cell(lines, 2, "reason"), "no given pose within 20 ms");
 }
 

@@ -1,4 +1,6 @@
+#include <chrono>
 #include <stdexcept>
+#include <thread>
 
 #include <gtest/gtest.h>
 
@@ -54,6 +56,24 @@ TEST(FrameReader, HandsOnEveryFrameInOrderAndThenTheEnd) {
   EXPECT_EQ(reader.status().end_reason, "all counted");
   EXPECT_EQ(reader.status().counts.frames_delivered, 50);
   EXPECT_NO_THROW(reader.rethrow_failure());
+}
+
+TEST(FrameReader, ReadsAheadAsFarAsItMayAndTellsHowManyWait) {
+  FrameReader reader(std::make_unique<CountingSource>(10, false), 4);
+  const auto deadline = std::chrono::steady_clock::now() + kLong;
+  while (reader.status().counts.frames_delivered < 4 &&
+         std::chrono::steady_clock::now() < deadline) {
+    std::this_thread::sleep_for(milliseconds(1));
+  }
+  std::this_thread::sleep_for(milliseconds(20));
+  EXPECT_EQ(reader.status().counts.frames_delivered, 4) << "and no further";
+  EXPECT_EQ(reader.next(kLong)->num_waiting, 3U);
+  int last = 0;
+  while (const auto frame = reader.next(kLong)) {
+    EXPECT_LT(frame->num_waiting, 4U);
+    EXPECT_EQ(frame->frame.frame_index, ++last);
+  }
+  EXPECT_EQ(last, 9) << "none is lost";
 }
 
 TEST(FrameReader, KeepsAFailureForAfterTheFramesBeforeIt) {

@@ -24,7 +24,7 @@ TEST(RunStatistics, CountsFramesByTheirState) {
   RunStatistics statistics;
   for (const auto state : {TrackingState::kStarting, TrackingState::kTracking,
                            TrackingState::kGiven, TrackingState::kLost}) {
-    statistics.add(tracked(state), {});
+    statistics.add(tracked(state), true, {});
   }
   MapperStatus status;
   statistics.report(status);
@@ -40,11 +40,21 @@ TEST(RunStatistics, CountsTheFramesThatEndALoss) {
   for (const auto state : {TrackingState::kStarting, TrackingState::kTracking, TrackingState::kLost,
                            TrackingState::kLost, TrackingState::kTracking, TrackingState::kTracking,
                            TrackingState::kLost, TrackingState::kTracking}) {
-    statistics.add(tracked(state), {});
+    statistics.add(tracked(state), true, {});
   }
   MapperStatus status;
   statistics.report(status);
   EXPECT_EQ(status.frames_relocalised, 2);
+}
+
+TEST(RunStatistics, CountsTheLocatedFramesThatWereNotFused) {
+  RunStatistics statistics;
+  for (const bool is_fused : {true, false, false}) {
+    statistics.add(tracked(TrackingState::kTracking), is_fused, {});
+  }
+  statistics.add(tracked(TrackingState::kLost), false, {});
+  EXPECT_EQ(statistics.frames_tracked(), 3);
+  EXPECT_EQ(statistics.frames_tracked_only(), 2);
 }
 
 TEST(RunStatistics, TellsWhyTheLastFrameIsLost) {
@@ -52,12 +62,12 @@ TEST(RunStatistics, TellsWhyTheLastFrameIsLost) {
   TrackingResult lost = tracked(TrackingState::kLost);
   lost.loss_reason = LossReason::kLargeResidual;
   lost.quality.undetermined = 3;
-  statistics.add(lost, {});
+  statistics.add(lost, false, {});
   MapperStatus status;
   statistics.report(status);
   EXPECT_EQ(status.loss_reason, to_string(LossReason::kLargeResidual));
   EXPECT_EQ(status.undetermined, 3);
-  statistics.add(tracked(TrackingState::kTracking), {});
+  statistics.add(tracked(TrackingState::kTracking), true, {});
   statistics.report(status);
   EXPECT_EQ(status.loss_reason, "");
   EXPECT_EQ(status.undetermined, 0);
@@ -65,11 +75,11 @@ TEST(RunStatistics, TellsWhyTheLastFrameIsLost) {
 
 TEST(RunStatistics, MeansAreOverTheFramesSinceTheLastReport) {
   RunStatistics statistics;
-  statistics.add(tracked(TrackingState::kTracking), timings(100, 106));
+  statistics.add(tracked(TrackingState::kTracking), true, timings(100, 106));
   MapperStatus status;
   statistics.report(status);
-  statistics.add(tracked(TrackingState::kTracking), timings(10, 16));
-  statistics.add(tracked(TrackingState::kTracking), timings(20, 26));
+  statistics.add(tracked(TrackingState::kTracking), true, timings(10, 16));
+  statistics.add(tracked(TrackingState::kTracking), true, timings(20, 26));
   statistics.report(status);
   EXPECT_DOUBLE_EQ(status.track_ms, 15.0);
   EXPECT_DOUBLE_EQ(status.integrate_ms, 2.0);
@@ -84,12 +94,12 @@ TEST(RunStatistics, QuantilesAreThoseOfTheFramesSinceTheLastReport) {
   RunStatistics statistics;
   MapperStatus status;
   for (int ms = 200; ms > 0; --ms) {
-    statistics.add(tracked(TrackingState::kTracking), timings(0, ms));
+    statistics.add(tracked(TrackingState::kTracking), true, timings(0, ms));
   }
   statistics.report(status);
   EXPECT_DOUBLE_EQ(status.frame_p50_ms, 100.0);
   EXPECT_DOUBLE_EQ(status.frame_p99_ms, 198.0);
-  statistics.add(tracked(TrackingState::kTracking), timings(0, 7));
+  statistics.add(tracked(TrackingState::kTracking), true, timings(0, 7));
   statistics.report(status);
   EXPECT_DOUBLE_EQ(status.frame_p50_ms, 7.0);
   EXPECT_DOUBLE_EQ(status.frame_p99_ms, 7.0);

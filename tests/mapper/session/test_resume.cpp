@@ -4,10 +4,13 @@
 #include <chrono>
 #include <optional>
 #include <random>
+#include <span>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "mapper/conversion/recording_writer.hpp"
+#include "tests/mapper/core/synthetic_frames.hpp"
 #include "tests/mapper/process/mapper_program.hpp"
 #include "tests/mapper/process/stored_run.hpp"
 #include "tests/support/private_bus.hpp"
@@ -127,6 +130,41 @@ TEST_F(Resume, MapsTheFramesAgainThatWereMappedThenAndNoOthers) {
   EXPECT_EQ(after.statuses.back().frames_resumed,
             static_cast<std::int64_t>(before.pose_utimes.size()))
       << said();
+}
+
+/// A walk of a second at 200 Hz, faster than it can be mapped; the camera stops at each step.
+void write_hasty_recording(const std::filesystem::path& path) {
+  constexpr int kFramesOfStep = 4;
+  const auto writer = open_recording_writer(path, {.jpeg_quality = 0});
+  std::int64_t utime = 0;
+  for (RgbdFrame frame : testing::synthetic_run("office", 50, false).frames) {
+    for (int i = 0; i < kFramesOfStep; ++i) {
+      frame.utime = utime;
+      writer->add(frame);
+      utime += 5'000;
+    }
+  }
+  writer->finish({});
+}
+
+TEST_F(Resume, RepeatsWhichFramesWereFusedAndWhichOnlyTracked) {
+  const std::string recording = folder_ / "hasty.klg";
+  write_hasty_recording(recording);
+  const auto hasty = [&](const std::string& store_or_resume) {
+    return Flags{"--device", recording, "--resolution",  "0.02", "--session", "7",
+                 "--linger", "0",       store_or_resume, log_};
+  };
+  kill_after(hasty("--store"), 8);
+  const StoredRun before = read_stored_run(log_);
+  ASSERT_GT(before.tracked_only_utimes.size(), 2U);
+  ASSERT_LT(before.tracked_only_utimes.size(), before.pose_utimes.size());
+  // It compares its slices with those in the log, and fails where they differ.
+  EXPECT_EQ(run(hasty("--resume")), 0) << said();
+  const StoredRun after = read_stored_run(log_);
+  EXPECT_TRUE(after.has_final_slice);
+  EXPECT_TRUE(std::ranges::equal(
+      before.tracked_only_utimes,
+      std::span(after.tracked_only_utimes).first(before.tracked_only_utimes.size())));
 }
 
 TEST_F(Resume, StoppedBeforeItHasCaughtUpLeavesTheSessionOpen) {

@@ -3,11 +3,13 @@
 #include <memory>
 #include <optional>
 #include <stdexcept>
+#include <vector>
 
 #include <gmock/gmock.h>
 
 #include "lcmtypes/channels.hpp"
 #include "lcmtypes/codec/codec.hpp"
+#include "mapper/session/mapped_frames.hpp"
 #include "mapper/session/resumption.hpp"
 #include "tests/support/example_messages.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -43,6 +45,32 @@ TEST_F(ResumptionTest, ContinuesTheLastRunOfTheLog) {
   EXPECT_EQ(run.ended_session(), nullptr);
   EXPECT_THAT([&] { Resumption(store, {.options = {}, .session = 9}); },
               ThrowsMessage<std::runtime_error>(HasSubstr("the session to resume is 7")));
+}
+
+TEST_F(ResumptionTest, KnowsWhichFramesWereFusedAndWhichOnlyTracked) {
+  {
+    SessionStore store(log(false));
+    const Resumption run(store, {.options = {}, .session = 7});
+    EXPECT_EQ(run.was_fused(100), std::nullopt);
+    CameraPose pose = kintsugi::testing::example_camera_pose();
+    pose.session = 7;
+    for (pose.utime = 100; pose.utime <= 300; pose.utime += 100) {
+      if (pose.utime == 200) {
+        store.add(kTrackedOnlyChannel, encode_mapped_frames(7, {&pose.utime, 1}));
+      }
+      store.add(channels::kCameraPose, encode(pose));
+    }
+    // Killed before the pose was stored: the frame was mapped nevertheless.
+    store.add(kTrackedOnlyChannel, encode_mapped_frames(7, std::vector<std::int64_t>{400}));
+  }
+  SessionStore store(log(true));
+  const Resumption run(store, {.options = {}});
+  EXPECT_EQ(run.was_fused(100), true);
+  EXPECT_EQ(run.was_fused(200), false);
+  EXPECT_EQ(run.was_fused(300), true);
+  EXPECT_EQ(run.was_fused(400), false);
+  EXPECT_EQ(run.was_fused(500), std::nullopt);
+  EXPECT_EQ(run.last_mapped_utime(), 400);
 }
 
 /// A recording without frames.

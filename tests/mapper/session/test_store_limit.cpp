@@ -17,6 +17,7 @@
 #include "lcmtypes/log/log_reader.hpp"
 #include "lcmtypes/patch_motions.hpp"
 #include "lcmtypes/stream/stream_subscriber.hpp"
+#include "mapper/session/mapped_frames.hpp"
 #include "mapper/session/session_store.hpp"
 #include "tests/support/example_messages.hpp"
 #include "tests/support/message_equality.hpp"
@@ -38,6 +39,7 @@ constexpr std::int64_t kSession = 42;  // of the examples
 constexpr std::size_t kChunkBytes = 20'000;
 constexpr std::int64_t kLimit = 4'000'000;
 constexpr std::int32_t kNumPatches = 24;
+constexpr std::int64_t kTrackedOnlyStep = 5;  // every fifth frame is only tracked
 
 /// The map as a receiver has it who got these slices, in any order.
 struct ReceivedMap {
@@ -75,6 +77,9 @@ class Mapper {
   void step() {
     CameraPose pose = example_camera_pose();
     pose.utime = 1'000'000 + 33'333 * frames++;
+    if (frames % kTrackedOnlyStep == 0) {
+      store_.add(kTrackedOnlyChannel, encode_mapped_frames(kSession, {&pose.utime, 1}));
+    }
     store_.add(channels::kCameraPose, encode(pose));
     const auto number = static_cast<std::int32_t>(random_() % 40);
     if (number == 0) {
@@ -228,6 +233,8 @@ void expect_resumable(const fs::path& path, const Mapper& mapper) {
   EXPECT_EQ(store.sessions()[0].options, (MappingOptions{{"device", "a"}}));
   ASSERT_EQ(std::ssize(store.sessions()[0].mapped_utimes), mapper.frames);
   EXPECT_EQ(store.sessions()[0].mapped_utimes[1], 1'033'333);
+  ASSERT_EQ(std::ssize(store.sessions()[0].tracked_only_utimes), mapper.frames / kTrackedOnlyStep);
+  EXPECT_EQ(store.sessions()[0].tracked_only_utimes[0], 1'133'332);
   EXPECT_TRUE(store.sessions()[0].last_status);
 }
 
