@@ -105,7 +105,7 @@ class MapperPipeline {
   explicit MapperPipeline(const Config& config);
 
   /// Frames must be in order of time and have the same intrinsics.
-  /// @param fuse false: the frame is only tracked, in less than half of the time. It is fused
+  /// @param fuse false: the frame is only tracked, in two thirds of the time. It is fused
   /// nevertheless where tracking goes on with it: the first one, one that a keyframe has found, and
   /// with a given path
   /// @throws std::invalid_argument if the sizes of an image and of the intrinsics differ; the map
