@@ -15,8 +15,8 @@ namespace {
 
 std::string header() {
   std::string line =
-      "frame_index,utime_us,part,state,reason,first_reason,fused,frame_ms,cpu_ms,read_ms,convert_"
-      "ms";
+      "frame_index,utime_us,part,state,reason,first_reason,fused,"
+      "frame_ms,cpu_ms,read_ms,convert_ms";
   for (const Stage& stage : kStages) line += std::string(",") + stage.name;
   return line +
          ",extract_ms,publish_ms,covered_share,overlap_share,inlier_share,behind_share,"

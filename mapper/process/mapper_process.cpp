@@ -340,8 +340,7 @@ void MapperProcess::log_summary() const {
   if (reader_.finished()) spdlog::info("end: {}", source.end_reason);
   spdlog::info(
       "{} frames in {:.1f} s ({:.1f} ms each, {:.1f} ms of CPU): {} located ({} not fused for lack "
-      "of "
-      "time), {} lost, found again {} times, {} dropped, {} bad, {} interruptions",
+      "of time), {} lost, found again {} times, {} dropped, {} bad, {} interruptions",
       statistics_.frames(), elapsed_s, statistics_.mean_frame_ms(), statistics_.mean_cpu_ms(),
       statistics_.frames_tracked(), statistics_.frames_tracked_only(), statistics_.frames_lost(),
       statistics_.frames_relocalised(), counts.frames_dropped, counts.frames_bad,

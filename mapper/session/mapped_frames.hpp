@@ -12,8 +12,8 @@ namespace kintsugi::mapper {
 /// Channels of these events, in the log only. In a log that was rewritten: all frames, in place of
 /// their poses.
 inline constexpr char kMappedFramesChannel[] = "MAPPER_MAPPED_FRAMES";
-/// Those of them that were only tracked, not fused. Stored before the pose of the frame: so a frame
-/// is never known as mapped without how.
+/// Those of them that were only tracked, not fused. Stored before the pose of the frame, so that
+/// it is never known that a frame was mapped and not how.
 inline constexpr char kTrackedOnlyChannel[] = "MAPPER_TRACKED_ONLY";
 
 struct MappedFrames {
