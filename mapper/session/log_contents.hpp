@@ -11,6 +11,7 @@
 #include "lcmtypes/messages.hpp"
 #include "mapper/session/chunk_fates.hpp"
 #include "mapper/session/log_files.hpp"
+#include "mapper/session/mapped_frames.hpp"
 
 namespace kintsugi::mapper {
 
@@ -37,10 +38,9 @@ struct SessionContents {
   std::int64_t session = 0;
   std::string map_name;
   PlacedEvent options;
-  std::vector<std::int64_t> mapped_utimes;        ///< of frames, ascending
-  std::vector<std::int64_t> tracked_only_utimes;  ///< of those of them that were not fused
-  std::map<std::int64_t, PlacedSlice> slices;     ///< by PlacedSlice::sequence
-  std::map<std::string, ChunkFates> fates;        ///< by the channel of the stream
+  FrameHistory frames;
+  std::map<std::int64_t, PlacedSlice> slices;  ///< by PlacedSlice::sequence
+  std::map<std::string, ChunkFates> fates;     ///< by the channel of the stream
   std::map<std::string, std::map<std::int64_t, PlacedEvent>>
       other_chunks;                                  ///< by channel, sequence
   std::map<std::string, PlacedEvent> last_messages;  ///< by channel: status, and heartbeats

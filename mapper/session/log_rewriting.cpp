@@ -60,8 +60,8 @@ class Rewriting {
   void write(const SessionContents& session) {
     const SliceNeeds needs(session, [this](const LogPlace& place) { return data_of(place); });
     copy(kOptionsChannel, session.options);
-    write_frames(kMappedFramesChannel, session.mapped_utimes, session);
-    write_frames(kTrackedOnlyChannel, session.tracked_only_utimes, session);
+    write_frames(kMappedFramesChannel, session.frames.mapped_utimes, session);
+    write_frames(kTrackedOnlyChannel, session.frames.tracked_only_utimes, session);
     write_fates(session, needs);
     for (const auto& [channel, chunks] : session.other_chunks) {
       for (const auto& [sequence, chunk] : chunks) {

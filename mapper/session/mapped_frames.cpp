@@ -23,6 +23,10 @@ std::int64_t take(ByteView& data) {
   throw std::runtime_error("its list of mapped frames cannot be read");
 }
 
+void add_later(std::int64_t utime, std::vector<std::int64_t>& to) {
+  if (to.empty() || utime > to.back()) to.push_back(utime);
+}
+
 }  // namespace
 
 Bytes encode_mapped_frames(std::int64_t session, std::span<const std::int64_t> utimes) {
@@ -50,9 +54,12 @@ MappedFrames decode_mapped_frames(ByteView data) {
   return frames;
 }
 
-void add_ascending(std::vector<std::int64_t>& to, std::span<const std::int64_t> utimes) {
-  for (const std::int64_t utime : utimes) {
-    if (to.empty() || utime > to.back()) to.push_back(utime);
+void FrameHistory::add(std::int64_t utime) { add_later(utime, mapped_utimes); }
+
+void FrameHistory::add(const std::string& channel, const MappedFrames& frames) {
+  for (const std::int64_t utime : frames.utimes) {
+    add_later(utime, mapped_utimes);
+    if (channel == kTrackedOnlyChannel) add_later(utime, tracked_only_utimes);
   }
 }
 

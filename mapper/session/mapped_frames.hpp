@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "lcmtypes/codec/codec.hpp"
@@ -27,10 +28,20 @@ Bytes encode_mapped_frames(std::int64_t session, std::span<const std::int64_t> u
 /// @throws std::runtime_error when they are damaged
 MappedFrames decode_mapped_frames(ByteView data);
 
-/// Adds those that are later than all in the list. A log may tell of a frame more than once.
-void add_ascending(std::vector<std::int64_t>& to, std::span<const std::int64_t> utimes);
-inline void add_ascending(std::vector<std::int64_t>& to, std::int64_t utime) {
-  add_ascending(to, {&utime, 1});
+/// The frames of a session, which its log may tell more than once: device time, microseconds,
+/// ascending.
+struct FrameHistory {
+  std::vector<std::int64_t> mapped_utimes;
+  std::vector<std::int64_t> tracked_only_utimes;  ///< of those of them that were not fused
+
+  /// Of the pose of a frame.
+  void add(std::int64_t utime);
+  /// Of an event on one of the channels above.
+  void add(const std::string& channel, const MappedFrames& frames);
+};
+
+inline bool has_mapped_frames(const std::string& channel) {
+  return channel == kMappedFramesChannel || channel == kTrackedOnlyChannel;
 }
 
 }  // namespace kintsugi::mapper

@@ -39,7 +39,7 @@ void Resumption::continue_last_run() {
                              ", the session to resume is " + std::to_string(session_));
   }
   continued_ = last;
-  if (!last.mapped_utimes.empty()) last_mapped_utime_ = last.mapped_utimes.back();
+  if (!last.frames.mapped_utimes.empty()) last_mapped_utime_ = last.frames.mapped_utimes.back();
   // Missing chunks and the ones after them are made and added again.
   StoredStream& slices = store_.stream(channels::kCloudSlice, session_);
   slices.index().truncate_at_gap();
@@ -49,7 +49,7 @@ void Resumption::continue_last_run() {
   // Drops a frame of which only a part was stored.
   frames.truncate(continued_->frame_chunks_end);
   spdlog::info("session {} is resumed: {} frames were mapped, {} chunks published", session_,
-               continued_->mapped_utimes.size(), slices.next_sequence());
+               continued_->frames.mapped_utimes.size(), slices.next_sequence());
 }
 
 bool Resumption::has_all_slices() const {
@@ -69,7 +69,7 @@ std::unique_ptr<FrameSource> Resumption::attach(std::unique_ptr<FrameSource> sou
     return begin_anew(std::move(source), "what its guests sent cannot be repeated (--join)");
   }
   if (source->status().frames_total >= 0) {
-    return std::make_unique<ResumedSource>(std::move(source), continued_->mapped_utimes,
+    return std::make_unique<ResumedSource>(std::move(source), continued_->frames.mapped_utimes,
                                            continued_->final_slice_begun);
   }
   if (has_all_frames()) return stored_frames_before(std::move(source));
@@ -104,7 +104,7 @@ std::unique_ptr<FrameSource> Resumption::stored_frames_before(
 
 std::optional<bool> Resumption::was_fused(std::int64_t utime) const {
   if (!was_mapped(utime)) return std::nullopt;
-  return !std::ranges::binary_search(continued_->tracked_only_utimes, utime);
+  return !std::ranges::binary_search(continued_->frames.tracked_only_utimes, utime);
 }
 
 bool Resumption::has_caught_up(std::int64_t last_utime) const {

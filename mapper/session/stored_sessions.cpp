@@ -49,15 +49,10 @@ std::optional<StoredChunk> StoredSessionReader::read(const LogEvent& event) {
   if (event.channel == channels::kKeyframe) return read_keyframe_chunk(event);
   if (event.channel == channels::kCameraPose) {
     const auto pose = decode<CameraPose>(event.data);
-    add_ascending(session(pose.session).mapped_utimes, pose.utime);
-  } else if (event.channel == kMappedFramesChannel) {
+    session(pose.session).frames.add(pose.utime);
+  } else if (has_mapped_frames(event.channel)) {
     const MappedFrames frames = decode_mapped_frames(event.data);
-    add_ascending(session(frames.session).mapped_utimes, frames.utimes);
-  } else if (event.channel == kTrackedOnlyChannel) {
-    const MappedFrames frames = decode_mapped_frames(event.data);
-    StoredSession& of = session(frames.session);
-    add_ascending(of.mapped_utimes, frames.utimes);
-    add_ascending(of.tracked_only_utimes, frames.utimes);
+    session(frames.session).frames.add(event.channel, frames);
   } else if (event.channel == channels::kMapperStatus) {
     auto status = decode<MapperStatus>(event.data);
     session(status.session).last_status = std::move(status);

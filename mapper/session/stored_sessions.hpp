@@ -8,6 +8,7 @@
 
 #include "lcmtypes/log/log_reader.hpp"
 #include "lcmtypes/messages.hpp"
+#include "mapper/session/mapped_frames.hpp"
 #include "mapper/session/mapping_options.hpp"
 
 namespace kintsugi::mapper {
@@ -23,8 +24,7 @@ Bytes encode_options(std::int64_t session, const MappingOptions& options);
 struct StoredSession {
   std::int64_t session = 0;
   MappingOptions options;
-  std::vector<std::int64_t> mapped_utimes;        ///< times of the mapped frames, ascending
-  std::vector<std::int64_t> tracked_only_utimes;  ///< of those of them that were not fused
+  FrameHistory frames;
   bool final_slice_begun = false;      ///< mapping had ended, the rest was being published
   std::int64_t slice_chunks_end = 0;   ///< one past the last chunk of the final slice; 0: open
   std::int64_t frame_chunks_end = 0;   ///< one past the last chunk of a raw frame stored whole

@@ -49,7 +49,8 @@ inline StoredRun read_stored_run(const std::filesystem::path& path) {
     } else if (event->channel == channels::kCameraPose) {
       run.pose_utimes.push_back(decode<CameraPose>(event->data).utime);
     } else if (event->channel == kTrackedOnlyChannel) {
-      add_ascending(run.tracked_only_utimes, decode_mapped_frames(event->data).utimes);
+      const auto utimes = decode_mapped_frames(event->data).utimes;
+      run.tracked_only_utimes.insert(run.tracked_only_utimes.end(), utimes.begin(), utimes.end());
     } else if (event->channel == channels::kMapperStatus) {
       run.statuses.push_back(decode<MapperStatus>(event->data));
     }

@@ -98,7 +98,7 @@ TEST(SessionStore, GivesBackEveryChunkOfARotatedLogAlsoWhenItIsContinued) {
     ASSERT_EQ(log.sessions().size(), 1U);
     EXPECT_EQ(log.sessions()[0].session, kSession);
     EXPECT_EQ(log.sessions()[0].options, (MappingOptions{{"device", "a"}}));
-    EXPECT_EQ(log.sessions()[0].mapped_utimes, std::vector<std::int64_t>{100});
+    EXPECT_EQ(log.sessions()[0].frames.mapped_utimes, std::vector<std::int64_t>{100});
     EXPECT_FALSE(log.sessions()[0].final_slice_begun);
     add_chunks(log, 50, 60);
     expect_chunks(log, 0, 60);
@@ -247,7 +247,7 @@ TEST(SessionStore, KeepsInMemoryWhatADiskHasNoRoomForAndWritesItLater) {
   }
   SessionStore log(config_for(path, true));
   expect_chunks(log, 0, 20);
-  EXPECT_EQ(log.sessions().at(0).mapped_utimes.size(), 1U);
+  EXPECT_EQ(log.sessions().at(0).frames.mapped_utimes.size(), 1U);
 }
 
 TEST(SessionStore, BoundsWhatWaitsAndCountsTheChunksThatAreLost) {

@@ -231,10 +231,11 @@ void expect_resumable(const fs::path& path, const Mapper& mapper) {
   expect_whole(store, mapper);
   ASSERT_EQ(store.sessions().size(), 1U);
   EXPECT_EQ(store.sessions()[0].options, (MappingOptions{{"device", "a"}}));
-  ASSERT_EQ(std::ssize(store.sessions()[0].mapped_utimes), mapper.frames);
-  EXPECT_EQ(store.sessions()[0].mapped_utimes[1], 1'033'333);
-  ASSERT_EQ(std::ssize(store.sessions()[0].tracked_only_utimes), mapper.frames / kTrackedOnlyStep);
-  EXPECT_EQ(store.sessions()[0].tracked_only_utimes[0], 1'133'332);
+  ASSERT_EQ(std::ssize(store.sessions()[0].frames.mapped_utimes), mapper.frames);
+  EXPECT_EQ(store.sessions()[0].frames.mapped_utimes[1], 1'033'333);
+  ASSERT_EQ(std::ssize(store.sessions()[0].frames.tracked_only_utimes),
+            mapper.frames / kTrackedOnlyStep);
+  EXPECT_EQ(store.sessions()[0].frames.tracked_only_utimes[0], 1'133'332);
   EXPECT_TRUE(store.sessions()[0].last_status);
 }
 
