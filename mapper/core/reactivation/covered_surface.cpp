@@ -18,8 +18,6 @@
 
 #include <tbb/parallel_for.h>
 
-#include "lcmtypes/base/argument_check.hpp"
-
 namespace kintsugi::mapper {
 namespace {
 
@@ -266,12 +264,6 @@ class Comparison {
 };
 
 }  // namespace
-
-void SameSurface::validate() const {
-  check_range("max_distance_vox", max_distance_vox, 0.0, 100.0);
-  check_range("max_angle_deg", max_angle_deg, 0.0, 180.0);
-  check_range("weight_threshold", weight_threshold, 0, 65534);
-}
 
 void clear_covered(TsdfVolume& volume, const std::vector<BlocksUnderCovers>& groups,
                    const SameSurface& same) {
