@@ -12,11 +12,14 @@
 namespace kintsugi::mapper {
 namespace {
 
-LocalMap::Config completed(LocalMap::Config config) {
+LocalMap::Config completed(LocalMap::Config config, bool closes_loops) {
   config.validate_map();
   config.same_surface.weight_threshold = config.slices.extractor.weight_threshold;
   if (config.patch_side_m > 0.0) {
     config.slices.tiles = TileGrid(config.patch_side_m, config.volume.resolution_m);
+    if (closes_loops) {
+      config.slices.common_surface = {config.same_surface, config.volume.resolution_m};
+    }
   }
   return config;
 }
@@ -45,7 +48,7 @@ void LocalMap::Config::validate_map() const {
 }
 
 LocalMap::LocalMap(const Config& config, const LoopClosure* loops)
-    : config_(completed(config)),
+    : config_(completed(config, loops != nullptr)),
       loops_(loops),
       volume_(config_.volume),
       tiles_(config_.patch_side_m, config_.volume.resolution_m),

@@ -40,7 +40,7 @@ class LocalMap {
     /// Of surface that has left and may come back, 1e6 bytes; above that what left longest ago is
     /// forgotten. A metre of a walk through rooms takes 5 MB.
     double max_kept_mb = 1000.0;
-    SliceWorker::Config slices;  ///< its `tiles` follow from what is below
+    SliceWorker::Config slices;  ///< its `tiles` and `common_surface` follow from the rest
     /// The map comes in patches of about this size, m, while its surface is in the volume; 0: in
     /// slices, when it leaves the volume.
     double patch_side_m = 0.0;

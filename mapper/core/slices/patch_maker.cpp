@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <span>
 #include <utility>
 
@@ -9,6 +10,17 @@ namespace kintsugi::mapper {
 namespace {
 
 constexpr double kLeastMotion_vox = 0.1;  // a smaller one is no error
+
+// How often, and at how many of them, patches are looked at again where several robots have
+// surface: a third of a millisecond each.
+constexpr std::int64_t kCommonPeriod_us = 1'000'000;
+constexpr std::size_t kCommonPatches = 300;
+
+/// Patches are segmented together up to the last one of a batch.
+std::vector<CloudSlice> as_batch(std::vector<CloudSlice> slices) {
+  if (!slices.empty()) slices.back().ends_batch = true;
+  return slices;
+}
 
 /// The largest distance that a corner of a box moves, metres.
 double motion_m(const Eigen::AlignedBox3d& box_P, const Pose& X_WP_before, const Pose& X_WP_after) {
@@ -80,21 +92,21 @@ std::vector<CloudSlice> PatchMaker::reopen(std::span<const TileVisit> visits,
   for (const TileVisit& visit : visits) {
     Patch& patch = patch_at(visit.tile, seen_at);
     if (visit.number != TileVisit::kOpen) {
-      if (places_.at(patch.number).id != kNoId) ended.push_back(revision_of(patch, header));
-      places_.erase(patch.number);
+      Place& place = places_.at(patch.number);
+      place.in_volume = false;
+      if (place.id != kNoId) ended.push_back(revision_of(place, {}, header));
+      end(patch.number);
       const auto closed = closed_.extract(visit);
       if (closed.empty()) {  // forgotten: it begins anew
         patch = Patch();
         patch_at(visit.tile, seen_at);
         continue;
       }
-      patch.number = closed.mapped().number;
-      patch.revision = closed.mapped().revision;
+      patch.number = closed.mapped();
     }
     go_on(patch, visit);
   }
-  if (!ended.empty()) ended.back().ends_batch = true;
-  return ended;
+  return as_batch(std::move(ended));
 }
 
 /// Under another number, as points that were given with the one before count no more.
@@ -102,14 +114,39 @@ void PatchMaker::go_on(Patch& patch, const TileVisit& visit) {
   auto place = places_.extract(patch.number);
   patch.number = next_number_++;
   place.key() = patch.number;
+  if (place.mapped().id != kNoId) number_of_id_[place.mapped().id] = patch.number;
   places_.insert(std::move(place));
   patch.left_W.clear();
   newest_[visit.tile] = patch.number;
 }
 
-/// The next revision, without points yet.
-CloudSlice PatchMaker::revision_of(Patch& patch, const CloudSlice& header) {
-  const Place& place = places_.at(patch.number);
+void PatchMaker::end(int number) {
+  const auto place = places_.find(number);
+  number_of_id_.erase(place->second.id);
+  places_.erase(place);
+}
+
+void PatchMaker::give_id(int number) {
+  number_of_id_[next_id_] = number;
+  places_.at(number).id = next_id_++;
+}
+
+CommonSurface::Name PatchMaker::name_of(const Place& place) {
+  return {place.guest ? place.guest->session : CommonSurface::kOwnSession, place.id};
+}
+
+/// The next revision: these points, but for those that others have better.
+CloudSlice PatchMaker::revision_of(Place& place, std::vector<CloudPoint> points_P,
+                                   const CloudSlice& header) {
+  if (common_) {
+    common_->set(name_of(place), std::move(points_P), place.X_WP);
+    points_P = common_->take(name_of(place));
+  }
+  return slice_of(place, std::move(points_P), header);
+}
+
+CloudSlice PatchMaker::slice_of(Place& place, std::vector<CloudPoint> points_P,
+                                const CloudSlice& header) {
   CloudSlice slice = header;
   slice.kind = SliceKind::kPatch;
   slice.id = place.id;
@@ -117,7 +154,9 @@ CloudSlice PatchMaker::revision_of(Patch& patch, const CloudSlice& header) {
   slice.part = place.part;
   slice.keyframe = place.guest ? kNotOfCamera : place.keyframe;
   slice.correction = correction_;
-  slice.revision = ++patch.revision;
+  slice.in_volume = place.in_volume;
+  slice.revision = ++place.revision;
+  slice.points_W = std::move(points_P);
   revision_sum_ += slice.revision > 0 ? 1 : 0;
   return slice;
 }
@@ -131,6 +170,15 @@ std::optional<PatchPlace> PatchMaker::place_of(int patch) const {
 
 std::vector<CloudSlice> PatchMaker::make(const PatchBatch& batch, const ExtractedSurface& in_volume,
                                          const CloudSlice& header) {
+  std::vector<CloudSlice> slices = revisions_of(batch, in_volume, header);
+  std::ranges::move(revisions_of(changed_by_others(header.utime), header),
+                    std::back_inserter(slices));
+  return as_batch(std::move(slices));
+}
+
+std::vector<CloudSlice> PatchMaker::revisions_of(const PatchBatch& batch,
+                                                 const ExtractedSurface& in_volume,
+                                                 const CloudSlice& header) {
   auto present_W = by_tile(in_volume);
   std::vector<CloudSlice> slices;
   for (const PatchBatch::Patch& due : batch.patches) {
@@ -143,16 +191,31 @@ std::vector<CloudSlice> PatchMaker::make(const PatchBatch& batch, const Extracte
       points_W.insert(points_W.end(), more_W.begin(), more_W.end());
     }
     if (place.id != kNoId || !points_W.empty()) {
-      if (place.id == kNoId) place.id = next_id_++;
+      if (place.id == kNoId) give_id(patch.number);
       place.X_WP = due.place.X_WU;
       place.part = due.place.part;
-      CloudSlice& slice = slices.emplace_back(revision_of(patch, header));
-      slice.in_volume = due.in_volume;
-      slice.points_W = std::move(points_W);
+      place.in_volume = due.in_volume;
+      slices.push_back(revision_of(place, std::move(points_W), header));
     }
     if (!due.in_volume) close(due.tile);
   }
-  if (!slices.empty()) slices.back().ends_batch = true;
+  return slices;
+}
+
+std::vector<CommonSurface::Rest> PatchMaker::changed_by_others(std::int64_t utime) {
+  if (!common_ || utime < common_due_utime_) return {};
+  common_due_utime_ = utime + kCommonPeriod_us;
+  return common_->take_changed(kCommonPatches);
+}
+
+std::vector<CloudSlice> PatchMaker::revisions_of(std::vector<CommonSurface::Rest> patches,
+                                                 const CloudSlice& header) {
+  std::vector<CloudSlice> slices;
+  slices.reserve(patches.size());
+  for (auto& [name, points_P] : patches) {
+    Place& place = places_.at(number_of_id_.at(name.id));
+    slices.push_back(slice_of(place, std::move(points_P), header));
+  }
   return slices;
 }
 
@@ -163,7 +226,7 @@ void PatchMaker::close(const TileCoord& tile) {
   const int visit = num_closed_[tile]++;
   const Place& place = places_.at(patch.number);
   if (place.id != kNoId || place.has_vertices) {
-    closed_[{tile, visit}] = {patch.number, patch.revision};
+    closed_[{tile, visit}] = patch.number;
   } else {
     places_.erase(patch.number);
   }
@@ -172,24 +235,20 @@ void PatchMaker::close(const TileCoord& tile) {
 std::vector<CloudSlice> PatchMaker::take_in(std::vector<GuestPatch> patches,
                                             const CloudSlice& header) {
   std::vector<CloudSlice> slices;
+  slices.reserve(patches.size());
   for (GuestPatch& taken : patches) {
-    const auto [found, is_new] = of_guests_.try_emplace(taken.name);
-    Patch& patch = found->second;
-    if (is_new) {
-      patch.number = next_number_++;
-      places_[patch.number].id = next_id_++;
-    }
-    Place& place = places_.at(patch.number);
-    place.guest = {.X_UP = taken.X_UP, .box_P = box_of(taken.points_P)};
+    const auto [number, is_new] = of_guests_.try_emplace(taken.name, next_number_);
+    Place& place = places_[number->second];
+    if (is_new) give_id(next_number_++);
+    place.guest = {
+        .session = taken.name.session, .X_UP = taken.X_UP, .box_P = box_of(taken.points_P)};
+    place.in_volume = taken.in_volume;
     place.keyframe = taken.at.keyframe;
     place.X_WP = pose_of(place, taken.at.place.X_WU);
     place.part = taken.at.place.part;
-    CloudSlice& slice = slices.emplace_back(revision_of(patch, header));
-    slice.in_volume = taken.in_volume;
-    slice.points_W = std::move(taken.points_P);
+    slices.push_back(revision_of(place, std::move(taken.points_P), header));
   }
-  if (!slices.empty()) slices.back().ends_batch = true;
-  return slices;
+  return as_batch(std::move(slices));
 }
 
 /// X_WP, if the keyframe with which the patch moves is moved like this.
@@ -219,6 +278,7 @@ std::vector<CloudSlice> PatchMaker::correct(const MapDeformation& deformation,
     place.part = part;
     if (place.id == kNoId) continue;  // it was never sent
     motions[part].push_back({place.id, X_WP});
+    if (common_) common_->move(name_of(place), X_WP);
   }
   std::vector<CloudSlice> slices;
   for (auto& [part, of_part] : motions) {
@@ -244,7 +304,12 @@ std::vector<CloudSlice> PatchMaker::finish(const CloudSlice& header) {
     const Place& place = places_.at(patch.number);
     everything.patches.push_back({tile, false, place.keyframe, {place.X_WP.pose(), place.part}});
   }
-  std::vector<CloudSlice> slices = make(everything, {}, header);
+  std::vector<CloudSlice> slices = revisions_of(everything, {}, header);
+  if (common_) {
+    std::ranges::move(revisions_of(common_->take_all_changed(), header),
+                      std::back_inserter(slices));
+  }
+  slices = as_batch(std::move(slices));
   CloudSlice& last = slices.emplace_back(header);
   last.kind = SliceKind::kFinal;
   last.id = next_id_;

@@ -43,7 +43,9 @@ SliceWorker::SliceWorker(const Config& config)
       extractor_(config.extractor),
       mesh_extractor_({.weight_threshold = config.extractor.weight_threshold,
                        .max_step_vox = config.extractor.max_step_vox}),
-      patches_(config.tiles ? std::optional<PatchMaker>(*config.tiles) : std::nullopt),
+      patches_(config.tiles
+                   ? std::optional<PatchMaker>(std::in_place, *config.tiles, config.common_surface)
+                   : std::nullopt),
       thread_([this] { run(); }) {}
 
 SliceWorker::~SliceWorker() {

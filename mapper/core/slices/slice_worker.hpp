@@ -15,6 +15,7 @@
 #include "lcmtypes/messages.hpp"
 #include "mapper/core/extraction/mesh_extractor.hpp"
 #include "mapper/core/extraction/surface_extractor.hpp"
+#include "mapper/core/slices/common_surface.hpp"
 #include "mapper/core/slices/patch_batch.hpp"
 #include "mapper/core/slices/patch_maker.hpp"
 #include "mapper/core/slices/tile.hpp"
@@ -43,6 +44,8 @@ class SliceWorker {
     SurfaceExtractor::Config extractor;
     /// The slices are patches, one for each tile, and not one for what left at one time.
     std::optional<TileGrid> tiles;
+    /// Of patches; see PatchMaker.
+    std::optional<CommonSurface::Config> common_surface;
     /// Largest number of blocks in the queue, with those around the slices; a slice larger than
     /// this waits for an empty queue. 8,192 blocks are 32 MB, about three slices of a room.
     std::size_t max_queued_blocks = 8'192;

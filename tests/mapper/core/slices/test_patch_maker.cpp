@@ -303,6 +303,84 @@ TEST_F(Patches, OfGuestsAreNumberedWithTheOthers) {
   EXPECT_EQ(ended.back().revision_sum, 2) << "the last one of this map, and that of the guest";
 }
 
+TEST_F(Patches, OfGuestsAreSentWithoutWhatThisMapHas) {
+  PatchMaker common(TileGrid(0.08, 0.01), CommonSurface::Config{.same = {}, .resolution_m = 0.01});
+  const auto at = [](float x, float weight) {
+    CloudPoint p;
+    p.x = x;
+    p.nz = 1.0F;
+    p.weight = weight;
+    return p;
+  };
+  const auto own = [&](const std::vector<CloudPoint>& points) {
+    ExtractedSurface surface;
+    surface.blocks.push_back({make_block_coord(0, 0, 0), 0, points.size()});
+    surface.points_W = points;
+    return surface;
+  };
+  const auto header_at = [](std::int64_t utime) {
+    CloudSlice header = Patches::header();
+    header.utime = utime;
+    return header;
+  };
+  common.make({{{kHere}}}, own({at(0.01F, 7)}), header_at(1));
+  GuestPatch guest{.name = {.session = 8, .id = 70}, .at = {}, .in_volume = true};
+  guest.points_P = {at(0.01F, 4), at(0.04F, 5), at(0.07F, 6)};
+  const auto taken = common.take_in({guest}, header_at(2));
+  ASSERT_EQ(taken.size(), 1U);
+  EXPECT_THAT(weights(taken[0]), ElementsAre(5, 6));
+
+  // A point of three is little, which waits until the end.
+  const auto little =
+      common.make({{{kHere}}}, own({at(0.01F, 7), at(0.04F, 7)}), header_at(2'000'000));
+  ASSERT_EQ(little.size(), 1U);
+  const auto more = own({at(0.041F, 7), at(0.07F, 7)});
+  const auto soon = common.make({{{kHere}}}, more, header_at(2'100'000));
+  EXPECT_EQ(soon.size(), 1U) << "they were looked at a tenth of a second ago";
+  const auto later = common.make({{{kHere}}}, more, header_at(3'000'000));
+  ASSERT_EQ(later.size(), 2U);
+  EXPECT_FALSE(later[0].ends_batch);
+  EXPECT_TRUE(later[1].ends_batch);
+  EXPECT_EQ(later[1].id, taken[0].id);
+  EXPECT_EQ(later[1].revision, 1);
+  EXPECT_EQ(later[1].keyframe, -1);
+  EXPECT_TRUE(later[1].in_volume);
+  EXPECT_THAT(weights(later[1]), ElementsAre(4));
+
+  common.make({{{kHere}}}, own({at(0.01F, 7), at(0.04F, 7), at(0.07F, 7)}), header_at(3'000'001));
+  const auto ended = common.finish(header_at(3'000'002));
+  ASSERT_EQ(ended.size(), 3U) << "this map's patch, which departs, the guest's, and the last slice";
+  EXPECT_EQ(ended[1].id, taken[0].id);
+  EXPECT_THAT(ended[1].points_W, ::testing::SizeIs(3)) << "this map's patch ended without points";
+  EXPECT_TRUE(ended[1].ends_batch);
+  EXPECT_EQ(ended.back().kind, SliceKind::kFinal);
+}
+
+TEST_F(Patches, AreSentWithoutWhatAGuestHasSeenBetter) {
+  PatchMaker common(TileGrid(0.08, 0.01), CommonSurface::Config{.same = {}, .resolution_m = 0.01});
+  ExtractedSurface mine = surface({{0, {5, 6}}});
+  mine.points_W[0].nz = 1.0F;
+  mine.points_W[1].nx = 1.0F;
+  const auto batch = [](bool in_volume) { return PatchBatch{{{kHere, in_volume, 0}}}; };
+  common.make(batch(true), mine, header());
+  common.keep(mine);
+  const auto closed = common.make(batch(false), {}, header());
+  EXPECT_THAT(weights(closed.at(0)), ElementsAre(5, 6));
+
+  GuestPatch guest{.name = {.session = 8, .id = 70}, .at = {}, .in_volume = true};
+  guest.points_P.emplace_back().weight = 50;
+  guest.points_P[0].nz = 1.0F;
+  EXPECT_THAT(weights(common.take_in({guest}, header()).at(0)), ElementsAre(50));
+  const auto ended = common.finish(header());
+  ASSERT_EQ(ended.size(), 2U);
+  EXPECT_EQ(ended[0].id, closed[0].id) << "also a patch that has left the volume";
+  EXPECT_EQ(ended[0].revision, 2);
+  EXPECT_EQ(ended[0].keyframe, 0);
+  EXPECT_FALSE(ended[0].in_volume);
+  EXPECT_THAT(weights(ended[0]), ElementsAre(6)) << "the normal of the other one differs";
+  EXPECT_EQ(ended[1].revision_sum, 2);
+}
+
 TEST_F(Patches, OfGuestsMoveWithTheirKeyframes) {
   const SeenAt at{.keyframe = 1, .place = correction(1, 0.0, 0.0, 0, 1).place(1)};
   maker.take_in({guest_patch(70, at, {5})}, header());
