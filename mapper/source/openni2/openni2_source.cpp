@@ -12,7 +12,8 @@ namespace kintsugi::mapper {
 namespace {
 
 constexpr auto kPoll = std::chrono::milliseconds(100);
-constexpr double kMaxSilenceOfRecording_s = 10.0;
+// A disk on the network, or a machine that is busy with other things, may take long for an image.
+constexpr double kMaxSilenceOfRecording_s = 60.0;
 
 std::int64_t depth_period_us(const OpenNi2Device& device) {
   return 1'000'000 / device.depth_rate_hz();
