@@ -51,6 +51,7 @@ std::unique_ptr<FrameSource> session_source(std::unique_ptr<FrameSource> source,
 
 MapperPipeline::Config pipeline_config(const Options& options, MapFiles& map_files) {
   MapperPipeline::Config config = options.pipeline;
+  config.keeps_own_surface = !options.join.empty();
   config.slices.on_points = map_files.points_sink();
   config.slices.on_mesh = map_files.mesh_sink();
   return config;

@@ -18,7 +18,8 @@ LocalMap::Config completed(LocalMap::Config config, bool closes_loops) {
   if (config.patch_side_m > 0.0) {
     config.slices.tiles = TileGrid(config.patch_side_m, config.volume.resolution_m);
     if (closes_loops) {
-      config.slices.common_surface = {config.same_surface, config.volume.resolution_m};
+      config.slices.common_surface = {config.same_surface, config.volume.resolution_m,
+                                      config.keeps_own_surface};
     }
   }
   return config;

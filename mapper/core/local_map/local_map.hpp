@@ -37,6 +37,9 @@ class LocalMap {
     TsdfVolume::Config volume;
     /// Where the camera comes back to a place, what it sees is the surface that is there.
     SameSurface same_surface;  ///< its weight threshold follows from the extractor
+    /// What this camera has seen is sent also where a guest has seen it better: to another mapper,
+    /// whose map this one joins, and which knows nothing of the guests.
+    bool keeps_own_surface = false;
     /// Of surface that has left and may come back, 1e6 bytes; above that what left longest ago is
     /// forgotten. A metre of a walk through rooms takes 5 MB.
     double max_kept_mb = 1000.0;

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -74,7 +75,8 @@ class PointsByCell {
 }  // namespace
 
 CommonSurface::CommonSurface(const Config& config)
-    : along_m_(config.same.max_distance_vox * config.resolution_m),
+    : keeps_own_(config.keeps_own),
+      along_m_(config.same.max_distance_vox * config.resolution_m),
       across_m_(kSpacing_vox * config.resolution_m),
       reach_m_(std::hypot(along_m_, across_m_)),
       least_cosine_(std::cos(config.same.max_angle_deg * std::numbers::pi / 180.0)) {}
@@ -93,7 +95,9 @@ void CommonSurface::set(const Name& name, std::vector<CloudPoint> points_P, cons
   for (const CloudPoint& p : points_P) box_P.extend(position_of(p));
   patch.center_P = box_P.center();
   patch.radius_m = 0.5 * box_P.diagonal().norm();
-  patch.observations_log2 = log2_of_mean_weight(points_P);
+  const bool is_kept = keeps_own_ && name.session == kOwnSession;
+  patch.observations_log2 =
+      is_kept ? std::numeric_limits<int>::max() : log2_of_mean_weight(points_P);
   patch.is_covered.assign(points_P.size(), false);
   patch.points_P = std::move(points_P);
   forget_what_touches(patch, name.session);

@@ -33,6 +33,7 @@ class CommonSurface {
   struct Config {
     SameSurface same;  ///< its weight threshold is not used: points have that
     double resolution_m = 0.01;
+    bool keeps_own = false;  ///< patches of this camera are better than all others
   };
   static constexpr std::int64_t kOwnSession = 0;
   struct Name {
@@ -84,6 +85,7 @@ class CommonSurface {
   std::vector<Rest> take_changed(const Names& names, bool also_little);
   static std::vector<CloudPoint> rest(Patch& patch, std::vector<bool> is_covered);
 
+  const bool keeps_own_;
   const double along_m_;       ///< the normal
   const double across_m_;      ///< to its side
   const double reach_m_;       ///< at most, of both

@@ -69,7 +69,7 @@ std::vector<CloudPoint> seen(float times, std::vector<CloudPoint> points) {
 }
 
 struct CommonSurfaceTest : ::testing::Test {
-  CommonSurface common{{.same = {}, .resolution_m = kVoxel_m}};
+  CommonSurface common{{.same = {}, .resolution_m = kVoxel_m, .keeps_own = false}};
 };
 
 TEST_F(CommonSurfaceTest, IsThatOfThisCamera) {
@@ -95,6 +95,14 @@ TEST_F(CommonSurfaceTest, IsThatOfWhoHasSeenItTwiceAsOften) {
   common.set(kOwn, seen(40, floor_from(0.0)), {});
   EXPECT_THAT(common.take(kOwn), SizeIs(400));
   EXPECT_THAT(common.take_changed(10).at(0).points_P, IsEmpty());
+}
+
+TEST(CommonSurface, IsThatOfThisCameraIfItKeepsItsOwn) {
+  CommonSurface common({.same = {}, .resolution_m = kVoxel_m, .keeps_own = true});
+  common.set(kOwn, seen(8, floor_from(0.0)), {});
+  common.set(kGuest, seen(100, floor_from(0.0)), {});
+  EXPECT_THAT(common.take(kOwn), SizeIs(400));
+  EXPECT_THAT(common.take(kGuest), IsEmpty());
 }
 
 TEST_F(CommonSurfaceTest, IsNotAnotherSurface) {
@@ -263,7 +271,7 @@ TEST(CommonSurface, IsWhatASlowSearchFindsInWhateverOrder) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     RandomPatches made(seed);
     std::vector<RandomPatches::Patch> patches = made.patches();
-    CommonSurface common({.same = {}, .resolution_m = kVoxel_m});
+    CommonSurface common({.same = {}, .resolution_m = kVoxel_m, .keeps_own = false});
     std::map<Name, std::vector<CloudPoint>> rest;
     const auto keep = [&rest](std::vector<CommonSurface::Rest> changed) {
       for (auto& [name, points_P] : changed) rest[name] = std::move(points_P);

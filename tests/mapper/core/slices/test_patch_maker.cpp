@@ -304,7 +304,8 @@ TEST_F(Patches, OfGuestsAreNumberedWithTheOthers) {
 }
 
 TEST_F(Patches, OfGuestsAreSentWithoutWhatThisMapHas) {
-  PatchMaker common(TileGrid(0.08, 0.01), CommonSurface::Config{.same = {}, .resolution_m = 0.01});
+  PatchMaker common(TileGrid(0.08, 0.01),
+                    CommonSurface::Config{.same = {}, .resolution_m = 0.01, .keeps_own = false});
   const auto at = [](float x, float weight) {
     CloudPoint p;
     p.x = x;
@@ -357,7 +358,8 @@ TEST_F(Patches, OfGuestsAreSentWithoutWhatThisMapHas) {
 }
 
 TEST_F(Patches, AreSentWithoutWhatAGuestHasSeenBetter) {
-  PatchMaker common(TileGrid(0.08, 0.01), CommonSurface::Config{.same = {}, .resolution_m = 0.01});
+  PatchMaker common(TileGrid(0.08, 0.01),
+                    CommonSurface::Config{.same = {}, .resolution_m = 0.01, .keeps_own = false});
   ExtractedSurface mine = surface({{0, {5, 6}}});
   mine.points_W[0].nz = 1.0F;
   mine.points_W[1].nx = 1.0F;
