@@ -26,7 +26,7 @@ std::vector<Labels> sorted_labels(std::span<const std::uint32_t> instances,
   return labels;
 }
 
-void score(const Overlap& overlap, InstanceScore& instance) {
+void score(const InstanceOverlap& overlap, InstanceScore& instance) {
   if (overlap.iou() <= instance.best_iou) return;
   instance.best_iou = overlap.iou();
   instance.best_segment = overlap.segment;
@@ -59,7 +59,7 @@ OverlapTable overlap_table(std::span<const std::uint32_t> instances,
     begin = end;
   }
   auto of_instance = table.instances.begin();
-  for (Overlap& overlap : table.overlaps) {
+  for (InstanceOverlap& overlap : table.overlaps) {
     while (of_instance->instance != overlap.instance) ++of_instance;
     overlap.instance_size = of_instance->num_points;
     overlap.segment_size = segment_sizes.at(overlap.segment);
@@ -71,7 +71,7 @@ OverlapTable overlap_table(std::span<const std::uint32_t> instances,
 double achievable_accuracy(const OverlapTable& table) {
   if (table.num_points == 0) return 0.0;
   std::unordered_map<std::uint32_t, std::int64_t> most_shared;  // by segment
-  for (const Overlap& overlap : table.overlaps) {
+  for (const InstanceOverlap& overlap : table.overlaps) {
     std::int64_t& most = most_shared[overlap.segment];
     most = std::max(most, overlap.shared);
   }
@@ -83,7 +83,7 @@ double achievable_accuracy(const OverlapTable& table) {
 double undersegmentation_error(const OverlapTable& table) {
   if (table.num_points == 0) return 0.0;
   std::int64_t leaked = 0;
-  for (const Overlap& overlap : table.overlaps) {
+  for (const InstanceOverlap& overlap : table.overlaps) {
     leaked += std::min(overlap.shared, overlap.segment_size - overlap.shared);
   }
   return static_cast<double>(leaked) / static_cast<double>(table.num_points);

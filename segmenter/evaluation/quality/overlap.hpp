@@ -11,7 +11,7 @@ namespace kintsugi::segmenter {
 inline constexpr std::uint32_t kNoInstance = 0;
 
 /// The points that an instance and a segment share.
-struct Overlap {
+struct InstanceOverlap {
   std::uint32_t instance = 0;
   std::uint32_t segment = 0;
   std::int64_t instance_size = 0;  ///< points
@@ -35,7 +35,8 @@ struct InstanceScore {
 /// Of all points that have an instance. A point without a segment (kNoSegment) counts for its
 /// instance, and as lost: no segment has it.
 struct OverlapTable {
-  std::vector<Overlap> overlaps;  ///< by ascending instance, then segment; none of kNoSegment
+  std::vector<InstanceOverlap>
+      overlaps;  ///< by ascending instance, then segment; none of kNoSegment
   std::vector<InstanceScore> instances;  ///< ascending
   std::int64_t num_points = 0;
 };
