@@ -12,7 +12,7 @@ namespace {
 constexpr double kLeastMotion_vox = 0.1;  // a smaller one is no error
 
 // How often, and at how many of them, patches are looked at again where several robots have
-// surface: a third of a millisecond each.
+// surface: some 0.4 ms each, for patches of 784 points among 4,000.
 constexpr std::int64_t kCommonPeriod_us = 1'000'000;
 constexpr std::size_t kCommonPatches = 300;
 
