@@ -26,7 +26,7 @@ inline CellKey cell_at(const Eigen::Vector3d& p_W, double cell_m) {
 }
 
 /// For maps by CellKey: the keys of cells that are side by side differ in few bits.
-struct CellHash {
+struct CellKeyHash {
   std::size_t operator()(CellKey key) const {
     key ^= key >> 31U;
     key *= 0x9E3779B97F4A7C15U;

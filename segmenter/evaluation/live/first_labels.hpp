@@ -29,7 +29,7 @@ class FirstLabels {
 
   double radius_m_;
   double cell_m_;
-  std::unordered_map<CellKey, double, CellHash> label_s_;
+  std::unordered_map<CellKey, double, CellKeyHash> label_s_;
 };
 
 }  // namespace kintsugi::segmenter

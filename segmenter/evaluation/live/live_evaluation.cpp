@@ -125,7 +125,7 @@ void LiveEvaluation::report_delays(LiveReport& report) const {
     Eigen::Vector3d p_W = Eigen::Vector3d::Zero();
     double distance_m = std::numeric_limits<double>::infinity();  ///< from the middle
   };
-  std::unordered_map<CellKey, Sample, CellHash> samples;
+  std::unordered_map<CellKey, Sample, CellKeyHash> samples;
   map_.for_each_point([&](const Eigen::Vector3d& p_W) {
     const Eigen::Vector3d in_region = (p_W / config_.region_m).array() - 0.5;
     const double distance_m =

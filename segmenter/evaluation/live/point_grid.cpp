@@ -9,7 +9,7 @@ void PointGrid::insert(const PlacedPoint& point) {
 }
 
 void PointGrid::erase(std::int32_t slice_id, std::span<const CloudPoint> points_W) {
-  std::unordered_set<CellKey, CellHash> keys;
+  std::unordered_set<CellKey, CellKeyHash> keys;
   for (const CloudPoint& point : points_W) {
     keys.insert(cell_at(Eigen::Vector3d(point.x, point.y, point.z), cell_m_));
   }

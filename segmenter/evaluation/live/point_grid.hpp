@@ -61,7 +61,7 @@ class PointGrid {
 
  private:
   double cell_m_;
-  std::unordered_map<CellKey, std::vector<PlacedPoint>, CellHash> cells_;
+  std::unordered_map<CellKey, std::vector<PlacedPoint>, CellKeyHash> cells_;
 };
 
 }  // namespace kintsugi::segmenter

@@ -49,7 +49,7 @@ class RegionLabels {
   /// Sets the labels of the regions whose points have changed.
   void settle(double now_s, const Heirs& heirs);
 
-  const std::unordered_map<CellKey, Region, CellHash>& regions() const { return regions_; }
+  const std::unordered_map<CellKey, Region, CellKeyHash>& regions() const { return regions_; }
   /// How often points went from one segment to another: each pair of segments once in a settle().
   std::int64_t num_handovers() const { return num_handovers_; }
   /// Of the changes of labels: those where one segment was merged into the other.
@@ -59,7 +59,7 @@ class RegionLabels {
   Region& touch(const Eigen::Vector3d& p_W);
 
   double cell_m_;
-  std::unordered_map<CellKey, Region, CellHash> regions_;
+  std::unordered_map<CellKey, Region, CellKeyHash> regions_;
   std::vector<CellKey> touched_;
   std::int64_t num_handovers_ = 0;
   std::int64_t num_by_merge_ = 0;

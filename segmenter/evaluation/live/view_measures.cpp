@@ -29,7 +29,7 @@ FoundPoints points_near(const LiveMap& map, const Eigen::Vector3d& p_W, double r
 /// The points in the cells that are at most a radius from the ray.
 FoundPoints points_along(const LiveMap& map, const Ray& ray, double radius_m, double max_range_m) {
   FoundPoints found;
-  std::unordered_set<CellKey, CellHash> seen;
+  std::unordered_set<CellKey, CellKeyHash> seen;
   const double cell_m = map.grid().cell_m();
   const double reach_m = radius_m + 0.5 * cell_m;  // between two steps
   for (double t_m = 0.0; t_m <= max_range_m; t_m += cell_m) {

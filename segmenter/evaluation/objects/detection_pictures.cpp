@@ -56,7 +56,7 @@ Eigen::Matrix3f rotation_to_picture(const std::vector<CloudPoint>& points_W,
 
 class Scene {
  public:
-  Scene(const Subject& subject, const LabelledCloud& map, const Eigen::Vector3d& up_W)
+  Scene(const Subject& subject, const LabelledPoints& map, const Eigen::Vector3d& up_W)
       : R_(rotation_to_picture(subject.points_W, up_W)) {
     Eigen::AlignedBox3f box_W;
     for (const CloudPoint& p : subject.points_W) box_W.extend(position_of(p));
@@ -105,7 +105,7 @@ cv::Mat3b titled(const cv::Mat3b& panel, const std::string& title) {
   return picture;
 }
 
-std::string png_of(const Subject& subject, const LabelledCloud& map, const Eigen::Vector3d& up_W) {
+std::string png_of(const Subject& subject, const LabelledPoints& map, const Eigen::Vector3d& up_W) {
   const Scene scene(subject, map, up_W);
   const auto map_color = [&](std::size_t i) { return own_color(map.points_W[i]); };
   const auto model_color = [&](std::size_t i) { return own_color(subject.points_W[i]); };
@@ -123,7 +123,7 @@ std::string png_of(const Subject& subject, const LabelledCloud& map, const Eigen
   return {png.begin(), png.end()};
 }
 
-std::vector<CloudPoint> points_of_instance(std::uint32_t instance, const LabelledCloud& map,
+std::vector<CloudPoint> points_of_instance(std::uint32_t instance, const LabelledPoints& map,
                                            const Truth& truth) {
   const std::vector<std::uint32_t> instances =
       instances_at(map.points_W, truth, static_cast<double>(map.resolution_m));
@@ -135,7 +135,7 @@ std::vector<CloudPoint> points_of_instance(std::uint32_t instance, const Labelle
 }
 
 std::vector<Subject> subjects_of(const std::vector<ToldDetection>& told, const ObjectScores& scores,
-                                 const LabelledCloud& map, const Truth& truth,
+                                 const LabelledPoints& map, const Truth& truth,
                                  const std::filesystem::path& library) {
   std::vector<Subject> subjects;
   for (std::size_t i = 0; i < told.size(); ++i) {
@@ -170,11 +170,9 @@ void remove_earlier(const std::filesystem::path& folder) {
 
 }  // namespace
 
-std::vector<DetectionPicture> write_detection_pictures(const std::vector<ToldDetection>& told,
-                                                       const ObjectScores& scores,
-                                                       const LabelledCloud& map, const Truth& truth,
-                                                       const std::filesystem::path& library,
-                                                       const std::filesystem::path& folder) {
+std::vector<DetectionPicture> write_detection_pictures(
+    const std::vector<ToldDetection>& told, const ObjectScores& scores, const LabelledPoints& map,
+    const Truth& truth, const std::filesystem::path& library, const std::filesystem::path& folder) {
   std::filesystem::create_directories(folder);
   remove_earlier(folder);
   UpDirection up;

@@ -20,10 +20,8 @@ struct DetectionPicture {
 /// all of them. What was written by an earlier call is removed.
 /// @param told those of which `scores` are, in the same order
 /// @throws std::runtime_error or std::system_error naming the file that cannot be read or written
-std::vector<DetectionPicture> write_detection_pictures(const std::vector<ToldDetection>& told,
-                                                       const ObjectScores& scores,
-                                                       const LabelledCloud& map, const Truth& truth,
-                                                       const std::filesystem::path& library,
-                                                       const std::filesystem::path& folder);
+std::vector<DetectionPicture> write_detection_pictures(
+    const std::vector<ToldDetection>& told, const ObjectScores& scores, const LabelledPoints& map,
+    const Truth& truth, const std::filesystem::path& library, const std::filesystem::path& folder);
 
 }  // namespace kintsugi::segmenter

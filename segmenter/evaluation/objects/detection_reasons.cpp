@@ -29,7 +29,7 @@ std::string percent(double share) { return fmt::format("{:.0f} %", 100.0 * share
 
 class Explainer {
  public:
-  Explainer(const Truth& truth, const LabelledCloud& map, const std::filesystem::path& library)
+  Explainer(const Truth& truth, const LabelledPoints& map, const std::filesystem::path& library)
       : truth_(truth),
         map_(map),
         library_(library),
@@ -116,7 +116,7 @@ class Explainer {
   }
 
   const Truth& truth_;
-  const LabelledCloud& map_;
+  const LabelledPoints& map_;
   const std::filesystem::path& library_;
   NearestNeighbours map_tree_;
   std::vector<std::uint32_t> instances_;
@@ -143,14 +143,14 @@ const ToldDetection* told_at(const TrueOutcome& object, const std::vector<ToldDe
 
 }  // namespace
 
-LabelledCloud read_labelled_cloud(const std::filesystem::path& path) {
+LabelledPoints read_labelled_cloud(const std::filesystem::path& path) {
   PlyCloud cloud = read_ply(path);
   if (cloud.segment_ids.empty()) {
     throw std::runtime_error(path.string() +
                              ": has no points with segment_id: expected a labelled PLY file");
   }
-  LabelledCloud map{.points_W = std::move(cloud.points_W),
-                    .segment_ids = std::move(cloud.segment_ids)};
+  LabelledPoints map{.points_W = std::move(cloud.points_W),
+                     .segment_ids = std::move(cloud.segment_ids)};
   map.resolution_m = median_spacing_m(map.points_W);
   if (!(map.resolution_m > 0.0F)) {
     throw std::runtime_error(path.string() + ": too few points to estimate the resolution from");
@@ -158,7 +158,7 @@ LabelledCloud read_labelled_cloud(const std::filesystem::path& path) {
   return map;
 }
 
-void explain(const std::vector<ToldDetection>& told, const Truth& truth, const LabelledCloud& map,
+void explain(const std::vector<ToldDetection>& told, const Truth& truth, const LabelledPoints& map,
              const std::filesystem::path& library, ObjectScores& scores) {
   const Explainer explainer(truth, map, library);
   for (std::size_t i = 0; i < told.size(); ++i) {

@@ -193,7 +193,7 @@ const std::vector<SegmentNeighbour>& Recognitions::neighbours_of(std::uint32_t s
   const Eigen::AlignedBox3f box = scene_.map().box_of(segment);
   const float radius_m = kNeighbourRadius_vox * scene_.resolution_m();
   const Eigen::Vector3f margin = Eigen::Vector3f::Constant(2 * radius_m);
-  const MapExcerpt excerpt = scene_.map().points_in({box.min() - margin, box.max() + margin});
+  const LabelledExcerpt excerpt = scene_.map().points_in({box.min() - margin, box.max() + margin});
   SegmentStatistics statistics;
   statistics.segment_id = segment;
   for (int axis = 0; axis < 3; ++axis) {

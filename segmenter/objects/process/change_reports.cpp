@@ -75,7 +75,7 @@ void ChangeReports::forget_withdrawn() {
   });
 }
 
-void ChangeReports::update(const MapChanges& now, const ComparedMap& map) {
+void ChangeReports::update(const MapChanges& now, const ReportedMap& map) {
   forget_withdrawn();
   std::set<std::size_t> taken;
   const auto set = [&](std::size_t i, ChangeReport report) {

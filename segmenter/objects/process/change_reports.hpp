@@ -12,7 +12,7 @@
 namespace kintsugi::segmenter {
 
 /// The running map, as it was compared.
-struct ComparedMap {
+struct ReportedMap {
   std::int64_t utime = 0;  ///< device time of the newest slice, microseconds
   std::int64_t map_session = 0;
   std::string map_name;
@@ -32,7 +32,7 @@ class ChangeReports {
   /// Takes what differs now. A change that was there before, at the same place, keeps its number;
   /// what is no longer so is withdrawn. Whatever is not as it was reported is an event. What was
   /// withdrawn by this call is kept until the next one at least, so that it can be told.
-  void update(const MapChanges& now, const ComparedMap& map);
+  void update(const MapChanges& now, const ReportedMap& map);
 
   /// By number; with their last events.
   [[nodiscard]] const std::vector<ChangeReport>& reports() const { return reports_; }

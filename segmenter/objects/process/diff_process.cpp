@@ -32,13 +32,13 @@ constexpr milliseconds kRepeatPeriod(1000);  // of all reports, for those who co
 
 /// What a comparison was of, and what it found.
 struct Comparison {
-  ComparedMap map;
+  ReportedMap map;
   bool is_of_complete_map = false;
   std::string refusal;  ///< why the maps do not fit; empty: they do
   MapChanges changes;
 };
 
-Comparison compare(const ObservedMap& before, const ObservedMap& now, ComparedMap map,
+Comparison compare(const ObservedMap& before, const ObservedMap& now, ReportedMap map,
                    const std::filesystem::path& out) {
   Comparison comparison{.map = std::move(map), .refusal = {}, .changes = {}};
   const AlignmentResult aligned = align_maps(before, now);
@@ -198,7 +198,7 @@ class DiffProcess {
   ViewRecorder views_;
   StreamSubscriber<CameraView> camera_views_;
   StreamSubscriber<CloudSlice> slices_;
-  ComparedMap map_;
+  ReportedMap map_;
   std::int64_t session_ = 0;
   std::unique_ptr<ChangeReports> reports_;  // null: no map is known yet
   std::int64_t published_ = 0;              // the newest event

@@ -125,8 +125,8 @@ std::span<const LabelledMap::PointRef> LabelledMap::points_in(const BlockKey& bl
   return at->second;
 }
 
-MapExcerpt LabelledMap::points_in(const Eigen::AlignedBox3f& box_W) const {
-  MapExcerpt excerpt;
+LabelledExcerpt LabelledMap::points_in(const Eigen::AlignedBox3f& box_W) const {
+  LabelledExcerpt excerpt;
   if (box_W.isEmpty()) return excerpt;
   const BlockKey low = block_of(box_W.min());
   const BlockKey high = block_of(box_W.max());

@@ -32,7 +32,7 @@ struct BlockKeyHash {
 };
 
 /// The map around a place.
-struct MapExcerpt {
+struct LabelledExcerpt {
   std::vector<CloudPoint> points_W;
   std::vector<std::uint32_t> segment_ids;  ///< of each point
 };
@@ -80,7 +80,7 @@ class LabelledMap {
   [[nodiscard]] std::span<const PointRef> points_in(const BlockKey& block) const;
 
   /// All points in the box.
-  [[nodiscard]] MapExcerpt points_in(const Eigen::AlignedBox3f& box_W) const;
+  [[nodiscard]] LabelledExcerpt points_in(const Eigen::AlignedBox3f& box_W) const;
   /// All points of a segment.
   [[nodiscard]] std::vector<CloudPoint> points_of(std::uint32_t id) const;
   /// Of a segment; 0 if there is none of this id.

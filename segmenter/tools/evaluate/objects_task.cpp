@@ -34,7 +34,7 @@ ObjectScores score_and_explain(const ObjectsOptions& options, const TrueObjects&
   const std::vector<ToldDetection> told = read_told_detections(options.detections_file);
   ObjectScores scores = score_detections(told, objects, truth, options.taught, options.library);
   if (options.map_file.empty()) return scores;
-  const LabelledCloud map = read_labelled_cloud(options.map_file);
+  const LabelledPoints map = read_labelled_cloud(options.map_file);
   explain(told, truth, map, options.library, scores);
   if (!folder.empty()) {
     write_detection_pictures(told, scores, map, truth, options.library, folder);

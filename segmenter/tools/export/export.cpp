@@ -20,15 +20,15 @@
 #include "segmenter/io/segment_plys.hpp"
 #include "segmenter/io/segments_csv.hpp"
 #include "segmenter/tools/export/export_options.hpp"
+#include "segmenter/tools/export/exported_map.hpp"
 #include "segmenter/tools/export/html_scene.hpp"
-#include "segmenter/tools/export/labelled_map.hpp"
 #include "segmenter/tools/export/mesh_segments.hpp"
 
 namespace kintsugi::segmenter {
 namespace {
 
 /// The ids of the wanted segments, ascending. Throws when one does not exist.
-std::vector<std::uint32_t> chosen_segments(const LabelledMap& input, const ExportOptions& options) {
+std::vector<std::uint32_t> chosen_segments(const ExportedMap& input, const ExportOptions& options) {
   const std::vector<SegmentStatistics>& segments = input.map.segments;
   std::vector<std::uint32_t> wanted = options.segment_ids;
   std::sort(wanted.begin(), wanted.end());
@@ -61,7 +61,7 @@ std::string scene_id_of(const ExportOptions& options) {
   return name.string();
 }
 
-void write_segs(const LabelledMap& input, const ExportOptions& options) {
+void write_segs(const ExportedMap& input, const ExportOptions& options) {
   if (options.mesh.empty() && options.ply.empty() && input.is_saved_map) {
     throw std::runtime_error(options.segs.string() +
                              ": needs the PLY file it is of: give --ply or --mesh");
@@ -75,7 +75,7 @@ void write_segs(const LabelledMap& input, const ExportOptions& options) {
 }
 
 /// Writes the files that need a description of every segment.
-void write_descriptions(const LabelledMap& input, const ExportOptions& options) {
+void write_descriptions(const ExportedMap& input, const ExportOptions& options) {
   const LabelledCloud cloud = labelled_cloud(input.map);
   const AdjacencyGraph graph = adjacency_graph(cloud);
   const std::vector<SegmentDescription> segments =
@@ -99,7 +99,7 @@ void make_folder(const std::filesystem::path& folder) {
 
 void run(const ExportOptions& options) {
   validate(options);
-  const LabelledMap input = read_labelled_map(options.input, options.resolution_m);
+  const ExportedMap input = read_labelled_map(options.input, options.resolution_m);
   const std::vector<std::uint32_t> chosen = chosen_segments(input, options);
   spdlog::info("{}: {} points in {} segments, resolution {:.6g} m", options.input.string(),
                input.map.state.points_W.size(), input.map.segments.size(),

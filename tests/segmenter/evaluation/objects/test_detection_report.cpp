@@ -120,7 +120,7 @@ class DetectionReport : public ::testing::Test {
 
   kintsugi::testing::TemporaryFolder folder_;
   Truth truth_;
-  LabelledCloud map_;
+  LabelledPoints map_;
   TrueObject mug_;
   TrueObjects objects_;
 };
@@ -227,7 +227,7 @@ TEST_F(DetectionReport, AMapWithoutLabelsIsNamed) {
     writer.append(map_.points_W[i], map_.segment_ids[i], 0);
   }
   writer.commit();
-  const LabelledCloud read = read_labelled_cloud(folder_ / "map.ply");
+  const LabelledPoints read = read_labelled_cloud(folder_ / "map.ply");
   EXPECT_EQ(read.segment_ids, map_.segment_ids);
   EXPECT_NEAR(read.resolution_m, 0.01, 0.002);
 }

@@ -49,7 +49,7 @@ std::vector<ChangeKind> kinds_of(const ChangeReports& reports) {
   return kinds;
 }
 
-const ComparedMap kMap{.utime = 7, .map_session = 3, .map_name = "hall"};
+const ReportedMap kMap{.utime = 7, .map_session = 3, .map_name = "hall"};
 
 TEST(ChangeReports, KeepTheirNumbersAsLongAsTheyHold) {
   ChangeReports reports(11, "hall yesterday");

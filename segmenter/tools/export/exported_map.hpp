@@ -7,7 +7,7 @@
 
 namespace kintsugi::segmenter {
 
-struct LabelledMap {
+struct ExportedMap {
   MapSnapshot map;  ///< points in the order of the file
   /// False for a labelled PLY file: then only the resolution and the slice ids of the points are
   /// known, but no other parameters, last changes or completeness.
@@ -21,6 +21,6 @@ struct LabelledMap {
 /// @throws std::runtime_error naming the file and the reason: neither of the two; no segment_id;
 ///   points that may not be in a map; a resolution that is given for a saved map, which has its
 ///   own, or that cannot be estimated
-LabelledMap read_labelled_map(const std::filesystem::path& path, double resolution_m);
+ExportedMap read_labelled_map(const std::filesystem::path& path, double resolution_m);
 
 }  // namespace kintsugi::segmenter

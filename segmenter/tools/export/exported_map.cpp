@@ -1,4 +1,4 @@
-#include "segmenter/tools/export/labelled_map.hpp"
+#include "segmenter/tools/export/exported_map.hpp"
 
 #include <array>
 #include <cmath>
@@ -69,7 +69,7 @@ SegmentMapState state_of(PlyCloud cloud, double resolution_m) {
 
 }  // namespace
 
-LabelledMap read_labelled_map(const std::filesystem::path& path, double resolution_m) {
+ExportedMap read_labelled_map(const std::filesystem::path& path, double resolution_m) {
   if (!is_ply(path)) {
     SegmentMapState state = read_map_state(path);  // its errors name the file
     if (resolution_m != 0.0) {
