@@ -69,8 +69,9 @@ class LabelledMap {
   [[nodiscard]] const CloudPoint& point_W(PointRef ref) const {
     return (*pieces_.at(ref.piece).points_W)[ref.index];
   }
-  [[nodiscard]] std::uint32_t label(PointRef ref) const {
-    return pieces_.at(ref.piece).segment_ids[ref.index];
+  /// The labels of the points of a piece. There must be one of this id.
+  [[nodiscard]] std::span<const std::uint32_t> labels_of_piece(std::int32_t id) const {
+    return pieces_.at(id).segment_ids;
   }
 
   [[nodiscard]] float block_m() const { return block_m_; }

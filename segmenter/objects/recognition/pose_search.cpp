@@ -37,26 +37,35 @@ class TranslationVotes {
         size_((box.sizes() / cell_m).array().ceil().max(1.0F).matrix().cast<int>()),
         votes_(static_cast<std::size_t>(size_.x()) * size_.y() * size_.z(), 0) {}
 
-  void clear() { std::fill(votes_.begin(), votes_.end(), 0); }
+  void clear() {
+    std::fill(votes_.begin(), votes_.end(), 0);
+    best_ = 0;
+    most_ = 0;
+  }
 
   void add(const Eigen::Vector3f& t) {
     const Eigen::Vector3f cell = (t - low_) / cell_m_;
     if (cell.minCoeff() < 0.0F) return;
     const Eigen::Vector3i at = cell.cast<int>();
     if ((at.array() >= size_.array()).any()) return;
-    ++votes_[(static_cast<std::size_t>(at.z()) * size_.y() + at.y()) * size_.x() + at.x()];
+    const std::size_t i =
+        (static_cast<std::size_t>(at.z()) * size_.y() + at.y()) * size_.x() + at.x();
+    const int votes = ++votes_[i];
+    if (votes > most_ || (votes == most_ && i < best_)) {
+      most_ = votes;
+      best_ = i;
+    }
   }
 
-  /// The cell with most votes, and how many it has.
+  /// The cell with most votes, the first one of several, and how many it has.
   [[nodiscard]] std::pair<Eigen::Vector3f, int> best() const {
-    const auto most = std::max_element(votes_.begin(), votes_.end());
-    auto rest = static_cast<int>(most - votes_.begin());
+    auto rest = static_cast<int>(best_);
     Eigen::Vector3i cell;
     cell.x() = rest % size_.x();
     rest /= size_.x();
     cell.y() = rest % size_.y();
     cell.z() = rest / size_.y();
-    return {low_ + (cell.cast<float>().array() + 0.5F).matrix() * cell_m_, *most};
+    return {low_ + (cell.cast<float>().array() + 0.5F).matrix() * cell_m_, most_};
   }
 
  private:
@@ -64,6 +73,8 @@ class TranslationVotes {
   float cell_m_;
   Eigen::Vector3i size_;
   std::vector<std::uint16_t> votes_;
+  std::size_t best_ = 0;  // cell with most votes
+  int most_ = 0;
 };
 
 struct Vote {

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <set>
+#include <span>
 #include <vector>
 
 #include <oneapi/tbb/concurrent_unordered_map.h>
@@ -72,8 +73,16 @@ template <class Visit>
 void SceneSurface::visit(const Eigen::AlignedBox3f& box_W, const Visit& visit) const {
   visit_blocks(box_W, [&](const Block& block) {
     const Surface& surface_W = block.grid_W.surface();
+    std::int32_t piece = 0;
+    std::span<const std::uint32_t> labels;  // of this piece, once one of its points was found
     for (std::size_t i = 0; i < surface_W.size(); ++i) {
-      if (box_W.contains(surface_W[i].position)) visit(surface_W[i], map_.label(block.refs[i]));
+      if (!box_W.contains(surface_W[i].position)) continue;
+      const LabelledMap::PointRef& ref = block.refs[i];
+      if (labels.empty() || ref.piece != piece) {
+        piece = ref.piece;
+        labels = map_.labels_of_piece(piece);
+      }
+      visit(surface_W[i], labels[ref.index]);
     }
   });
 }

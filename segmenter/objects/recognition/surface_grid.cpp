@@ -24,10 +24,11 @@ SurfaceGrid::SurfaceGrid(Surface surface, float cell_m) : surface_(std::move(sur
     ++first_[cells.back() + 1];
   }
   for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
-  points_.resize(surface_.size());
+  entries_.resize(surface_.size());
   std::vector<std::int32_t> next(first_.begin(), first_.end() - 1);
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    points_[static_cast<std::size_t>(next[cells[i]]++)] = static_cast<std::int32_t>(i);
+    entries_[static_cast<std::size_t>(next[cells[i]]++)] = {surface_[i].position,
+                                                            static_cast<std::int32_t>(i)};
   }
 }
 

@@ -39,12 +39,18 @@ class SurfaceGrid {
     return (static_cast<std::size_t>(z) * size_.y() + y) * size_.x() + x;
   }
 
+  // Beside each other, since searches look at them all and at few other things of a point.
+  struct Entry {
+    Eigen::Vector3f position;
+    std::int32_t index;
+  };
+
   Surface surface_;
   float inverse_cell_ = 1.0F;
   Eigen::Vector3f low_ = Eigen::Vector3f::Zero();
   Eigen::Vector3i size_ = Eigen::Vector3i::Zero();
-  std::vector<std::int32_t> first_;   // in points_, of each cell and one more
-  std::vector<std::int32_t> points_;  // by cell
+  std::vector<std::int32_t> first_;  // in entries_, of each cell and one more
+  std::vector<Entry> entries_;       // by cell
 };
 
 /// Normals of the same face (kSameNormal): at an edge the nearest point may be on another one.
@@ -68,13 +74,14 @@ NearestPoint SurfaceGrid::nearest(const Eigen::Vector3f& p, float within_m,
       // The cells along x follow each other.
       const std::int32_t end = first_[index_of(high.x(), y, z) + 1];
       for (std::int32_t k = first_[index_of(low.x(), y, z)]; k < end; ++k) {
-        const std::int32_t i = points_[static_cast<std::size_t>(k)];
-        const SurfacePoint& point = surface_[static_cast<std::size_t>(i)];
-        const float squared = (point.position - p).squaredNorm();
-        if (squared > nearest.squared_m2 || !is_wanted(point)) continue;
+        const Entry& entry = entries_[static_cast<std::size_t>(k)];
+        const float squared = (entry.position - p).squaredNorm();
+        if (squared > nearest.squared_m2) continue;
         // Of points as near as each other the last one, whatever the cells.
-        if (squared == nearest.squared_m2 && i < nearest.index) continue;
-        nearest = {i, squared};
+        if (squared == nearest.squared_m2 && entry.index < nearest.index) continue;
+        if (is_wanted(surface_[static_cast<std::size_t>(entry.index)])) {
+          nearest = {entry.index, squared};
+        }
       }
     }
   }
