@@ -1,12 +1,12 @@
 #include "segmenter/objects/recognition/placement.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cstddef>
 #include <map>
 #include <span>
 #include <vector>
 
+#include "segmenter/objects/recognition/flat_patch.hpp"
 #include "segmenter/objects/recognition/lit_model.hpp"
 
 namespace kintsugi::segmenter {
@@ -19,13 +19,6 @@ constexpr std::size_t kSeenNormals = 100;
 
 // What an absent surface counts that may be there and hidden.
 constexpr float kDoubtful = 0.5F;
-
-// The normals of a flat patch deviate less than this from their axis: sine of 15 degrees. Along its
-// rim they are between those of two faces: 45 degrees in the outermost points are a root mean
-// square of 11 degrees in a face 25 points wide, and of 15 in one 15 points wide.
-constexpr float kFlat = 0.26F;
-// And the colours of a plain one from their mean (CIELAB), by shades and noise.
-constexpr float kPlain = kSameColor / 3;
 
 /// Where points of the map may be surface of the object.
 Eigen::AlignedBox3f box_around(const PreparedModel& model, const Pose& X_WO) {
@@ -163,23 +156,6 @@ Surface explained_of(const SeenSurface& seen, const std::vector<std::uint32_t>& 
     }
   }
   return surface;
-}
-
-bool is_flat(const Surface& surface) {
-  Eigen::Matrix3f sum = Eigen::Matrix3f::Zero();
-  for (const SurfacePoint& point : surface) sum += point.normal * point.normal.transpose();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> axes(sum, Eigen::EigenvaluesOnly);
-  return axes.eigenvalues()[1] < kFlat * kFlat * static_cast<float>(surface.size());
-}
-
-bool is_plain(Surface surface) {
-  std::erase_if(surface, [](const SurfacePoint& point) { return !point.has_color; });
-  const auto count = static_cast<float>(std::max<std::size_t>(1, surface.size()));
-  Eigen::Vector3f mean = Eigen::Vector3f::Zero();
-  for (const SurfacePoint& point : surface) mean += point.lab / count;
-  float squares = 0.0F;
-  for (const SurfacePoint& point : surface) squares += (point.lab - mean).squaredNorm();
-  return squares < kPlain * kPlain * count;
 }
 
 /// The segments most of whose points are explained, and what is said of them.
