@@ -1,6 +1,7 @@
 #include "segmenter/objects/detection/detector.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 namespace kintsugi::segmenter {
@@ -85,19 +86,13 @@ void Detector::examine_all() {
   begin_again({});
 }
 
-/// What nobody has examined yet comes first, since nothing of it was told. Where something was
-/// recognised comes next: it is there still, most often.
 void Detector::begin_again(const LightChange& light) {
-  std::vector<std::uint32_t> first = waiting_.in_order();
-  const std::set<std::uint32_t> seeds = recognitions_.seeds();
-  first.insert(first.end(), seeds.begin(), seeds.end());
   for (Detection& detection : detections_) {  // its light is beside that of the scene
     detection.recognition.placement.light.log_gain += scene_.light().log_gain - light.log_gain;
   }
   scene_.set_light(light);
   recognitions_.forget_all();
   waiting_.clear();
-  for (const std::uint32_t segment : first) wait_for(segment, true);
   for (const std::uint32_t segment : map().segments()) {
     changed_.insert(segment);
     wait_for(segment);
@@ -120,30 +115,63 @@ void Detector::wait_for(std::uint32_t segment, bool is_urgent) {
   waiting_.add(segment, map().num_points(segment), utime_, is_urgent);
 }
 
-void Detector::examine_next() {
-  if (waiting_.empty()) return;
-  const std::uint32_t segment = waiting_.pop();
-  examine(std::span(&segment, 1));
+std::optional<std::int64_t> Detector::examine_next() {
+  if (waiting_.empty()) return std::nullopt;
+  rank_waiting(false);
+  const WaitingSegments::Next next = waiting_.pop();
+  examine(std::span(&next.segment, 1));
+  return next.since_us;
 }
 
-void Detector::examine_many() {
+std::optional<std::int64_t> Detector::examine_many() {
+  if (waiting_.empty()) return std::nullopt;
+  rank_waiting(true);
+  std::int64_t since_us = std::numeric_limits<std::int64_t>::max();
   std::vector<std::uint32_t> segments;
-  while (segments.size() < kMany && !waiting_.empty()) segments.push_back(waiting_.pop());
+  while (segments.size() < kMany && !waiting_.empty()) {
+    const WaitingSegments::Next next = waiting_.pop();
+    segments.push_back(next.segment);
+    since_us = std::min(since_us, next.since_us);
+  }
   examine(segments);
+  return since_us;
 }
 
-void Detector::examine(std::span<const std::uint32_t> segments) {
+void Detector::rank_waiting(bool on_all_cores) {
   if (!changed_.empty()) {
     recognitions_.forget(changed_);
     changed_.clear();
   }
+  const std::vector<std::uint32_t> unranked = waiting_.unranked();
+  const std::vector<float> distances = recognitions_.least_distances(unranked, on_all_cores);
+  for (std::size_t i = 0; i < unranked.size(); ++i) waiting_.rank(unranked[i], distances[i]);
+}
+
+void Detector::examine(std::span<const std::uint32_t> segments) {
   const bool may_change = recognitions_.examine(segments);
   if (waiting_.empty()) settle_light();
+  if (is_checking_all_) hurry_what_decides(segments);
   const bool is_light_open =
       is_checking_all_ && !is_light_settled_ && !is_light_expected_ && !waiting_.empty();
   if (is_light_open) return;
-  if (may_change || waiting_.empty()) update_detections();
+  if (may_change || is_checking_all_ || waiting_.empty()) update_detections();
   confirm_old_ones();
+}
+
+/// What was recognised there is told when nothing waits that may tell otherwise: its other
+/// segments, and those where the object was before.
+void Detector::hurry_what_decides(std::span<const std::uint32_t> examined) {
+  for (const std::uint32_t segment : examined) {
+    for (const Recognition& recognition : recognitions_.at(segment)) {
+      for (const std::uint32_t id : recognition.placement.segment_ids) waiting_.hurry(id);
+      for (const Detection& detection : detections_) {
+        if (!is_active(detection) || detection.recognition.model != recognition.model) continue;
+        for (const std::uint32_t id : detection.recognition.placement.segment_ids) {
+          waiting_.hurry(id);
+        }
+      }
+    }
+  }
 }
 
 void Detector::update_detections() {

@@ -53,18 +53,17 @@ class Detector {
   /// What they saw meanwhile.
   void add_views(std::span<const MapView> views);
   [[nodiscard]] std::size_t num_views() const { return observed_.views().size(); }
-  /// Lets all segments wait, those first that wait already: what depends on the whole map may have
-  /// changed, also its light. Nothing is told before the light is known, or before it is certain,
-  /// and nothing is gone before all was examined.
+  /// Lets all segments wait: what depends on the whole map may have changed, also its light.
+  /// Nothing is told before the light is known, or before it is certain, and nothing is gone before
+  /// all was examined.
   void examine_all();
 
-  /// Examines the segment that waits and is next, if there is one, and updates the detections.
-  void examine_next();
-  /// The same with several segments, on all cores.
-  void examine_many();
+  /// Examines the segment that waits and is next, and updates the detections.
+  /// @return device time since which it has waited, microseconds; nothing: none waited
+  std::optional<std::int64_t> examine_next();
+  /// The same with several segments, on all cores. @return of the one that has waited longest
+  std::optional<std::int64_t> examine_many();
   [[nodiscard]] std::size_t num_waiting() const { return waiting_.size(); }
-  /// Device time since which the segment waits that is examined next; nothing: none waits.
-  [[nodiscard]] std::optional<std::int64_t> waiting_since_us() const { return waiting_.since_us(); }
 
   /// All detections, by number, gone ones included.
   [[nodiscard]] const std::vector<Detection>& detections() const { return detections_; }
@@ -81,7 +80,9 @@ class Detector {
   void wait_for(std::uint32_t segment, bool is_urgent = false);
   void begin_again(const LightChange& light);
   void settle_light();
+  void rank_waiting(bool on_all_cores);
   void examine(std::span<const std::uint32_t> segments);
+  void hurry_what_decides(std::span<const std::uint32_t> examined);
   void update_detections();
   [[nodiscard]] std::vector<Recognition> certain() const;
   void confirm_old_ones();

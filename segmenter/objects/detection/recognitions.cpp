@@ -1,6 +1,7 @@
 #include "segmenter/objects/detection/recognitions.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <utility>
@@ -63,6 +64,17 @@ void for_each_of(std::size_t count, bool on_all_cores, const Work& work) {
 
 }  // namespace
 
+std::vector<float> Recognitions::least_distances(std::span<const std::uint32_t> segments,
+                                                 bool on_all_cores) const {
+  std::vector<float> distances(segments.size(), std::numeric_limits<float>::infinity());
+  for_each_of(segments.size(), on_all_cores, [&](std::size_t i) {
+    for (const Candidate& candidate : candidates_at(segments[i])) {
+      distances[i] = std::min(distances[i], recognizer_.least_distance(candidate, scene_));
+    }
+  });
+  return distances;
+}
+
 bool Recognitions::examine(std::span<const std::uint32_t> segments) {
   bool was_there = false;
   for (const std::uint32_t segment : segments) was_there |= by_segment_.erase(segment) > 0;
@@ -123,10 +135,10 @@ void Recognitions::add(Recognition recognition) {
   there.push_back(std::move(recognition));
 }
 
-std::set<std::uint32_t> Recognitions::seeds() const {
-  std::set<std::uint32_t> seeds;
-  for (const auto& [seed, recognitions] : by_segment_) seeds.insert(seed);
-  return seeds;
+std::span<const Recognition> Recognitions::at(std::uint32_t segment) const {
+  const auto found = by_segment_.find(segment);
+  if (found == by_segment_.end()) return {};
+  return found->second;
 }
 
 std::set<std::uint32_t> Recognitions::seeds_of(const std::set<std::uint32_t>& parts) const {

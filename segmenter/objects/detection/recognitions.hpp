@@ -24,6 +24,11 @@ class Recognitions {
   Recognitions(const ObjectRecognizer& recognizer, const Scene& scene)
       : recognizer_(recognizer), scene_(scene) {}
 
+  /// How unlike all objects a segment and its unions with neighbours are, of each of these
+  /// segments: the least of ObjectRecognizer::least_distance().
+  [[nodiscard]] std::vector<float> least_distances(std::span<const std::uint32_t> segments,
+                                                   bool on_all_cores) const;
+
   /// Examines segments and their unions with neighbours again: one on this thread, several on all
   /// cores. One that does not exist any more is forgotten.
   /// @return whether something may be recognised there now, or was before
@@ -33,9 +38,9 @@ class Recognitions {
   /// again, instead of what the same object was recognised as there.
   void add(Recognition recognition);
 
-  /// The segments at which something was recognised.
-  [[nodiscard]] std::set<std::uint32_t> seeds() const;
-  /// Those of which what was recognised has one of these as part.
+  /// What was recognised at a segment.
+  [[nodiscard]] std::span<const Recognition> at(std::uint32_t segment) const;
+  /// The segments of which what was recognised has one of these as part.
   [[nodiscard]] std::set<std::uint32_t> seeds_of(const std::set<std::uint32_t>& parts) const;
 
   /// Recognitions that do not contradict each other: where two explain the same surface, the one

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <limits>
 
 namespace kintsugi::segmenter {
 
@@ -10,76 +11,109 @@ namespace {
 // Of the points: a segment that grows from a tenth of an object to all of it is examined ten times.
 constexpr double kMuch = 0.25;
 
+bool differ_much(std::int64_t before, std::int64_t now) {
+  return static_cast<double>(std::abs(now - before)) > kMuch * static_cast<double>(before);
+}
+
+// Before all distances.
+constexpr float kUnranked = -1.0F;
+
 }  // namespace
 
 bool WaitingSegments::has_changed_much(std::uint32_t segment, std::int64_t num_points) const {
   const auto known = examined_.find(segment);
-  if (known == examined_.end()) return true;
-  const std::int64_t difference = std::abs(num_points - known->second);
-  return static_cast<double>(difference) > kMuch * static_cast<double>(known->second);
+  return known == examined_.end() || differ_much(known->second, num_points);
 }
 
 void WaitingSegments::add(std::uint32_t segment, std::int64_t num_points, std::int64_t utime,
                           bool is_urgent) {
+  now_us_ = std::max(now_us_, utime);
   const auto [at, is_new] = waiting_.try_emplace(segment, Waiting{.since_us = utime});
   Waiting& waiting = at->second;
+  if (is_new) std::get<std::int64_t>(waiting.place) = ++num_added_;
   waiting.num_points = num_points;
-  now_us_ = std::max(now_us_, utime);
-  const bool was_urgent = waiting.is_urgent;
-  waiting.is_urgent =
-      was_urgent || is_urgent || num_points == 0 || has_changed_much(segment, num_points);
-  if (!is_new && waiting.is_urgent == was_urgent) return;
-  if (!is_new) std::erase(others_, segment);
+  const Turn before = is_new ? Turn::kOther : std::get<Turn>(waiting.place);
   if (num_points == 0) {
-    urgent_.push_front(segment);
+    put(segment, waiting, Turn::kFirst, kUnranked);
+  } else if (is_urgent || before == Turn::kFirst) {
+    put(segment, waiting, Turn::kFirst, 0.0F);
+  } else if (before == Turn::kChangedMuch || has_changed_much(segment, num_points)) {
+    const bool is_ranked = before == Turn::kChangedMuch && !unranked_.contains(segment) &&
+                           !differ_much(waiting.num_ranked, num_points);
+    if (is_ranked) return;
+    put(segment, waiting, Turn::kChangedMuch, kUnranked);
+    unranked_.insert(segment);
   } else {
-    (waiting.is_urgent ? urgent_ : others_).push_back(segment);
+    put(segment, waiting, Turn::kOther, 0.0F);
   }
+}
+
+/// Keeps when it came.
+void WaitingSegments::put(std::uint32_t segment, Waiting& waiting, Turn turn, float distance) {
+  in_order_.erase(waiting.place);
+  unranked_.erase(segment);
+  std::get<Turn>(waiting.place) = turn;
+  std::get<float>(waiting.place) = distance;
+  in_order_.emplace(waiting.place, segment);
+}
+
+std::vector<std::uint32_t> WaitingSegments::unranked() const {
+  return {unranked_.begin(), unranked_.end()};
+}
+
+void WaitingSegments::rank(std::uint32_t segment, float distance) {
+  Waiting& waiting = waiting_.at(segment);
+  waiting.num_ranked = waiting.num_points;
+  put(segment, waiting, Turn::kChangedMuch, distance);
+}
+
+void WaitingSegments::hurry(std::uint32_t segment) {
+  const auto at = waiting_.find(segment);
+  if (at == waiting_.end() || std::get<Turn>(at->second.place) == Turn::kFirst) return;
+  put(segment, at->second, Turn::kFirst, 0.0F);
+}
+
+std::map<WaitingSegments::Place, std::uint32_t>::const_iterator WaitingSegments::first_of_others()
+    const {
+  return in_order_.lower_bound({Turn::kOther, -std::numeric_limits<float>::infinity(), 0});
 }
 
 bool WaitingSegments::is_turn_of_others() const {
-  if (urgent_.empty() || others_.empty()) return urgent_.empty();
-  return was_urgent_ && now_us_ - waiting_.at(others_.front()).since_us >= kPatience_us;
+  const auto first = first_of_others();
+  if (first == in_order_.end() || was_other_) return false;
+  return now_us_ - waiting_.at(first->second).since_us >= kPatience_us;
 }
 
-std::uint32_t WaitingSegments::pop() {
-  was_urgent_ = !is_turn_of_others();
-  std::deque<std::uint32_t>& from = was_urgent_ ? urgent_ : others_;
-  const std::uint32_t segment = from.front();
-  from.pop_front();
-  const auto at = waiting_.find(segment);
-  if (at->second.num_points > 0) {
-    examined_[segment] = at->second.num_points;
+WaitingSegments::Next WaitingSegments::pop() {
+  const auto next = is_turn_of_others() ? first_of_others() : in_order_.cbegin();
+  was_other_ = std::get<Turn>(next->first) == Turn::kOther;
+  const std::uint32_t segment = next->second;
+  const Waiting waiting = waiting_.at(segment);
+  if (waiting.num_points > 0) {
+    examined_[segment] = waiting.num_points;
   } else {
     examined_.erase(segment);
   }
-  waiting_.erase(at);
-  return segment;
+  in_order_.erase(next);
+  unranked_.erase(segment);
+  waiting_.erase(segment);
+  return {.segment = segment, .since_us = waiting.since_us};
 }
 
 void WaitingSegments::erase(std::uint32_t segment) {
   examined_.erase(segment);
   const auto at = waiting_.find(segment);
   if (at == waiting_.end()) return;
-  std::erase(at->second.is_urgent ? urgent_ : others_, segment);
+  in_order_.erase(at->second.place);
+  unranked_.erase(segment);
   waiting_.erase(at);
 }
 
 void WaitingSegments::clear() {
   waiting_.clear();
-  urgent_.clear();
-  others_.clear();
-}
-
-std::vector<std::uint32_t> WaitingSegments::in_order() const {
-  std::vector<std::uint32_t> all(urgent_.begin(), urgent_.end());
-  all.insert(all.end(), others_.begin(), others_.end());
-  return all;
-}
-
-std::optional<std::int64_t> WaitingSegments::since_us() const {
-  if (empty()) return std::nullopt;
-  return waiting_.at((is_turn_of_others() ? others_ : urgent_).front()).since_us;
+  in_order_.clear();
+  unranked_.clear();
+  examined_.clear();
 }
 
 }  // namespace kintsugi::segmenter

@@ -3,59 +3,77 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <map>
-#include <optional>
+#include <set>
+#include <tuple>
 #include <vector>
 
 namespace kintsugi::segmenter {
 
-/// Segments that have changed. Those that have changed much since they were last examined come
-/// first, since little changes when a few points come or go; else the one that has waited longest.
-/// When that has waited for kPatience_us, it has every second turn: while somebody walks, there is
-/// always one that has changed much, and the last part of an object that comes into view is seldom
-/// much of it.
+/// Segments that have changed. First come those of which something was told that may be wrong now;
+/// then those that have changed much since they were last examined, since little changes when a few
+/// points come or go, and of these the one that is most like an object; else the one that has
+/// waited longest. When one of the others has waited for kPatience_us, it has every second turn:
+/// while somebody walks, there is always one that has changed much, and the last part of an object
+/// that comes into view is seldom much of it.
 class WaitingSegments {
  public:
   /// Of device time: the camera, at walking pace, has passed a thing by then.
   static constexpr std::int64_t kPatience_us = 5'000'000;
 
+  struct Next {
+    std::uint32_t segment = 0;
+    std::int64_t since_us = 0;  ///< device time since which it has waited, microseconds
+  };
+
   /// A segment that has changed, or on which something that has changed may depend.
   /// @param num_points of the segment now; with 0 it comes before all others: it takes no time, and
   ///   what was recognised there must not compete with what is recognised now
   /// @param utime device time of the map, microseconds
-  /// @param is_urgent whatever its number of points
+  /// @param is_urgent something was told of it that may be wrong now
   void add(std::uint32_t segment, std::int64_t num_points, std::int64_t utime,
            bool is_urgent = false);
+  /// Those that have changed much and are not ranked yet, or have changed much since; ascending.
+  /// They come before those that are.
+  [[nodiscard]] std::vector<std::uint32_t> unranked() const;
+  /// @param segment one of unranked()
+  /// @param distance how unlike all objects it is
+  void rank(std::uint32_t segment, float distance);
+  /// If it waits, it is one of those that come first.
+  void hurry(std::uint32_t segment);
   /// Takes out the next one. There must be one.
-  std::uint32_t pop();
+  Next pop();
   /// Forgets a segment that does not exist any more.
   void erase(std::uint32_t segment);
+  /// None waits, and none was ever examined.
   void clear();
-  /// All of them: those first that have changed much, then by how long they have waited.
-  [[nodiscard]] std::vector<std::uint32_t> in_order() const;
 
   /// Whether so many points are another segment than was examined last.
   [[nodiscard]] bool has_changed_much(std::uint32_t segment, std::int64_t num_points) const;
   [[nodiscard]] bool contains(std::uint32_t segment) const { return waiting_.contains(segment); }
   [[nodiscard]] bool empty() const { return waiting_.empty(); }
   [[nodiscard]] std::size_t size() const { return waiting_.size(); }
-  /// Since when the next one waits; nothing: none waits.
-  [[nodiscard]] std::optional<std::int64_t> since_us() const;
 
  private:
+  enum class Turn : std::uint8_t { kFirst, kChangedMuch, kOther };
+  /// Its turn, how unlike all objects it is, and when it came.
+  using Place = std::tuple<Turn, float, std::int64_t>;
   struct Waiting {
     std::int64_t since_us = 0;
     std::int64_t num_points = 0;
-    bool is_urgent = false;
+    std::int64_t num_ranked = 0;  // of its points, when it was ranked
+    Place place{Turn::kOther, 0.0F, 0};
   };
 
+  void put(std::uint32_t segment, Waiting& waiting, Turn turn, float distance);
   [[nodiscard]] bool is_turn_of_others() const;
+  [[nodiscard]] std::map<Place, std::uint32_t>::const_iterator first_of_others() const;
 
   std::map<std::uint32_t, Waiting> waiting_;
-  std::deque<std::uint32_t> urgent_;
-  std::deque<std::uint32_t> others_;                // ascending by when they came
-  bool was_urgent_ = false;                         // the one that was examined last
+  std::map<Place, std::uint32_t> in_order_;  // of those that wait
+  std::set<std::uint32_t> unranked_;         // of these
+  std::int64_t num_added_ = 0;
+  bool was_other_ = true;                           // the one that was taken out last
   std::int64_t now_us_ = 0;                         // device time of the newest change
   std::map<std::uint32_t, std::int64_t> examined_;  // its points then
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <map>
 #include <ranges>
 #include <tuple>
@@ -57,6 +58,10 @@ float squared(float distance) {
   return distance * distance * static_cast<float>(kViewDescriptorSize);
 }
 
+float distance_of(float squared) {
+  return std::sqrt(squared / static_cast<float>(kViewDescriptorSize));
+}
+
 // Without colours the distance is a mean over two things that count alike instead of three.
 constexpr float kWithoutColors = 1.5F;
 
@@ -79,13 +84,17 @@ struct ModelIndex::Search {
   std::vector<float> data;                  // how their descriptors begin, one after the other
   std::unique_ptr<flann::Index<flann::L2<float>>> index;  // of `data`
 
-  /// Whether near() finds any.
-  [[nodiscard]] bool has_near(const SizeAndColors& scaled, float most_squared) const {
-    const auto is_near = [&](std::size_t i) { return is_of_like_size(i, scaled, most_squared); };
+  /// How far the nearest beginning is.
+  [[nodiscard]] float least_squared(const SizeAndColors& scaled) const {
+    float least = std::numeric_limits<float>::infinity();
+    const auto compare = [&](std::size_t i) { least = std::min(least, size_squared(i, scaled)); };
     if (has_colors(scaled)) {
-      return least_squared(scaled) < most_squared || std::ranges::any_of(without_colors, is_near);
+      least = least_squared_of_all(scaled);
+      std::ranges::for_each(without_colors, compare);
+    } else {
+      std::ranges::for_each(std::views::iota(std::size_t{0}, views.size()), compare);
     }
-    return std::ranges::any_of(std::views::iota(std::size_t{0}, views.size()), is_near);
+    return least;
   }
 
   /// The views that are nowhere near farther off than `most_squared`: those whose beginnings are
@@ -93,7 +102,7 @@ struct ModelIndex::Search {
   [[nodiscard]] std::vector<std::size_t> near(const SizeAndColors& scaled,
                                               float most_squared) const {
     std::vector<std::size_t> near;
-    const auto is_near = [&](std::size_t i) { return is_of_like_size(i, scaled, most_squared); };
+    const auto is_near = [&](std::size_t i) { return size_squared(i, scaled) <= most_squared; };
     if (!has_colors(scaled)) {
       std::ranges::copy_if(std::views::iota(std::size_t{0}, views.size()), std::back_inserter(near),
                            is_near);
@@ -107,15 +116,14 @@ struct ModelIndex::Search {
   }
 
  private:
-  /// Where one of two has no colours.
-  [[nodiscard]] bool is_of_like_size(std::size_t view, const SizeAndColors& scaled,
-                                     float most_squared) const {
+  /// Of the beginnings, where one of two has no colours.
+  [[nodiscard]] float size_squared(std::size_t view, const SizeAndColors& scaled) const {
     const SizeAndColors beginning = views[view].descriptor.head<kSizeAndColors>();
-    return kWithoutColors * (beginning - scaled).head<4>().squaredNorm() <= most_squared;
+    return kWithoutColors * (beginning - scaled).head<4>().squaredNorm();
   }
 
   /// Of the nearest beginning, as if all had colours.
-  [[nodiscard]] float least_squared(SizeAndColors scaled) const {
+  [[nodiscard]] float least_squared_of_all(SizeAndColors scaled) const {
     std::size_t view = 0;
     float squared = 0.0F;
     flann::Matrix<std::size_t> views_of_query(&view, 1, 1);
@@ -153,7 +161,7 @@ ModelIndex::ModelIndex(const std::vector<IndexedView>& views)
     if (!has_colors(beginning)) search_->without_colors.push_back(i);
   }
   // Exact, so that the result is the same in every run: FLANN's trees for approximate search are
-  // random. Of the beginnings only, so that has_near() can ask it, too.
+  // random. Of the beginnings only, so that least_distance() can ask it, too.
   search_->index = std::make_unique<flann::Index<flann::L2<float>>>(
       flann::Matrix<float>(search_->data.data(), views.size(), kSizeAndColors),
       flann::KDTreeSingleIndexParams());
@@ -164,10 +172,10 @@ ModelIndex::~ModelIndex() = default;
 ModelIndex::ModelIndex(ModelIndex&&) noexcept = default;
 ModelIndex& ModelIndex::operator=(ModelIndex&&) noexcept = default;
 
-bool ModelIndex::has_near(const SizeAndColors& beginning, float distance) const {
-  if (search_->views.empty()) return false;
+float ModelIndex::least_distance(const SizeAndColors& beginning) const {
+  if (search_->views.empty()) return std::numeric_limits<float>::infinity();
   const auto scale = search_->inverse_deviation.head<kSizeAndColors>();
-  return search_->has_near(beginning.cwiseProduct(scale), squared(distance));
+  return distance_of(search_->least_squared(beginning.cwiseProduct(scale)));
 }
 
 std::vector<ModelMatch> ModelIndex::nearest(const ViewDescriptor& descriptor, std::size_t count,
@@ -192,9 +200,7 @@ std::vector<ModelMatch> ModelIndex::nearest(const ViewDescriptor& descriptor, st
     return std::tie(a.distance, a.model) < std::tie(b.distance, b.model);
   });
   matches.resize(static_cast<std::size_t>(wanted));
-  for (ModelMatch& match : matches) {
-    match.distance = std::sqrt(match.distance / static_cast<float>(kViewDescriptorSize));
-  }
+  for (ModelMatch& match : matches) match.distance = distance_of(match.distance);
   return matches;
 }
 

@@ -33,8 +33,9 @@ class ModelIndex {
   ModelIndex(ModelIndex&&) noexcept;
   ModelIndex& operator=(ModelIndex&&) noexcept;
 
-  /// Whether some view may be within `distance` of a descriptor that begins so.
-  [[nodiscard]] bool has_near(const SizeAndColors& beginning, float distance) const;
+  /// How far a descriptor that begins so is from the nearest view, at the least; as
+  /// ModelMatch::distance. Infinite without views.
+  [[nodiscard]] float least_distance(const SizeAndColors& beginning) const;
 
   /// The objects with the nearest views, nearest first: at most `count`, and none that is farther
   /// off than `distance`.

@@ -1,6 +1,7 @@
 #include "segmenter/objects/recognition/object_recognizer.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <string_view>
 #include <utility>
@@ -8,6 +9,7 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include "segmenter/objects/recognition/described_surface.hpp"
+#include "segmenter/objects/recognition/flat_patch.hpp"
 #include "segmenter/objects/recognition/pose_search.hpp"
 
 namespace kintsugi::segmenter {
@@ -43,6 +45,10 @@ bool are_same(const ObjectModel& a, const ObjectModel& b) {
   return a.name == b.name && a.resolution_m == b.resolution_m && a.points_O == b.points_O &&
          a.views_O == b.views_O && a.empty_O == b.empty_O;
 }
+
+/// One flat patch of one colour, which is recognised only where other segments have other colours
+/// of the object (Placement::is_distinct).
+bool is_common(const Surface& surface) { return is_flat(surface) && is_plain(surface); }
 
 std::vector<ViewDescriptor> views_of(const PreparedModel& prepared) {
   const float described_m = described_spacing_m(prepared.spacing_m);
@@ -96,6 +102,13 @@ const PreparedModel& ObjectRecognizer::prepared(std::size_t model) const {
   return known_.at(model)->prepared;
 }
 
+float ObjectRecognizer::least_distance(const Candidate& candidate, const Scene& scene) const {
+  if (!index_) return std::numeric_limits<float>::infinity();
+  const Surface candidate_W = scene.surface_W(candidate);
+  if (candidate_W.empty() || is_common(candidate_W)) return std::numeric_limits<float>::infinity();
+  return index_->least_distance(scene.size_and_colors(candidate));
+}
+
 std::vector<Recognition> ObjectRecognizer::recognize(const Candidate& candidate,
                                                      const Scene& scene) const {
   if (!index_) return {};
@@ -103,12 +116,12 @@ std::vector<Recognition> ObjectRecognizer::recognize(const Candidate& candidate,
   if (candidate_W.empty()) return {};
   const SizeAndColors beginning = scene.size_and_colors(candidate);
   const bool is_choice = known_.size() > kFew;
-  if (is_choice && !index_->has_near(beginning, kLargestDistance)) return {};
+  if (is_choice && index_->least_distance(beginning) > kLargestDistance) return {};
   const ViewDescriptor descriptor = view_descriptor(beginning, scene.shape(candidate));
-  std::vector<Recognition> found;
   const std::vector<ModelMatch> matches =
       is_choice ? index_->nearest(descriptor, kTried, kLargestDistance)
                 : index_->nearest(descriptor, kFew, kAnyDistance);
+  std::vector<Recognition> found;
   for (const ModelMatch& match : matches) {
     std::optional<Placement> placement = place(match.model, candidate_W, scene);
     if (!placement || !is_recognized(*placement)) continue;

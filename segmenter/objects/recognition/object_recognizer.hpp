@@ -45,6 +45,12 @@ class ObjectRecognizer {
   [[nodiscard]] std::vector<Recognition> recognize(const Candidate& candidate,
                                                    const Scene& scene) const;
 
+  /// How unlike all objects the candidate is in size and colours, at the least: in standard
+  /// deviations between views of one object (ModelIndex). Infinite without surface or objects, and
+  /// for one flat patch of one colour, which is seldom recognised. It costs a small part of
+  /// recognize().
+  [[nodiscard]] float least_distance(const Candidate& candidate, const Scene& scene) const;
+
   /// The best place of one object on a part of the scene's surface, however good it is; nothing if
   /// there is none.
   [[nodiscard]] std::optional<Placement> place(std::size_t model, const Surface& part_W,

@@ -426,63 +426,6 @@ TEST(Detector, TellsWhatIsNewBeforeAllIsExaminedAgain) {
   EXPECT_EQ(names_of(detector).size(), 6U);
 }
 
-TEST(WaitingSegments, ComeFirstWhenTheyHaveChangedMuch) {
-  WaitingSegments waiting;
-  EXPECT_FALSE(waiting.since_us().has_value());
-  waiting.add(7, 100, 1);
-  waiting.add(8, 100, 2);
-  waiting.add(7, 110, 3);  // waits already
-  EXPECT_EQ(waiting.size(), 2U);
-  EXPECT_EQ(waiting.since_us(), 1);
-  EXPECT_EQ(waiting.pop(), 7U);
-  EXPECT_EQ(waiting.pop(), 8U);
-
-  waiting.add(7, 120, 4);  // a tenth more than when it was examined
-  waiting.add(8, 140, 5);
-  EXPECT_EQ(waiting.pop(), 8U);
-  waiting.add(8, 150, 6);
-  waiting.add(8, 70, 7);  // now it has lost half
-  EXPECT_EQ(waiting.pop(), 8U);
-  EXPECT_EQ(waiting.since_us(), 4);
-  waiting.add(8, 71, 8);
-  waiting.add(8, 71, 9, true);
-  EXPECT_THAT(waiting.in_order(), ElementsAre(8U, 7U));
-  EXPECT_EQ(waiting.pop(), 8U);
-  EXPECT_EQ(waiting.pop(), 7U);
-  EXPECT_TRUE(waiting.empty());
-
-  waiting.add(7, 121, 10);
-  waiting.erase(7);
-  EXPECT_FALSE(waiting.contains(7));
-  EXPECT_FALSE(waiting.since_us().has_value());
-  EXPECT_TRUE(waiting.has_changed_much(7, 121));
-  waiting.add(9, 50, 11);
-  waiting.add(8, 0, 12);
-  EXPECT_THAT(waiting.in_order(), ElementsAre(8U, 9U));
-  waiting.clear();
-  EXPECT_FALSE(waiting.contains(9));
-}
-
-TEST(WaitingSegments, HaveEverySecondTurnWhenTheyHaveWaitedLong) {
-  WaitingSegments waiting;
-  for (const std::uint32_t id : {7U, 8U}) {
-    waiting.add(id, 100, 1);
-    waiting.pop();
-  }
-  constexpr std::int64_t kPatience_us = WaitingSegments::kPatience_us;
-  waiting.add(7, 120, 10);
-  waiting.add(8, 120, 20);
-  // A segment that is new comes all the time.
-  std::vector<std::uint32_t> order;
-  for (std::uint32_t i = 0; i < 6; ++i) {
-    waiting.add(100 + i, 50, 10 + kPatience_us * (i + 1) / 4);
-    order.push_back(waiting.pop());
-  }
-  EXPECT_THAT(order, ElementsAre(100, 101, 102, 7, 103, 8));
-  EXPECT_EQ(waiting.pop(), 104U);
-  EXPECT_EQ(waiting.pop(), 105U);
-}
-
 TEST(Detector, DoesNotLetSegmentsWaitThatAreGone) {
   Detector detector(box_and_ball(), 0.01F);
   give(detector, box_on_table(), kSecond_us);
@@ -496,16 +439,17 @@ TEST(Detector, DoesNotLetSegmentsWaitThatAreGone) {
   EXPECT_THAT(names_of(detector), ElementsAre("ball"));
 }
 
-TEST(Detector, WaitsWithTheSegmentThatChangedFirst) {
+TEST(Detector, ExaminesFirstWhatIsLikeAnObject) {
+  const ObservedMap map = copies_of(box_on_table(), 3);
   Detector detector(box_and_ball(), 0.01F);
-  EXPECT_FALSE(detector.waiting_since_us().has_value());
-  const ObservedMap map = box_on_table();
-  give(detector, map, kSecond_us, {kTable});
-  give(detector, map, 2 * kSecond_us, {kBox});
-  EXPECT_EQ(detector.num_waiting(), 2U);
-  EXPECT_EQ(detector.waiting_since_us(), kSecond_us);
-  detector.examine_next();
-  EXPECT_EQ(detector.waiting_since_us(), 2 * kSecond_us);
+  EXPECT_FALSE(detector.examine_next().has_value());
+  give(detector, map, kSecond_us, {kTable, 10 + kTable, 20 + kTable});
+  give(detector, map, 2 * kSecond_us, {kBox, 10 + kBox});
+  EXPECT_EQ(detector.num_waiting(), 5U);
+  EXPECT_EQ(detector.examine_next(), 2 * kSecond_us);
+  EXPECT_EQ(detector.examine_next(), 2 * kSecond_us);
+  EXPECT_THAT(names_of(detector), ElementsAre("box", "box"));
+  EXPECT_EQ(detector.examine_next(), kSecond_us);
 }
 
 }  // namespace

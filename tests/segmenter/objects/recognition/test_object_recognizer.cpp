@@ -1,6 +1,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -419,9 +420,17 @@ TEST(ModelIndex, FindsTheObjectOfTheNearestViewAndBoundsItFromBelow) {
     EXPECT_EQ(near[1].distance, matches[1].distance);
     EXPECT_EQ(index.nearest(views[i].descriptor, 1, middle).size(), 1U);
     const SizeAndColors beginning = views[i].descriptor.head<kSizeAndColors>();
-    EXPECT_TRUE(index.has_near(beginning, matches[0].distance + 1e-3F));
+    EXPECT_NEAR(index.least_distance(beginning), 0.0F, 1e-3F);
+    ViewDescriptor other = views[i].descriptor;
+    other.head<kSizeAndColors>().array() += 0.3F;
+    other.tail<kShapeFeatureSize>().array() -= 0.2F;
+    const float least = index.least_distance(other.head<kSizeAndColors>());
+    EXPECT_GT(least, 0.0F);
+    EXPECT_LE(least, index.nearest(other, 1, 1e3F)[0].distance);
   }
-  EXPECT_FALSE(index.has_near(SizeAndColors::Constant(1e3F), 1.0F));
+  EXPECT_GT(index.least_distance(SizeAndColors::Constant(1e3F)), 1.0F);
+  EXPECT_EQ(ModelIndex({}).least_distance(SizeAndColors::Zero()),
+            std::numeric_limits<float>::infinity());
   EXPECT_TRUE(ModelIndex({}).nearest(ViewDescriptor::Zero(), 3, 1.0F).empty());
 }
 
@@ -448,13 +457,13 @@ TEST(ModelIndex, ComparesSizeAndShapeWithWhatHasNoColours) {
       other.segment<6>(4).setZero();
     }
     constexpr float kNear = 0.1F;
-    EXPECT_TRUE(index.has_near(other.head<kSizeAndColors>(), kNear));
+    EXPECT_FLOAT_EQ(index.least_distance(other.head<kSizeAndColors>()), 0.0F);
     const std::vector<ModelMatch> matches = index.nearest(other, 2, kNear);
     ASSERT_EQ(matches.size(), 1U);
     EXPECT_EQ(matches[0].model, view.model);
     EXPECT_FLOAT_EQ(matches[0].distance, 0.0F);
     other.head<4>().setConstant(1e3F);
-    EXPECT_FALSE(index.has_near(other.head<kSizeAndColors>(), kNear)) << "of another size";
+    EXPECT_GT(index.least_distance(other.head<kSizeAndColors>()), kNear) << "of another size";
     EXPECT_TRUE(index.nearest(other, 2, kNear).empty());
   }
 }
