@@ -79,8 +79,9 @@ class Resume : public ::testing::Test {
     flags.insert(flags.end(), {"--rate", "0.01"});
     MapperProgram mapper(flags, folder_ / "said.txt");
     EXPECT_TRUE(Listener::wait_until(
-        [&] { return log_size().value_or(0) > 0 && is_time(read_stored_run(log_)); }));
-    EXPECT_TRUE(mapper.crash());
+        [&] { return log_size().value_or(0) > 0 && is_time(read_stored_run(log_)); }))
+        << said();
+    EXPECT_TRUE(mapper.crash()) << "it was not killed: " << said();
   }
 
   const kintsugi::testing::TemporaryFolder folder_;

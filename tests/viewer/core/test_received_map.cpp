@@ -190,8 +190,9 @@ TEST(ReceivedMap, SurvivesUpdatesThatNameAbsurdSlices) {
   for (const std::int32_t id : {kMin, -1, 0, 1, kMax}) {
     for (const std::int32_t revision : {kMin, -1, 0, 1, kMax}) {
       SegmentUpdate update = update_of(
-          id, {1, 1, 1},
+          0, {1, 1, 1},
           {{id, kMin, kMax, 7, revision}, {id, kMax, kMax, 7, revision}, {id, 1, 1, 7, revision}});
+      update.slice_id = id;
       update.slice_revision = revision;
       update.num_slices = id;
       update.num_segments = std::numeric_limits<std::int64_t>::max();
