@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <random>
@@ -78,9 +80,9 @@ class Resume : public ::testing::Test {
   void kill_when(Flags flags, const std::function<bool(const StoredRun&)>& is_time) const {
     flags.insert(flags.end(), {"--rate", "0.01"});
     MapperProgram mapper(flags, folder_ / "said.txt");
-    EXPECT_TRUE(Listener::wait_until(
-        [&] { return log_size().value_or(0) > 0 && is_time(read_stored_run(log_)); }))
-        << said();
+    EXPECT_TRUE(Listener::wait_until([&] {
+      return log_size().value_or(0) > 0 && is_time(read_stored_run(log_));
+    })) << said();
     EXPECT_TRUE(mapper.crash()) << "it was not killed: " << said();
   }
 
@@ -136,27 +138,40 @@ TEST_F(Resume, MapsTheFramesAgainThatWereMappedThenAndNoOthers) {
       << said();
 }
 
-/// A walk of a second at 200 Hz, faster than it can be mapped; the camera stops at each step.
-void write_hasty_recording(const std::filesystem::path& path) {
-  constexpr int kFramesOfStep = 4;
+/// A walk in which the camera stops at each step for some frames.
+void write_halting_walk(const std::filesystem::path& path, int frames_of_step,
+                        std::int64_t period_us) {
   const auto writer = open_recording_writer(path, {.jpeg_quality = 0});
   std::int64_t utime = 0;
   for (RgbdFrame frame : testing::synthetic_run("office", 50, false).frames) {
-    for (int i = 0; i < kFramesOfStep; ++i) {
+    for (int i = 0; i < frames_of_step; ++i) {
       frame.utime = utime;
       writer->add(frame);
-      utime += 5'000;
+      utime += period_us;
     }
   }
   writer->finish({});
 }
 
 TEST_F(Resume, RepeatsWhichFramesWereFusedAndWhichOnlyTracked) {
-  const std::string recording = folder_ / "hasty.klg";
-  write_hasty_recording(recording);
+  const auto walk = [&](const std::string& recording, const std::string& store_or_resume,
+                        const std::string& log) {
+    return Flags{"--device",      folder_ / recording,
+                 "--resolution",  "0.02",
+                 "--session",     "7",
+                 "--linger",      "0",
+                 store_or_resume, log};
+  };
+  // Four times as fast as this machine maps it.
+  write_halting_walk(folder_ / "calm.klg", 1, 33'333);
+  Flags calm = walk("calm.klg", "--store", folder_ / "calm.lcm");
+  calm.emplace_back("--replay");
+  ASSERT_EQ(run(calm), 0) << said();
+  const double frame_ms = read_stored_run(folder_ / "calm.lcm").statuses.back().frame_p50_ms;
+  ASSERT_GT(frame_ms, 0.0);
+  write_halting_walk(folder_ / "hasty.klg", 4, std::llround(1e3 * frame_ms / 4));
   const auto hasty = [&](const std::string& store_or_resume) {
-    return Flags{"--device", recording, "--resolution",  "0.02", "--session", "7",
-                 "--linger", "0",       store_or_resume, log_};
+    return walk("hasty.klg", store_or_resume, log_);
   };
   kill_when(hasty("--store"), [](const StoredRun& run) {
     return run.slice_chunks.size() >= 8 && run.tracked_only_utimes.size() >= 3;

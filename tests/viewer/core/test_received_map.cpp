@@ -20,7 +20,7 @@ CloudSlice slice_of(std::int32_t id, int num_points, std::int32_t revision = 0) 
   slice.id = id;
   slice.revision = revision;
   slice.kind = SliceKind::kPatch;
-  slice.utime = 1'000 + id;
+  slice.utime = 1'000 + std::int64_t{id};
   slice.resolution_m = 0.01F;
   for (int i = 0; i < num_points; ++i) {
     CloudPoint p;
