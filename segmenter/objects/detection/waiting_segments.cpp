@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <limits>
 
 namespace kintsugi::segmenter {
 
@@ -73,28 +72,33 @@ void WaitingSegments::hurry(std::uint32_t segment) {
   put(segment, at->second, Turn::kFirst, 0.0F);
 }
 
-std::map<WaitingSegments::Place, std::uint32_t>::const_iterator WaitingSegments::first_of_others()
-    const {
-  return in_order_.lower_bound({Turn::kOther, -std::numeric_limits<float>::infinity(), 0});
+/// Of 1 and more: it has waited too long.
+double WaitingSegments::impatience(const Waiting& waiting) const {
+  const Turn turn = std::get<Turn>(waiting.place);
+  if (turn == Turn::kFirst) return 0.0;
+  const std::int64_t patience_us = turn == Turn::kOther ? kPatience_us : kLongPatience_us;
+  return static_cast<double>(now_us_ - waiting.since_us) / static_cast<double>(patience_us);
 }
 
-bool WaitingSegments::is_turn_of_others() const {
-  const auto first = first_of_others();
-  if (first == in_order_.end() || was_other_) return false;
-  return now_us_ - waiting_.at(first->second).since_us >= kPatience_us;
+std::uint32_t WaitingSegments::next() const {
+  const std::uint32_t first = in_order_.begin()->second;
+  if (was_turn_of_others_) return first;
+  const auto longest = std::ranges::max_element(
+      waiting_, {}, [this](const auto& entry) { return impatience(entry.second); });
+  return impatience(longest->second) >= 1.0 ? longest->first : first;
 }
 
 WaitingSegments::Next WaitingSegments::pop() {
-  const auto next = is_turn_of_others() ? first_of_others() : in_order_.cbegin();
-  was_other_ = std::get<Turn>(next->first) == Turn::kOther;
-  const std::uint32_t segment = next->second;
+  const std::uint32_t segment = next();
   const Waiting waiting = waiting_.at(segment);
+  was_turn_of_others_ =
+      segment != in_order_.begin()->second || std::get<Turn>(waiting.place) == Turn::kOther;
   if (waiting.num_points > 0) {
     examined_[segment] = waiting.num_points;
   } else {
     examined_.erase(segment);
   }
-  in_order_.erase(next);
+  in_order_.erase(waiting.place);
   unranked_.erase(segment);
   waiting_.erase(segment);
   return {.segment = segment, .since_us = waiting.since_us};

@@ -13,13 +13,17 @@ namespace kintsugi::segmenter {
 /// Segments that have changed. First come those of which something was told that may be wrong now;
 /// then those that have changed much since they were last examined, since little changes when a few
 /// points come or go, and of these the one that is most like an object; else the one that has
-/// waited longest. When one of the others has waited for kPatience_us, it has every second turn:
-/// while somebody walks, there is always one that has changed much, and the last part of an object
-/// that comes into view is seldom much of it.
+/// waited longest. While somebody walks, there is always one that has changed much and is like an
+/// object, and the last part of an object that comes into view is seldom much of it. So who has
+/// waited too long has every second turn.
 class WaitingSegments {
  public:
-  /// Of device time: the camera, at walking pace, has passed a thing by then.
+  /// So long may one wait that has changed little, of device time: the camera, at walking pace, has
+  /// passed a thing by then.
   static constexpr std::int64_t kPatience_us = 5'000'000;
+  /// And one that has changed much, but is less like an object than others: what a camera shows in
+  /// some ten seconds of walking takes about a minute at the usual share of the processor.
+  static constexpr std::int64_t kLongPatience_us = 60'000'000;
 
   struct Next {
     std::uint32_t segment = 0;
@@ -66,14 +70,14 @@ class WaitingSegments {
   };
 
   void put(std::uint32_t segment, Waiting& waiting, Turn turn, float distance);
-  [[nodiscard]] bool is_turn_of_others() const;
-  [[nodiscard]] std::map<Place, std::uint32_t>::const_iterator first_of_others() const;
+  [[nodiscard]] double impatience(const Waiting& waiting) const;
+  [[nodiscard]] std::uint32_t next() const;
 
   std::map<std::uint32_t, Waiting> waiting_;
   std::map<Place, std::uint32_t> in_order_;  // of those that wait
   std::set<std::uint32_t> unranked_;         // of these
   std::int64_t num_added_ = 0;
-  bool was_other_ = true;                           // the one that was taken out last
+  bool was_turn_of_others_ = true;                  // of those that do not come first in order
   std::int64_t now_us_ = 0;                         // device time of the newest change
   std::map<std::uint32_t, std::int64_t> examined_;  // its points then
 };

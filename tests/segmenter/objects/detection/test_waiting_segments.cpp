@@ -107,5 +107,23 @@ TEST(WaitingSegments, HaveEverySecondTurnWhenTheyHaveWaitedLong) {
   EXPECT_THAT(all_of(waiting), ElementsAre(104, 105));
 }
 
+TEST(WaitingSegments, UnlikeAllObjectsHaveEverySecondTurnAfterAMinute) {
+  WaitingSegments waiting;
+  const auto add = [&waiting](std::uint32_t id, float distance, std::int64_t utime) {
+    waiting.add(id, 100, utime);
+    waiting.rank(id, distance);
+  };
+  add(1, 2.0F, 1);
+  add(2, 3.0F, 2);
+  // One that is like an object comes all the time.
+  std::vector<std::uint32_t> order;
+  for (std::uint32_t i = 0; i < 6; ++i) {
+    add(100 + i, 0.5F, 2 + WaitingSegments::kLongPatience_us * i / 2);
+    order.push_back(waiting.pop().segment);
+  }
+  EXPECT_THAT(order, ElementsAre(100, 101, 1, 102, 2, 103));
+  EXPECT_THAT(all_of(waiting), ElementsAre(104, 105));
+}
+
 }  // namespace
 }  // namespace kintsugi::segmenter
