@@ -14,8 +14,8 @@ bool differ_much(std::int64_t before, std::int64_t now) {
   return static_cast<double>(std::abs(now - before)) > kMuch * static_cast<double>(before);
 }
 
-// Before all distances.
-constexpr float kUnranked = -1.0F;
+// As a distance: before all others.
+constexpr float kBeforeAll = -1.0F;
 
 }  // namespace
 
@@ -33,14 +33,14 @@ void WaitingSegments::add(std::uint32_t segment, std::int64_t num_points, std::i
   waiting.num_points = num_points;
   const Turn before = is_new ? Turn::kOther : std::get<Turn>(waiting.place);
   if (num_points == 0) {
-    put(segment, waiting, Turn::kFirst, kUnranked);
+    put(segment, waiting, Turn::kFirst, kBeforeAll);
   } else if (is_urgent || before == Turn::kFirst) {
     put(segment, waiting, Turn::kFirst, 0.0F);
   } else if (before == Turn::kChangedMuch || has_changed_much(segment, num_points)) {
     const bool is_ranked = before == Turn::kChangedMuch && !unranked_.contains(segment) &&
                            !differ_much(waiting.num_ranked, num_points);
     if (is_ranked) return;
-    put(segment, waiting, Turn::kChangedMuch, kUnranked);
+    put(segment, waiting, Turn::kChangedMuch, kBeforeAll);
     unranked_.insert(segment);
   } else {
     put(segment, waiting, Turn::kOther, 0.0F);
@@ -49,11 +49,18 @@ void WaitingSegments::add(std::uint32_t segment, std::int64_t num_points, std::i
 
 /// Keeps when it came.
 void WaitingSegments::put(std::uint32_t segment, Waiting& waiting, Turn turn, float distance) {
-  in_order_.erase(waiting.place);
-  unranked_.erase(segment);
+  take_out_of_order(segment, waiting);
   std::get<Turn>(waiting.place) = turn;
   std::get<float>(waiting.place) = distance;
   in_order_.emplace(waiting.place, segment);
+  as_they_came_.emplace(std::pair(turn, std::get<std::int64_t>(waiting.place)), segment);
+}
+
+void WaitingSegments::take_out_of_order(std::uint32_t segment, const Waiting& waiting) {
+  const auto& [turn, distance, number] = waiting.place;
+  in_order_.erase(waiting.place);
+  as_they_came_.erase({turn, number});
+  unranked_.erase(segment);
 }
 
 std::vector<std::uint32_t> WaitingSegments::unranked() const {
@@ -72,20 +79,23 @@ void WaitingSegments::hurry(std::uint32_t segment) {
   put(segment, at->second, Turn::kFirst, 0.0F);
 }
 
-/// Of 1 and more: it has waited too long.
-double WaitingSegments::impatience(const Waiting& waiting) const {
-  const Turn turn = std::get<Turn>(waiting.place);
-  if (turn == Turn::kFirst) return 0.0;
-  const std::int64_t patience_us = turn == Turn::kOther ? kPatience_us : kLongPatience_us;
-  return static_cast<double>(now_us_ - waiting.since_us) / static_cast<double>(patience_us);
+double WaitingSegments::impatience(Turn turn, std::int64_t patience_us) const {
+  const auto first = as_they_came_.lower_bound({turn, 0});
+  if (first == as_they_came_.end() || first->first.first != turn) return 0.0;
+  const std::int64_t since_us = waiting_.at(first->second).since_us;
+  return static_cast<double>(now_us_ - since_us) / static_cast<double>(patience_us);
 }
 
 std::uint32_t WaitingSegments::next() const {
-  const std::uint32_t first = in_order_.begin()->second;
-  if (was_turn_of_others_) return first;
-  const auto longest = std::ranges::max_element(
-      waiting_, {}, [this](const auto& entry) { return impatience(entry.second); });
-  return impatience(longest->second) >= 1.0 ? longest->first : first;
+  if (!was_turn_of_others_) {
+    const double changed_much = impatience(Turn::kChangedMuch, kLongPatience_us);
+    const double other = impatience(Turn::kOther, kPatience_us);
+    if (std::max(changed_much, other) >= 1.0) {
+      const Turn turn = other >= changed_much ? Turn::kOther : Turn::kChangedMuch;
+      return as_they_came_.lower_bound({turn, 0})->second;
+    }
+  }
+  return in_order_.begin()->second;
 }
 
 WaitingSegments::Next WaitingSegments::pop() {
@@ -98,8 +108,7 @@ WaitingSegments::Next WaitingSegments::pop() {
   } else {
     examined_.erase(segment);
   }
-  in_order_.erase(waiting.place);
-  unranked_.erase(segment);
+  take_out_of_order(segment, waiting);
   waiting_.erase(segment);
   return {.segment = segment, .since_us = waiting.since_us};
 }
@@ -108,14 +117,14 @@ void WaitingSegments::erase(std::uint32_t segment) {
   examined_.erase(segment);
   const auto at = waiting_.find(segment);
   if (at == waiting_.end()) return;
-  in_order_.erase(at->second.place);
-  unranked_.erase(segment);
+  take_out_of_order(segment, at->second);
   waiting_.erase(at);
 }
 
 void WaitingSegments::clear() {
   waiting_.clear();
   in_order_.clear();
+  as_they_came_.clear();
   unranked_.clear();
   examined_.clear();
 }

@@ -6,6 +6,7 @@
 #include <map>
 #include <set>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 namespace kintsugi::segmenter {
@@ -70,12 +71,15 @@ class WaitingSegments {
   };
 
   void put(std::uint32_t segment, Waiting& waiting, Turn turn, float distance);
-  [[nodiscard]] double impatience(const Waiting& waiting) const;
+  void take_out_of_order(std::uint32_t segment, const Waiting& waiting);
+  /// How long the one of a turn has waited that came first, in `patience_us`.
+  [[nodiscard]] double impatience(Turn turn, std::int64_t patience_us) const;
   [[nodiscard]] std::uint32_t next() const;
 
   std::map<std::uint32_t, Waiting> waiting_;
-  std::map<Place, std::uint32_t> in_order_;  // of those that wait
-  std::set<std::uint32_t> unranked_;         // of these
+  std::map<Place, std::uint32_t> in_order_;                              // of those that wait
+  std::map<std::pair<Turn, std::int64_t>, std::uint32_t> as_they_came_;  // the same, of each turn
+  std::set<std::uint32_t> unranked_;                                     // of these
   std::int64_t num_added_ = 0;
   bool was_turn_of_others_ = true;                  // of those that do not come first in order
   std::int64_t now_us_ = 0;                         // device time of the newest change
