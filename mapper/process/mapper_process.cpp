@@ -10,6 +10,7 @@
 
 #include "lcmtypes/base/atomic_file.hpp"
 #include "lcmtypes/base/logger.hpp"
+#include "lcmtypes/base/process_memory.hpp"
 #include "lcmtypes/base/stop_signal.hpp"
 #include "lcmtypes/channels.hpp"
 #include "mapper/output/part_file.hpp"
@@ -353,10 +354,11 @@ void MapperProcess::log_summary() const {
     spdlog::info("{} loops closed, {} contradicted; the map was corrected {} times",
                  loops->num_loops(), loops->num_contradicted(), loops->deformation().number());
   }
-  if (const std::int64_t kept = pipeline_.kept_bytes(); kept > 0) {
-    spdlog::info("{:.0f} MB kept of what left the volume, for when the camera comes back",
-                 1e-6 * static_cast<double>(kept));
-  }
+  spdlog::info(
+      "{:.0f} MB of memory at most; {:.0f} MB kept of what left the volume, for when the camera "
+      "comes back",
+      1e-6 * static_cast<double>(process_memory().peak_resident_bytes),
+      1e-6 * static_cast<double>(pipeline_.kept_bytes()));
   if (statistics_.parts().size() > 1) log_parts();
 }
 
