@@ -11,7 +11,8 @@ namespace kintsugi::segmenter {
 inline double depth_sigma_m(double z_m) {
   constexpr double kBase_m = 0.0012;
   constexpr double kGrowth_per_m = 0.00165;
-  return std::hypot(kBase_m, kGrowth_per_m * z_m * z_m);
+  const double growth_m = kGrowth_per_m * z_m * z_m;
+  return std::sqrt(kBase_m * kBase_m + growth_m * growth_m);
 }
 
 }  // namespace kintsugi::segmenter

@@ -51,7 +51,7 @@ double half_angle_rad(const Intrinsics& camera) {
 }  // namespace
 
 // A sphere may be seen when its centre is in the cone that is as much larger.
-bool ObservedSpace::Cone::may_show(const Eigen::Vector3f& center_W, float radius_m) const {
+bool ObservedSpace::Cone::meets(const Eigen::Vector3f& center_W, float radius_m) const {
   const Eigen::Vector3f d = center_W - apex_W;
   const float along = d.dot(axis_W);
   const float across = std::sqrt(std::max(0.0F, d.squaredNorm() - along * along));
@@ -73,6 +73,7 @@ void ObservedSpace::add(MapView view) {
   cones_.push_back({view.X_WC.translation().cast<float>(), view.X_WC.linear().col(2).cast<float>(),
                     static_cast<float>(std::cos(half_rad)),
                     static_cast<float>(std::sin(half_rad))});
+  farthest_m_.push_back(1e-3F * static_cast<float>(std::ranges::max(view.depth_mm)));
   views_.push_back(std::move(view));
 }
 
@@ -80,6 +81,21 @@ void ObservedSpace::clear() {
   views_.clear();
   X_CW_.clear();
   cones_.clear();
+  farthest_m_.clear();
+}
+
+/// How far a measurement at this depth may be from a surface that it shows.
+double ObservedSpace::margin_m(double z_m) const {
+  return std::max(resolution_m_, kNoiseBound * depth_sigma_m(z_m));
+}
+
+/// Not when all that the view measured is farther in front of the sphere.
+bool ObservedSpace::may_show(std::size_t view, const Eigen::Vector3f& center_W, float radius_m,
+                             float within_m) const {
+  const Cone& cone = cones_[view];
+  const float nearest_m = (center_W - cone.apex_W).dot(cone.axis_W) - radius_m;
+  const float in_front_m = std::max(within_m, static_cast<float>(margin_m(nearest_m)));
+  return nearest_m - in_front_m <= farthest_m_[view] && cone.meets(center_W, radius_m);
 }
 
 ObservedSpace::Look ObservedSpace::look(std::size_t view, const Eigen::Vector3f& p_W) const {
@@ -97,16 +113,15 @@ ObservedSpace::Look ObservedSpace::look(std::size_t view, const Eigen::Vector3f&
                          u_px <= static_cast<float>(camera.width - 1) - border &&
                          v_px <= static_cast<float>(camera.height - 1) - border;
   if (!is_inside) return {};
-  const auto i = static_cast<std::ptrdiff_t>(std::lround(u_px));
-  const auto j = static_cast<std::ptrdiff_t>(std::lround(v_px));
+  const auto i = static_cast<std::ptrdiff_t>(u_px + 0.5F);
+  const auto j = static_cast<std::ptrdiff_t>(v_px + 0.5F);
   const std::uint16_t* const at = views_[view].depth_mm.data() + j * camera.width + i;
   if (*at == 0) return {};
-  const double margin_m = std::max(resolution_m_, kNoiseBound * depth_sigma_m(z_m));
-  const auto nearest_mm = static_cast<float>(1e3 * (z_m - margin_m));
-  const auto farthest_mm = static_cast<float>(1e3 * (z_m + margin_m));
+  const double margin = margin_m(z_m);
+  const auto nearest_mm = static_cast<float>(1e3 * (z_m - margin));
+  const auto farthest_mm = static_cast<float>(1e3 * (z_m + margin));
   const auto depth_mm = static_cast<float>(*at);
-  const float behind_m = (z_m - 1e-3F * depth_mm) * p_C.norm() / z_m;
-  if (depth_mm >= nearest_mm && depth_mm <= farthest_mm) return {Sight::kMeasured, behind_m};
+  if (depth_mm >= nearest_mm && depth_mm <= farthest_mm) return {Sight::kMeasured};
   const bool is_behind = depth_mm > farthest_mm;
   for (int dj = -reach; dj <= reach; ++dj) {
     for (int di = -reach; di <= reach; ++di) {
@@ -116,7 +131,8 @@ ObservedSpace::Look ObservedSpace::look(std::size_t view, const Eigen::Vector3f&
         return {};
     }
   }
-  return {is_behind ? Sight::kThrough : Sight::kHidden, behind_m};
+  if (is_behind) return {Sight::kThrough};
+  return {Sight::kHidden, (z_m - 1e-3F * depth_mm) * p_C.norm() / z_m};
 }
 
 Sights ObservedSpace::sights(const Eigen::Vector3f& p_W) const {
@@ -125,11 +141,16 @@ Sights ObservedSpace::sights(const Eigen::Vector3f& p_W) const {
   return sights(p_W, all);
 }
 
-std::vector<std::size_t> ObservedSpace::views_of(const Eigen::Vector3f& center_W,
-                                                 float radius_m) const {
+void ObservedSpace::count(const Look& look, Sights& sights) {
+  sights.through += look.sight == Sight::kThrough ? 1 : 0;
+  sights.measured += look.sight == Sight::kMeasured ? 1 : 0;
+}
+
+std::vector<std::size_t> ObservedSpace::views_of(const Eigen::Vector3f& center_W, float radius_m,
+                                                 float within_m) const {
   std::vector<std::size_t> views;
-  for (std::size_t view = 0; view < cones_.size(); ++view) {
-    if (cones_[view].may_show(center_W, radius_m)) views.push_back(view);
+  for (std::size_t view = 0; view < views_.size(); ++view) {
+    if (may_show(view, center_W, radius_m, within_m)) views.push_back(view);
   }
   return views;
 }
@@ -137,23 +158,23 @@ std::vector<std::size_t> ObservedSpace::views_of(const Eigen::Vector3f& center_W
 Sights ObservedSpace::sights(const Eigen::Vector3f& p_W, std::span<const std::size_t> views) const {
   Sights sights;
   for (const std::size_t view : views) {
-    const Sight sight = look(view, p_W).sight;
-    sights.through += sight == Sight::kThrough ? 1 : 0;
-    sights.measured += sight == Sight::kMeasured ? 1 : 0;
-    sights.hidden += sight == Sight::kHidden ? 1 : 0;
+    count(look(view, p_W), sights);
   }
   return sights;
 }
 
-bool ObservedSpace::is_covered(const Eigen::Vector3f& p_W, const Eigen::Vector3f& normal_W,
-                               float grazing, float within_m,
-                               std::span<const std::size_t> views) const {
-  return std::ranges::any_of(views, [&](std::size_t view) {
+SurfaceSights ObservedSpace::sights(const Eigen::Vector3f& p_W, const Eigen::Vector3f& normal_W,
+                                    float grazing, float within_m,
+                                    std::span<const std::size_t> views) const {
+  SurfaceSights seen;
+  for (const std::size_t view : views) {
+    const Look look_there = look(view, p_W);
+    count(look_there, seen.sights);
+    if (look_there.sight != Sight::kHidden || look_there.behind_m >= within_m) continue;
     const Eigen::Vector3f to_C = cones_[view].apex_W - p_W;
-    if (to_C.dot(normal_W) < grazing * to_C.norm()) return false;
-    const Look seen = look(view, p_W);
-    return seen.sight == Sight::kHidden && seen.behind_m < within_m;
-  });
+    seen.is_covered = seen.is_covered || to_C.dot(normal_W) >= grazing * to_C.norm();
+  }
+  return seen;
 }
 
 std::vector<Sights> ObservedSpace::sights(std::span<const Eigen::Vector3f> points_W) const {

@@ -17,9 +17,14 @@ namespace kintsugi::segmenter {
 struct Sights {
   int through = 0;   ///< views that measured something behind it: it was free
   int measured = 0;  ///< views that measured surface there, within their noise
-  int hidden = 0;    ///< views that measured something in front of it
 
   bool operator==(const Sights&) const = default;
+};
+
+/// The same of a place of a surface.
+struct SurfaceSights {
+  Sights sights;
+  bool is_covered = false;  ///< a view from its side measured something close in front of it
 };
 
 class ObservedSpace {
@@ -38,18 +43,19 @@ class ObservedSpace {
   /// by more than a voxel and three standard deviations of the camera's depth there.
   [[nodiscard]] Sights sights(const Eigen::Vector3f& p_W) const;
 
-  /// The views that may show something of a sphere, by their number: all that matter to a place in
-  /// it.
-  [[nodiscard]] std::vector<std::size_t> views_of(const Eigen::Vector3f& center_W,
-                                                  float radius_m) const;
+  /// The views that may show something of a sphere, or what is less than `within_m` in front of a
+  /// place in it, by their number: all that matter to a place in it.
+  [[nodiscard]] std::vector<std::size_t> views_of(const Eigen::Vector3f& center_W, float radius_m,
+                                                  float within_m = 0.0F) const;
   /// What some of the views tell about a place.
   [[nodiscard]] Sights sights(const Eigen::Vector3f& p_W, std::span<const std::size_t> views) const;
 
-  /// Whether one of the views that look at a surface there from its side (at more than `grazing`,
-  /// the sine of an angle) measured something in front of it that is nearer to it than `within_m`.
-  [[nodiscard]] bool is_covered(const Eigen::Vector3f& p_W, const Eigen::Vector3f& normal_W,
-                                float grazing, float within_m,
-                                std::span<const std::size_t> views) const;
+  /// The same of a surface there. It is covered if one of the views that look at it from its side
+  /// (at more than `grazing`, the sine of an angle) measured something in front of it that is
+  /// nearer to it than `within_m`.
+  [[nodiscard]] SurfaceSights sights(const Eigen::Vector3f& p_W, const Eigen::Vector3f& normal_W,
+                                     float grazing, float within_m,
+                                     std::span<const std::size_t> views) const;
 
   /// The same of many places, on all cores: places that are near each other share the search for
   /// the views that may show them.
@@ -62,21 +68,26 @@ class ObservedSpace {
     float cosine = 0.0F;  // of its half angle
     float sine = 0.0F;
 
-    [[nodiscard]] bool may_show(const Eigen::Vector3f& center_W, float radius_m) const;
+    [[nodiscard]] bool meets(const Eigen::Vector3f& center_W, float radius_m) const;
   };
 
   enum class Sight : std::uint8_t { kNothing, kThrough, kMeasured, kHidden };
   struct Look {
     Sight sight = Sight::kNothing;
-    float behind_m = 0.0F;  // how far the place is behind what was measured, along the ray
+    float behind_m = 0.0F;  // of what is hidden: behind what was measured, along the ray
   };
 
+  [[nodiscard]] double margin_m(double z_m) const;
+  [[nodiscard]] bool may_show(std::size_t view, const Eigen::Vector3f& center_W, float radius_m,
+                              float within_m) const;
   [[nodiscard]] Look look(std::size_t view, const Eigen::Vector3f& p_W) const;
+  static void count(const Look& look, Sights& sights);
 
   double resolution_m_;
   std::vector<MapView> views_;
   std::vector<Eigen::Matrix<float, 3, 4>> X_CW_;  // of each view
   std::vector<Cone> cones_;                       // of each view
+  std::vector<float> farthest_m_;                 // of each view, the largest depth
 };
 
 }  // namespace kintsugi::segmenter

@@ -80,7 +80,7 @@ enum class Evidence : std::uint8_t {
 };
 
 /// @param model_W the point of this number of the model, where the hypothesis puts it
-/// @param views of the scene that may show the object
+/// @param views of the scene that may show the object, or what covers it
 Evidence evidence_at(const PreparedModel& model, std::size_t model_point,
                      const SurfacePoint& model_W, const Scene& scene,
                      std::span<const std::size_t> views, LitModel& lit) {
@@ -97,19 +97,18 @@ Evidence evidence_at(const PreparedModel& model, std::size_t model_point,
   }
   if (views.empty()) return Evidence::kUnknown;
   const ObservedSpace& observed = *scene.observed();
-  const Sights sights = observed.sights(model_W.position, views);
+  const auto [sights, is_covered] =
+      observed.sights(model_W.position, model_W.normal, kGrazing, model.radius_m, views);
   if (sights.through > sights.measured) return Evidence::kContradicted;
-  const bool is_covered = sights.hidden > 0 && observed.is_covered(model_W.position, model_W.normal,
-                                                                   kGrazing, model.radius_m, views);
   return is_covered ? Evidence::kCovered : Evidence::kUnknown;
 }
 
-/// The views that may show an object there.
+/// The views that may show an object there, or what covers it.
 std::vector<std::size_t> views_of(const PreparedModel& model, const Scene& scene,
                                   const Pose& X_WO) {
   if (scene.observed() == nullptr) return {};
   const Eigen::AlignedBox3f box_W = box_around(model, X_WO);
-  return scene.observed()->views_of(box_W.center(), 0.5F * box_W.diagonal().norm());
+  return scene.observed()->views_of(box_W.center(), 0.5F * box_W.diagonal().norm(), model.radius_m);
 }
 
 /// Counts of points of the map.
