@@ -1,23 +1,24 @@
 #include "lcmtypes/base/stop_signal.hpp"
 
+#include <atomic>
 #include <csignal>
 #include <initializer_list>
 
 namespace kintsugi {
 namespace {
 
-volatile std::sig_atomic_t g_stop = 0;
-volatile std::sig_atomic_t g_write = 0;
+// Set by handlers, which may touch what is lock-free, and read by any thread.
+std::atomic<bool> g_stop = false;
+std::atomic<bool> g_write = false;
+static_assert(std::atomic<bool>::is_always_lock_free);
 
 void on_stop(int signal) {
-  if (g_stop != 0) {
-    std::signal(signal, SIG_DFL);
-    std::raise(signal);
-  }
-  g_stop = 1;
+  if (!g_stop.exchange(true)) return;
+  std::signal(signal, SIG_DFL);
+  std::raise(signal);
 }
 
-void on_write(int /*signal*/) { g_write = 1; }
+void on_write(int /*signal*/) { g_write = true; }
 
 void install(int signal, void (*handler)(int)) {
   struct sigaction action = {};
@@ -34,17 +35,13 @@ void install_stop_signals() {
   install(SIGUSR1, on_write);
 }
 
-bool stop_requested() { return g_stop != 0; }
+bool stop_requested() { return g_stop; }
 
-void rearm_stop_signals() { g_stop = 0; }
+void rearm_stop_signals() { g_stop = false; }
 
-bool take_write_request() {
-  if (g_write == 0) return false;
-  g_write = 0;  // a signal between the two lines requests what is about to be written anyway
-  return true;
-}
+bool take_write_request() { return g_write.exchange(false); }
 
-void request_stop() { g_stop = 1; }
-void request_write() { g_write = 1; }
+void request_stop() { g_stop = true; }
+void request_write() { g_write = true; }
 
 }  // namespace kintsugi
