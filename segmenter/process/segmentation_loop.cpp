@@ -51,6 +51,7 @@ SegmentationLoop::SegmentationLoop(const Config& config, std::int64_t session,
 void SegmentationLoop::run() {
   try {
     resume();
+    has_resumed_ = true;
     segment_until_end();
     segment_rest();
   } catch (...) {

@@ -67,6 +67,8 @@ class SegmentationLoop {
   // From any thread:
   /// Makes run() finish what was received and return.
   void end() { is_ending_ = true; }
+  /// The saved map is there, if there is one to resume: what it has need not be asked for.
+  bool has_resumed() const { return has_resumed_; }
   SessionMaps::Counts counts() const;
   /// Which file is not written, and why; empty: none.
   std::string file_problem() const;
@@ -95,6 +97,7 @@ class SegmentationLoop {
   SessionMaps maps_;
   Clock::time_point next_rewrite_{};
   std::atomic<bool> is_ending_{false};
+  std::atomic<bool> has_resumed_{false};
 
   mutable std::mutex mutex_;    // guards the next against readers
   SessionMaps::Counts counts_;  // written by the thread of run() alone

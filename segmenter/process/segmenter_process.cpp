@@ -79,8 +79,9 @@ void SegmenterProcess::receive() {
   if (bus_) {
     updates_.subscribe(*bus_);
     queries_.subscribe(*bus_);
-    bus_thread_ =
-        std::make_unique<BusThread>(*bus_, [this] { receiver_.ask(*bus_, clock_.now_s()); });
+    bus_thread_ = std::make_unique<BusThread>(*bus_, [this] {
+      if (loop_.has_resumed()) receiver_.ask(*bus_, clock_.now_s());
+    });
   }
 }
 
