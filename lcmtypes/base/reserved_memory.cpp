@@ -20,23 +20,34 @@ std::size_t round_up(std::size_t bytes) {
   return (bytes + kHugePageBytes - 1) / kHugePageBytes * kHugePageBytes;
 }
 
+/// With the thread sanitizer a program has not 128 TB of addresses, but 1.5: less is reserved for
+/// what may become large.
+std::size_t reservable(std::size_t bytes) {
+#ifdef __SANITIZE_THREAD__
+  constexpr std::size_t kLarge = std::size_t{1} << 34;
+  if (bytes >= kLarge) return round_up(bytes / 128);
+#endif
+  return bytes;
+}
+
 }  // namespace
 
 ReservedMemory::ReservedMemory(std::size_t reserved_bytes, HugePages huge_pages)
-    : range_bytes_(reserved_bytes + kHugePageBytes), reserved_bytes_(reserved_bytes) {
+    : range_bytes_(reservable(reserved_bytes) + kHugePageBytes),
+      reserved_bytes_(reservable(reserved_bytes)) {
   range_ =
       ::mmap(nullptr, range_bytes_, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
   if (range_ == MAP_FAILED) throw std::bad_alloc();
   std::size_t space = range_bytes_;
   void* start = range_;
-  data_ = static_cast<std::byte*>(std::align(kHugePageBytes, reserved_bytes, start, space));
+  data_ = static_cast<std::byte*>(std::align(kHugePageBytes, reserved_bytes_, start, space));
   // A failure of either is ignored: everything works, only slower or with more memory.
   if (huge_pages == HugePages::kNowhere) {
-    ::madvise(data_, reserved_bytes, MADV_NOHUGEPAGE);
+    ::madvise(data_, reserved_bytes_, MADV_NOHUGEPAGE);
     return;
   }
   const std::size_t first = huge_pages == HugePages::kEverywhere ? 0 : kHugePageBytes;
-  if (first < reserved_bytes) ::madvise(data_ + first, reserved_bytes - first, MADV_HUGEPAGE);
+  if (first < reserved_bytes_) ::madvise(data_ + first, reserved_bytes_ - first, MADV_HUGEPAGE);
 }
 
 ReservedMemory::ReservedMemory(ReservedMemory&& other) noexcept

@@ -99,7 +99,7 @@ TEST(SwapSpace, StaysBelowTheLimitWhileAnArrayGrows) {
   SwapSpace space({folder.path(), limit});
   GrowingArray<std::uint64_t> array;
   array.swap_to(space);
-  for (std::size_t i = 0; i < 40 * kMillion; ++i) {  // 320 MB
+  for (std::size_t i = 0; i < 30 * kMillion; ++i) {  // 240 MB
     array.push_back(value_of(i));
     if (i % 100'000 != 0) continue;
     space.trim();

@@ -78,8 +78,9 @@ class PowerCut : public ::testing::Test {
     static const auto why_not = kintsugi::testing::enter_private_bus();
     if (why_not) GTEST_SKIP() << *why_not;
 #ifdef __SANITIZE_THREAD__
-    GTEST_SKIP() << "the disk that forgets writes past the thread sanitizer, which then does not see "
-                    "that threads wait for each other by pipes";
+    GTEST_SKIP()
+        << "the disk that forgets writes past the thread sanitizer, which then does not see "
+           "that threads wait for each other by pipes";
 #endif
     fs::create_directory(disk_);
   }

@@ -10,6 +10,7 @@
 
 #include "segmenter/session/session_maps.hpp"
 #include "tests/segmenter/process/slice_session.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace kintsugi::segmenter {
 namespace {
@@ -49,11 +50,13 @@ class SessionMapsTest : public ::testing::Test {
     SaveKind kind;
   };
 
-  SessionMaps make(const SessionMaps::Config& config = {}) {
-    return {config, 99, [this](std::int64_t session) {
+  SessionMaps make(const SessionMaps::Config& config = {}, SwapSpace* swap = nullptr) {
+    return {config, 99,
+            [this](std::int64_t session) {
               const bool is_coming = coming_.contains(session);
               return StreamState{is_coming ? Outlook::kLive : Outlook::kSilent, !is_coming};
-            }};
+            },
+            swap};
   }
 
   bool step(SessionMaps& maps) {
@@ -244,6 +247,21 @@ TEST_F(SessionMapsTest, KeepsNoMoreMapsThanItMay) {
   EXPECT_EQ(maps.counts().maps, 3);
   EXPECT_EQ(maps.counts().dropped, 2);
   EXPECT_THAT(warnings_.front(), HasSubstr("at most 3 maps are kept"));
+}
+
+// Each reserves addresses for four billion points, also of what goes to disk.
+TEST_F(SessionMapsTest, KeepsAsManyMapsAsItMay) {
+  const kintsugi::testing::TemporaryFolder folder(kintsugi::testing::kOnDisk);
+  SwapSpace space({folder.path(), std::size_t{1} << 50});
+  SessionMaps maps = make({}, &space);
+  constexpr int kMost = 64;
+  for (int i = 0; i <= kMost; ++i) {
+    for (const CloudSlice& slice : named_session("map" + std::to_string(i), 5 + i, 2)) {
+      offer(maps, slice);
+    }
+  }
+  EXPECT_EQ(maps.counts().maps, kMost);
+  EXPECT_EQ(maps.counts().dropped, 2);
 }
 
 TEST_F(SessionMapsTest, AResumedMapOfAnotherSessionIsKeptUnderItsNumber) {
