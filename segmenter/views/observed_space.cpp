@@ -113,8 +113,8 @@ ObservedSpace::Look ObservedSpace::look(std::size_t view, const Eigen::Vector3f&
                          u_px <= static_cast<float>(camera.width - 1) - border &&
                          v_px <= static_cast<float>(camera.height - 1) - border;
   if (!is_inside) return {};
-  const auto i = static_cast<std::ptrdiff_t>(u_px + 0.5F);
-  const auto j = static_cast<std::ptrdiff_t>(v_px + 0.5F);
+  const auto i = static_cast<std::ptrdiff_t>(std::lround(u_px));
+  const auto j = static_cast<std::ptrdiff_t>(std::lround(v_px));
   const std::uint16_t* const at = views_[view].depth_mm.data() + j * camera.width + i;
   if (*at == 0) return {};
   const double margin = margin_m(z_m);
