@@ -163,10 +163,10 @@ Sights ObservedSpace::sights(const Eigen::Vector3f& p_W, std::span<const std::si
   return sights;
 }
 
-SurfaceSights ObservedSpace::sights(const Eigen::Vector3f& p_W, const Eigen::Vector3f& normal_W,
-                                    float grazing, float within_m,
-                                    std::span<const std::size_t> views) const {
-  SurfaceSights seen;
+SightsOfSurface ObservedSpace::sights(const Eigen::Vector3f& p_W, const Eigen::Vector3f& normal_W,
+                                      float grazing, float within_m,
+                                      std::span<const std::size_t> views) const {
+  SightsOfSurface seen;
   for (const std::size_t view : views) {
     const Look look_there = look(view, p_W);
     count(look_there, seen.sights);

@@ -22,7 +22,7 @@ struct Sights {
 };
 
 /// The same of a place of a surface.
-struct SurfaceSights {
+struct SightsOfSurface {
   Sights sights;
   bool is_covered = false;  ///< a view from its side measured something close in front of it
 };
@@ -53,9 +53,9 @@ class ObservedSpace {
   /// The same of a surface there. It is covered if one of the views that look at it from its side
   /// (at more than `grazing`, the sine of an angle) measured something in front of it that is
   /// nearer to it than `within_m`.
-  [[nodiscard]] SurfaceSights sights(const Eigen::Vector3f& p_W, const Eigen::Vector3f& normal_W,
-                                     float grazing, float within_m,
-                                     std::span<const std::size_t> views) const;
+  [[nodiscard]] SightsOfSurface sights(const Eigen::Vector3f& p_W, const Eigen::Vector3f& normal_W,
+                                       float grazing, float within_m,
+                                       std::span<const std::size_t> views) const;
 
   /// The same of many places, on all cores: places that are near each other share the search for
   /// the views that may show them.

@@ -174,8 +174,8 @@ TEST(ObservedSpace, ManyPlacesAreToldAsEachAlone) {
     EXPECT_EQ(space.sights(p_W, views), space.sights(p_W));
     const Eigen::Vector3f normal_W =
         Eigen::Vector3d(number(random), number(random), number(random)).cast<float>().normalized();
-    const SurfaceSights some = space.sights(p_W, normal_W, 0.1F, kWithin_m, covering);
-    const SurfaceSights all_of_them = space.sights(p_W, normal_W, 0.1F, kWithin_m, every);
+    const SightsOfSurface some = space.sights(p_W, normal_W, 0.1F, kWithin_m, covering);
+    const SightsOfSurface all_of_them = space.sights(p_W, normal_W, 0.1F, kWithin_m, every);
     EXPECT_EQ(some.sights, all_of_them.sights);
     EXPECT_EQ(some.is_covered, all_of_them.is_covered);
     num_covered += some.is_covered ? 1 : 0;
