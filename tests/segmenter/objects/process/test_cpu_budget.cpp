@@ -16,12 +16,6 @@ TEST(CpuBudget, SavesABurst) {
   EXPECT_TRUE(budget.has_some_after(0.2, 0.0));
 }
 
-TEST(CpuBudget, HasNothingSavedAtFirst) {
-  CpuBudget budget(0.1);
-  EXPECT_TRUE(budget.has_some_after(1.0, 0.05));
-  EXPECT_FALSE(budget.has_some_after(0.1, 0.07));
-}
-
 TEST(CpuBudget, OwesNoMoreThanABurst) {
   CpuBudget budget(0.1);
   EXPECT_FALSE(budget.has_some_after(30.0, 30.0));  // a large map came at once
