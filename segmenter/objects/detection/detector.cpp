@@ -150,11 +150,28 @@ void Detector::rank_waiting(bool on_all_cores) {
 void Detector::examine(std::span<const std::uint32_t> segments) {
   const bool may_change = recognitions_.examine(segments);
   if (waiting_.empty()) settle_light();
+  if (is_checking_all_) hurry_what_decides(segments);
   const bool is_light_open =
       is_checking_all_ && !is_light_settled_ && !is_light_expected_ && !waiting_.empty();
   if (is_light_open) return;
   if (may_change || is_checking_all_ || waiting_.empty()) update_detections();
   confirm_old_ones();
+}
+
+/// What was recognised there is told when nothing waits that may tell otherwise: its other
+/// segments, and those where the object was before.
+void Detector::hurry_what_decides(std::span<const std::uint32_t> examined) {
+  for (const std::uint32_t segment : examined) {
+    for (const Recognition& recognition : recognitions_.at(segment)) {
+      for (const std::uint32_t id : recognition.placement.segment_ids) waiting_.hurry(id);
+      for (const Detection& detection : detections_) {
+        if (!is_active(detection) || detection.recognition.model != recognition.model) continue;
+        for (const std::uint32_t id : detection.recognition.placement.segment_ids) {
+          waiting_.hurry(id);
+        }
+      }
+    }
+  }
 }
 
 void Detector::update_detections() {

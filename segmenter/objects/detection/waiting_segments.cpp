@@ -73,6 +73,12 @@ void WaitingSegments::rank(std::uint32_t segment, float distance) {
   put(segment, waiting, Turn::kChangedMuch, distance);
 }
 
+void WaitingSegments::hurry(std::uint32_t segment) {
+  const auto at = waiting_.find(segment);
+  if (at == waiting_.end() || std::get<Turn>(at->second.place) == Turn::kFirst) return;
+  put(segment, at->second, Turn::kFirst, 0.0F);
+}
+
 double WaitingSegments::impatience(Turn turn, std::int64_t patience_us) const {
   const auto first = as_they_came_.lower_bound({turn, 0});
   if (first == as_they_came_.end() || first->first.first != turn) return 0.0;

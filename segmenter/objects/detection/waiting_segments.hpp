@@ -44,6 +44,8 @@ class WaitingSegments {
   /// @param segment one of unranked()
   /// @param distance how unlike all objects it is
   void rank(std::uint32_t segment, float distance);
+  /// If it waits, it is one of those that come first.
+  void hurry(std::uint32_t segment);
   /// Takes out the next one. There must be one.
   Next pop();
   /// Forgets a segment that does not exist any more.

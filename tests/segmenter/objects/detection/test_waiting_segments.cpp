@@ -70,7 +70,9 @@ TEST(WaitingSegments, ThatAreMostLikeAnObjectComeBeforeTheOthersThatHaveChangedM
   waiting.add(2, 130, 7);
   EXPECT_THAT(waiting.unranked(), ElementsAre(2));
   waiting.rank(2, 0.5F);
-  EXPECT_THAT(all_of(waiting), ElementsAre(2, 1, 4));
+  waiting.hurry(1);
+  waiting.hurry(3);  // does not wait
+  EXPECT_THAT(all_of(waiting), ElementsAre(1, 2, 4));
 }
 
 TEST(WaitingSegments, AreNotRankedAfterTheyWereTakenOut) {
