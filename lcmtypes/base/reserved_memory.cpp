@@ -20,14 +20,19 @@ std::size_t round_up(std::size_t bytes) {
   return (bytes + kHugePageBytes - 1) / kHugePageBytes * kHugePageBytes;
 }
 
-/// With the thread sanitizer a program has not 128 TB of addresses, but 1.5: less is reserved for
-/// what may become large.
-std::size_t reservable(std::size_t bytes) {
-#ifdef __SANITIZE_THREAD__
-  constexpr std::size_t kLarge = std::size_t{1} << 34;
-  if (bytes >= kLarge) return round_up(bytes / 128);
+// A program has 128 TB of addresses; with the thread sanitizer 1.5, with that of addresses 112.
+#if defined(__SANITIZE_THREAD__)
+constexpr std::size_t kScarcity = 128;
+#elif defined(__SANITIZE_ADDRESS__)
+constexpr std::size_t kScarcity = 4;
+#else
+constexpr std::size_t kScarcity = 1;
 #endif
-  return bytes;
+
+/// Where addresses are scarce, less is reserved for what may become large.
+std::size_t reservable(std::size_t bytes) {
+  constexpr std::size_t kLarge = std::size_t{1} << 34;
+  return bytes < kLarge ? bytes : round_up(bytes / kScarcity);
 }
 
 }  // namespace
