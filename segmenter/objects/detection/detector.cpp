@@ -52,7 +52,7 @@ void Detector::set_piece(std::int32_t id, LabelledMap::Points points_W,
   is_checking_all_ = false;
   const std::set<std::uint32_t> changed =
       scene_.set_piece(id, std::move(points_W), std::move(segment_ids));
-  changed_.insert(changed.begin(), changed.end());
+  if (!changed.empty()) recognitions_.forget_candidates();
   std::set<std::uint32_t> changed_much;
   for (const std::uint32_t segment : changed) {
     if (waiting_.has_changed_much(segment, map().num_points(segment))) changed_much.insert(segment);
@@ -93,10 +93,7 @@ void Detector::begin_again(const LightChange& light) {
   scene_.set_light(light);
   recognitions_.forget_all();
   waiting_.clear();
-  for (const std::uint32_t segment : map().segments()) {
-    changed_.insert(segment);
-    wait_for(segment);
-  }
+  for (const std::uint32_t segment : map().segments()) wait_for(segment);
 }
 
 /// When the light of the map becomes known and is another one, all is examined in it once more.
@@ -138,10 +135,6 @@ std::optional<std::int64_t> Detector::examine_many() {
 }
 
 void Detector::rank_waiting(bool on_all_cores) {
-  if (!changed_.empty()) {
-    recognitions_.forget(changed_);
-    changed_.clear();
-  }
   const std::vector<std::uint32_t> unranked = waiting_.unranked();
   const std::vector<float> distances = recognitions_.least_distances(unranked, on_all_cores);
   for (std::size_t i = 0; i < unranked.size(); ++i) waiting_.rank(unranked[i], distances[i]);

@@ -107,7 +107,6 @@ class Detector {
   bool is_checking_all_ = false;    // since examine_all(), until the map changes
   Recognitions recognitions_;
   WaitingSegments waiting_;
-  std::set<std::uint32_t> changed_;  // since the segment examined last
   std::vector<Detection> detections_;
   std::int64_t num_events_ = 0;
   std::int64_t num_changes_ = 0;

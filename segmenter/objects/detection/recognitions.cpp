@@ -12,9 +12,6 @@ namespace kintsugi::segmenter {
 
 namespace {
 
-/// The neighbours of the graph: points closer than two voxels, as in the engine's defaults.
-constexpr float kNeighbourRadius_vox = 2.0F;
-
 bool share_segments(const Recognition& a, const Recognition& b) {
   const std::vector<std::uint32_t>& ids = b.placement.segment_ids;
   return std::any_of(
@@ -95,7 +92,7 @@ std::vector<Candidate> Recognitions::candidates_at(std::uint32_t segment) const 
   return candidates_of(
       segment, scene_.map(),
       [this](std::uint32_t id) -> const std::vector<SegmentNeighbour>& {
-        return neighbours_of(id);
+        return scene_.neighbours_of(id);
       },
       largest_box_m());
 }
@@ -165,20 +162,10 @@ std::optional<LightChange> Recognitions::light() const {
 
 void Recognitions::forget_all() {
   by_segment_.clear();
-  by_candidate_.clear();
+  forget_candidates();
 }
 
-/// A segment that has changed may touch others than before. Then these have other neighbours, too.
-void Recognitions::forget(const std::set<std::uint32_t>& changed) {
-  std::set<std::uint32_t> stale = changed;
-  for (const std::uint32_t segment : changed) {
-    const auto known = neighbours_.find(segment);
-    if (known == neighbours_.end()) continue;
-    for (const SegmentNeighbour& neighbour : known->second) stale.insert(neighbour.segment_id);
-  }
-  for (const std::uint32_t segment : stale) neighbours_.unsafe_erase(segment);
-  by_candidate_.clear();
-}
+void Recognitions::forget_candidates() { by_candidate_.clear(); }
 
 std::vector<Recognition> Recognitions::best() const {
   std::vector<Recognition> all = all_of(by_segment_);
@@ -197,24 +184,6 @@ std::vector<Recognition> Recognitions::best() const {
 float Recognitions::largest_box_m() const {
   return std::numbers::sqrt2_v<float> * 2 * recognizer_.largest_radius_m() +
          2 * scene_.resolution_m();
-}
-
-const std::vector<SegmentNeighbour>& Recognitions::neighbours_of(std::uint32_t segment) const {
-  const auto known = neighbours_.find(segment);
-  if (known != neighbours_.end()) return known->second;
-  const Eigen::AlignedBox3f box = scene_.map().box_of(segment);
-  const float radius_m = kNeighbourRadius_vox * scene_.resolution_m();
-  const Eigen::Vector3f margin = Eigen::Vector3f::Constant(2 * radius_m);
-  const LabelledExcerpt excerpt = scene_.map().points_in({box.min() - margin, box.max() + margin});
-  SegmentStatistics statistics;
-  statistics.segment_id = segment;
-  for (int axis = 0; axis < 3; ++axis) {
-    statistics.box_min_W[axis] = box.min()[axis];
-    statistics.box_max_W[axis] = box.max()[axis];
-  }
-  const LabelledCloud cloud{excerpt.points_W, excerpt.segment_ids, scene_.resolution_m(), radius_m};
-  return neighbours_.emplace(segment, kintsugi::segmenter::neighbours_of(cloud, statistics))
-      .first->second;
 }
 
 }  // namespace kintsugi::segmenter

@@ -8,8 +8,6 @@
 #include <span>
 #include <vector>
 
-#include <oneapi/tbb/concurrent_unordered_map.h>
-
 #include "segmenter/objects/detection/candidates.hpp"
 #include "segmenter/objects/recognition/object_recognizer.hpp"
 #include "segmenter/objects/recognition/scene_light.hpp"
@@ -55,8 +53,8 @@ class Recognitions {
 
   /// All of the scene looks different.
   void forget_all();
-  /// The map has changed: what was computed of these segments does not hold any more.
-  void forget(const std::set<std::uint32_t>& changed);
+  /// The map has changed: what was found at candidates does not hold any more.
+  void forget_candidates();
 
   /// How many candidates were looked at so far.
   [[nodiscard]] std::int64_t num_candidates() const { return num_candidates_; }
@@ -64,15 +62,11 @@ class Recognitions {
  private:
   [[nodiscard]] float largest_box_m() const;
   [[nodiscard]] std::vector<Candidate> candidates_at(std::uint32_t segment) const;
-  [[nodiscard]] const std::vector<SegmentNeighbour>& neighbours_of(std::uint32_t segment) const;
   void recognize(const std::vector<std::vector<Candidate>>& candidates);
   void keep_best(std::uint32_t segment, const std::vector<Candidate>& candidates);
 
   const ObjectRecognizer& recognizer_;
   const Scene& scene_;
-  // Of those that were asked for.
-  mutable oneapi::tbb::concurrent_unordered_map<std::uint32_t, std::vector<SegmentNeighbour>>
-      neighbours_;
   std::map<std::uint32_t, std::vector<Recognition>> by_segment_;  // the best of each object
   /// What was found at each candidate since the map changed: most are those of several segments.
   std::map<Candidate, std::vector<Recognition>> by_candidate_;

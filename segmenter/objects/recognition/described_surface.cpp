@@ -27,9 +27,9 @@ std::vector<ViewDescriptor> descriptors_of_views(const DescribedSurface& describ
   std::vector<ViewDescriptor> descriptors;
   descriptors.reserve(views.size());
   for (const std::vector<std::size_t>& view : views) {
-    descriptors.push_back(
-        view_descriptor(size_and_colors(points_of(described.surface, view), described.spacing_m),
-                        features_of(described.features, view).rowwise().mean()));
+    descriptors.push_back(view_descriptor(
+        size_and_colors(SurfaceMoments(points_of(described.surface, view)), described.spacing_m),
+        features_of(described.features, view).rowwise().mean()));
   }
   return descriptors;
 }

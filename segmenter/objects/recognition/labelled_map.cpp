@@ -27,6 +27,7 @@ LabelledMap::Change LabelledMap::set_piece(std::int32_t id, Points points_W,
     Part& part = piece.segments[segment_ids[i]];
     part.indices.push_back(static_cast<std::uint32_t>(i));
     part.box.extend(position((*points_W)[i]));
+    part.blocks.insert(block_of(position((*points_W)[i])));
   }
   piece.points_W = std::move(points_W);
   piece.segment_ids = std::move(segment_ids);
@@ -43,6 +44,10 @@ LabelledMap::Change LabelledMap::set_piece(std::int32_t id, Points points_W,
   }
   for (const auto& [segment, part] : piece.segments) {
     if (is_new || !old->second.segments.contains(segment)) change.segments.insert(segment);
+  }
+  for (const std::uint32_t segment : change.segments) {
+    if (!is_new) add_blocks(old->second, segment, change.labelled_blocks);
+    add_blocks(piece, segment, change.labelled_blocks);
   }
   if (!is_new) {
     remove_labels(id, old->second);
@@ -64,6 +69,13 @@ bool LabelledMap::has_same_points(const Piece& a, const Piece& b, std::uint32_t 
   return std::ranges::equal(of_a, of_b, [&](std::uint32_t i, std::uint32_t j) {
     return (*a.points_W)[i] == (*b.points_W)[j];
   });
+}
+
+void LabelledMap::add_blocks(const Piece& piece, std::uint32_t segment,
+                             std::set<BlockKey>& blocks) {
+  const auto part = piece.segments.find(segment);
+  if (part == piece.segments.end()) return;
+  blocks.insert(part->second.blocks.begin(), part->second.blocks.end());
 }
 
 void LabelledMap::remove_labels(std::int32_t id, const Piece& piece) {
@@ -117,6 +129,13 @@ LabelledMap::Points LabelledMap::points_of_piece(std::int32_t id) const {
 BlockKey LabelledMap::block_of(const Eigen::Vector3f& p_W) const {
   const Eigen::Vector3i key = (p_W / block_m_).array().floor().cast<int>();
   return {key.x(), key.y(), key.z()};
+}
+
+Eigen::AlignedBox3f LabelledMap::box_of(const BlockKey& block, float margin_m) const {
+  const Eigen::Vector3f low_W =
+      block_m_ * Eigen::Vector3f(static_cast<float>(block[0]), static_cast<float>(block[1]),
+                                 static_cast<float>(block[2]));
+  return {low_W.array() - margin_m, low_W.array() + (block_m_ + margin_m)};
 }
 
 std::span<const LabelledMap::PointRef> LabelledMap::points_in(const BlockKey& block) const {
@@ -174,6 +193,14 @@ std::vector<std::uint32_t> LabelledMap::segments() const {
   ids.reserve(by_size.size());
   for (const auto& [size, id] : by_size) ids.push_back(id);
   return ids;
+}
+
+std::set<BlockKey> LabelledMap::blocks_of(std::uint32_t id) const {
+  std::set<BlockKey> blocks;
+  const auto of = segments_.find(id);
+  if (of == segments_.end()) return blocks;
+  for (const std::int32_t piece : of->second.pieces) add_blocks(pieces_.at(piece), id, blocks);
+  return blocks;
 }
 
 Eigen::AlignedBox3f LabelledMap::box_of(std::uint32_t id) const {

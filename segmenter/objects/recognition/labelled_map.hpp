@@ -31,6 +31,16 @@ struct BlockKeyHash {
   }
 };
 
+/// Calls visit(const BlockKey&) for a block and the 26 around it.
+template <class Visit>
+void for_each_around(const BlockKey& key, const Visit& visit) {
+  for (std::int32_t z = key[2] - 1; z <= key[2] + 1; ++z) {
+    for (std::int32_t y = key[1] - 1; y <= key[1] + 1; ++y) {
+      for (std::int32_t x = key[0] - 1; x <= key[0] + 1; ++x) visit(BlockKey{x, y, z});
+    }
+  }
+}
+
 /// The map around a place.
 struct LabelledExcerpt {
   std::vector<CloudPoint> points_W;
@@ -55,6 +65,7 @@ class LabelledMap {
   struct Change {
     std::set<std::uint32_t> segments;  ///< that lost, gained or changed points
     std::set<BlockKey> blocks;         ///< in which points came or went; none: only labels changed
+    std::set<BlockKey> labelled_blocks;  ///< in which these segments have, or had, such points
   };
 
   /// @param block_m side of a block, > 0
@@ -76,6 +87,8 @@ class LabelledMap {
 
   [[nodiscard]] float block_m() const { return block_m_; }
   [[nodiscard]] BlockKey block_of(const Eigen::Vector3f& p_W) const;
+  /// @param margin_m by which the box is larger than the block on each side
+  [[nodiscard]] Eigen::AlignedBox3f box_of(const BlockKey& block, float margin_m) const;
   /// All points of a block, ascending: means over them must not depend on the order in which the
   /// pieces came.
   [[nodiscard]] std::span<const PointRef> points_in(const BlockKey& block) const;
@@ -90,6 +103,8 @@ class LabelledMap {
   [[nodiscard]] std::size_t num_segments() const { return segments_.size(); }
   /// The ids of all segments, the one with most points first.
   [[nodiscard]] std::vector<std::uint32_t> segments() const;
+  /// The blocks in which a segment has points, ascending.
+  [[nodiscard]] std::set<BlockKey> blocks_of(std::uint32_t id) const;
   /// The box of a segment; empty if there is none of this id.
   [[nodiscard]] Eigen::AlignedBox3f box_of(std::uint32_t id) const;
   /// The direction that is up in W.
@@ -99,6 +114,7 @@ class LabelledMap {
   struct Part {
     std::vector<std::uint32_t> indices;  // in the piece
     Eigen::AlignedBox3f box;
+    std::set<BlockKey> blocks;
   };
   struct Piece {
     Points points_W;
@@ -111,6 +127,8 @@ class LabelledMap {
   };
 
   static bool has_same_points(const Piece& a, const Piece& b, std::uint32_t segment);
+  /// Adds the blocks in which a segment has points of the piece.
+  static void add_blocks(const Piece& piece, std::uint32_t segment, std::set<BlockKey>& blocks);
   void remove_labels(std::int32_t id, const Piece& piece);
   void add_labels(std::int32_t id, const Piece& piece);
   std::set<BlockKey> remove_points(std::int32_t id, const Piece& piece);

@@ -48,7 +48,7 @@ bool are_same(const ObjectModel& a, const ObjectModel& b) {
 
 /// One flat patch of one colour, which is recognised only where other segments have other colours
 /// of the object (Placement::is_distinct).
-bool is_common(const Surface& surface) { return is_flat(surface) && is_plain(surface); }
+bool is_common(const SurfaceMoments& moments) { return is_flat(moments) && is_plain(moments); }
 
 std::vector<ViewDescriptor> views_of(const PreparedModel& prepared) {
   const float described_m = described_spacing_m(prepared.spacing_m);
@@ -103,24 +103,27 @@ const PreparedModel& ObjectRecognizer::prepared(std::size_t model) const {
 }
 
 float ObjectRecognizer::least_distance(const Candidate& candidate, const Scene& scene) const {
-  if (!index_) return std::numeric_limits<float>::infinity();
-  const Surface candidate_W = scene.surface_W(candidate);
-  if (candidate_W.empty() || is_common(candidate_W)) return std::numeric_limits<float>::infinity();
-  return index_->least_distance(scene.size_and_colors(candidate));
+  const SurfaceMoments moments = scene.rough_moments(candidate);
+  if (!index_ || moments.empty() || is_common(moments))
+    return std::numeric_limits<float>::infinity();
+  return index_->least_distance(
+      size_and_colors(moments, described_spacing_m(scene.resolution_m())));
 }
 
 std::vector<Recognition> ObjectRecognizer::recognize(const Candidate& candidate,
                                                      const Scene& scene) const {
   if (!index_) return {};
-  const Surface candidate_W = scene.surface_W(candidate);
-  if (candidate_W.empty()) return {};
-  const SizeAndColors beginning = scene.size_and_colors(candidate);
+  const SurfaceMoments moments = scene.moments(candidate);
+  if (moments.empty()) return {};
+  const SizeAndColors beginning =
+      size_and_colors(moments, described_spacing_m(scene.resolution_m()));
   const bool is_choice = known_.size() > kFew;
   if (is_choice && index_->least_distance(beginning) > kLargestDistance) return {};
   const ViewDescriptor descriptor = view_descriptor(beginning, scene.shape(candidate));
   const std::vector<ModelMatch> matches =
       is_choice ? index_->nearest(descriptor, kTried, kLargestDistance)
                 : index_->nearest(descriptor, kFew, kAnyDistance);
+  const Surface candidate_W = scene.surface_W(candidate);
   std::vector<Recognition> found;
   for (const ModelMatch& match : matches) {
     std::optional<Placement> placement = place(match.model, candidate_W, scene);

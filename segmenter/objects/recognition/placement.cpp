@@ -228,7 +228,8 @@ Placement placement_of(const PreparedModel& model, const Scene& scene,
   // Normals of its own segments, since what is beside a flat thing faces elsewhere; colours of all,
   // since what has another colour is often another segment.
   const Surface own_W = explained_of(seen, placement.segment_ids);
-  placement.is_distinct = !own_W.empty() && !(is_flat(own_W) && is_plain(seen.explained_W));
+  placement.is_distinct = !own_W.empty() && !(is_flat(SurfaceMoments(own_W)) &&
+                                              is_plain(SurfaceMoments(seen.explained_W)));
   add_evidence(model, scene, seen.explained_W, lit, placement);
   return placement;
 }

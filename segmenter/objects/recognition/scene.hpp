@@ -12,7 +12,9 @@
 #include "segmenter/objects/recognition/agreement.hpp"
 #include "segmenter/objects/recognition/labelled_map.hpp"
 #include "segmenter/objects/recognition/scene_surface.hpp"
+#include "segmenter/objects/recognition/segment_borders.hpp"
 #include "segmenter/objects/recognition/surface.hpp"
+#include "segmenter/objects/recognition/surface_moments.hpp"
 #include "segmenter/objects/recognition/view_descriptor.hpp"
 #include "segmenter/views/observed_space.hpp"
 
@@ -47,10 +49,16 @@ class Scene {
   [[nodiscard]] Eigen::Vector3d up_W() const;
   [[nodiscard]] const ObservedSpace* observed() const { return observed_; }
 
+  /// The segments that touch a segment: points closer than two voxels, as in the engine's defaults.
+  [[nodiscard]] const std::vector<SegmentNeighbour>& neighbours_of(std::uint32_t segment) const {
+    return borders_.neighbours_of(segment);
+  }
   /// The surface of segments, thinned to `resolution_m`.
   [[nodiscard]] Surface surface_W(std::span<const std::uint32_t> segments) const;
-  /// The beginning of the description of segments as one surface (view_descriptor()).
-  [[nodiscard]] SizeAndColors size_and_colors(std::span<const std::uint32_t> segments) const;
+  /// Of their surface as it is described: thinned to described_spacing_m().
+  [[nodiscard]] SurfaceMoments moments(std::span<const std::uint32_t> segments) const;
+  /// About the same, in a small part of the time where the surface is not known yet.
+  [[nodiscard]] SurfaceMoments rough_moments(std::span<const std::uint32_t> segments) const;
   /// The mean of the shape features of their points. Each segment has its own, without what
   /// touches it.
   [[nodiscard]] ShapeFeature shape(std::span<const std::uint32_t> segments) const;
@@ -58,10 +66,12 @@ class Scene {
  private:
   struct SegmentSurface {
     Surface surface_W;
-    Surface described_W;  // thinned further
+    Surface described_W;     // thinned further
+    SurfaceMoments moments;  // of that
   };
 
   [[nodiscard]] const SegmentSurface& segment(std::uint32_t id) const;
+  [[nodiscard]] const SurfaceMoments& rough_moments_of(std::uint32_t id) const;
   /// Mean over its points, of which there must be some.
   [[nodiscard]] const ShapeFeature& shape_of(std::uint32_t id) const;
 
@@ -69,10 +79,12 @@ class Scene {
   LabelledMap map_;
   mutable std::mutex up_mutex_;  // the map computes that when it is asked
   SceneSurface surface_;
+  SegmentBorders borders_;
   LightChange light_;
   const ObservedSpace* observed_ = nullptr;
   // Of those that were asked for.
   mutable oneapi::tbb::concurrent_unordered_map<std::uint32_t, SegmentSurface> segments_;
+  mutable oneapi::tbb::concurrent_unordered_map<std::uint32_t, SurfaceMoments> rough_moments_;
   mutable oneapi::tbb::concurrent_unordered_map<std::uint32_t, ShapeFeature> shapes_;
 };
 

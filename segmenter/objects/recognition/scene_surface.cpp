@@ -15,14 +15,8 @@ void SceneSurface::set_gain(const Eigen::Array3f& gain) {
 
 void SceneSurface::forget(const std::set<BlockKey>& blocks) {
   // The colours of a point are means that reach into the blocks around its own.
-  for (const BlockKey& key : blocks) {
-    for (std::int32_t z = key[2] - 1; z <= key[2] + 1; ++z) {
-      for (std::int32_t y = key[1] - 1; y <= key[1] + 1; ++y) {
-        for (std::int32_t x = key[0] - 1; x <= key[0] + 1; ++x) {
-          blocks_.unsafe_erase({x, y, z});
-        }
-      }
-    }
+  for (const BlockKey& changed : blocks) {
+    for_each_around(changed, [this](const BlockKey& key) { blocks_.unsafe_erase(key); });
   }
 }
 
@@ -34,13 +28,7 @@ const SceneSurface::Block* SceneSurface::block(const BlockKey& key) const {
 }
 
 SceneSurface::Block SceneSurface::made(const BlockKey& key) const {
-  const Eigen::Vector3f low_W =
-      Eigen::Vector3f(static_cast<float>(key[0]), static_cast<float>(key[1]),
-                      static_cast<float>(key[2])) *
-      map_.block_m();
-  const Eigen::Vector3f margin = Eigen::Vector3f::Constant(color_radius_m(resolution_m_));
-  const Eigen::Vector3f high_W = low_W.array() + map_.block_m();
-  const Eigen::AlignedBox3f box_W(low_W - margin, high_W + margin);
+  const Eigen::AlignedBox3f box_W = map_.box_of(key, color_radius_m(resolution_m_));
   std::vector<LabelledMap::PointRef> refs;
   std::vector<CloudPoint> points_W;
   const auto add = [&](const BlockKey& from) {
@@ -56,13 +44,9 @@ SceneSurface::Block SceneSurface::made(const BlockKey& key) const {
   add(key);
   points_W.reserve(refs.size());
   for (const LabelledMap::PointRef& ref : refs) points_W.push_back(map_.point_W(ref));
-  for (std::int32_t z = key[2] - 1; z <= key[2] + 1; ++z) {
-    for (std::int32_t y = key[1] - 1; y <= key[1] + 1; ++y) {
-      for (std::int32_t x = key[0] - 1; x <= key[0] + 1; ++x) {
-        if (const BlockKey other{x, y, z}; other != key) add(other);
-      }
-    }
-  }
+  for_each_around(key, [&](const BlockKey& other) {
+    if (other != key) add(other);
+  });
   Surface surface_W = unthinned(points_W, resolution_m_);
   surface_W.resize(refs.size());
   relight(surface_W, gain_);

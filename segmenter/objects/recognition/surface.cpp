@@ -116,6 +116,13 @@ Surface means_in_cubes(std::span<const Point> points, float spacing_m) {
   return surface;
 }
 
+Surface with_lab(Surface surface) {
+  for (SurfacePoint& point : surface) {
+    if (point.has_color) point.lab = lab_of(point.rgb);
+  }
+  return surface;
+}
+
 /// The points in each cube, and those in the 27 cubes around it.
 class Neighbourhoods {
  public:
@@ -180,12 +187,12 @@ Surface thinned(std::span<const CloudPoint> points, float spacing_m) {
   return surface;
 }
 
+Surface roughly_thinned(std::span<const CloudPoint> points, float spacing_m) {
+  return with_lab(means_in_cubes(points, spacing_m));
+}
+
 Surface thinned(const Surface& surface, float spacing_m) {
-  Surface thinned = means_in_cubes(std::span<const SurfacePoint>(surface), spacing_m);
-  for (SurfacePoint& point : thinned) {
-    if (point.has_color) point.lab = lab_of(point.rgb);
-  }
-  return thinned;
+  return with_lab(means_in_cubes(std::span<const SurfacePoint>(surface), spacing_m));
 }
 
 Surface unthinned(std::span<const CloudPoint> points, float spacing_m) {

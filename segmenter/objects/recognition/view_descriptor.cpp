@@ -60,46 +60,20 @@ std::vector<std::size_t> seen_from(const Surface& surface, const Eigen::Vector3f
   return seen;
 }
 
-Eigen::Vector3f principal_lengths(const Surface& surface) {
-  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-  for (const SurfacePoint& point : surface) mean += point.position.cast<double>();
-  mean /= static_cast<double>(surface.size());
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-  for (const SurfacePoint& point : surface) {
-    const Eigen::Vector3d d = point.position.cast<double>() - mean;
-    covariance += d * d.transpose();
-  }
-  covariance /= static_cast<double>(surface.size());
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance, Eigen::EigenvaluesOnly);
+Eigen::Vector3f principal_lengths_m(const SurfaceMoments& moments) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(moments.covariance_m2(),
+                                                              Eigen::EigenvaluesOnly);
   return solver.eigenvalues().reverse().cwiseMax(0.0).cwiseSqrt().cast<float>();
-}
-
-Eigen::Matrix<float, 6, 1> colors(const Surface& surface) {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  Eigen::Vector3d squares = Eigen::Vector3d::Zero();
-  double count = 0;
-  for (const SurfacePoint& point : surface) {
-    if (!point.has_color) continue;
-    const Eigen::Vector3d lab = point.lab.cast<double>();
-    sum += lab;
-    squares += lab.cwiseProduct(lab);
-    count += 1;
-  }
-  Eigen::Matrix<float, 6, 1> colors = Eigen::Matrix<float, 6, 1>::Zero();
-  if (count == 0) return colors;
-  const Eigen::Vector3d mean = sum / count;
-  const Eigen::Vector3d variance = squares / count - mean.cwiseProduct(mean);
-  colors << mean.cast<float>(), variance.cwiseMax(0.0).cwiseSqrt().cast<float>();
-  return colors;
 }
 
 }  // namespace
 
-SizeAndColors size_and_colors(const Surface& surface, float spacing_m) {
+SizeAndColors size_and_colors(const SurfaceMoments& moments, float spacing_m) {
   SizeAndColors elements;
-  elements.head<3>() = (principal_lengths(surface).array() + spacing_m).log();
-  elements[3] = std::log(static_cast<float>(surface.size()) * spacing_m * spacing_m);
-  elements.tail<6>() = colors(surface);
+  elements.head<3>() = (principal_lengths_m(moments).array() + spacing_m).log();
+  elements[3] = std::log(static_cast<float>(moments.points) * spacing_m * spacing_m);
+  elements.segment<3>(4) = moments.mean_lab().cast<float>();
+  elements.tail<3>() = moments.lab_variance().cwiseSqrt().cast<float>();
   return elements;
 }
 

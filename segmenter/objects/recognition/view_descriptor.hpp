@@ -7,6 +7,7 @@
 
 #include "segmenter/objects/recognition/shape_features.hpp"
 #include "segmenter/objects/recognition/surface.hpp"
+#include "segmenter/objects/recognition/surface_moments.hpp"
 
 namespace kintsugi::segmenter {
 
@@ -25,7 +26,7 @@ using ViewDescriptor = Eigen::Matrix<float, kViewDescriptorSize, 1>;
 ///   4-9    mean and standard deviation of L, a and b; 0 without colours
 ///   10-42  the mean of the shape features of its points
 /// @param spacing_m of the points
-SizeAndColors size_and_colors(const Surface& surface, float spacing_m);
+SizeAndColors size_and_colors(const SurfaceMoments& moments, float spacing_m);
 /// Some of those points had a colour: black has none.
 inline bool has_colors(const SizeAndColors& elements) { return !elements.tail<6>().isZero(0.0F); }
 /// @param mean_features of its points, see shape_features()

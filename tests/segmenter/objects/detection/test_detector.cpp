@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <memory>
 #include <random>
+#include <set>
 #include <span>
 #include <string>
 #include <utility>
@@ -88,14 +89,18 @@ TEST(LabelledMap, TellsWhichSegmentsChange) {
   const LabelledMap::Change first = labelled.set_piece(1, points, map.segment_ids);
   EXPECT_THAT(first.segments, ElementsAre(kTable, kBox, kBall));
   EXPECT_FALSE(first.blocks.empty());
+  EXPECT_EQ(first.labelled_blocks, first.blocks);
   const LabelledMap::Change same = labelled.set_piece(1, points, map.segment_ids);
   EXPECT_TRUE(same.segments.empty());
   EXPECT_TRUE(same.blocks.empty());
+  EXPECT_TRUE(same.labelled_blocks.empty());
   std::vector<std::uint32_t> joined = map.segment_ids;
   std::replace(joined.begin(), joined.end(), kBall, kTable);
   const LabelledMap::Change labels = labelled.set_piece(1, points, joined);
   EXPECT_THAT(labels.segments, ElementsAre(kTable, kBall));
   EXPECT_TRUE(labels.blocks.empty());
+  std::set<BlockKey> blocks_of_table = labelled.blocks_of(kTable);
+  EXPECT_EQ(labels.labelled_blocks, blocks_of_table);
   // The table has another point; the box and the ball are as they were, but further back.
   auto longer = std::make_shared<std::vector<CloudPoint>>(map.points_W);
   longer->insert(longer->begin(), longer->front());
@@ -165,7 +170,8 @@ TEST(Recognitions, KnowTheNeighboursOfWhatDidNotChangeItself) {
   const std::uint32_t first = 1;
   recognitions.examine(std::span(&first, 1));
   EXPECT_EQ(recognitions.num_candidates(), 3);  // 1, 1 + 2, 1 + 2 + 3
-  recognitions.forget(scene.set_piece(1, points, joined));
+  scene.set_piece(1, points, joined);
+  recognitions.forget_candidates();
   recognitions.examine(std::span(&first, 1));
   EXPECT_EQ(recognitions.num_candidates(), 5);  // 1, 1 + 3
 }

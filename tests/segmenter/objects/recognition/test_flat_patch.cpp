@@ -28,23 +28,23 @@ Surface strip(float bend_rad) {
 }
 
 TEST(FlatPatch, HasNormalsWithin15Degrees) {
-  EXPECT_TRUE(is_flat(strip(0.0F)));
+  EXPECT_TRUE(is_flat(SurfaceMoments(strip(0.0F))));
   // Normals spread evenly over an angle a deviate from their mean by a / sqrt(12).
   constexpr float kLimit_rad = std::numbers::pi_v<float> / 12;
-  EXPECT_TRUE(is_flat(strip(0.9F * kLimit_rad * std::sqrt(12.0F))));
-  EXPECT_FALSE(is_flat(strip(1.1F * kLimit_rad * std::sqrt(12.0F))));
+  EXPECT_TRUE(is_flat(SurfaceMoments(strip(0.9F * kLimit_rad * std::sqrt(12.0F)))));
+  EXPECT_FALSE(is_flat(SurfaceMoments(strip(1.1F * kLimit_rad * std::sqrt(12.0F)))));
 }
 
 TEST(FlatPatch, OfOneColourIsPlain) {
   Surface surface = strip(0.0F);
-  EXPECT_TRUE(is_plain(surface));
+  EXPECT_TRUE(is_plain(SurfaceMoments(surface)));
   EXPECT_TRUE(is_plain({}));
   for (std::size_t i = 0; i < surface.size(); i += 2) surface[i].lab.x() += 4.0F;
-  EXPECT_TRUE(is_plain(surface)) << "shades";
+  EXPECT_TRUE(is_plain(SurfaceMoments(surface))) << "shades";
   for (std::size_t i = 0; i < surface.size(); i += 2) surface[i].lab.x() += 40.0F;
-  EXPECT_FALSE(is_plain(surface));
+  EXPECT_FALSE(is_plain(SurfaceMoments(surface)));
   for (std::size_t i = 0; i < surface.size(); i += 2) surface[i].has_color = false;
-  EXPECT_TRUE(is_plain(surface)) << "points without a colour say nothing";
+  EXPECT_TRUE(is_plain(SurfaceMoments(surface))) << "points without a colour say nothing";
 }
 
 }  // namespace
