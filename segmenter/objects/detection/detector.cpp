@@ -18,6 +18,8 @@ constexpr float kSameLight = 0.1F;
 // Segments that are examined at once: enough for all cores, and done in some tens of milliseconds.
 constexpr std::size_t kMany = 16;
 
+constexpr std::int32_t kMuchMore = 2;
+
 bool is_same_light(const Eigen::Vector3f& log_change) {
   return log_change.cwiseAbs().maxCoeff() < kSameLight;
 }
@@ -116,7 +118,7 @@ std::optional<std::int64_t> Detector::examine_next() {
   if (waiting_.empty()) return std::nullopt;
   rank_waiting(false);
   const WaitingSegments::Next next = waiting_.pop();
-  examine(std::span(&next.segment, 1));
+  if (is_checking_all_ || !follow(next.segment)) examine(std::span(&next.segment, 1));
   return next.since_us;
 }
 
@@ -149,6 +151,30 @@ void Detector::examine(std::span<const std::uint32_t> segments) {
   if (is_light_open) return;
   if (may_change || is_checking_all_ || waiting_.empty()) update_detections();
   confirm_old_ones();
+}
+
+/// While the map grows: what was told of a segment, and is there still, is searched for again only
+/// when twice as much of it is known: the surface of a thing comes in many parts.
+bool Detector::follow(std::uint32_t segment) {
+  const auto told = std::ranges::find_if(detections_, [segment](const Detection& detection) {
+    return is_active(detection) &&
+           std::ranges::binary_search(detection.recognition.placement.segment_ids, segment);
+  });
+  if (told == detections_.end() || map().num_points(segment) == 0) return false;
+  Recognition now = followed(told->recognition);
+  if (!is_recognized(now.placement)) return false;
+  if (now.placement.points >= kMuchMore * now.searched_points) return false;
+  recognitions_.set(segment, std::move(now));
+  update_detections();
+  confirm_old_ones();
+  return true;
+}
+
+Recognition Detector::followed(const Recognition& last) const {
+  Recognition now = last;
+  now.placement = recognizer_->followed(last.model, last.placement, scene_);
+  now.placement.light_agreement = recognitions_.scene_light().agreement(now.placement.light);
+  return now;
 }
 
 /// What was recognised there is told when nothing waits that may tell otherwise: its other
@@ -292,12 +318,7 @@ bool Detector::is_disputed(const Recognition& recognition,
 /// of them; it is not gone as long as the map shows it where it was, and nothing else there.
 bool Detector::is_still_there(Detection& detection, const std::vector<Recognition>& best) {
   if (is_checking_all_) return false;  // what is found depends on the map alone
-  const Placement& last = detection.recognition.placement;
-  Recognition now{
-      .model = detection.recognition.model,
-      .placement = recognizer_->placement_at(detection.recognition.model,
-                                             {.X_WO = last.X_WO, .light = last.light}, scene_)};
-  now.placement.light_agreement = recognitions_.scene_light().agreement(now.placement.light);
+  Recognition now = followed(detection.recognition);
   const bool is_replaced = std::ranges::any_of(
       best, [&now](const Recognition& other) { return share_segments(now, other); });
   if (!is_recognized(now.placement) || is_replaced) return false;

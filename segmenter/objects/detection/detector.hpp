@@ -82,6 +82,8 @@ class Detector {
   void settle_light();
   void rank_waiting(bool on_all_cores);
   void examine(std::span<const std::uint32_t> segments);
+  [[nodiscard]] bool follow(std::uint32_t segment);
+  [[nodiscard]] Recognition followed(const Recognition& last) const;
   void hurry_what_decides(std::span<const std::uint32_t> examined);
   void update_detections();
   [[nodiscard]] std::vector<Recognition> certain() const;

@@ -126,6 +126,10 @@ void Recognitions::keep_best(std::uint32_t segment, const std::vector<Candidate>
   for (auto& [model, recognition] : best) all.push_back(std::move(recognition));
 }
 
+void Recognitions::set(std::uint32_t segment, Recognition recognition) {
+  by_segment_[segment] = {std::move(recognition)};
+}
+
 void Recognitions::add(Recognition recognition) {
   std::vector<Recognition>& there = by_segment_[recognition.placement.segment_ids.front()];
   std::erase_if(there, [&](const Recognition& old) { return old.model == recognition.model; });

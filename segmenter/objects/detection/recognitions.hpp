@@ -32,6 +32,9 @@ class Recognitions {
   /// @return whether something may be recognised there now, or was before
   bool examine(std::span<const std::uint32_t> segments);
 
+  /// What is recognised at a segment, instead of all that was.
+  void set(std::uint32_t segment, Recognition recognition);
+
   /// Something that was recognised otherwise: it counts until the first of its segments is examined
   /// again, instead of what the same object was recognised as there.
   void add(Recognition recognition);

@@ -138,12 +138,6 @@ Eigen::AlignedBox3f LabelledMap::box_of(const BlockKey& block, float margin_m) c
   return {low_W.array() - margin_m, low_W.array() + (block_m_ + margin_m)};
 }
 
-std::span<const LabelledMap::PointRef> LabelledMap::points_in(const BlockKey& block) const {
-  const auto at = blocks_.find(block);
-  if (at == blocks_.end()) return {};
-  return at->second;
-}
-
 LabelledExcerpt LabelledMap::points_in(const Eigen::AlignedBox3f& box_W) const {
   LabelledExcerpt excerpt;
   if (box_W.isEmpty()) return excerpt;
@@ -152,13 +146,11 @@ LabelledExcerpt LabelledMap::points_in(const Eigen::AlignedBox3f& box_W) const {
   for (std::int32_t z = low[2]; z <= high[2]; ++z) {
     for (std::int32_t y = low[1]; y <= high[1]; ++y) {
       for (std::int32_t x = low[0]; x <= high[0]; ++x) {
-        for (const PointRef& ref : points_in(BlockKey{x, y, z})) {
-          const Piece& piece = pieces_.at(ref.piece);
-          const CloudPoint& point = (*piece.points_W)[ref.index];
-          if (!box_W.contains(position(point))) continue;
-          excerpt.points_W.push_back(point);
-          excerpt.segment_ids.push_back(piece.segment_ids[ref.index]);
-        }
+        visit_points_in({x, y, z}, [&](PointRef, const CloudPoint& point_W, std::uint32_t id) {
+          if (!box_W.contains(position(point_W))) return;
+          excerpt.points_W.push_back(point_W);
+          excerpt.segment_ids.push_back(id);
+        });
       }
     }
   }

@@ -77,9 +77,6 @@ class LabelledMap {
 
   /// The points of a piece; null: there is none of this id.
   [[nodiscard]] Points points_of_piece(std::int32_t id) const;
-  [[nodiscard]] const CloudPoint& point_W(PointRef ref) const {
-    return (*pieces_.at(ref.piece).points_W)[ref.index];
-  }
   /// The labels of the points of a piece. There must be one of this id.
   [[nodiscard]] std::span<const std::uint32_t> labels_of_piece(std::int32_t id) const {
     return pieces_.at(id).segment_ids;
@@ -89,9 +86,12 @@ class LabelledMap {
   [[nodiscard]] BlockKey block_of(const Eigen::Vector3f& p_W) const;
   /// @param margin_m by which the box is larger than the block on each side
   [[nodiscard]] Eigen::AlignedBox3f box_of(const BlockKey& block, float margin_m) const;
-  /// All points of a block, ascending: means over them must not depend on the order in which the
-  /// pieces came.
-  [[nodiscard]] std::span<const PointRef> points_in(const BlockKey& block) const;
+  /// Whether there are points in a block.
+  [[nodiscard]] bool has_points_in(const BlockKey& block) const { return blocks_.contains(block); }
+  /// Calls visit(PointRef, const CloudPoint& point_W, segment id) for all points of a block, by
+  /// ascending PointRef: means over them must not depend on the order in which the pieces came.
+  template <class Visit>
+  void visit_points_in(const BlockKey& block, const Visit& visit) const;
 
   /// All points in the box.
   [[nodiscard]] LabelledExcerpt points_in(const Eigen::AlignedBox3f& box_W) const;
@@ -141,5 +141,20 @@ class LabelledMap {
   UpDirection up_;
   std::int64_t num_points_ = 0;
 };
+
+template <class Visit>
+void LabelledMap::visit_points_in(const BlockKey& block, const Visit& visit) const {
+  const auto at = blocks_.find(block);
+  if (at == blocks_.end()) return;
+  std::int32_t id = 0;
+  const Piece* piece = nullptr;  // of this id, once one of its points was found
+  for (const PointRef& ref : at->second) {
+    if (piece == nullptr || ref.piece != id) {
+      id = ref.piece;
+      piece = &pieces_.at(id);
+    }
+    visit(ref, (*piece->points_W)[ref.index], piece->segment_ids[ref.index]);
+  }
+}
 
 }  // namespace kintsugi::segmenter

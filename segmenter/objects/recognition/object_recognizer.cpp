@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 #include <map>
+#include <span>
 #include <string_view>
 #include <utility>
 
@@ -36,8 +37,14 @@ constexpr float kLeastSeen = 0.33F;
 constexpr float kLeastOwn = 0.6F;
 
 /// Better: more agrees, and on equal terms the one found first.
-void keep_better(std::optional<Placement>& best, Placement placement) {
-  if (!best || placement.score() > best->score()) best = std::move(placement);
+void keep_better(Placement& best, Placement placement) {
+  if (placement.score() > best.score()) best = std::move(placement);
+}
+
+/// Once more with all segments that are the object's, of which there must be some.
+Placement refined(const PreparedModel& object, const Scene& scene, const Placement& placement) {
+  const Surface whole_W = scene.surface_W(placement.segment_ids);
+  return placement_of(object, scene, refined_pose(object, whole_W, placement.X_WO));
 }
 
 /// As far as recognition is concerned.
@@ -128,7 +135,8 @@ std::vector<Recognition> ObjectRecognizer::recognize(const Candidate& candidate,
   for (const ModelMatch& match : matches) {
     std::optional<Placement> placement = place(match.model, candidate_W, scene);
     if (!placement || !is_recognized(*placement)) continue;
-    found.push_back({match.model, std::move(*placement)});
+    const std::int32_t points = placement->points;
+    found.push_back({match.model, std::move(*placement), points});
   }
   return found;
 }
@@ -139,19 +147,22 @@ std::optional<Placement> ObjectRecognizer::place(std::size_t model, const Surfac
   std::vector<PoseHypothesis> poses = upright_poses(object, part_W, scene.up_W(), kPoses);
   std::erase_if(poses, [](const PoseHypothesis& pose) { return pose.agreement < kLeastAgreement; });
   if (poses.empty()) return std::nullopt;
-  std::optional<Placement> best;
-  for (const PoseHypothesis& pose : poses) keep_better(best, placement_of(object, scene, pose));
-  // Once more with all segments that are the object's, which may be more than the candidate.
-  if (!best->segment_ids.empty()) {
-    const Surface whole_W = scene.surface_W(best->segment_ids);
-    keep_better(best, placement_of(object, scene, refined_pose(object, whole_W, best->X_WO)));
+  Placement best = placement_of(object, scene, poses.front());
+  for (const PoseHypothesis& pose : std::span(poses).subspan(1)) {
+    keep_better(best, placement_of(object, scene, pose));
   }
+  // The candidate may be only some of its segments.
+  if (!best.segment_ids.empty()) keep_better(best, refined(object, scene, best));
   return best;
 }
 
-Placement ObjectRecognizer::placement_at(std::size_t model, const PoseHypothesis& hypothesis,
-                                         const Scene& scene) const {
-  return placement_of(prepared(model), scene, hypothesis);
+Placement ObjectRecognizer::followed(std::size_t model, const Placement& last,
+                                     const Scene& scene) const {
+  const PreparedModel& object = prepared(model);
+  Placement same = placement_of(object, scene, {.X_WO = last.X_WO, .light = last.light});
+  if (same.segment_ids.empty()) return same;
+  Placement moved = refined(object, scene, same);
+  return moved.score() < same.score() ? same : moved;
 }
 
 bool is_recognized(const Placement& placement) {

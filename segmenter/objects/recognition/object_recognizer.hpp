@@ -19,6 +19,7 @@ namespace kintsugi::segmenter {
 struct Recognition {
   std::size_t model = 0;  ///< for ObjectRecognizer::model()
   Placement placement;
+  std::int32_t searched_points = 0;  ///< Placement::points when it was searched for
 };
 
 class ObjectRecognizer {
@@ -56,9 +57,10 @@ class ObjectRecognizer {
   [[nodiscard]] std::optional<Placement> place(std::size_t model, const Surface& part_W,
                                                const Scene& scene) const;
 
-  /// What speaks for an object that is at a place in some light.
-  [[nodiscard]] Placement placement_at(std::size_t model, const PoseHypothesis& hypothesis,
-                                       const Scene& scene) const;
+  /// An object that was there, as the scene shows it now, however little speaks for it. It costs a
+  /// small part of a search.
+  [[nodiscard]] Placement followed(std::size_t model, const Placement& last,
+                                   const Scene& scene) const;
 
  private:
   struct Known;

@@ -23,7 +23,7 @@ void SceneSurface::forget(const std::set<BlockKey>& blocks) {
 const SceneSurface::Block* SceneSurface::block(const BlockKey& key) const {
   const auto at = blocks_.find(key);
   if (at != blocks_.end()) return &at->second;
-  if (map_.points_in(key).empty()) return nullptr;
+  if (!map_.has_points_in(key)) return nullptr;
   return &blocks_.emplace(key, made(key)).first->second;
 }
 
@@ -31,21 +31,16 @@ SceneSurface::Block SceneSurface::made(const BlockKey& key) const {
   const Eigen::AlignedBox3f box_W = map_.box_of(key, color_radius_m(resolution_m_));
   std::vector<LabelledMap::PointRef> refs;
   std::vector<CloudPoint> points_W;
-  const auto add = [&](const BlockKey& from) {
-    for (const LabelledMap::PointRef& ref : map_.points_in(from)) {
-      const CloudPoint& point = map_.point_W(ref);
-      if (from == key) {
-        refs.push_back(ref);
-      } else if (box_W.contains(Eigen::Vector3f(point.x, point.y, point.z))) {
-        points_W.push_back(point);
-      }
-    }
-  };
-  add(key);
-  points_W.reserve(refs.size());
-  for (const LabelledMap::PointRef& ref : refs) points_W.push_back(map_.point_W(ref));
+  map_.visit_points_in(key, [&](LabelledMap::PointRef ref, const CloudPoint& point_W, auto) {
+    refs.push_back(ref);
+    points_W.push_back(point_W);
+  });
   for_each_around(key, [&](const BlockKey& other) {
-    if (other != key) add(other);
+    if (other == key) return;
+    map_.visit_points_in(other, [&](LabelledMap::PointRef, const CloudPoint& point_W, auto) {
+      if (!box_W.contains(Eigen::Vector3f(point_W.x, point_W.y, point_W.z))) return;
+      points_W.push_back(point_W);
+    });
   });
   Surface surface_W = unthinned(points_W, resolution_m_);
   surface_W.resize(refs.size());

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <map>
-#include <span>
 #include <utility>
 
 #include "segmenter/core/graph/neighbour_index.hpp"
@@ -81,18 +80,12 @@ std::vector<SegmentBorders::LabelledPoint> SegmentBorders::points_around(
   const Eigen::AlignedBox3f box_W = map_.box_of(key, 1.001F * radius_m_);
   std::vector<LabelledPoint> points_W;
   for_each_around(key, [&](const BlockKey& from) {
-    std::int32_t piece = 0;
-    std::span<const std::uint32_t> labels;  // of this piece, once one of its points was found
-    for (const LabelledMap::PointRef& ref : map_.points_in(from)) {
-      if (labels.empty() || ref.piece != piece) {
-        piece = ref.piece;
-        labels = map_.labels_of_piece(piece);
-      }
-      const CloudPoint& point_W = map_.point_W(ref);
-      if (labels[ref.index] == kNoSegment) continue;
-      if (from != key && !box_W.contains(position(point_W))) continue;
-      points_W.push_back({point_W, labels[ref.index], from == key});
-    }
+    map_.visit_points_in(
+        from, [&](LabelledMap::PointRef, const CloudPoint& point_W, std::uint32_t segment) {
+          if (segment == kNoSegment) return;
+          if (from != key && !box_W.contains(position(point_W))) return;
+          points_W.push_back({point_W, segment, from == key});
+        });
   });
   return points_W;
 }
@@ -107,18 +100,23 @@ std::vector<SegmentBorders::Border> SegmentBorders::borders_between(
   box_W.sizes().maxCoeff(&axis);
   const auto along = [axis](const LabelledPoint& point) { return position(point.point_W)[axis]; };
   std::ranges::sort(points_W, {}, along);
-  std::map<std::pair<std::uint32_t, std::uint32_t>, std::int64_t> counts;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
   for (auto a = points_W.begin(); a != points_W.end(); ++a) {
     for (auto b = a + 1; b != points_W.end() && along(*b) - along(*a) <= radius_m_; ++b) {
       if (a->segment == b->segment || !(a->is_inside || b->is_inside)) continue;
       if (!are_neighbours(a->point_W, b->point_W, radius_m_)) continue;
-      if (a->is_inside) ++counts[{a->segment, b->segment}];
-      if (b->is_inside) ++counts[{b->segment, a->segment}];
+      if (a->is_inside) pairs.emplace_back(a->segment, b->segment);
+      if (b->is_inside) pairs.emplace_back(b->segment, a->segment);
     }
   }
+  std::ranges::sort(pairs);
   std::vector<Border> borders;
-  borders.reserve(counts.size());
-  for (const auto& [ids, count] : counts) borders.push_back({ids.first, {ids.second, count}});
+  for (const auto& [segment, other] : pairs) {
+    const bool is_next = borders.empty() || borders.back().segment != segment ||
+                         borders.back().neighbour.segment_id != other;
+    if (is_next) borders.push_back({segment, {other, 0}});
+    ++borders.back().neighbour.num_pairs;
+  }
   return borders;
 }
 

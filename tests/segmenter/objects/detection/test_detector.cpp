@@ -220,6 +220,33 @@ TEST(Detector, KeepsTheNumberOfAnObjectThatComesIntoViewBitByBit) {
   EXPECT_EQ(detector.num_events(), num_events);
 }
 
+TEST(Detector, SearchesAgainOnlyWhenMuchMoreIsKnown) {
+  Detector detector(box_and_ball(), 0.01F);
+  const auto give_box = [&](double share, std::int64_t utime) {
+    std::vector<CloudPoint> points_W = points_of(box_on_table(), kBox);
+    std::ranges::sort(points_W, {}, &CloudPoint::x);
+    points_W.resize(static_cast<std::size_t>(share * static_cast<double>(points_W.size())));
+    const std::vector<std::uint32_t> labels(points_W.size(), kBox);
+    detector.set_piece(kBox, std::make_shared<const std::vector<CloudPoint>>(points_W), labels,
+                       utime);
+  };
+  give(detector, box_on_table(), kSecond_us, {kTable, kBall});
+  give_box(0.45, kSecond_us);
+  examine(detector);
+  ASSERT_THAT(names_of(detector), ElementsAre("ball", "box"));
+  const float seen = detection_of(detector, "box").recognition.placement.seen;
+  const std::int64_t num_searched = detector.num_candidates();
+  give_box(0.8, 2 * kSecond_us);
+  examine(detector);
+  EXPECT_EQ(detector.num_candidates(), num_searched);
+  EXPECT_GT(detection_of(detector, "box").recognition.placement.seen, 1.5F * seen);
+  give_box(1.0, 3 * kSecond_us);
+  examine(detector);
+  EXPECT_GT(detector.num_candidates(), num_searched);
+  EXPECT_GT(detection_of(detector, "box").recognition.placement.seen, 0.85F);
+  EXPECT_THAT(names_of(detector), ElementsAre("ball", "box"));
+}
+
 TEST(Detector, TellsWhenAnObjectIsGoneAndWhenItComesBackElsewhere) {
   Detector detector(box_and_ball(), 0.01F);
   give(detector, box_on_table(), kSecond_us);
