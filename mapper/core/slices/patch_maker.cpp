@@ -22,6 +22,26 @@ std::vector<CloudSlice> as_batch(std::vector<CloudSlice> slices) {
   return slices;
 }
 
+// Of points: about a tenth of a second of the stream, so that the first patches of many are
+// segmented while the others are still on their way.
+constexpr std::size_t kBatch = 30'000;
+
+/// As many batches, each of a later time: by that a patch which comes late is known.
+/// @return the time of the last one, microseconds
+std::int64_t divide_into_batches(std::vector<CloudSlice>& slices, std::int64_t utime) {
+  std::size_t num_points = 0;
+  for (CloudSlice& slice : slices) {
+    if (num_points >= kBatch) {
+      ++utime;
+      num_points = 0;
+    }
+    slice.utime = utime;
+    num_points += slice.points_W.size();
+    slice.ends_batch = num_points >= kBatch || &slice == &slices.back();
+  }
+  return utime;
+}
+
 /// The largest distance that a corner of a box moves, metres.
 double motion_m(const Eigen::AlignedBox3d& box_P, const Pose& X_WP_before, const Pose& X_WP_after) {
   double largest_m = 0.0;
@@ -309,8 +329,9 @@ std::vector<CloudSlice> PatchMaker::finish(const CloudSlice& header) {
     std::ranges::move(revisions_of(common_->take_all_changed(), header),
                       std::back_inserter(slices));
   }
-  slices = as_batch(std::move(slices));
+  const std::int64_t end_utime = divide_into_batches(slices, header.utime);
   CloudSlice& last = slices.emplace_back(header);
+  last.utime = end_utime;
   last.kind = SliceKind::kFinal;
   last.id = next_id_;
   last.revision_sum = revision_sum_;

@@ -73,7 +73,8 @@ class PatchMaker {
   std::vector<CloudSlice> correct(const MapDeformation& deformation, const CloudSlice& header,
                                   const Pose& X_WU_now = Pose::Identity());
 
-  /// The last revision of every patch that is not departed, and the final slice.
+  /// The last revision of every patch that is not departed, in batches that are a microsecond
+  /// apart, and the final slice.
   std::vector<CloudSlice> finish(const CloudSlice& header);
 
   /// How many have a place in the map, departed or not. Those that ended are forgotten, and those

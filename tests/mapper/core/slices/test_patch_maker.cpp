@@ -190,6 +190,22 @@ TEST_F(Patches, EndWithTheirLastRevisionsAndTheirSum) {
   EXPECT_EQ(slices[3].revision_sum, 3);
 }
 
+TEST_F(Patches, EndInBatchesOfRisingTimes) {
+  constexpr int kTiles = 4;
+  const std::vector<float> many(20'000, 1.0F);
+  for (int tile = 0; tile < kTiles; ++tile) maker.keep(surface({{4 * tile, many}}));
+  const auto slices = maker.finish(header());
+  ASSERT_EQ(slices.size(), kTiles + 1U);
+  const std::int64_t utime = header().utime;
+  const std::vector<std::int64_t> later_us = {0, 0, 1, 1, 1};
+  const std::vector<bool> ends = {false, true, false, true, false};
+  for (std::size_t i = 0; i < slices.size(); ++i) {
+    EXPECT_EQ(slices[i].utime - utime, later_us[i]) << i;
+    EXPECT_EQ(slices[i].ends_batch, ends[i]) << i;
+  }
+  EXPECT_EQ(slices.back().kind, SliceKind::kFinal);
+}
+
 MapDeformation correction(int number, double y0, double y1, int part0 = 0, int part1 = 0) {
   std::vector<MapDeformation::Place> places = {{.part = part0}, {.part = part1}};
   places[0].X_WU.translation().y() = y0;
