@@ -77,6 +77,8 @@ class [[gnu::visibility("default")]] MapClient {
   /// How many messages were refused as invalid, and why the last was; empty: none.
   [[nodiscard]] std::string dropped() const;
 
+  /// The mapper has sent its final slice: the camera adds nothing any more.
+  [[nodiscard]] bool is_mapped() const;
   /// The final slice and all others are segmented.
   [[nodiscard]] bool is_complete() const;
   /// Names, sessions and counts of the map: the newest update without labels, runs, events and

@@ -20,6 +20,7 @@ void FollowedPieces::add(CloudSlice slice, std::set<std::int32_t>& changed) {
     return;
   }
   if (slice.superseded) return;
+  has_final_ |= slice.kind == SliceKind::kFinal;
   const auto found = pieces_.find(slice.id);
   if (found != pieces_.end() && found->second.revision >= slice.revision) return;
   Piece piece;

@@ -28,6 +28,8 @@ class FollowedPieces {
   [[nodiscard]] std::vector<std::int32_t> ids() const;
   /// @throws std::invalid_argument when there is no such piece
   [[nodiscard]] Points points_W(std::int32_t id) const;
+  /// The final slice has come: what is still to come is on its way, or was lost.
+  [[nodiscard]] bool has_final() const { return has_final_; }
   /// There are labels of points that have not come.
   [[nodiscard]] bool lacks_points() const;
   /// Of each of these points.
@@ -49,6 +51,7 @@ class FollowedPieces {
 
   std::map<std::int32_t, Piece> pieces_;
   PatchMotions motions_;
+  bool has_final_ = false;
   std::int64_t segmenter_session_ = 0;
   /// By piece and revision: those of revisions that have not come yet, too.
   std::map<std::int32_t, std::map<std::int32_t, PieceLabels>> labels_;

@@ -134,6 +134,8 @@ std::string MapClient::damage() const { return implementation_->damage(); }
 std::string MapClient::problem() const { return implementation_->follower().segments().problem(); }
 std::string MapClient::dropped() const { return implementation_->follower().dropped(); }
 
+bool MapClient::is_mapped() const { return implementation_->follower().pieces().has_final(); }
+
 bool MapClient::is_complete() const {
   return implementation_->follower().segments().table().is_final();
 }

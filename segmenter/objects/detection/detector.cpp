@@ -18,6 +18,9 @@ constexpr float kSameLight = 0.1F;
 // Segments that are examined at once: enough for all cores, and done in some tens of milliseconds.
 constexpr std::size_t kMany = 16;
 
+// As a distance.
+constexpr float kAfterAll = std::numeric_limits<float>::infinity();
+
 constexpr std::int32_t kMuchMore = 2;
 
 bool is_same_light(const Eigen::Vector3f& log_change) {
@@ -139,7 +142,11 @@ std::optional<std::int64_t> Detector::examine_many() {
 void Detector::rank_waiting(bool on_all_cores) {
   const std::vector<std::uint32_t> unranked = waiting_.unranked();
   const std::vector<float> distances = recognitions_.least_distances(unranked, on_all_cores);
-  for (std::size_t i = 0; i < unranked.size(); ++i) waiting_.rank(unranked[i], distances[i]);
+  for (std::size_t i = 0; i < unranked.size(); ++i) {
+    // What was told is examined once more when all else is known.
+    const bool is_told = is_checking_all_ && told_of(unranked[i]) != detections_.end();
+    waiting_.rank(unranked[i], is_told ? kAfterAll : distances[i]);
+  }
 }
 
 void Detector::examine(std::span<const std::uint32_t> segments) {
@@ -156,10 +163,7 @@ void Detector::examine(std::span<const std::uint32_t> segments) {
 /// While the map grows: what was told of a segment, and is there still, is searched for again only
 /// when twice as much of it is known: the surface of a thing comes in many parts.
 bool Detector::follow(std::uint32_t segment) {
-  const auto told = std::ranges::find_if(detections_, [segment](const Detection& detection) {
-    return is_active(detection) &&
-           std::ranges::binary_search(detection.recognition.placement.segment_ids, segment);
-  });
+  const auto told = told_of(segment);
   if (told == detections_.end() || map().num_points(segment) == 0) return false;
   Recognition now = followed(told->recognition);
   if (!is_recognized(now.placement)) return false;
@@ -168,6 +172,14 @@ bool Detector::follow(std::uint32_t segment) {
   update_detections();
   confirm_old_ones();
   return true;
+}
+
+/// The detection of which a segment is part.
+std::vector<Detection>::const_iterator Detector::told_of(std::uint32_t segment) const {
+  return std::ranges::find_if(detections_, [segment](const Detection& detection) {
+    return is_active(detection) &&
+           std::ranges::binary_search(detection.recognition.placement.segment_ids, segment);
+  });
 }
 
 Recognition Detector::followed(const Recognition& last) const {

@@ -83,6 +83,7 @@ class Detector {
   void rank_waiting(bool on_all_cores);
   void examine(std::span<const std::uint32_t> segments);
   [[nodiscard]] bool follow(std::uint32_t segment);
+  [[nodiscard]] std::vector<Detection>::const_iterator told_of(std::uint32_t segment) const;
   [[nodiscard]] Recognition followed(const Recognition& last) const;
   void hurry_what_decides(std::span<const std::uint32_t> examined);
   void update_detections();

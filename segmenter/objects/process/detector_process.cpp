@@ -141,8 +141,8 @@ class DetectorProcess {
     return true;
   }
 
-  /// When the map is complete nothing comes any more that the processor would be needed for.
-  bool may_work() { return client_.is_complete() || budget_.has_some(); }
+  /// When all is mapped, the camera sees nothing any more that the processor would be needed for.
+  bool may_work() { return client_.is_mapped() || budget_.has_some(); }
 
   [[nodiscard]] bool has_ended() const { return client_.is_complete() && client_.has_ended(); }
 

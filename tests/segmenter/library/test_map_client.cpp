@@ -146,9 +146,11 @@ TEST(FollowedPieces, KnowThatPointsAreMissing) {
   for (const SegmentUpdate& update : played.updates) pieces.apply(update, changed);
   for (const CloudSlice& slice : played.slices) {
     EXPECT_EQ(pieces.lacks_points(), slice.id < 6);  // the last but one is a patch
+    EXPECT_FALSE(pieces.has_final());
     pieces.add(slice, changed);
   }
   EXPECT_FALSE(pieces.lacks_points());
+  EXPECT_TRUE(pieces.has_final());
 }
 
 TEST(FollowedPieces, IgnoreRunsBeyondThePieceAndRefuseUnknownPieces) {
@@ -197,6 +199,7 @@ TEST_F(MapClientOfALog, HasTheMapAtItsEnd) {
   const Played played;
   write(played);
   const MapClient client = read_log(path_);
+  EXPECT_TRUE(client.is_mapped());
   EXPECT_TRUE(client.is_complete());
   EXPECT_TRUE(client.has_ended());
   EXPECT_THAT(client.problem(), IsEmpty());
