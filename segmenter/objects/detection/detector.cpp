@@ -18,9 +18,10 @@ constexpr float kSameLight = 0.1F;
 // Segments that are examined at once: enough for all cores, and done in some tens of milliseconds.
 constexpr std::size_t kMany = 16;
 
-// As a distance.
+// As a distance, see WaitingSegments::rank().
 constexpr float kAfterAll = std::numeric_limits<float>::infinity();
 
+// Of the points of an object: what is seen in n parts is searched for log2(n) times.
 constexpr std::int32_t kMuchMore = 2;
 
 bool is_same_light(const Eigen::Vector3f& log_change) {

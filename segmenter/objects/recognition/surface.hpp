@@ -29,7 +29,7 @@ using Surface = std::vector<SurfacePoint>;
 /// order of the points.
 Surface thinned(std::span<const CloudPoint> points, float spacing_m);
 
-/// The same, but colours are means over the cubes alone: in a tenth of the time.
+/// The same, but colours are means over the cubes alone: in a small part of the time.
 Surface roughly_thinned(std::span<const CloudPoint> points, float spacing_m);
 
 /// The same of a surface, whose colours are means already.
