@@ -28,10 +28,11 @@ run_trio() {
   }
 }
 
-# wait_until COMMAND...: waits until COMMAND succeeds, at most 60 s; false when it has not.
+# wait_until COMMAND...: waits until COMMAND succeeds, at most 5 min: beside other work two mappers at once take more than
+# one. False when it has not.
 wait_until() {
   local i
-  for ((i = 0; i < 600; i++)); do
+  for ((i = 0; i < 3000; i++)); do
     "$@" && return
     sleep 0.1
   done
