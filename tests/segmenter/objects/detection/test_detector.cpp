@@ -459,6 +459,20 @@ TEST(Detector, TellsWhatIsNewBeforeAllIsExaminedAgain) {
   EXPECT_EQ(names_of(detector).size(), 6U);
 }
 
+TEST(Detector, ExaminesAgainLastWhatWasTold) {
+  const ObservedMap map = copies_of(box_on_table(), 3);
+  for (const auto& [told, added] : {std::pair(kBox, kBall), std::pair(kBall, kBox)}) {
+    Detector detector(box_and_ball(), 0.01F);
+    give(detector, map, kSecond_us, {kTable, told, 10 + told, 20 + told});
+    examine(detector);
+    ASSERT_EQ(names_of(detector).size(), 3U);
+    give(detector, map, 2 * kSecond_us, {added});
+    detector.examine_all();
+    while (detector.num_waiting() > 0 && names_of(detector).size() < 4U) detector.examine_next();
+    EXPECT_GE(detector.num_waiting(), 3U) << "what was told";
+  }
+}
+
 TEST(Detector, DoesNotLetSegmentsWaitThatAreGone) {
   Detector detector(box_and_ball(), 0.01F);
   give(detector, box_on_table(), kSecond_us);
