@@ -18,6 +18,8 @@
 
 #include <tbb/parallel_for.h>
 
+#include "mapper/core/reactivation/covered_voxels.hpp"
+
 namespace kintsugi::mapper {
 namespace {
 
@@ -39,8 +41,12 @@ class DistanceField {
         scale_(truncation_vox),
         weight_threshold_(weight_threshold) {}
 
-  /// The surface near a voxel; nothing where none is within `max_distance_vox`, or the voxel was
-  /// not observed more often than the threshold.
+  /// More often than the threshold.
+  bool is_observed(const Eigen::Vector3i& voxel) {
+    return distance_vox(voxel, weight_threshold_).has_value();
+  }
+
+  /// The surface near an observed voxel; nothing where none is within `max_distance_vox`.
   std::optional<NearSurface> surface_near(const Eigen::Vector3i& voxel, double max_distance_vox) {
     const auto here = distance_vox(voxel, weight_threshold_);
     if (!here || std::abs(*here) > max_distance_vox) return std::nullopt;
@@ -85,12 +91,6 @@ class DistanceField {
   BlockCoord last_coord_;
   const VoxelBlock* last_ = nullptr;
   bool has_last_ = false;
-};
-
-/// About the voxels of a block.
-struct Decision {
-  std::bitset<kBlockVoxels> covered;
-  bool has_rest = false;  ///< other surface
 };
 
 /// Where the distances of a block change their sign. Most blocks have few such places, or none, and
@@ -163,29 +163,30 @@ class Comparison {
         truncation_vox_(volume.largest_truncation_vox()),
         reach_vox_(volume.truncation_vox),
         min_cosine_(cosine(same.max_angle_deg)),
-        min_cosine_in_place_(cosine(2.0 * same.max_angle_deg)) {}
+        min_cosine_doubtful_(cosine(kDoubtful * same.max_angle_deg)) {}
 
   /// About all blocks of these groups, in their order.
-  std::vector<Decision> decide(const std::vector<BlocksUnderCovers>& groups) const {
-    struct Question {
-      BlockCoord coord;
-      const std::vector<Cover>* covers;
-    };
-    std::vector<Question> questions;
+  std::vector<CoveredVoxels> decide(const std::vector<BlocksUnderCovers>& groups) const {
+    std::vector<BlockCoord> blocks;
+    std::vector<const std::vector<Cover>*> covers_of;
     for (const auto& [coords, covers] : groups) {
-      for (const BlockCoord& coord : coords) questions.push_back({coord, &covers});
+      blocks.insert(blocks.end(), coords.begin(), coords.end());
+      covers_of.insert(covers_of.end(), coords.size(), &covers);
     }
-    std::vector<Decision> decisions(questions.size());
-    tbb::parallel_for(std::size_t{0}, questions.size(), [&](std::size_t i) {
-      decisions[i] = decide(questions[i].coord, *questions[i].covers);
+    std::vector<CoveredVoxels> decisions(blocks.size());
+    tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t i) {
+      decisions[i] = decide(blocks[i], *covers_of[i]);
     });
-    return decisions;
+    return closed(blocks, decisions);
   }
 
  private:
-  /// About the voxels between which and the next one there is surface.
-  Decision decide(const BlockCoord& coord, const std::vector<Cover>& covers) const {
-    Decision decision;
+  static constexpr double kDoubtful = 2.0;  ///< times the limits of the same surface
+
+  /// About the voxels between which and the next one there is surface, each by itself. Blocks that
+  /// no cover is near have none.
+  CoveredVoxels decide(const BlockCoord& coord, const std::vector<Cover>& covers) const {
+    CoveredVoxels decision;
     std::vector<Placed> near = covers_near(coord, covers);
     if (near.empty()) return decision;
     const Signs signs(find_, coord);
@@ -197,15 +198,24 @@ class Comparison {
       const Eigen::Vector3i voxel =
           kBlockSide * Eigen::Vector3i(coord.x, coord.y, coord.z) + in_block;
       const auto surface = own.surface_near(voxel, reach_vox_);
-      const bool is_covered = surface && std::ranges::any_of(near, [&](Placed& cover) {
-                                return has_surface_there(cover, voxel, *surface);
-                              });
-      decision.covered[index] = is_covered;
-      decision.has_rest = decision.has_rest || !is_covered;
+      decision.surface.set(index);
+      auto there = surface ? There::kNotObserved : There::kOther;
+      for (std::size_t i = 0; i < near.size() && surface && there != There::kSame; ++i) {
+        there = std::max(there, compare(near[i], voxel, *surface));
+      }
+      decision.covered[index] = there == There::kSame;
+      decision.differing[index] = there == There::kOther;
     }
     return decision;
   }
 
+  /// What a cover has in the place of a surface; the best of several is the greatest.
+  enum class There {
+    kNotObserved,
+    kOther,     ///< no surface, or another one
+    kDoubtful,  ///< a surface within twice the limits: another one, or the same with noise
+    kSame,
+  };
   struct FindIn {
     const std::vector<StoredBlock>* blocks;
     const VoxelBlock* operator()(const BlockCoord& coord) const {
@@ -227,31 +237,34 @@ class Comparison {
     const double block_m = kBlockSide * voxel_m_;
     const Eigen::Vector3d center_U =
         block_m * (Eigen::Vector3d(coord.x, coord.y, coord.z).array() + 0.5).matrix();
-    const double radius_m = 0.5 * std::sqrt(3.0) * block_m + same_.max_distance_vox * voxel_m_;
+    const double radius_m = 0.5 * std::sqrt(3.0) * block_m + kDoubtful * same_.max_distance_vox * voxel_m_;
     std::vector<Placed> near;
     for (const Cover& cover : covers) {
       const double limit_m = radius_m + cover.radius_m;
       if ((cover.center_U - center_U).squaredNorm() > limit_m * limit_m) continue;
       near.push_back({cover.X_OU,
-                      cover.is_in_place ? min_cosine_in_place_ : min_cosine_,
+                      cover.is_in_place ? min_cosine_doubtful_ : min_cosine_,
                       {FindIn{cover.blocks.get()}, truncation_vox_, same_.weight_threshold}});
     }
     return near;
   }
 
-  bool has_surface_there(Placed& cover, const Eigen::Vector3i& voxel,
-                         const NearSurface& surface) const {
+  There compare(Placed& cover, const Eigen::Vector3i& voxel, const NearSurface& surface) const {
     const Eigen::Vector3d p_U =
         voxel_m_ * (voxel.cast<double>().array() + 0.5 + surface.offset_vox.array()).matrix();
     const Eigen::Vector3d p_O = cover.X_OU * p_U;
     const Eigen::Vector3i at = (p_O / voxel_m_).array().floor().cast<int>();
+    if (!cover.distances_O.is_observed(at)) return There::kNotObserved;
     const auto found = cover.distances_O.surface_near(at, reach_vox_);
-    if (!found) return false;
+    if (!found) return There::kOther;
     const Eigen::Vector3d center_O = voxel_m_ * (at.cast<double>().array() + 0.5).matrix();
     const double distance_vox =
-        ((p_O - center_O) / voxel_m_ - found->offset_vox).dot(found->normal);
-    return std::abs(distance_vox) <= same_.max_distance_vox &&
-           found->normal.dot(cover.X_OU.linear() * surface.normal) >= cover.min_cosine;
+        std::abs(((p_O - center_O) / voxel_m_ - found->offset_vox).dot(found->normal));
+    const double cosine = found->normal.dot(cover.X_OU.linear() * surface.normal);
+    if (distance_vox <= same_.max_distance_vox && cosine >= cover.min_cosine) return There::kSame;
+    const bool is_doubtful = distance_vox <= kDoubtful * same_.max_distance_vox &&
+                             cosine >= min_cosine_doubtful_;
+    return is_doubtful ? There::kDoubtful : There::kOther;
   }
 
   const FindBlock find_;
@@ -260,7 +273,7 @@ class Comparison {
   const double truncation_vox_;
   const double reach_vox_;  ///< no crossing is farther from a voxel
   const double min_cosine_;
-  const double min_cosine_in_place_;
+  const double min_cosine_doubtful_;  ///< also of covers in place
 };
 
 }  // namespace
@@ -274,15 +287,15 @@ void clear_covered(TsdfVolume& volume, const std::vector<BlocksUnderCovers>& gro
         return slot == kNoBlock ? nullptr : &std::as_const(volume).voxels(slot);
       },
       volume.config(), same);
-  const std::vector<Decision> decisions = comparison.decide(groups);
+  const std::vector<CoveredVoxels> decisions = comparison.decide(groups);
   auto decision = decisions.begin();
   for (const BlocksUnderCovers& group : groups) {
     for (const BlockCoord& coord : group.coords) {
-      const auto& [covered, has_rest] = *decision++;
-      if (covered.none()) continue;
+      const CoveredVoxels& voxels = *decision++;
+      if (voxels.covered.none()) continue;
       const BlockSlot slot = volume.find(coord);
-      if (has_rest) {
-        clear(volume.voxels(slot), covered);
+      if (voxels.has_rest()) {
+        clear(volume.voxels(slot), voxels.covered);
       } else {
         volume.discard(slot);
       }
@@ -304,8 +317,8 @@ DetachedBlocks without_covered(DetachedBlocks blocks, const TsdfVolume::Config& 
         return number ? blocks.voxels[*number] : nullptr;
       },
       volume, same);
-  const std::vector<Decision> in_groups = comparison.decide(groups);
-  std::vector<Decision> decisions(blocks.coords.size());
+  const std::vector<CoveredVoxels> in_groups = comparison.decide(groups);
+  std::vector<CoveredVoxels> decisions(blocks.coords.size());
   auto next = in_groups.begin();
   for (const BlocksUnderCovers& group : groups) {
     for (const BlockCoord& coord : group.coords) decisions[number_of(coord).value()] = *next++;
@@ -317,8 +330,8 @@ DetachedBlocks without_covered(DetachedBlocks blocks, const TsdfVolume::Config& 
   const auto storage = std::make_shared<Storage>(Storage{std::move(blocks.storage), {}});
   std::size_t num_left = 0;
   for (std::size_t i = 0; i < decisions.size(); ++i) {
-    const auto& [covered, has_rest] = decisions[i];
-    if (covered.any() && !has_rest) continue;
+    const std::bitset<kBlockVoxels>& covered = decisions[i].covered;
+    if (covered.any() && !decisions[i].has_rest()) continue;
     const VoxelBlock* voxels = blocks.voxels[i];
     if (covered.any()) {
       clear(storage->cleared.emplace_back(*voxels), covered);

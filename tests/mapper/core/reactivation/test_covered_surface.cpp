@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <memory>
 #include <numbers>
+#include <random>
 #include <utility>
 #include <vector>
 
@@ -140,6 +141,35 @@ TEST_F(Floor, StaysWhereTheOtherSurfaceWasHardlySeen) {
   const std::size_t before = points().size();
   clear(above_floor, Pose::Identity(), 5);
   EXPECT_EQ(points().size(), before);
+}
+
+/// A floor whose distances are off by up to 0.4 voxels. Between two of them the normals of every tenth
+/// voxel differ by more than 30 degrees.
+auto noisy_above_floor(unsigned seed) {
+  return [random = std::mt19937(seed)](const Eigen::Vector3d& p_U) mutable {
+    return above_floor(p_U) + std::uniform_real_distribution(-0.4, 0.4)(random) * kVoxel_m;
+  };
+}
+
+TEST_F(Floor, LeavesNoSpecksOfNoise) {
+  floor_ = volume_of(noisy_above_floor(1));
+  ASSERT_FALSE(points().empty());
+  clear(noisy_above_floor(2), Pose::Identity());
+  for (const CloudPoint& point : points()) {
+    EXPECT_GT(std::max(std::abs(point.x), std::abs(point.y)), 0.47F)
+        << "only at the edges, where normals are taken from one side";
+  }
+}
+
+TEST_F(Floor, OfNoiseStaysBesideTheOtherSurface) {
+  floor_ = volume_of(noisy_above_floor(1));
+  const auto before = points();
+  Pose half_a_metre = Pose::Identity();
+  half_a_metre.translation().x() = -0.5;
+  clear(noisy_above_floor(2), half_a_metre);
+  const auto is_beside = [](const CloudPoint& point) { return point.x < -0.08F; };
+  EXPECT_EQ(std::ranges::count_if(points(), is_beside), std::ranges::count_if(before, is_beside));
+  for (const CloudPoint& point : points()) EXPECT_LT(point.x, 0.08F);
 }
 
 TEST_F(Floor, StaysBesideTheOtherSurface) {
