@@ -174,9 +174,8 @@ class Comparison {
       covers_of.insert(covers_of.end(), coords.size(), &covers);
     }
     std::vector<CoveredVoxels> decisions(blocks.size());
-    tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t i) {
-      decisions[i] = decide(blocks[i], *covers_of[i]);
-    });
+    tbb::parallel_for(std::size_t{0}, blocks.size(),
+                      [&](std::size_t i) { decisions[i] = decide(blocks[i], *covers_of[i]); });
     return closed(blocks, decisions);
   }
 
@@ -237,7 +236,8 @@ class Comparison {
     const double block_m = kBlockSide * voxel_m_;
     const Eigen::Vector3d center_U =
         block_m * (Eigen::Vector3d(coord.x, coord.y, coord.z).array() + 0.5).matrix();
-    const double radius_m = 0.5 * std::sqrt(3.0) * block_m + kDoubtful * same_.max_distance_vox * voxel_m_;
+    const double radius_m =
+        0.5 * std::sqrt(3.0) * block_m + kDoubtful * same_.max_distance_vox * voxel_m_;
     std::vector<Placed> near;
     for (const Cover& cover : covers) {
       const double limit_m = radius_m + cover.radius_m;
@@ -262,8 +262,8 @@ class Comparison {
         std::abs(((p_O - center_O) / voxel_m_ - found->offset_vox).dot(found->normal));
     const double cosine = found->normal.dot(cover.X_OU.linear() * surface.normal);
     if (distance_vox <= same_.max_distance_vox && cosine >= cover.min_cosine) return There::kSame;
-    const bool is_doubtful = distance_vox <= kDoubtful * same_.max_distance_vox &&
-                             cosine >= min_cosine_doubtful_;
+    const bool is_doubtful =
+        distance_vox <= kDoubtful * same_.max_distance_vox && cosine >= min_cosine_doubtful_;
     return is_doubtful ? There::kDoubtful : There::kOther;
   }
 

@@ -64,7 +64,7 @@ class PaddedVoxels {
           const int index = voxel_index(x, y, z);
           if (!block.surface[index]) continue;
           voxels_[place(x + kBlockSide * beside.x, y + kBlockSide * beside.y,
-                       z + kBlockSide * beside.z)] = block.covered[index] ? 3 : 1;
+                        z + kBlockSide * beside.z)] = block.covered[index] ? 3 : 1;
         }
       }
     }
@@ -102,9 +102,8 @@ std::vector<CoveredVoxels> filtered(const std::vector<BlockCoord>& coords,
     const PaddedVoxels voxels(around);
     for (int index = 0; index < kBlockVoxels; ++index) {
       if (!open[index]) continue;
-      result[i].covered[index] =
-          is_covered(voxels.around(index % kBlockSide, index / kBlockSide % kBlockSide,
-                                   index / (kBlockSide * kBlockSide)));
+      result[i].covered[index] = is_covered(voxels.around(
+          index % kBlockSide, index / kBlockSide % kBlockSide, index / (kBlockSide * kBlockSide)));
     }
   });
   return result;

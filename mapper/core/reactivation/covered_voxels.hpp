@@ -20,10 +20,10 @@ struct CoveredVoxels {
 };
 
 /// What is covered, without gaps and specks: where a third of the surface within two voxels is
-/// covered, all is (a morphological closing) that does not differ. Of two surfaces that are the same
-/// but for their noise, voxels that are decided by themselves would leave just those that deviate,
-/// each alone among cleared ones, where its normal means nothing.
-/// `coords`: of the blocks, each once, in any order.
+/// covered, all is (a morphological closing) that does not differ. Of two surfaces that are the
+/// same but for their noise, voxels that are decided by themselves would leave just those that
+/// deviate, each alone among cleared ones, where its normal means nothing. `coords`: of the blocks,
+/// each once, in any order.
 std::vector<CoveredVoxels> closed(const std::vector<BlockCoord>& coords,
                                   const std::vector<CoveredVoxels>& blocks);
 

@@ -143,8 +143,8 @@ TEST_F(Floor, StaysWhereTheOtherSurfaceWasHardlySeen) {
   EXPECT_EQ(points().size(), before);
 }
 
-/// A floor whose distances are off by up to 0.4 voxels. Between two of them the normals of every tenth
-/// voxel differ by more than 30 degrees.
+/// A floor whose distances are off by up to 0.4 voxels. Between two of them the normals of every
+/// tenth voxel differ by more than 30 degrees.
 auto noisy_above_floor(unsigned seed) {
   return [random = std::mt19937(seed)](const Eigen::Vector3d& p_U) mutable {
     return above_floor(p_U) + std::uniform_real_distribution(-0.4, 0.4)(random) * kVoxel_m;

@@ -95,10 +95,10 @@ TEST_F(FloorOfVoxels, IsNotCoveredBySpecks) {
 
 TEST_F(FloorOfVoxels, KeepsTheSmallestThingThatTheOtherMapDoesNotHave) {
   const auto is_thing = [](int x, int y) { return (x == 8 && y == 5) || (x == 12 && y > 12); };
-  EXPECT_THAT(differences(
-                  [&](int x, int y) { return is_thing(x, y) ? There::kDiffers : There::kCovered; },
+  EXPECT_THAT(
+      differences([&](int x, int y) { return is_thing(x, y) ? There::kDiffers : There::kCovered; },
                   [&](int x, int y) { return !is_thing(x, y); }),
-              IsEmpty());
+      IsEmpty());
 }
 
 }  // namespace
