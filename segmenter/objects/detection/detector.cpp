@@ -4,6 +4,8 @@
 #include <limits>
 #include <utility>
 
+#include <oneapi/tbb/task_arena.h>
+
 namespace kintsugi::segmenter {
 
 namespace {
@@ -15,8 +17,9 @@ constexpr std::int64_t kConfirmed_us = 1'000'000;
 // Of logarithms: 10 %, less than things of one place differ.
 constexpr float kSameLight = 0.1F;
 
-// Segments that are examined at once: enough for all cores, and done in some tens of milliseconds.
-constexpr std::size_t kMany = 16;
+// Segments that are examined at once, for each core: each has some candidates, so that all cores
+// have work, and what is found is told soon, after some tens of milliseconds.
+constexpr std::size_t kManyOfCore = 2;
 
 // As a distance, see WaitingSegments::rank().
 constexpr float kAfterAll = std::numeric_limits<float>::infinity();
@@ -131,7 +134,8 @@ std::optional<std::int64_t> Detector::examine_many() {
   rank_waiting(true);
   std::int64_t since_us = std::numeric_limits<std::int64_t>::max();
   std::vector<std::uint32_t> segments;
-  while (segments.size() < kMany && !waiting_.empty()) {
+  const auto num_cores = static_cast<std::size_t>(oneapi::tbb::this_task_arena::max_concurrency());
+  while (segments.size() < kManyOfCore * num_cores && !waiting_.empty()) {
     const WaitingSegments::Next next = waiting_.pop();
     segments.push_back(next.segment);
     since_us = std::min(since_us, next.since_us);

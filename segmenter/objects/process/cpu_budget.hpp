@@ -8,9 +8,9 @@
 
 namespace kintsugi::segmenter {
 
-/// A share of one core on average. What is not used can be used later, up to kSaved_s: a burst.
-/// What is used beyond, because the map has to be followed, is paid back, but no more than
-/// kSaved_s: who joins a large map late would examine nothing for minutes.
+/// A share of one core on average, from the beginning on. What is not used can be used later, up to
+/// kSaved_s: a burst. What is used beyond, because the map has to be followed, is paid back, but no
+/// more than kSaved_s: who joins a large map late would examine nothing for minutes.
 class CpuBudget {
  public:
   using Clock = std::chrono::steady_clock;
@@ -24,7 +24,7 @@ class CpuBudget {
   void begin() {
     last_time_ = Clock::now();
     last_cpu_s_ = cpu_s();
-    saved_s_ = kSaved_s;
+    saved_s_ = 0.0;
   }
 
   /// There is something left.
@@ -53,7 +53,7 @@ class CpuBudget {
   double share_;
   Clock::time_point last_time_;
   double last_cpu_s_ = 0.0;
-  double saved_s_ = kSaved_s;
+  double saved_s_ = 0.0;
 };
 
 /// The share of one core that was used in the last minute.

@@ -148,15 +148,12 @@ class DetectorProcess {
 
   void examine() {
     if (!detector_) return;
-    if (has_ended()) {
-      if (!views_.are_complete()) return;  // they take less time than what has to be done with them
-      finish();
-    }
+    if (has_ended() && views_.are_complete()) finish();
     const Clock::time_point begin = Clock::now();
     while (detector_->num_waiting() > 0 && Clock::now() - begin < kWait && may_work()) {
       const double cpu_s = CpuBudget::cpu_s();
       const std::int64_t since_us =
-          client_.is_complete() ? *detector_->examine_many() : *detector_->examine_next();
+          is_complete_pass_ ? *detector_->examine_many() : *detector_->examine_next();
       worst_burst_s_ = std::max(worst_burst_s_, CpuBudget::cpu_s() - cpu_s);
       lags_ms_.push_back(1e-3 * static_cast<double>(source_.utime - since_us));
       if (lags_ms_.size() > kLags) lags_ms_.pop_front();
