@@ -3,7 +3,6 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
-#include <bitset>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -147,7 +146,7 @@ class Signs {
   std::array<std::int8_t, std::size_t{kSide} * kSide * kSide> signs_{};  ///< 0: not observed
 };
 
-void clear(VoxelBlock& block, const std::bitset<kBlockVoxels>& covered) {
+void clear(VoxelBlock& block, const VoxelSet& covered) {
   for (int index = 0; index < kBlockVoxels; ++index) {
     if (covered[index]) block.voxels[index] = 0;
   }
@@ -330,7 +329,7 @@ DetachedBlocks without_covered(DetachedBlocks blocks, const TsdfVolume::Config& 
   const auto storage = std::make_shared<Storage>(Storage{std::move(blocks.storage), {}});
   std::size_t num_left = 0;
   for (std::size_t i = 0; i < decisions.size(); ++i) {
-    const std::bitset<kBlockVoxels>& covered = decisions[i].covered;
+    const VoxelSet& covered = decisions[i].covered;
     if (covered.any() && !decisions[i].has_rest()) continue;
     const VoxelBlock* voxels = blocks.voxels[i];
     if (covered.any()) {
