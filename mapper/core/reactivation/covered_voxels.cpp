@@ -5,19 +5,21 @@
 #include <cstddef>
 #include <cstdint>
 #include <numeric>
-#include <utility>
 
 #include <tbb/parallel_for.h>
 
+#include "mapper/core/extraction/normal_averaging.hpp"
 #include "mapper/core/volume/blocks_around.hpp"
 
 namespace kintsugi::mapper {
 namespace {
 
-/// As far as normals are averaged.
-constexpr int kReach = 2;  // voxels
+constexpr int kReach = PaddedPoints::kReach;  // voxels; a speck disturbs the normals around it
 
-/// Numbers of voxels at a surface.
+constexpr std::size_t kNoNumber = SIZE_MAX;
+using BlocksAround = std::array<std::size_t, 27>;  ///< numbers; kNoNumber: there is none
+
+/// How many voxels are at a surface.
 struct Surroundings {
   int num_surface = 0;
   int num_covered = 0;  ///< of `num_surface`
@@ -26,11 +28,11 @@ struct Surroundings {
 /// The voxels of a block and those around it.
 class PaddedVoxels {
  public:
-  /// `blocks`: the block and the 26 around it, ascending; null where there are none.
-  explicit PaddedVoxels(const std::array<const CoveredVoxels*, 27>& blocks) {
+  /// `around`: the numbers of the block and the 26 around it, ascending.
+  PaddedVoxels(const std::vector<CoveredVoxels>& blocks, const BlocksAround& around) {
     std::size_t i = 0;
     for_each_around({}, [&](const BlockCoord& beside) {
-      if (const CoveredVoxels* const block = blocks[i++]) copy(*block, beside);
+      if (const std::size_t number = around[i++]; number != kNoNumber) copy(blocks[number], beside);
     });
   }
 
@@ -74,32 +76,36 @@ class PaddedVoxels {
   std::array<std::uint8_t, std::size_t{kSide} * kSide * kSide> voxels_{};
 };
 
-/// Covers each voxel whose surroundings say so, and which does not differ.
-template <typename IsCovered>
-std::vector<CoveredVoxels> filtered(const std::vector<BlockCoord>& coords,
-                                    const std::vector<CoveredVoxels>& blocks,
-                                    IsCovered is_covered) {
+/// Of each block, itself and the 26 around it, ascending.
+std::vector<BlocksAround> blocks_around(const std::vector<BlockCoord>& coords) {
   std::vector<std::size_t> order(coords.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   const auto coord_of = [&](std::size_t i) { return coords[i]; };
   std::ranges::sort(order, {}, coord_of);
-  const auto find = [&](const BlockCoord& coord) -> const CoveredVoxels* {
-    const auto found = std::ranges::lower_bound(order, coord, {}, coord_of);
-    return found == order.end() || coords[*found] != coord ? nullptr : &blocks[*found];
-  };
+  std::vector<BlocksAround> around(coords.size());
+  tbb::parallel_for(std::size_t{0}, coords.size(), [&](std::size_t i) {
+    std::size_t next = 0;
+    for_each_around(coords[i], [&](const BlockCoord& coord) {
+      const auto found = std::ranges::lower_bound(order, coord, {}, coord_of);
+      const bool is_there = found != order.end() && coords[*found] == coord;
+      around[i][next++] = is_there ? *found : kNoNumber;
+    });
+  });
+  return around;
+}
+
+/// Covers each voxel whose surroundings say so, and which does not differ.
+template <typename IsCovered>
+std::vector<CoveredVoxels> filtered(const std::vector<CoveredVoxels>& blocks,
+                                    const std::vector<BlocksAround>& around, IsCovered is_covered) {
   std::vector<CoveredVoxels> result = blocks;
   tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t i) {
     const VoxelSet open = blocks[i].surface & ~blocks[i].differing;
-    if (open.none()) return;
-    std::array<const CoveredVoxels*, 27> around{};
-    std::size_t next = 0;
-    for_each_around(coords[i], [&](const BlockCoord& coord) { around[next++] = find(coord); });
-    if (std::ranges::none_of(around, [](const CoveredVoxels* block) {
-          return block != nullptr && block->covered.any();
-        })) {
-      return;
-    }
-    const PaddedVoxels voxels(around);
+    const bool may_change = open.any() && std::ranges::any_of(around[i], [&](std::size_t number) {
+                              return number != kNoNumber && blocks[number].covered.any();
+                            });
+    if (!may_change) return;
+    const PaddedVoxels voxels(blocks, around[i]);
     for (int index = 0; index < kBlockVoxels; ++index) {
       if (!open[index]) continue;
       result[i].covered[index] = is_covered(voxels.around(
@@ -113,11 +119,15 @@ std::vector<CoveredVoxels> filtered(const std::vector<BlockCoord>& coords,
 
 std::vector<CoveredVoxels> closed(const std::vector<BlockCoord>& coords,
                                   const std::vector<CoveredVoxels>& blocks) {
+  if (std::ranges::none_of(blocks, [](const CoveredVoxels& each) { return each.covered.any(); })) {
+    return blocks;
+  }
+  const std::vector<BlocksAround> around = blocks_around(coords);
   // Along a straight border the first moves it outwards by a voxel, the second back.
-  const auto dilated = filtered(coords, blocks, [](const Surroundings& voxels) {
+  const auto dilated = filtered(blocks, around, [](const Surroundings& voxels) {
     return 3 * voxels.num_covered >= voxels.num_surface;
   });
-  return filtered(coords, dilated, [](const Surroundings& voxels) {
+  return filtered(dilated, around, [](const Surroundings& voxels) {
     return 3 * voxels.num_covered > 2 * voxels.num_surface;
   });
 }
