@@ -200,6 +200,7 @@ void RegistrationConfig::validate() const {
   check_range("early_exit", early_exit, 0.0, 1.0);
   check_range("wide_gate_factor", wide_gate_factor, 1.0, 100.0);
   check_range("wide_iteration_factor", wide_iteration_factor, 1, 100);
+  check_range("close_gate_factor", close_gate_factor, 1.0, 100.0);
   steps.observability.validate();
   steps.edges.validate();
   steps.photometric.validate();
@@ -218,6 +219,14 @@ Registration register_frame(const TrackingInput& frame, const Model& model,
   CoarseToFine from_other(frame, model, colors, X_WC_other_start, config, false);
   const bool other = from_other.begin().fits_much_better_than(from_start.begin());
   return (other ? from_other : from_start).finish();
+}
+
+Registration register_frame_closely(const TrackingInput& frame, const Model& model,
+                                    const PhotometricPair& colors, const Pose& X_WC_start,
+                                    const RegistrationConfig& config) {
+  RegistrationConfig close = config;
+  close.gates.max_distance_m /= config.close_gate_factor;
+  return register_frame(frame, model, colors, X_WC_start, close);
 }
 
 Registration register_frame_widely(const TrackingInput& frame, const Model& model,

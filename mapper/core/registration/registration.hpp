@@ -25,6 +25,8 @@ struct RegistrationConfig {
   /// On max_distance_m, at the coarsest level of a wide search: how far that looks, also sideways.
   double wide_gate_factor = 3.0;
   int wide_iteration_factor = 3;  ///< on the iterations of the coarsest level of a wide search
+  /// max_distance_m is divided by this in a close registration: a prediction is no farther off.
+  double close_gate_factor = 3.0;
   StepSolver::Config steps;
 
   /// @throws std::invalid_argument naming field, value and bound
@@ -56,6 +58,12 @@ Registration register_frame(const TrackingInput& frame, const Model& model,
 Registration register_frame(const TrackingInput& frame, const Model& model,
                             const PhotometricPair& colors, const Pose& X_WC_start,
                             const Pose& X_WC_other_start, const RegistrationConfig& config);
+
+/// The same, but from a pose that is hardly off, with a close distance gate: what stands near to
+/// the surface that a pixel shows does not draw the pose away.
+Registration register_frame_closely(const TrackingInput& frame, const Model& model,
+                                    const PhotometricPair& colors, const Pose& X_WC_start,
+                                    const RegistrationConfig& config);
 
 /// Registers from a pose that may be farther off: the coarsest level with a wider distance gate and
 /// more iterations, and then as register_frame() from the pose found. Along the motion of which the

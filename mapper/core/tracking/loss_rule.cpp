@@ -44,6 +44,7 @@ void LossRule::Config::validate() const {
   check_range("usual_decay", usual_decay, 0.0, 1.0);
   check_range("max_usual_share", max_usual_share, 0.0, 1.0);
   check_range("unusual_factor", unusual_factor, 1.0, 1e3);
+  check_range("much_worse_factor", much_worse_factor, 1.0, 1e3);
   check_range("grace_frames", grace_frames, 0, 1'000'000);
 }
 
@@ -69,6 +70,8 @@ std::string_view to_string(LossReason reason) {
       return "the pose is too uncertain";
     case LossReason::kUndetermined:
       return "camera motion along the surface is unobservable";
+    case LossReason::kMuchWorseThanUsual:
+      return "far more outliers and larger residuals than usual";
   }
   return "unknown";
 }
@@ -85,7 +88,9 @@ std::optional<LossReason> LossRule::judge(const RegistrationQuality& quality) co
 
 std::optional<LossReason> LossRule::judge_found_anew(const RegistrationQuality& quality) const {
   if (quality.covered_share < config_.min_covered_share) return LossReason::kTooFewPixels;
-  return find_fault(quality, allow_usual(config_.found_anew));
+  const auto fault = find_fault(quality, allow_usual(config_.found_anew));
+  if (!fault && fits_much_worse_than_usual(quality)) return LossReason::kMuchWorseThanUsual;
+  return fault;
 }
 
 bool LossRule::fits_worse_than_usual(const RegistrationQuality& quality) const {
@@ -94,11 +99,20 @@ bool LossRule::fits_worse_than_usual(const RegistrationQuality& quality) const {
          quality.rms_sigmas > config_.unusual_factor * usual_fit_->rms_sigmas;
 }
 
+/// Both, because where the camera finds itself again much may be new or have been seen from another
+/// side only, which are outliers, or it may be near, where voxels leave residuals.
+bool LossRule::fits_much_worse_than_usual(const RegistrationQuality& quality) const {
+  if (!usual_fit_) return false;
+  return quality.outlier_share() > config_.much_worse_factor * usual_fit_->outlier_share &&
+         quality.rms_sigmas > config_.much_worse_factor * usual_fit_->rms_sigmas;
+}
+
 void LossRule::remember(const RegistrationQuality& quality, bool accepted) {
   recent_covered_share_ =
       std::max(quality.covered_share, config_.recent_view_decay * recent_covered_share_);
   if (!accepted) return;
   ++accepted_frames_;
+  if (quality.overlap_share <= 0.0) return;
   const auto mix = [this](double& usual, double share) {
     usual = config_.usual_decay * usual + (1.0 - config_.usual_decay) * share;
   };

@@ -19,7 +19,8 @@ enum class LossReason {
   kBeforeSurface,
   kLargeResidual,
   kUncertain,
-  kUndetermined
+  kUndetermined,
+  kMuchWorseThanUsual
 };
 
 std::string_view to_string(LossReason reason);
@@ -77,6 +78,8 @@ class LossRule {
     double usual_decay = 0.98;     ///< of what the usual shares were, per accepted frame
     double max_usual_share = 0.2;  ///< the usual shares count up to this
     double unusual_factor = 1.5;   ///< on the usual outliers and residuals: more is unusual
+    /// Likewise: where both are larger than this, a pose found anew is rejected.
+    double much_worse_factor = 2.0;
     int grace_frames = 10;  ///< accepted frames before min_inlier_share applies, because the model
                             ///< is noisy at the start
 
@@ -97,11 +100,13 @@ class LossRule {
   /// another pose may fit better. Without an accepted frame nothing is usual yet.
   bool fits_worse_than_usual(const RegistrationQuality& quality) const;
 
-  /// To be called once for each frame, after it was judged.
+  /// To be called once for each frame, after it was judged. A frame that was not registered, because
+  /// its pose was given, has no overlap.
   void remember(const RegistrationQuality& quality, bool accepted);
 
  private:
   bool is_cut_off(const RegistrationQuality& quality) const;
+  bool fits_much_worse_than_usual(const RegistrationQuality& quality) const;
   /// Some cameras often measure a depth that is grossly wrong, even if the pose is right: the
   /// shares of points behind and in front of surfaces may exceed the limits by what is usual.
   Evidence allow_usual(Evidence needed) const;

@@ -93,7 +93,7 @@ TrackingResult Tracker::track(const TrackingInput& frame, const Model& model) {
   Judged judged = register_by_motion(frame, model, colors);
   const std::optional<LossReason> first_loss = judged.loss;
   if (first_loss == LossReason::kUndetermined) follow_partly(judged.registration, frame.utime);
-  if (is_doubtful(judged)) judged = better_of(judged, register_widely(frame, model, colors), frame);
+  judged = search_further(judged, frame, model, colors);
   const auto& [registration, loss] = judged;
   loss_rule_.remember(registration.quality, !loss);
   if (!loss) update_reference(registration, std::move(pyramid));
@@ -112,10 +112,24 @@ Tracker::Judged Tracker::register_by_motion(const TrackingInput& frame, const Mo
                                             const PhotometricPair& colors) const {
   const Pose X_WC = predict(frame.utime);
   const bool moves = motion_size(X_WC_followed_.inverse(Eigen::Isometry) * X_WC) > kPoseNoise_m;
-  const Registration registration =
+  return judge_by_motion(
       moves ? register_frame(frame, model, colors, X_WC, X_WC_followed_, config_.registration)
-            : register_frame(frame, model, colors, X_WC, config_.registration);
-  return {registration, follows_motion(registration, frame.utime)
+            : register_frame(frame, model, colors, X_WC, config_.registration),
+      frame.utime);
+}
+
+/// From the predicted pose: surfaces near to those in view may have drawn an accepted one away. It
+/// saves none that was rejected: within a closer gate less speaks against a pose that slides.
+Tracker::Judged Tracker::register_closely(const TrackingInput& frame, const Model& model,
+                                          const PhotometricPair& colors) const {
+  return judge_by_motion(
+      register_frame_closely(frame, model, colors, predict(frame.utime), config_.registration),
+      frame.utime);
+}
+
+Tracker::Judged Tracker::judge_by_motion(const Registration& registration,
+                                         std::int64_t utime) const {
+  return {registration, follows_motion(registration, utime)
                             ? loss_rule_.judge(registration.quality)
                             : loss_rule_.judge_found_anew(registration.quality)};
 }
@@ -125,6 +139,16 @@ Tracker::Judged Tracker::register_widely(const TrackingInput& frame, const Model
   const Registration registration =
       register_frame_widely(frame, model, colors, X_WC_, config_.registration);
   return {registration, loss_rule_.judge_found_anew(registration.quality)};
+}
+
+Tracker::Judged Tracker::search_further(const Judged& by_motion, const TrackingInput& frame,
+                                        const Model& model, const PhotometricPair& colors) const {
+  if (!is_doubtful(by_motion)) return by_motion;
+  const Judged better = better_of(by_motion, register_widely(frame, model, colors), frame);
+  const bool is_predicted = motion_known_ && motion_continues(frame.utime);
+  if (better.loss || !is_predicted || !is_doubtful(better)) return better;
+  const Judged closely = register_closely(frame, model, colors);
+  return !is_doubtful(closely) && replaces(closely, better) ? closely : better;
 }
 
 /// A wrong pose may fit well enough to be accepted, too: nothing but the fit speaks for a pose
@@ -137,12 +161,16 @@ bool Tracker::is_doubtful(const Judged& by_motion) const {
 Tracker::Judged Tracker::better_of(const Judged& by_motion, const Judged& wide,
                                    const TrackingInput& frame) const {
   if (!can_be_at(wide.registration.X_WC, frame.utime, 0.0)) return by_motion;
-  if (by_motion.loss) return wide;
-  const Pose difference = by_motion.registration.X_WC.inverse() * wide.registration.X_WC;
-  const bool fits_better =
-      wide.registration.quality.support() > by_motion.registration.quality.support();
-  const bool is_other = motion_size(difference) > kPoseNoise_m;
-  return !wide.loss && is_other && fits_better ? wide : by_motion;
+  return by_motion.loss || replaces(wide, by_motion) ? wide : by_motion;
+}
+
+bool Tracker::replaces(const Judged& other, const Judged& first) {
+  if (other.loss) return false;
+  if (first.loss) return true;
+  const Registration& a = first.registration;
+  const Registration& b = other.registration;
+  const bool is_elsewhere = motion_size(a.X_WC.inverse() * b.X_WC) > kPoseNoise_m;
+  return is_elsewhere && b.quality.support() > a.quality.support();
 }
 
 TrackingResult Tracker::register_anew(const TrackingInput& frame, const Model& model,

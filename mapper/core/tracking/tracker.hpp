@@ -22,7 +22,8 @@ namespace kintsugi::mapper {
 /// reference); without colour or texture they stay undetermined. A frame that the loss rule
 /// rejects, that fits worse than usual, or before which the motion is unknown, is tried again from
 /// the last good pose with a wide search, and the pose that fits better is taken. If that is
-/// rejected too, the state is kLost and the last good pose stays.
+/// accepted, but doubts are left, a registration from the prediction with a close gate may dispel
+/// them. If it is rejected, the state is kLost and the last good pose stays.
 class Tracker {
  public:
   struct Config {
@@ -106,10 +107,16 @@ class Tracker {
   bool motion_continues(std::int64_t utime) const;
   Judged register_by_motion(const TrackingInput& frame, const Model& model,
                             const PhotometricPair& colors) const;
+  Judged register_closely(const TrackingInput& frame, const Model& model,
+                          const PhotometricPair& colors) const;
+  Judged judge_by_motion(const Registration& registration, std::int64_t utime) const;
   Judged register_widely(const TrackingInput& frame, const Model& model,
                          const PhotometricPair& colors) const;
+  Judged search_further(const Judged& by_motion, const TrackingInput& frame, const Model& model,
+                        const PhotometricPair& colors) const;
   bool is_doubtful(const Judged& by_motion) const;
   Judged better_of(const Judged& by_motion, const Judged& wide, const TrackingInput& frame) const;
+  static bool replaces(const Judged& other, const Judged& first);
   bool needs_new_reference(const Registration& registration) const;
   void update_reference(const Registration& registration, PhotometricPyramid frame);
   bool follows_motion(const Registration& registration, std::int64_t utime) const;

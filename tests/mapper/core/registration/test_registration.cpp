@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "mapper/core/registration/registration.hpp"
-#include "tests/mapper/core/box_room.hpp"
+#include "tests/mapper/core/boxes_before_wall.hpp"
 
 namespace kintsugi::mapper {
 namespace {
@@ -54,6 +54,23 @@ constexpr double kExact_m = 1e-4;
 
 TrackingInput frame_of(const SurfaceMap& surface_C) {
   return {0, pyramid_from_surface(surface_C, kLevels), {}};
+}
+
+/// The next slat is within the gate, and draws the pose to where the camera has passed one.
+TEST(Registration, IsNotDrawnToTheNextSlatFromAPoseThatIsHardlyOff) {
+  const Pose X_WV = Pose::Identity();
+  const Model model{pyramid_from_surface(testing::render_slats(X_WV), kLevels), X_WV};
+  const Pose X_WC = testing::gone_on_before_slats();
+  const TrackingInput frame{0,
+                            pyramid_from_depth(testing::render_slats(X_WC).depth_m,
+                                               testing::test_camera(), 0, kLevels, 10.0F),
+                            {}};
+  const Registration drawn = register_frame(frame, model, {}, X_WV, {});
+  EXPECT_GT(distance_m(drawn.X_WC, X_WC), 0.05) << "or else this tests nothing";
+  const Registration closely = register_frame_closely(frame, model, {}, X_WV, {});
+  EXPECT_LT(distance_m(closely.X_WC, X_WC), 1e-3);
+  EXPECT_LT(angle_rad(closely.X_WC, X_WC), 1e-3);
+  EXPECT_GT(closely.quality.support(), drawn.quality.support());
 }
 
 /// The camera was expected to go on turning, and turned back.

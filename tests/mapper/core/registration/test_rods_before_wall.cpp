@@ -7,7 +7,7 @@
 #include <tbb/global_control.h>
 
 #include "mapper/core/registration/registration.hpp"
-#include "tests/mapper/core/box_room.hpp"
+#include "tests/mapper/core/boxes_before_wall.hpp"
 
 namespace kintsugi::mapper {
 namespace {
@@ -34,24 +34,8 @@ Box rod(int axis, double half_length_m) {
   return {centre_W - half, centre_W + half};
 }
 
-/// The exact surface of rods before the wall z = kWall_m.
 SurfaceMap render(const std::vector<Box>& rods, const Pose& X_WC) {
-  const Intrinsics camera = testing::test_camera();
-  SurfaceMap surface(camera);
-  for (int v = 0; v < camera.height; ++v) {
-    for (int u = 0; u < camera.width; ++u) {
-      const Vector3d ray_C((u - camera.cx) / camera.fx, (v - camera.cy) / camera.fy, 1.0);
-      const Vector3d ray_W = X_WC.linear() * ray_C;
-      testing::Hit hit{(kWall_m - X_WC.translation().z()) / ray_W.z(), -Vector3d::UnitZ()};
-      for (const Box& box : rods) {
-        const testing::Hit other = testing::intersect(box, X_WC.translation(), ray_W, false);
-        if (other.distance < hit.distance) hit = other;
-      }
-      surface.depth_m(v, u) = static_cast<float>(hit.distance);
-      surface.set_normal(v, u, (X_WC.linear().transpose() * hit.normal_W).cast<float>());
-    }
-  }
-  return surface;
+  return testing::render_before_wall(rods, kWall_m, X_WC);
 }
 
 /// Turned about the view, so that the rods cross pixels in all places.

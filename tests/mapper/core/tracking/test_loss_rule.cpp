@@ -215,6 +215,35 @@ TEST(LossRule, KnowsWhatFitsWorseThanUsual) {
   EXPECT_FALSE(rule.fits_worse_than_usual(quality)) << "by now it is usual";
 }
 
+TEST(LossRule, DoesNotTakeAFrameThatWasNotRegisteredForTheUsualFit) {
+  LossRule rule({});
+  rule.remember({.covered_share = 0.9}, true);  // a start
+  rule.remember(good(), true);
+  EXPECT_FALSE(rule.fits_worse_than_usual(good()));
+  RegistrationQuality quality = good();
+  quality.inlier_share = 0.69;
+  EXPECT_TRUE(rule.fits_worse_than_usual(quality));
+}
+
+// Of good() a fifth are outliers, and residuals are as large as the noise.
+TEST(LossRule, BelievesNoPoseFoundAnewThatFitsMuchWorseThanUsual) {
+  LossRule::Config config;
+  config.found_anew.max_rms_sigmas = 5.0;
+  LossRule rule(config);
+  RegistrationQuality quality = good();
+  quality.inlier_share = 0.59;
+  quality.rms_sigmas = 2.1;
+  EXPECT_EQ(rule.judge_found_anew(quality), std::nullopt) << "nothing is usual yet";
+  for (int i = 0; i < 20; ++i) rule.remember(good(), true);
+  EXPECT_EQ(rule.judge_found_anew(quality), LossReason::kMuchWorseThanUsual);
+  EXPECT_EQ(rule.judge(quality), std::nullopt) << "the motion speaks for it";
+  quality.inlier_share = 0.61;
+  EXPECT_EQ(rule.judge_found_anew(quality), std::nullopt) << "residuals alone";
+  quality.inlier_share = 0.59;
+  quality.rms_sigmas = 1.9;
+  EXPECT_EQ(rule.judge_found_anew(quality), std::nullopt) << "outliers alone";
+}
+
 TEST(LossRule, RefusesSettingsOutOfRange) {
   LossRule::Config config;
   config.following.min_inlier_share = 1.5;

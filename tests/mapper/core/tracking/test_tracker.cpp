@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/mapper/core/boxes_before_wall.hpp"
 #include "tests/mapper/core/tracking/tracked_room.hpp"
 
 namespace kintsugi::mapper {
@@ -111,6 +112,32 @@ TEST(Tracker, PrefersThePoseThatFitsBetter) {
     EXPECT_FALSE(result.first_loss_reason) << "the first pose was accepted, too";
     EXPECT_LT(distance_m(result.X_WC, X_WC), kExactData_m) << frames_at_rest;
   }
+}
+
+/// Slats look alike. The next one is within the gate and draws the pose away, and a wide search
+/// finds no better one.
+TEST(Tracker, DoesNotPassASlatWhereTheMotionSaysOtherwise) {
+  const Pose X_WV = Pose::Identity();
+  const Pose X_WC = testing::gone_on_before_slats();
+  const auto frame_before_slats = [](const Pose& X_WC, std::int64_t utime) {
+    const cv::Mat_<float> depth_m = testing::render_slats(X_WC).depth_m;
+    return TrackingInput{
+        utime, pyramid_from_depth(depth_m, testing::test_camera(), 0, 3, 10.0F), {}};
+  };
+  const Model model{pyramid_from_surface(testing::render_slats(X_WV), 3), X_WV};
+  const TrackingInput frame = frame_before_slats(X_WC, 2 * kFrame_us);
+  for (const Registration& drawn : {register_frame(frame, model, {}, X_WV, {}),
+                                    register_frame_widely(frame, model, {}, X_WV, {})}) {
+    ASSERT_GT(distance_m(drawn.X_WC, X_WC), 0.05) << "or else this tests nothing";
+  }
+  Tracker tracker({});
+  tracker.start_at(X_WV, frame_before_slats(X_WV, 0), 1.0);
+  const Pose X_WC_before = testing::gone_on_before_slats(0.1);
+  ASSERT_EQ(tracker.track(frame_before_slats(X_WC_before, kFrame_us), model).state,
+            TrackingState::kTracking);
+  const TrackingResult result = tracker.track(frame, model);
+  EXPECT_EQ(result.state, TrackingState::kTracking);
+  EXPECT_LT(distance_m(result.X_WC, X_WC), 1e-3);
 }
 
 /// A pose that fits better is of another place if the camera cannot have got there.
