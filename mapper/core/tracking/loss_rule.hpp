@@ -100,8 +100,8 @@ class LossRule {
   /// another pose may fit better. Without an accepted frame nothing is usual yet.
   bool fits_worse_than_usual(const RegistrationQuality& quality) const;
 
-  /// To be called once for each frame, after it was judged. A frame that was not registered, because
-  /// its pose was given, has no overlap.
+  /// To be called once for each frame, after it was judged. A frame that was not registered,
+  /// because its pose was given, has no overlap.
   void remember(const RegistrationQuality& quality, bool accepted);
 
  private:

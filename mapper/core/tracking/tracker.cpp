@@ -144,7 +144,7 @@ Tracker::Judged Tracker::register_widely(const TrackingInput& frame, const Model
 Tracker::Judged Tracker::search_further(const Judged& by_motion, const TrackingInput& frame,
                                         const Model& model, const PhotometricPair& colors) const {
   if (!is_doubtful(by_motion)) return by_motion;
-  const Judged better = better_of(by_motion, register_widely(frame, model, colors), frame);
+  Judged better = better_of(by_motion, register_widely(frame, model, colors), frame);
   const bool is_predicted = motion_known_ && motion_continues(frame.utime);
   if (better.loss || !is_predicted || !is_doubtful(better)) return better;
   const Judged closely = register_closely(frame, model, colors);
