@@ -227,9 +227,7 @@ TEST(LossRule, DoesNotTakeAFrameThatWasNotRegisteredForTheUsualFit) {
 
 // Of good() a fifth are outliers, and residuals are as large as the noise.
 TEST(LossRule, BelievesNoPoseFoundAnewThatFitsMuchWorseThanUsual) {
-  LossRule::Config config;
-  config.found_anew.max_rms_sigmas = 5.0;
-  LossRule rule(config);
+  LossRule rule({});
   RegistrationQuality quality = good();
   quality.inlier_share = 0.59;
   quality.rms_sigmas = 2.1;
