@@ -16,6 +16,16 @@ inline constexpr float kGrazing = 0.17F;
 /// shades, and by what the sensor mixes at edges; above 2.3 a difference is just noticeable.
 inline constexpr float kSameColor = 15.0F;
 
+/// @param difference in CIELAB, between two points
+inline bool is_same_color(const Eigen::Vector3f& difference) {
+  return difference.squaredNorm() <= kSameColor * kSameColor;
+}
+
+/// The same on average over an object, in the light that is assumed there. Shades, noise and edges,
+/// for which a single point may differ so much, cancel out for the most part; another colour does
+/// not.
+inline constexpr float kSameMeanColor = kSameColor / 3;
+
 /// The light of another place multiplies the linear red, green and blue of all that it falls on.
 struct LightChange {
   Eigen::Vector3f log_gain = Eigen::Vector3f::Zero();  ///< natural logarithms

@@ -20,16 +20,23 @@ class LitModel {
         lab_(surface_O.size()),
         is_known_(surface_O.size(), 0) {}
 
-  /// Whether a point of the object and one that is seen may be the same: kSameColor. Points without
-  /// colour say nothing about it.
-  [[nodiscard]] bool same_color(std::size_t model_point, const SurfacePoint& seen) {
+  /// In CIELAB, from a point of the object to one that is seen. Nothing where one of them has no
+  /// colour.
+  [[nodiscard]] Eigen::Vector3f color_difference(std::size_t model_point,
+                                                 const SurfacePoint& seen) {
     const SurfacePoint& point = surface_O_[model_point];
-    if (!point.has_color || !seen.has_color) return true;
+    if (!point.has_color || !seen.has_color) return Eigen::Vector3f::Zero();
     if (is_known_[model_point] == 0) {
       lab_[model_point] = lab_of((point.rgb.array() * gain_).min(1.0F));
       is_known_[model_point] = 1;
     }
-    return (lab_[model_point] - seen.lab).squaredNorm() <= kSameColor * kSameColor;
+    return seen.lab - lab_[model_point];
+  }
+
+  /// Whether a point of the object and one that is seen may be the same: kSameColor. Points without
+  /// colour say nothing about it.
+  [[nodiscard]] bool same_color(std::size_t model_point, const SurfacePoint& seen) {
+    return is_same_color(color_difference(model_point, seen));
   }
 
  private:

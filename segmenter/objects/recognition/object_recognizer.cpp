@@ -167,7 +167,8 @@ Placement ObjectRecognizer::followed(std::size_t model, const Placement& last,
 
 bool is_recognized(const Placement& placement) {
   return placement.is_distinct && placement.score() >= kLeastScore &&
-         placement.seen >= kLeastSeen && placement.own >= kLeastOwn;
+         placement.seen >= kLeastSeen && placement.own >= kLeastOwn &&
+         placement.color_difference <= kSameMeanColor;
 }
 
 }  // namespace kintsugi::segmenter

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <map>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -29,24 +30,18 @@ Eigen::AlignedBox3f box_around(const PreparedModel& model, const Pose& X_WO) {
   return {box_W.min() - margin, box_W.max() + margin};
 }
 
-/// What a point of the map is to an object that is at a place.
-enum class Relation : std::uint8_t {
-  kSurface,  ///< surface of the object
-  kRepaint,  ///< where the object has surface, but of another colour
-  kOther,
-};
-
-Relation relation_of(const PreparedModel& model, const SurfacePoint& seen,
-                     const Eigen::Isometry3f& X_OW, LitModel& lit) {
+/// From the object's colour to that of a point of the map; nothing where the object has no surface.
+std::optional<Eigen::Vector3f> color_difference_at(const PreparedModel& model,
+                                                   const SurfacePoint& seen,
+                                                   const Eigen::Isometry3f& X_OW, LitModel& lit) {
   const Eigen::Vector3f p = X_OW * seen.position;
   // The field knows quickly where there is nothing.
-  if (model.field.nearest(p) < 0) return Relation::kOther;
+  if (model.field.nearest(p) < 0) return std::nullopt;
   const Eigen::Vector3f normal = X_OW.linear() * seen.normal;
   const NearestPoint nearest =
       model.grid_O.nearest(p, kSameDistance * model.spacing_m, facing(normal));
-  if (nearest.index < 0) return Relation::kOther;
-  return lit.same_color(static_cast<std::size_t>(nearest.index), seen) ? Relation::kSurface
-                                                                       : Relation::kRepaint;
+  if (nearest.index < 0) return std::nullopt;
+  return lit.color_difference(static_cast<std::size_t>(nearest.index), seen);
 }
 
 /// Whether a surface with this normal was in view when the object was taught. Unknown views count
@@ -121,6 +116,7 @@ struct SeenSurface {
   std::map<std::uint32_t, Counts> by_segment;
   Surface explained_W;
   std::vector<std::uint32_t> segments;  // of each point of `explained_W`
+  Eigen::Vector3f color_differences = Eigen::Vector3f::Zero();  // their sum
 };
 
 SeenSurface seen_surface(const PreparedModel& model, const Scene& scene, const Pose& X_WO,
@@ -133,14 +129,16 @@ SeenSurface seen_surface(const PreparedModel& model, const Scene& scene, const P
       box_around(model, X_WO), [&](const SurfacePoint& seen, std::uint32_t segment) {
         if (counts == nullptr || segment != last) counts = &result.by_segment[segment];
         last = segment;
-        const Relation relation = relation_of(model, seen, X_OW, lit);
-        if (relation == Relation::kSurface) {
+        const std::optional difference = color_difference_at(model, seen, X_OW, lit);
+        if (!difference) {
+          if (!speaks_against(model, X_OW * seen.position, X_OW.linear() * seen.normal)) {
+            ++counts->new_side;
+          }
+        } else if (is_same_color(*difference)) {
           ++counts->explained;
           result.explained_W.push_back(seen);
           result.segments.push_back(segment);
-        } else if (relation == Relation::kOther &&
-                   !speaks_against(model, X_OW * seen.position, X_OW.linear() * seen.normal)) {
-          ++counts->new_side;
+          result.color_differences += *difference;
         }
       });
   return result;
@@ -224,6 +222,8 @@ Placement placement_of(const PreparedModel& model, const Scene& scene,
   LitModel lit(model.surface_O, hypothesis.light);
   const SeenSurface seen = seen_surface(model, scene, hypothesis.X_WO, lit);
   placement.points = static_cast<std::int32_t>(seen.explained_W.size());
+  placement.color_difference =
+      seen.color_differences.norm() / static_cast<float>(std::max(placement.points, 1));
   add_segments(seen, scene.map(), placement);
   // Normals of its own segments, since what is beside a flat thing faces elsewhere; colours of all,
   // since what has another colour is often another segment.

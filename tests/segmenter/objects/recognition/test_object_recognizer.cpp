@@ -266,6 +266,33 @@ TEST(Placement, CountsWhatSpeaksAgainstTheObject) {
   EXPECT_LT(half.score(), right.score() - 0.05F);
 }
 
+TEST(Placement, TellsAColourThatIsAnotherOnAverageOnly) {
+  // In both cases each point could be the same.
+  const auto painted = [](const Eigen::Vector3i& color) {
+    ObservedMap map = box_on_table(kFourSides);
+    for (std::size_t i = 0; i < map.points_W.size(); ++i) {
+      if (map.segment_ids[i] != kBox) continue;
+      map.points_W[i].red = static_cast<std::uint8_t>(color[0]);
+      map.points_W[i].green = static_cast<std::uint8_t>(color[1]);
+      map.points_W[i].blue = static_cast<std::uint8_t>(color[2]);
+    }
+    return map;
+  };
+  const ObservedMap white = painted({190, 192, 190});
+  const MadeModel box = taught(white, kBox, "box");
+  const PreparedModel model(box.model, white.resolution_m);
+  const auto placed = [&](const ObservedMap& map) {
+    return placement_of(model, SceneOf(map).scene, {.X_WO = box.X_WO, .light = {}});
+  };
+  const Placement nearly_white = placed(painted({184, 192, 186}));
+  EXPECT_NEAR(nearly_white.color_difference, 3.2F, 0.1F);
+  EXPECT_TRUE(is_recognized(nearly_white));
+  const Placement greenish = placed(painted({164, 196, 180}));
+  EXPECT_NEAR(greenish.color_difference, 13.4F, 0.1F);
+  EXPECT_GT(greenish.score(), 0.9F);
+  EXPECT_FALSE(is_recognized(greenish));
+}
+
 TEST(Placement, DoubtsAnObjectThatWouldReachIntoAWall) {
   const ObservedMap taught_map = box_on_table(kFourSides);
   const MadeModel box = taught(taught_map, kBox, "box");
