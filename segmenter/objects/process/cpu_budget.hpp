@@ -18,14 +18,7 @@ class CpuBudget {
   static constexpr double kSaved_s = 1.0;
 
   /// @param share of one core, > 0
-  explicit CpuBudget(double share) : share_(share) { begin(); }
-
-  /// What was used so far does not count.
-  void begin() {
-    last_time_ = Clock::now();
-    last_cpu_s_ = cpu_s();
-    saved_s_ = 0.0;
-  }
+  explicit CpuBudget(double share) : share_(share) {}
 
   /// There is something left.
   bool has_some() {
@@ -51,8 +44,8 @@ class CpuBudget {
 
  private:
   double share_;
-  Clock::time_point last_time_;
-  double last_cpu_s_ = 0.0;
+  Clock::time_point last_time_ = Clock::now();
+  double last_cpu_s_ = cpu_s();
   double saved_s_ = 0.0;
 };
 

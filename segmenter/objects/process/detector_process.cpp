@@ -123,7 +123,6 @@ class DetectorProcess {
     published_ = 0;
     is_complete_pass_ = false;
     is_finished_ = false;
-    budget_.begin();  // preparing the models is not work on the map
   }
 
   /// Points come before their labels: until these are there, the detector keeps the piece as it
