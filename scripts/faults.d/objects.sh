@@ -5,21 +5,40 @@ fault_row kill-detector "detector of objects killed at a random moment of each r
 fault_row hostile-objects "random and mutated messages on every channel beside a detector and its clients" hostile_objects_row
 fault_row library "objects of the library damaged, foreign and half-written" library_row
 
-# teach_scene: makes $library from the map of the reference. Its objects are segments of middle size, so that there are
-# some of which the detector cannot be in doubt.
+# teach_scene: makes $library from the map of the reference. Its objects are segments of middle size that are found again
+# in the map, those of the best scores, so that there are some of which the detector cannot be in doubt.
 teach_scene() {
-  local id
+  local id name num_kept=0
   library="$runs/objects-$(basename "$reference")"
   [[ ! -e "$library.done" ]] || return 0
-  rm -rf "$library"
-  for id in $(middle_segments "$reference/segments.json" 6); do
+  rm -rf "$library" all
+  for id in $(middle_segments "$reference/segments.json" 24); do
     "$KINTSUGI_BIN/kintsugi-objects" teach --map "$reference/segmenter.map" --ids "$id" --name "thing_$id" \
-      --library "$library" >>teach.txt 2>&1 || {
+      --library all >>teach.txt 2>&1 || {
       say "$row_name: teaching failed: $PWD/teach.txt"
       exit 1
     }
   done
+  "$KINTSUGI_BIN/kintsugi-objects" detect "$reference/segmenter.map" --library all --json all.json >>teach.txt 2>&1 || {
+    say "$row_name: detecting failed: $PWD/teach.txt"
+    exit 1
+  }
+  mkdir -p "$library"
+  for name in $(names_found all.json); do
+    ((num_kept < 6)) || break
+    [[ ! -e "$library/$name" ]] || continue
+    cp -r "all/$name" "$library/"
+    num_kept=$((num_kept + 1))
+  done
   : >"$library.done"
+}
+
+# names_found FILE.json: of the objects that were found, the highest score first.
+names_found() {
+  python3 -c '
+import json, sys
+detections = json.load(open(sys.argv[1]))["detections"]
+print(*[d["name"] for d in sorted(detections, key=lambda d: (-d["score"], d["name"]))])' "$1"
 }
 
 # middle_segments SEGMENTS.json N: the ids of the N largest segments of 60 points and more that could be carried: at most
