@@ -27,4 +27,6 @@ bool is_plain(const SurfaceMoments& moments) {
   return moments.lab_variance().sum() < kPlain * kPlain;
 }
 
+bool is_flat_patch(const SurfaceMoments& moments) { return is_flat(moments) && is_plain(moments); }
+
 }  // namespace kintsugi::segmenter

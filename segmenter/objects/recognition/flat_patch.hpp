@@ -11,4 +11,7 @@ bool is_flat(const SurfaceMoments& moments);
 /// All colours are nearly one. What has none is plain.
 bool is_plain(const SurfaceMoments& moments);
 
+/// One flat patch of one colour.
+bool is_flat_patch(const SurfaceMoments& moments);
+
 }  // namespace kintsugi::segmenter

@@ -53,10 +53,6 @@ bool are_same(const ObjectModel& a, const ObjectModel& b) {
          a.views_O == b.views_O && a.empty_O == b.empty_O;
 }
 
-/// One flat patch of one colour, which is recognised only where other segments have other colours
-/// of the object (Placement::is_distinct).
-bool is_common(const SurfaceMoments& moments) { return is_flat(moments) && is_plain(moments); }
-
 std::vector<ViewDescriptor> views_of(const PreparedModel& prepared) {
   const float described_m = described_spacing_m(prepared.spacing_m);
   return descriptors_of_views({thinned(prepared.surface_O, described_m), described_m});
@@ -111,7 +107,9 @@ const PreparedModel& ObjectRecognizer::prepared(std::size_t model) const {
 
 float ObjectRecognizer::least_distance(const Candidate& candidate, const Scene& scene) const {
   const SurfaceMoments moments = scene.rough_moments(candidate);
-  if (!index_ || moments.empty() || is_common(moments))
+  // A flat patch is recognised only where other segments have other colours of the object
+  // (Placement::is_distinct).
+  if (!index_ || moments.empty() || is_flat_patch(moments))
     return std::numeric_limits<float>::infinity();
   return index_->least_distance(
       size_and_colors(moments, described_spacing_m(scene.resolution_m())));

@@ -115,7 +115,7 @@ struct Counts {
 struct SeenSurface {
   std::map<std::uint32_t, Counts> by_segment;
   Surface explained_W;
-  std::vector<std::uint32_t> segments;  // of each point of `explained_W`
+  std::vector<std::uint32_t> segments;                          // of each point of `explained_W`
   Eigen::Vector3f color_differences = Eigen::Vector3f::Zero();  // their sum
 };
 

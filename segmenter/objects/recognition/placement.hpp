@@ -28,7 +28,7 @@ struct Placement {
   float light_agreement = 1.0F;
   /// What is seen of it is more than one flat patch of one colour, which many things have.
   bool is_distinct = false;
-  std::int32_t points = 0;                 ///< of the map that are surface of the object
+  std::int32_t points = 0;  ///< of the map that are surface of the object
   /// In CIELAB: length of the mean difference of colour between `points` and the model in `light`.
   float color_difference = 0.0F;
   std::vector<std::uint32_t> segment_ids;  ///< most of whose points are; ascending

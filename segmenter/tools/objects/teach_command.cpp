@@ -18,6 +18,7 @@
 #include "segmenter/objects/library/library_lock.hpp"
 #include "segmenter/objects/library/object_files.hpp"
 #include "segmenter/objects/library/object_name.hpp"
+#include "segmenter/objects/recognition/flat_patch.hpp"
 #include "segmenter/objects/teaching/refine.hpp"
 #include "segmenter/objects/teaching/teach.hpp"
 #include "segmenter/tools/objects/command.hpp"
@@ -58,17 +59,28 @@ Refinement refined_with_hint(const fs::path& folder, const KnownObject& lesson) 
   }
 }
 
+/// What has not more than that is never told (Placement::is_distinct).
+void warn_of_flat_patch(const ObjectModel& model) {
+  if (!is_flat_patch(SurfaceMoments(thinned(model.points_O, model.resolution_m)))) return;
+  spdlog::warn(
+      "{} is one flat patch of one colour, as many things have it: it will not be found. Teach it "
+      "with its other sides: more segments in --ids, or the same --name where they are seen",
+      model.name);
+}
+
 /// Writes the object, or what it adds to the one of that name, which the caller has locked.
 void learn(const KnownObject& lesson, const TeachOptions& options) {
   const fs::path folder = options.library / lesson.model.name;
   if (options.replace || !fs::exists(fs::symlink_status(folder))) {
     write_object(lesson, options.library);
     std::cout << summary_text(lesson) << '\n';
+    warn_of_flat_patch(lesson.model);
     return;
   }
   const Refinement refinement = refined_with_hint(folder, lesson);
   write_object(refinement.object, options.library);
   std::cout << summary_text(refinement) << '\n';
+  warn_of_flat_patch(refinement.object.model);
 }
 
 void teach_from_map(const TeachOptions& options) {

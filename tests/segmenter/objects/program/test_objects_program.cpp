@@ -200,6 +200,13 @@ TEST_F(Objects, WhatCannotBeTaughtSaysWhy) {
   EXPECT_GE(run("").exit_code, 100);
 }
 
+TEST_F(Objects, AFlatPatchIsTaughtWithAWarning) {
+  EXPECT_THAT(expect_success("teach --map FOLDER/hall.ply --ids 1 --name table"),
+              HasSubstr("table is one flat patch of one colour"));
+  EXPECT_THAT(expect_success("teach --map FOLDER/hall.ply --ids 2 --name box"),
+              ::testing::Not(HasSubstr("flat patch")));
+}
+
 TEST_F(Objects, AFullDiskLeavesTheLibraryAsItWas) {
   expect_success("teach --map FOLDER/hall.ply --ids 2 --name box");
   {
