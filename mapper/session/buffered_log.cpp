@@ -139,9 +139,11 @@ void BufferedLog::replace_first(std::shared_ptr<LogWriter> base, std::size_t cou
     const std::scoped_lock lock(mutex_);
     replaced = files_.closed();
     replaced.resize(count);
+    // The last file, which the log's thread may be writing now, stays as it is.
+    size_bytes_ += base->size_bytes();
+    for (const LogPart& part : replaced) size_bytes_ -= part.file->size_bytes();
     files_.use(std::move(base), count);
     move();
-    size_bytes_ = files_.size_bytes();
   }
   files_.remove(replaced);
 }

@@ -183,6 +183,15 @@ bool is_rewritten(const fs::path& path) {
   return !fs::exists(path.parent_path() / "run.1.lcm") && fs::file_size(path) > 0;
 }
 
+std::int64_t bytes_of_files(const fs::path& folder) {
+  std::int64_t bytes = 0;
+  for (const auto& file : fs::directory_iterator(folder)) {
+    std::error_code is_removed;  // meanwhile
+    bytes += static_cast<std::int64_t>(file.file_size(is_removed));
+  }
+  return bytes;
+}
+
 /// Steps unless the log is to be rewritten, which is at half of the limit: a busy machine may leave
 /// the thread that does it so little time that the mapper would outrun it. Returns whether it has.
 bool step_if_there_is_room(Mapper& mapper, SessionStore& store) {
@@ -273,6 +282,8 @@ TEST_P(StoreLimits, KeepTheFilesSmallAndTheMapWhole) {
               sent);
     EXPECT_THAT(store.report().problem, IsEmpty());
     EXPECT_LT(store.report().size_bytes, kLimit);
+    EXPECT_TRUE(wait_until(
+        [&] { return store.report().size_bytes == bytes_of_files(path_.parent_path()); }));
     expect_whole(store, mapper);
     opened.reset();
     expect_resumable(path_, mapper);
