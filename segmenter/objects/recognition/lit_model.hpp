@@ -20,7 +20,7 @@ class LitModel {
         lab_(surface_O.size()),
         is_known_(surface_O.size(), 0) {}
 
-  /// In CIELAB, from a point of the object to one that is seen. Nothing where one of them has no
+  /// In CIELAB, from a point of the object to one that is seen. Zero where one of them has no
   /// colour.
   [[nodiscard]] Eigen::Vector3f color_difference(std::size_t model_point,
                                                  const SurfacePoint& seen) {
