@@ -59,12 +59,12 @@ Refinement refined_with_hint(const fs::path& folder, const KnownObject& lesson) 
   }
 }
 
-/// What has not more than that is never told (Placement::is_distinct).
+/// What has not more than that is seldom recognised (Placement::is_distinct).
 void warn_of_flat_patch(const ObjectModel& model) {
   if (!is_flat_patch(SurfaceMoments(thinned(model.points_O, model.resolution_m)))) return;
   spdlog::warn(
-      "{} is one flat patch of one colour, as many things have it: it will not be found. Teach it "
-      "with its other sides: more segments in --ids, or the same --name where they are seen",
+      "{} is one flat patch of one colour, as many things have it: it will hardly be found. Teach "
+      "its other sides, too: more segments in --ids, or the same --name where they are seen",
       model.name);
 }
 
