@@ -138,6 +138,8 @@ class MapperPipeline {
 
   /// How many parts of the map no loop has joined.
   int num_parts() const { return loops_ ? loops_->num_parts() : map_.part() + 1; }
+  /// How many have begun, those of guests included.
+  int num_parts_begun() const { return loops_ ? loops_->next_part() : map_.part() + 1; }
 
   /// Of the frames whose pose is known, as corrected by the loops that were closed so far; by part
   /// of the map.

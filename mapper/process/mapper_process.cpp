@@ -135,10 +135,8 @@ void MapperProcess::map_frame(const TimedFrame& read) {
     statistics_.begin_part();
   }
   log_change_of_state(result, frame);
-  const int num_parts_before = std::exchange(num_parts_, pipeline_.num_parts());
   if (result.correction) log_correction(*result.correction, frame);
-  log_guests(frame);
-  log_joined(frame, num_parts_before);
+  log_guests_and_joined(fmt::format("frame {}", frame.frame_index));
   if (is_located(tracking.state) && !options_.online_path_file.empty()) {
     online_paths_[result.part].push_back({frame.utime, tracking.X_WC});
   }
@@ -213,7 +211,7 @@ void MapperProcess::publish_rest() {
     publish_new_keyframe();
     take_guests();
     publisher_.publish_slices(pipeline_.finish());
-    num_parts_ = pipeline_.num_parts();
+    log_guests_and_joined("end");
   } else {
     spdlog::warn(
         "stopped before all frames that were mapped before are mapped again: resume once more");
@@ -309,16 +307,22 @@ void MapperProcess::log_part(const PartBegun& begun, const RgbdFrame& frame) con
       frame.frame_index, options_.pipeline.restart_after_s, reason_text(begun.lost), begun.part);
 }
 
-void MapperProcess::log_guests(const RgbdFrame& frame) {
+/// @param when the frame, or "end": the last guests and loops come after the last frame
+void MapperProcess::log_guests_and_joined(std::string_view when) {
   for (const GuestReport& guest : pipeline_.guests().reports()) {
-    const std::string who = fmt::format("frame {}: the mapper of map '{}' (session {})",
-                                        frame.frame_index, guest.map_name, guest.session);
+    const std::string who =
+        fmt::format("{}: the mapper of map '{}' (session {})", when, guest.map_name, guest.session);
     if (!guest.problem.empty() && guests_refused_.insert(guest.session).second) {
       spdlog::warn("{} cannot join this map: {}", who, guest.problem);
     } else if (guest.keyframes > 0 && guests_named_.insert(guest.session).second) {
       spdlog::info("{} joins this map: a part of its own until a loop joins them", who);
     }
   }
+  num_parts_ = pipeline_.num_parts();
+  const int num_joined = pipeline_.num_parts_begun() - num_parts_;
+  if (num_joined <= std::exchange(num_joined_, num_joined)) return;
+  spdlog::info("{}: loops have joined parts of the map: {}", when,
+               num_parts_ == 1 ? "it is one again" : fmt::format("{} are still apart", num_parts_));
 }
 
 void MapperProcess::log_correction(const MapCorrection& correction, const RgbdFrame& frame) {
@@ -327,12 +331,6 @@ void MapperProcess::log_correction(const MapCorrection& correction, const RgbdFr
                correction.num_contradicted == 0
                    ? ""
                    : fmt::format("; {} loops contradicted", correction.num_contradicted));
-}
-
-void MapperProcess::log_joined(const RgbdFrame& frame, int num_parts_before) const {
-  if (num_parts_ >= num_parts_before) return;
-  spdlog::info("frame {}: loops have joined parts of the map: {}", frame.frame_index,
-               num_parts_ == 1 ? "it is one again" : fmt::format("{} are still apart", num_parts_));
 }
 
 void MapperProcess::log_summary() const {

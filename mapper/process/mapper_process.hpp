@@ -3,6 +3,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <string_view>
 
 #include "lcmtypes/base/stopwatch.hpp"
 #include "lcmtypes/trajectory.hpp"
@@ -53,9 +54,8 @@ class MapperProcess {
   void log_start() const;
   void log_change_of_state(const FrameResult& result, const RgbdFrame& frame);
   void log_part(const PartBegun& begun, const RgbdFrame& frame) const;
-  void log_guests(const RgbdFrame& frame);
+  void log_guests_and_joined(std::string_view when);
   static void log_correction(const MapCorrection& correction, const RgbdFrame& frame);
-  void log_joined(const RgbdFrame& frame, int num_parts_before) const;
   void log_summary() const;
   void log_parts() const;
   void throw_failures() const;
@@ -81,6 +81,7 @@ class MapperProcess {
   TrackingState last_state_ = TrackingState::kStarting;
   int part_ = 0;                ///< of the map, in which the camera is
   int num_parts_ = 1;           ///< that no loop has joined, after the last frame
+  int num_joined_ = 0;          ///< parts that loops have joined to others, after the last frame
   double cpu_ms_ = 0.0;         ///< of the process, at the last frame
   double extraction_ms_ = 0.0;  ///< of the pipeline, at the last frame
   Stopwatch run_clock_;

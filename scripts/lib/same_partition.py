@@ -12,8 +12,8 @@ TYPES = {"float": "f", "double": "d", "uchar": "B", "char": "b", "ushort": "H", 
 SEGMENT = "segment_id"
 
 
-def read_points(path):
-    """Each point as (its record without the segment, its segment), sorted."""
+def read_table(path):
+    """The names of the properties of the points, and the values of each point."""
     with open(path, "rb") as file:
         data = file.read()
     end = data.index(b"end_header\n") + len(b"end_header\n")
@@ -25,9 +25,14 @@ def read_points(path):
     record = struct.Struct("<" + "".join(TYPES[kind] for kind, _ in fields))
     if len(data) != end + count * record.size:
         raise ValueError(f"{path}: has {len(data) - end} bytes of points, expected {count * record.size}")
-    place = [name for _, name in fields].index(SEGMENT)
-    points = (list(values) for values in record.iter_unpack(data[end:]))
-    return sorted((tuple(values), segment) for values in points for segment in [values.pop(place)])
+    return [name for _, name in fields], list(record.iter_unpack(data[end:]))
+
+
+def read_points(path):
+    """Each point as (its record without the segment, its segment), sorted."""
+    names, table = read_table(path)
+    place = names.index(SEGMENT)
+    return sorted((values[:place] + values[place + 1:], values[place]) for values in table)
 
 
 def difference(path_a, path_b):

@@ -128,20 +128,23 @@ double share_near(const std::vector<Eigen::Vector3d>& points,
 struct Host {
   explicit Host(double resolution_m = 0.015) : pipeline(config(resolution_m)) {}
 
-  /// Maps the run; from frame 10 on what the guest has sent is there, in any order.
-  void map(const SyntheticRun& run, Sent sent) {
+  /// Maps the run; after these frames what the guest has sent is there, in any order.
+  void map(const SyntheticRun& run, Sent sent, std::size_t num_frames_before = 10) {
     std::mt19937 random(1);
     std::ranges::shuffle(sent.keyframes, random);
     std::ranges::shuffle(sent.slices, random);
     for (std::size_t i = 0; i < run.frames.size(); ++i) {
-      if (i == 10) {
-        for (KeyframeMessage& keyframe : sent.keyframes) pipeline.add_guest(std::move(keyframe));
-        for (CloudSlice& slice : sent.slices) pipeline.add_guest(std::move(slice));
-      }
+      if (i == num_frames_before) add_guest(sent);
       std::ranges::move(pipeline.process(run.frames[i]).slices, std::back_inserter(slices));
       most_parts = std::max(most_parts, pipeline.num_parts());
     }
+    if (run.frames.size() == num_frames_before) add_guest(sent);
     std::ranges::move(pipeline.finish(), std::back_inserter(slices));
+  }
+
+  void add_guest(Sent& sent) {
+    for (KeyframeMessage& keyframe : sent.keyframes) pipeline.add_guest(std::move(keyframe));
+    for (CloudSlice& slice : sent.slices) pipeline.add_guest(std::move(slice));
   }
 
   MapperPipeline pipeline;
@@ -193,6 +196,20 @@ TEST_F(GuestsTest, BecomeOneMapWithThatOfTheHost) {
   std::int64_t revision_sum = 0;
   for (const CloudSlice& slice : map) revision_sum += slice.revision;
   EXPECT_EQ(revision_sum, last.revision_sum);
+}
+
+TEST_F(GuestsTest, BecomeOneMapAlsoWhenTheyComeAtTheEnd) {
+  Host host;
+  host.map(first, guest_in(synthetic_run("loop", kFrames, true, kStep, kLater * kStep)),
+           first.frames.size());
+  EXPECT_EQ(host.most_parts, 1) << "before the end";
+  EXPECT_EQ(host.pipeline.num_parts_begun(), 2);
+  EXPECT_EQ(host.pipeline.num_parts(), 1);
+  const auto map = received_map(host.slices);
+  EXPECT_LT(
+      share_near(points_of(map, is_of_guest), points_of(map, std::not_fn(is_of_guest)), 0.015),
+      0.02)
+      << "what both have seen is there once";
 }
 
 TEST_F(GuestsTest, StayAPartOfTheirOwnWhereNobodyElseWas) {
