@@ -20,7 +20,8 @@ soak_row() {
   figure[seconds]="$(since_s "$since")"
   for process in mapper segmenter viewer; do
     memory_over_time "$process" "$seconds"
-    must "$process grew after the map had ceased to" is_flat "$process" "$seconds"
+    # In 8 s the map is small, and what the allocators of a busy machine keep is more than all of it.
+    if_quick || must "$process grew after the map had ceased to" is_flat "$process" "$seconds"
   done
   must "$(status_last faulty segmenter lag_slices) slices wait in the end" \
     test "$(status_last faulty segmenter lag_slices)" -eq 0
