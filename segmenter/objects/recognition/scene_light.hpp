@@ -1,6 +1,7 @@
 #pragma once
 // The light of a place, by which all things in it look different at once.
 
+#include <numbers>
 #include <span>
 
 #include "segmenter/objects/recognition/agreement.hpp"
@@ -14,15 +15,18 @@ namespace kintsugi::segmenter {
 struct SceneLight {
   Eigen::Vector3f log_gain = Eigen::Vector3f::Zero();  ///< as LightChange::log_gain
   bool is_known = false;                               ///< three placements or more agree
-  float brightness_deviation = 0.4F;  ///< standard deviation of that of a single thing
-  float tint_deviation = 0.3F;        ///< the same between channels
+  /// Standard deviation of that of a single thing. As long as the light is not known it may be any
+  /// that is allowed at all.
+  float brightness_deviation = LightChange::kMaxBrightness;
+  /// The same between channels: one may have more of the largest tint, and another one less.
+  float tint_deviation = std::numbers::sqrt2_v<float> * LightChange::kMaxTint;
 
   /// From 0 to 1: how well the light that a placement assumes agrees.
   [[nodiscard]] float agreement(const LightChange& light) const;
 };
 
 /// The change on which most placements agree, which are of different objects or places: with three
-/// or more it is known well, otherwise no change is assumed, with a large deviation.
+/// or more it is known well, otherwise no change is assumed, with the largest deviation.
 /// @param placements by descending score
 SceneLight light_of_scene(std::span<const Placement* const> placements);
 
