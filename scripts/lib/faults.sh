@@ -52,10 +52,14 @@ skip_row() {
 }
 joined() { printf '%s' "${1:-}"; (($# < 2)) || printf '; %s' "${@:2}"; }
 
-# run_row OUT NAME: runs a row inside its network, prints its line and adds it to faults.csv. Fails when something does not
-# hold.
+# print_held OUT NAME: prints the line of a row that holds in OUT. Fails if none does.
+print_held() { cat "$1/$2/$(held_line)" 2>/dev/null; }
+held_line() { if_quick && echo line.quick.md || echo line.md; }
+
+# run_row OUT NAME: runs a row inside its network, prints its line and adds it to faults.csv; keeps the line if it holds.
+# Fails when something does not hold.
 run_row() {
-  local column cells=() holds=yes
+  local column cells=() holds=yes line
   runs="$1" row_name="$2"
   export KINTSUGI_PRIVATE_BUS=1
   RANDOM="$seed"
@@ -67,10 +71,12 @@ run_row() {
   eval "${row_call[$row_name]}"
   ((${#failures[@]})) && holds="**no**: $(joined "${failures[@]}")"
   for column in "${columns[@]}"; do cells+=("${figure[$column]:--}"); done
-  table_line "$row_name" "${row_what[$row_name]}" "$holds" "${cells[@]}" "$(joined "${notes[@]}")"
+  line="$(table_line "$row_name" "${row_what[$row_name]}" "$holds" "${cells[@]}" "$(joined "${notes[@]}")")"
+  printf '%s\n' "$line"
   [[ -e "$runs/faults.csv" ]] || (IFS=,; echo "row,holds,${columns[*]}") >"$runs/faults.csv"
   (IFS=,; echo "$row_name,$((${#failures[@]} == 0)),${cells[*]}") >>"$runs/faults.csv"
-  ((${#failures[@]} == 0))
+  ((${#failures[@]} == 0)) || return
+  printf '%s\n' "$line" >"$(held_line)"
 }
 
 # What the trio maps in most rows. The session number is fixed, because it is part of the map; every frame is mapped, so
