@@ -16,11 +16,14 @@ class CpuBudget {
   using Clock = std::chrono::steady_clock;
   /// Of processor time: what a camera shows in some seconds of walking is examined at once.
   static constexpr double kSaved_s = 1.0;
+  /// Nothing is begun with less: to examine one segment takes some hundredths of a second, seldom
+  /// more than this, and must not go beyond the share.
+  static constexpr double kReserve_s = 0.1;
 
   /// @param share of one core, > 0
   explicit CpuBudget(double share) : share_(share) {}
 
-  /// There is something left.
+  /// There is enough left to begin something.
   bool has_some() {
     const Clock::time_point now = Clock::now();
     const double used_s = cpu_s() - last_cpu_s_;
@@ -32,7 +35,7 @@ class CpuBudget {
   /// The same when so much time has passed since, of which so much was used.
   bool has_some_after(double elapsed_s, double used_s) {
     saved_s_ = std::clamp(saved_s_ + share_ * elapsed_s - used_s, -kSaved_s, kSaved_s);
-    return saved_s_ > 0.0;
+    return saved_s_ > kReserve_s;
   }
 
   /// Processor time of this process so far, seconds.
