@@ -132,6 +132,11 @@ class Tables(unittest.TestCase):
         self.assertEqual([row[-2:] for row in rows], [[None, None], ["9.0", "9.0"], ["2.0", "4.0"]])
         tables.markdown(["a"] * len(rows[0]), rows)
 
+    def test_libraries_of_one_object_are_counted_together(self):
+        rows = objects.alone_rows({"kitchen": [(scores(), [])] * 3})
+        self.assertEqual(rows[0], ["kitchen, 5 walks", "50 to 199", 12, 9, 15, 9])
+        tables.markdown(objects.COUNTS, [row[1:] for row in rows])
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -21,6 +21,8 @@ LARGE = "500 and more"  # points of an object, as kintsugi-evaluate calls the cl
 # Rows of the first table that the summary has, too.
 CHANGES = "changes between office and office-later, objects of 500 points and more: precision / recall"
 FOUND = "taught in the office, found in kitchens, 500 points and more: precision / recall"
+COUNTS = ("points of the object", "there", "found", "told", "right")
+CLASSES = ("50 to 199", "200 to 499", LARGE)
 # Where taught objects are looked for: each room under its own noise, and walked through at another speed, because in one
 # recording there are too few objects to tell a rule from luck.
 PLACES = {
@@ -53,10 +55,13 @@ def objects(run):
     rooms, pairs, library, names = taught_rooms(run)
     office = rooms["office"]
     changed = {name: changes(run, office, rooms[name], pairs[name]) for name in ("office-later", "office-again")}
-    found = {name: [found_in(run, office, scene, library, names) for scene in scenes] for name, scenes in PLACES.items()}
+    places = {name: [place(run, office, scene) for scene in scenes] for name, scenes in PLACES.items()}
+    found = {name: [detections(run, *each, library, names) for each in of_name] for name, of_name in places.items()}
+    alone = {name: found_alone(run, of_name, library, names) for name, of_name in places.items()}
     return (markdown(["what", "measured", "target"], target_rows(changed, found)) + "\n" +
-            markdown(["objects taught in the office, found in", "points of the object", "there", "found", "told", "right",
-                      "position, median, cm", "rotation, median, deg"], found_rows(found)))
+            markdown(["objects taught in the office, found in", *COUNTS, "position, median, cm", "rotation, median, deg"],
+                     found_rows(found)) + "\n" +
+            markdown(["each by itself, in a library of one, found in", *COUNTS], alone_rows(alone)))
 
 
 def taught_rooms(run):
@@ -101,10 +106,21 @@ def taught(run, office, pairs):
     return library / "objects", sorted(folder.name for folder in (library / "objects").iterdir() if folder.is_dir())
 
 
-def found_in(run, office, scene, library, names):
-    """As detections(), in a room that is mapped here where it is not mapped yet."""
-    place = mapped(run, Input(re.sub(r"\W+", "-", scene), address=f"synthetic://{scene}"))
-    return detections(run, place, truth_between(run, office, place), library, names)
+def place(run, office, scene):
+    """The scene's room, which is mapped here where it is not mapped yet, and the file of its truth."""
+    here = mapped(run, Input(re.sub(r"\W+", "-", scene), address=f"synthetic://{scene}"))
+    return here, truth_between(run, office, here)
+
+
+def found_alone(run, places, library, names):
+    """What who has taught only one object finds of it: as detections(), for each object and each place."""
+    found = []
+    for name in names:
+        only = run.folder / "objects_alone" / name
+        shutil.rmtree(only, ignore_errors=True)
+        shutil.copytree(library / name, only / name)
+        found += [detections(run, *each, only, [name], name=f"alone_{name}_in") for each in places]
+    return found
 
 
 def changes(run, before, after, truth):
@@ -117,8 +133,10 @@ def changes(run, before, after, truth):
     return json.loads((out / "scores.json").read_text())
 
 
-def detections(run, place, truth, library, names):
-    name = f"found_{place.folder.name}"
+def detections(run, place, truth, library, names, *, name="found"):
+    """The scores of what is told in a place, and the lines of the objects that are there.
+    name: with which the names of the files begin."""
+    name = f"{name}_{place.folder.name}"
     told, out = run.folder / f"{name}.json", run.folder / f"{name}_scores"
     run.kintsugi("objects", "detect", place.map, "--library", library, "--json", told, log=name)
     run.kintsugi("evaluate", "--objects", told, "--truth-objects", truth, "--after-truth", place.truth, "--taught",
@@ -170,12 +188,17 @@ def found_rows(found):
     rows = []
     for place, of_rooms in found.items():
         outcomes = [row for _, of_room in of_rooms for row in of_room]
-        for points in ("50 to 199", "200 to 499", LARGE):
+        for points in CLASSES:
             sums = pooled(of_rooms, points)
             here = [row for row in outcomes if class_of(int(row["points"])) == points]
             rows.append([f"{place}, {len(of_rooms)} walks", points, *sums.values(), middle(here, "translation_cm"),
                          middle(here, "rotation_deg")])
     return rows
+
+
+def alone_rows(alone):
+    return [[f"{place}, {len(PLACES[place])} walks", points, *pooled(found, points).values()]
+            for place, found in alone.items() for points in CLASSES]
 
 
 def class_of(points):
