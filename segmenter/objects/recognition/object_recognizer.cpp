@@ -30,6 +30,10 @@ constexpr std::size_t kPoses = 3;  // tried of each object
 constexpr float kLeastAgreement =
     0.5F;  // of the candidate with an object: else most of it is something else
 
+// Of the score of the best pose of a search, which is roughly refined: what agrees by less than half
+// of what is needed is not the object.
+constexpr float kLeastPromise = kLeastScore / 2;
+
 // A third of what is known of an object, as when it is seen from another side; of less, too many
 // other things have alike faces.
 constexpr float kLeastSeen = 0.33F;
@@ -41,7 +45,21 @@ void keep_better(Placement& best, Placement placement) {
   if (placement.score() > best.score()) best = std::move(placement);
 }
 
-/// Once more with all segments that are the object's, of which there must be some.
+/// The best of the poses in which a part of the scene's surface may be the object's; nothing if
+/// there is none.
+std::optional<Placement> best_placement(const PreparedModel& object, const Surface& part_W,
+                                        const Scene& scene) {
+  std::vector<PoseHypothesis> poses = upright_poses(object, part_W, scene.up_W(), kPoses);
+  std::erase_if(poses, [](const PoseHypothesis& pose) { return pose.agreement < kLeastAgreement; });
+  if (poses.empty()) return std::nullopt;
+  Placement best = placement_of(object, scene, poses.front());
+  for (const PoseHypothesis& pose : std::span(poses).subspan(1)) {
+    keep_better(best, placement_of(object, scene, pose));
+  }
+  return best;
+}
+
+/// Once more with all segments that are the object's.
 Placement refined(const PreparedModel& object, const Scene& scene, const Placement& placement) {
   const Surface whole_W = scene.surface_W(placement.segment_ids);
   return placement_of(object, scene, refined_pose(object, whole_W, placement.X_WO));
@@ -131,8 +149,10 @@ std::vector<Recognition> ObjectRecognizer::recognize(const Candidate& candidate,
   const Surface candidate_W = scene.surface_W(candidate);
   std::vector<Recognition> found;
   for (const ModelMatch& match : matches) {
-    std::optional<Placement> placement = place(match.model, candidate_W, scene);
-    if (!placement || !is_recognized(*placement)) continue;
+    std::optional<Placement> placement = best_placement(prepared(match.model), candidate_W, scene);
+    if (!placement || placement->score() < kLeastPromise) continue;
+    refine(match.model, scene, *placement);
+    if (!is_recognized(*placement)) continue;
     const std::int32_t points = placement->points;
     found.push_back({match.model, std::move(*placement), points});
   }
@@ -141,17 +161,14 @@ std::vector<Recognition> ObjectRecognizer::recognize(const Candidate& candidate,
 
 std::optional<Placement> ObjectRecognizer::place(std::size_t model, const Surface& part_W,
                                                  const Scene& scene) const {
-  const PreparedModel& object = prepared(model);
-  std::vector<PoseHypothesis> poses = upright_poses(object, part_W, scene.up_W(), kPoses);
-  std::erase_if(poses, [](const PoseHypothesis& pose) { return pose.agreement < kLeastAgreement; });
-  if (poses.empty()) return std::nullopt;
-  Placement best = placement_of(object, scene, poses.front());
-  for (const PoseHypothesis& pose : std::span(poses).subspan(1)) {
-    keep_better(best, placement_of(object, scene, pose));
-  }
-  // The candidate may be only some of its segments.
-  if (!best.segment_ids.empty()) keep_better(best, refined(object, scene, best));
+  std::optional<Placement> best = best_placement(prepared(model), part_W, scene);
+  if (best) refine(model, scene, *best);
   return best;
+}
+
+/// The part may be only some of the object's segments.
+void ObjectRecognizer::refine(std::size_t model, const Scene& scene, Placement& best) const {
+  if (!best.segment_ids.empty()) keep_better(best, refined(prepared(model), scene, best));
 }
 
 Placement ObjectRecognizer::followed(std::size_t model, const Placement& last,

@@ -67,6 +67,7 @@ class ObjectRecognizer {
   using KnownModels = std::vector<std::shared_ptr<const Known>>;
 
   [[nodiscard]] const PreparedModel& prepared(std::size_t model) const;
+  void refine(std::size_t model, const Scene& scene, Placement& best) const;
 
   float resolution_m_;
   KnownModels known_;
