@@ -4,6 +4,8 @@
 #include <limits>
 #include <string>
 
+#include <malloc.h>
+
 namespace kintsugi {
 
 ProcessMemory process_memory() {
@@ -19,5 +21,7 @@ ProcessMemory process_memory() {
   }
   return memory;
 }
+
+void return_free_memory() { malloc_trim(0); }
 
 }  // namespace kintsugi

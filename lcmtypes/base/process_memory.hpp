@@ -14,4 +14,8 @@ struct ProcessMemory {
 
 ProcessMemory process_memory();
 
+/// Returns to the system what is free anywhere in the heap: by itself the heap returns only what is
+/// free at its end, and less the longer it is used. It takes some milliseconds.
+void return_free_memory();
+
 }  // namespace kintsugi

@@ -5,9 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include <malloc.h>
-
 #include "lcmtypes/base/logger.hpp"
+#include "lcmtypes/base/process_memory.hpp"
 #include "lcmtypes/base/thread_priority.hpp"
 
 namespace kintsugi::mapper {
@@ -33,7 +32,7 @@ void StoreLimit::poll() {
   thread_ = std::thread([this] {
     lower_priority_of_thread();
     rewrite();
-    malloc_trim(0);  // by itself the heap gives back only what is free at its end
+    return_free_memory();
     is_working_ = false;
   });
 }

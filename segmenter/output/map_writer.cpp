@@ -5,6 +5,7 @@
 
 #include "lcmtypes/base/file_sync.hpp"
 #include "lcmtypes/base/logger.hpp"
+#include "lcmtypes/base/process_memory.hpp"
 #include "segmenter/io/map_files.hpp"
 #include "segmenter/io/saved_map.hpp"
 #include "segmenter/io/views_file.hpp"
@@ -100,6 +101,7 @@ void MapWriter::attempt(const std::string& name, std::int64_t number, const Acti
   std::string why;
   try {
     action();
+    return_free_memory();  // of what was written, and of what the map has replaced meanwhile
   } catch (const std::exception& error) {  // segmentation continues
     why = std::string("the map is not written: ") + error.what();
   }

@@ -6,10 +6,10 @@
 #include <set>
 #include <utility>
 
-#include <malloc.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include "lcmtypes/base/process_memory.hpp"
 #include "lcmtypes/base/thread_priority.hpp"
 #include "mapper/core/reactivation/visible_space.hpp"
 #include "mapper/core/volume/blocks_around.hpp"
@@ -31,7 +31,7 @@ auto in_background(Function function) {
       Function captured = std::move(function);  // is destroyed on this thread, too
       return alone.execute(captured);
     }();
-    malloc_trim(0);  // by itself the heap gives back only what is free at its end
+    return_free_memory();
     return result;
   });
 }

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include <malloc.h>
-
 #include "lcmtypes/base/argument_check.hpp"
 #include "lcmtypes/base/process_memory.hpp"
 #include "lcmtypes/base/stopwatch.hpp"
@@ -44,7 +42,7 @@ class ProgressReporter {
 
 /// First returns to the system what earlier measurements have freed, so that growth is our own.
 std::int64_t resident_bytes_at_begin() {
-  malloc_trim(0);
+  return_free_memory();
   return process_memory().resident_bytes;
 }
 

@@ -30,8 +30,8 @@ constexpr std::size_t kPoses = 3;  // tried of each object
 constexpr float kLeastAgreement =
     0.5F;  // of the candidate with an object: else most of it is something else
 
-// Of the score of the best pose of a search, which is roughly refined: what agrees by less than half
-// of what is needed is not the object.
+// Of the score of the best pose of a search, which is roughly refined: what agrees by less than
+// half of what is needed is not the object.
 constexpr float kLeastPromise = kLeastScore / 2;
 
 // A third of what is known of an object, as when it is seen from another side; of less, too many
