@@ -1,6 +1,7 @@
 """The sections of scripts/bench about objects: what is taught, how a library is grown, and its tables."""
 
 import json
+import shutil
 import struct
 import sys
 import tempfile
@@ -120,6 +121,19 @@ class Tables(unittest.TestCase):
         self.assertEqual(object_times.cost_rows(costs)[1], ["1,000", "kitchen", "7.00", 954, "25.0", "26.2"])
         large = {object_times.LARGE_MAP: (0.3, 970, 10.0)}
         self.assertEqual(object_times.cost_rows(large)[0][:2], ["40", "kitchen, 4 million points"])
+
+    def test_the_cost_is_that_of_the_middle_run(self):
+        times_s = iter([9.5, 7.5, 8.0, 7.9, 9.0])
+
+        class Run:
+            folder = Path(tempfile.mkdtemp())
+
+            def kintsugi(self, *_, log):
+                text = f"info: 40 objects prepared in 0.3 s, 946 segments examined in {next(times_s)} s of processor time"
+                (self.folder / f"{log}.log").write_text(text)
+
+        self.addCleanup(shutil.rmtree, Run.folder)
+        self.assertEqual(object_times.cost_of(Run(), Path("kitchen.map"), Path("library")), (0.3, 946, 8.0))
 
     def test_errors_are_of_the_objects_of_the_size(self):
         outcomes = [{"points": "900", "translation_cm": "1.00", "rotation_deg": "4.00"},
