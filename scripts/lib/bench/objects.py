@@ -55,7 +55,7 @@ def objects(run):
     rooms, pairs, library, names = taught_rooms(run)
     office = rooms["office"]
     changed = {name: changes(run, office, rooms[name], pairs[name]) for name in ("office-later", "office-again")}
-    places = {name: [place(run, office, scene) for scene in scenes] for name, scenes in PLACES.items()}
+    places = {name: [place_and_truth(run, office, scene) for scene in scenes] for name, scenes in PLACES.items()}
     found = {name: [detections(run, *each, library, names) for each in of_name] for name, of_name in places.items()}
     alone = {name: found_alone(run, of_name, library, names) for name, of_name in places.items()}
     return (markdown(["what", "measured", "target"], target_rows(changed, found)) + "\n" +
@@ -106,14 +106,14 @@ def taught(run, office, pairs):
     return library / "objects", sorted(folder.name for folder in (library / "objects").iterdir() if folder.is_dir())
 
 
-def place(run, office, scene):
+def place_and_truth(run, office, scene):
     """The scene's room, which is mapped here where it is not mapped yet, and the file of its truth."""
     here = mapped(run, Input(re.sub(r"\W+", "-", scene), address=f"synthetic://{scene}"))
     return here, truth_between(run, office, here)
 
 
 def found_alone(run, places, library, names):
-    """What who has taught only one object finds of it: as detections(), for each object and each place."""
+    """As detections(), for each object in a library of its own and each place."""
     found = []
     for name in names:
         only = run.folder / "objects_alone" / name
