@@ -40,6 +40,11 @@ bool share_segments(const Recognition& a, const Recognition& b) {
       [&ids](std::uint32_t id) { return std::binary_search(ids.begin(), ids.end(), id); });
 }
 
+/// Of one object, or of one surface: if one holds, the other may not.
+bool are_rivals(const Recognition& a, const Recognition& b) {
+  return a.model == b.model || share_segments(a, b);
+}
+
 bool is_same(const Placement& a, const Placement& b) {
   return a.X_WO.matrix() == b.X_WO.matrix() && a.segment_ids == b.segment_ids;
 }
@@ -195,13 +200,13 @@ Recognition Detector::followed(const Recognition& last) const {
 }
 
 /// What was recognised there is told when nothing waits that may tell otherwise: its other
-/// segments, and those where the object was before.
+/// segments, those where the object was before, and those of what was told there.
 void Detector::hurry_what_decides(std::span<const std::uint32_t> examined) {
   for (const std::uint32_t segment : examined) {
     for (const Recognition& recognition : recognitions_.at(segment)) {
       for (const std::uint32_t id : recognition.placement.segment_ids) waiting_.hurry(id);
       for (const Detection& detection : detections_) {
-        if (!is_active(detection) || detection.recognition.model != recognition.model) continue;
+        if (!is_active(detection) || !are_rivals(detection.recognition, recognition)) continue;
         for (const std::uint32_t id : detection.recognition.placement.segment_ids) {
           waiting_.hurry(id);
         }
@@ -319,15 +324,16 @@ std::vector<Recognition> Detector::certain() const {
   return best;
 }
 
-/// While all is examined once more: whether something else was told of these segments, or this
-/// object elsewhere, and it is not known yet whether that holds.
+/// While all is examined once more: whether it is not known yet if this object, which was told
+/// elsewhere and may be found there at any segment, or something else that was told of these
+/// segments, holds.
 bool Detector::is_disputed(const Recognition& recognition,
                            const std::set<std::int32_t>& kept) const {
   if (!is_checking_all_ || waiting_.empty()) return false;
   return std::ranges::any_of(detections_, [&](const Detection& detection) {
     if (!is_active(detection) || kept.contains(detection.number)) return false;
-    return detection.recognition.model == recognition.model ||
-           share_segments(detection.recognition, recognition);
+    if (detection.recognition.model == recognition.model) return true;
+    return share_segments(detection.recognition, recognition) && is_waiting(detection.recognition);
   });
 }
 

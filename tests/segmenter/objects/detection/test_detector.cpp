@@ -473,6 +473,29 @@ TEST(Detector, ExaminesAgainLastWhatWasTold) {
   }
 }
 
+TEST(Detector, TellsWhatIsInsteadOfSomethingBeforeAllIsExaminedAgain) {
+  const ObservedMap map = copies_of(box_on_table(), 4);
+  Detector detector(box_and_ball(), 0.01F);
+  give(detector, map, kSecond_us, {kTable, kBall, 10 + kBall, 20 + kBall, 30 + kBox});
+  examine(detector);
+  ASSERT_THAT(names_of(detector), ElementsAre("ball", "ball", "ball", "box"));
+  ObservedMap exchanged = map;  // where the last ball was is a box
+  for (std::uint32_t& id : exchanged.segment_ids) {
+    if (id == 20 + kBox)
+      id = 20 + kBall;
+    else if (id == 20 + kBall)
+      id = kNoSegment;
+  }
+  give(detector, exchanged, 2 * kSecond_us, {20 + kBall});
+  detector.examine_all();
+  const auto num_boxes = [&] { return std::ranges::count(names_of(detector), "box"); };
+  while (detector.num_waiting() > 0 && num_boxes() < 2) detector.examine_next();
+  EXPECT_GE(detector.num_waiting(), 2U) << "what was told";
+  EXPECT_EQ(std::ranges::count(names_of(detector), "ball"), 3) << "nothing is gone yet";
+  examine(detector);
+  EXPECT_THAT(names_of(detector), ElementsAre("ball", "ball", "box", "box"));
+}
+
 TEST(Detector, DoesNotLetSegmentsWaitThatAreGone) {
   Detector detector(box_and_ball(), 0.01F);
   give(detector, box_on_table(), kSecond_us);
