@@ -324,9 +324,9 @@ std::vector<Recognition> Detector::certain() const {
   return best;
 }
 
-/// While all is examined once more: whether it is not known yet if this object, which was told
-/// elsewhere and may be found there at any segment, or something else that was told of these
-/// segments, holds.
+/// While all is examined once more: whether something that was told and speaks against it may still
+/// be found again: this object elsewhere, at any segment that waits, or something else of these
+/// segments, at one of its own.
 bool Detector::is_disputed(const Recognition& recognition,
                            const std::set<std::int32_t>& kept) const {
   if (!is_checking_all_ || waiting_.empty()) return false;

@@ -479,7 +479,7 @@ TEST(Detector, TellsWhatIsInsteadOfSomethingBeforeAllIsExaminedAgain) {
   give(detector, map, kSecond_us, {kTable, kBall, 10 + kBall, 20 + kBall, 30 + kBox});
   examine(detector);
   ASSERT_THAT(names_of(detector), ElementsAre("ball", "ball", "ball", "box"));
-  ObservedMap exchanged = map;  // where the last ball was is a box
+  ObservedMap exchanged = map;  // what was the segment of the last ball is that of a box
   for (std::uint32_t& id : exchanged.segment_ids) {
     if (id == 20 + kBox)
       id = 20 + kBall;
