@@ -43,10 +43,8 @@ LogReader::LogReader(const std::filesystem::path& path, const MessageTrust& trus
       guard_(trust, MessageGuard::Source::kLog, path.string()) {
   std::error_code error;
   if (std::filesystem::is_directory(path_, error)) fail(path_, "is a folder, expected an LCM log");
-  const auto size = std::filesystem::file_size(path_, error);
-  if (error) fail(path_, "cannot be read: " + error.message());
-  if (size == 0) fail(path_, "is empty");
-  size_ = static_cast<std::int64_t>(size);
+  size_ = size_of_file();
+  if (size_ == 0) fail(path_, "is empty");
   file_.open(path_, std::ios::binary);
   if (!file_) fail(path_, std::string("cannot be opened: ") + std::strerror(errno));
   EventHeader header{};
@@ -55,6 +53,13 @@ LogReader::LogReader(const std::filesystem::path& path, const MessageTrust& trus
   }
   rewind();
   check_signatures(trust);
+}
+
+std::int64_t LogReader::size_of_file() const {
+  std::error_code error;
+  const auto size = std::filesystem::file_size(path_, error);
+  if (error) fail(path_, "cannot be read: " + error.message());
+  return static_cast<std::int64_t>(size);
 }
 
 /// Throws now what would otherwise be an empty map, or refused by every decoder, much later.
@@ -99,6 +104,16 @@ std::optional<LogEvent> LogReader::next() {
     }
   }
   return {};
+}
+
+void LogReader::go_on() {
+  size_ = size_of_file();
+  if (is_cut_off_) {
+    damage_.reset();
+    is_cut_off_ = false;
+  }
+  file_.clear();
+  file_.seekg(position_);
 }
 
 /// The next event as it is in the file.

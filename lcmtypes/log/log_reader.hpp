@@ -44,11 +44,17 @@ class LogReader {
   /// The damage is that the last event is incomplete, as after a writer was killed.
   bool is_cut_off() const { return is_cut_off_; }
 
+  /// For a log that is being written: next() goes on with what has been appended since, also after
+  /// an event that was cut off because the rest of it was not written yet.
+  /// @throws std::runtime_error when the size of the file cannot be read
+  void go_on();
+
   /// Bytes of all events up to the one that next() has returned; its data, with a signature, ends
   /// here.
   std::int64_t bytes_read() const { return position_; }
 
  private:
+  std::int64_t size_of_file() const;
   void check_signatures(const MessageTrust& trust);
   void rewind();
   std::optional<LogEvent> read_event();

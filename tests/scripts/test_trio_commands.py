@@ -35,6 +35,7 @@ class CommandTest(unittest.TestCase):
         self.program("segmenter", LASTS)
         self.program("viewer", FINISHES)
         self.program("status", STATUS)
+        self.program("complete-log", LASTS)
         write_program(self.programs / "lcm-logger", LOGGER)
         write_program(self.programs / "lcm-logplayer", FINISHES)
 
@@ -81,6 +82,7 @@ class Trio(CommandTest):
         self.assertIn("run/run.lcm", said)
         self.assertIn("0 pictures of the run", said)
         self.assertEqual((self.work / "run/run.lcm").read_text(), "a log\n")
+        self.assertEqual(self.call("kintsugi-complete-log"), ["run/run.lcm.partial"])
         self.assertFalse((self.work / "run/run.lcm.partial").exists())
         self.assertEqual(list((self.work / "run").glob("*.pid")), [])
 

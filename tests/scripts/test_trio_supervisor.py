@@ -52,8 +52,8 @@ class SupervisorTest(FolderTest):
         patch.start()
         self.addCleanup(patch.stop)
 
-    def supervisor(self, *processes, logger=None):
-        supervisor = Supervisor(self.folder, self.status, list(processes), logger)
+    def supervisor(self, *processes, logger=None, completion=None):
+        supervisor = Supervisor(self.folder, self.status, list(processes), logger, completion)
         for process in [*processes[1:], processes[0]]:
             process.start()
         return supervisor
@@ -210,6 +210,47 @@ class SupervisorTest(FolderTest):
         self.assertFalse(supervisor.watch())
         self.assertIn("lcm-logger ended early (exit code 1)", self.said)
         self.assertIn("  logger: no space", self.said)
+
+    def test_the_log_is_completed_before_those_end_that_send_again(self):
+        mapper, segmenter, completion = (self.until_term(name) for name in ("mapper", "segmenter", "completion"))
+        supervisor = self.supervisor(mapper, segmenter, self.shell("viewer", "sleep 0.2"), completion=completion)
+        completion.start()
+        self.up(mapper, segmenter, completion)
+        self.assertTrue(supervisor.watch())
+        with open(self.folder.file("ends"), encoding="utf-8") as ends:
+            self.assertEqual(ends.read().split(), ["completion", "segmenter", "mapper"])
+
+    def test_a_log_that_is_not_whole_is_told_and_no_failure(self):
+        completion = self.shell("completion", "trap 'echo kintsugi-complete-log: lacks 3; exit 2' TERM; echo up; "
+                                "while :; do sleep 0.02; done")
+        supervisor = self.supervisor(self.shell("mapper", UNTIL_TERM), self.shell("viewer", "sleep 0.2"),
+                                     completion=completion)
+        completion.start()
+        self.up(completion)
+        self.assertTrue(supervisor.watch())
+        supervisor.tell_failures()
+        self.assertIn("run.lcm is not whole: kintsugi-complete-log: lacks 3", self.said)
+
+    def test_a_run_goes_on_without_who_completes_its_log(self):
+        completion = self.shell("completion", "echo no bus; exit 1")
+        viewer = self.shell("viewer", "sleep 0.3")
+        supervisor = self.supervisor(self.shell("mapper", UNTIL_TERM), viewer, completion=completion)
+        completion.start()
+        self.assertTrue(wait_until(lambda: not completion.running))
+        self.assertTrue(supervisor.watch())
+        self.assertIn("kintsugi-complete-log ended early (exit code 1)", self.said)
+        self.assertIn("  completion: no bus", self.said)
+
+    def test_who_completes_the_log_does_not_delay_a_stop_at_once(self):
+        completion = self.shell("completion", "trap '' TERM; echo up; while :; do sleep 0.02; done")
+        mapper, viewer = self.until_term("mapper"), self.until_term("viewer")
+        supervisor = self.supervisor(mapper, viewer, completion=completion)
+        completion.start()
+        self.up(mapper, viewer, completion)
+        supervisor.request_stop()
+        supervisor.request_stop()
+        self.assertTrue(supervisor.watch())
+        self.assertFalse(completion.running)
 
     def test_failures_and_what_to_do_are_told_again(self):
         viewer = self.shell("viewer", "echo kintsugi-viewer: no space; echo bye; exit 1")

@@ -44,8 +44,8 @@ def corrections(log):
 
 
 def measured(run, name):
-    """What kintsugi-evaluate measures of the log of the bus. Its exit code is 1 when lcm-logger, which asks for nothing
-    again, has missed a chunk: what that carried counts as not seen."""
+    """What kintsugi-evaluate measures of the log of the bus. Its exit code is 1 when the log lacks a chunk, for instance of
+    what the camera saw, which is not sent again: what that carried counts as not seen."""
     file = run.folder / name / "live.json"
     run.kintsugi("evaluate", "--live", run.folder / name / "run.lcm", "--json", file, may_fail=True)
     if not file.exists():

@@ -51,8 +51,8 @@ def walk_in_large_map(run, library, num_points):
 
 
 def measured(run, name):
-    """What the log of the bus tells. The exit code is 1 when lcm-logger, which asks for nothing again, has missed a
-    chunk: then the last patch that it has may be an earlier one."""
+    """What the log of the bus tells. The exit code is 1 when the log lacks a chunk: then the last patch that it has may be an
+    earlier one."""
     file = run.folder / f"{name}.json"
     file.unlink(missing_ok=True)
     run.kintsugi("evaluate", "--detection-times", run.folder / name / "run.lcm", "--json", file, may_fail=True)

@@ -51,7 +51,8 @@ def trio(arguments):
     if choice.resume:
         choice = recalled(choice.out, arguments)
     network.use_bus_key(choice.bus_key, choice.started_in)
-    check_programs([*choice.only, "status"], ["setpriv"] if choice.no_log else ["setpriv", "lcm-logger"])
+    check_programs([*choice.only, "status", *([] if choice.no_log else ["complete-log"])],
+                   ["setpriv"] if choice.no_log else ["setpriv", "lcm-logger"])
     network.choose_network(choice.private, this_command())
     if "mapper" in choice.only and not choice.private:  # nobody else is in a private network
         refuse_second_mapper(choice)
@@ -95,17 +96,18 @@ def run_trio(choice, folder):
             "detector": detector_process}
     watched = [make[name](choice, folder) for name in choice.only]
     recording = None if choice.no_log else Recording(folder.path, choice.durable)
-    logger = logger_process(folder, recording) if recording else None
+    loggers = logger_processes(folder, recording) if recording else []
     status_period_s = LONG_RUN_STATUS_S if choice.is_long else 0
-    with supervised(folder, watched, logger, map_name(choice), status_period_s) as supervisor:
-        if logger:
+    with supervised(folder, watched, loggers, map_name(choice), status_period_s) as supervisor:
+        if recording:
             recording.begin()
-            logger.start()
+            for process in loggers:
+                process.start()
         for process in [*watched[1:], watched[0]] if "mapper" in choice.only else watched:
             process.start()
         good = supervisor.watch()
-        if logger:
-            good = end_recording(logger, recording) and good
+        if recording:
+            good = end_recording(loggers[0], recording) and good
         show_summary(folder, watched)
         tell_what_matters(supervisor, choice, watched[0])
     return 0 if good else 1
@@ -120,9 +122,9 @@ def tell_what_matters(supervisor, choice, leader):
 
 
 @contextlib.contextmanager
-def supervised(folder, processes, logger=None, its_map=None, status_period_s=0):
+def supervised(folder, processes, loggers=(), its_map=None, status_period_s=0):
     """Yields a supervisor that handles signals. When the block ends, for whatever reason, its processes are ended."""
-    supervisor = Supervisor(folder, Status(folder.file("status.csv"), its_map, status_period_s), processes, logger)
+    supervisor = Supervisor(folder, Status(folder.file("status.csv"), its_map, status_period_s), processes, *loggers)
     supervisor.install_signal_handlers()
     try:
         yield supervisor
@@ -167,10 +169,12 @@ def detector_process(choice, folder):
     return Process("detector", [*command_of("detector"), *with_given(own, choice.detector)], folder)
 
 
-def logger_process(folder, recording):
+def logger_processes(folder, recording):
+    """The one that writes the log, and the one that requests what the log lacks."""
     url = os.environ.get("LCM_DEFAULT_URL")
-    return Process("logger", ["lcm-logger", "-q", "-a", *([f"--lcm-url={url}"] if url else []),
-                              str(recording.partial)], folder)
+    return [Process("logger", ["lcm-logger", "-q", "-a", *([f"--lcm-url={url}"] if url else []),
+                               str(recording.partial)], folder),
+            Process("completion", [program("complete-log"), str(recording.partial)], folder)]
 
 
 def end_recording(logger, recording):

@@ -1,4 +1,5 @@
-"""The log of the bus, which lcm-logger writes: it appends, and syncs what it has written every 0.1 s."""
+"""The log of the bus, which lcm-logger writes: it appends, and syncs what it has written every 0.1 s. What it has missed
+kintsugi-complete-log requests."""
 
 import os
 import struct

@@ -18,8 +18,8 @@ RUN_FILES = (
     "segments*.csv", "final.png", "final.part*.png", "final_*.png", "map_final*.png", "segments_final*.png",
     "snapshot_*.png", "highlight.png", "plots*.png", "timeline_*.png", "run.mp4", "*.partial.*", "trajectory.txt",
     "trajectory.part*.txt", "status.csv", "mapper.log", "segmenter.log", "viewer.log",
-    "detector.log", "objects.json", "logger.log", "trio.options")
-PROCESSES_WITH_PID_FILE = ("mapper", "segmenter", "viewer", "detector", "logger", "player")
+    "detector.log", "objects.json", "logger.log", "completion.log", "trio.options")
+PROCESSES_WITH_PID_FILE = ("mapper", "segmenter", "viewer", "detector", "logger", "completion", "player")
 
 
 class RunFolder:

@@ -17,13 +17,15 @@ LEADING_PROCESSES = ("mapper", "player")
 class Supervisor:
     """Watches the processes of a run. The first of `processes` is the leader, the mapper or the player of a
     log: it is stopped last, because the others ask it for what they miss. The last one, the viewer if there
-    is one, knows when the run is complete: it exits by itself. `logger` records the bus; may be None."""
+    is one, knows when the run is complete: it exits by itself. `logger` records the bus, and `completion` requests
+    what its log lacks; both may be None."""
 
-    def __init__(self, folder, status, processes, logger=None):
+    def __init__(self, folder, status, processes, logger=None, completion=None):
         self.folder = folder
         self.status = status
         self.processes = processes
         self.logger = logger
+        self.completion = completion
         self.failed = False
         self.failures = []  # what ended with an error, and its reason
         self.advice = []  # what to do about them
@@ -68,6 +70,7 @@ class Supervisor:
                 self._begin_to_stop()
             if self.num_stop_requests > 1 or self._stands_still():
                 self._stop(self.last)
+        self._complete_log()
         for process in reversed(self.processes):  # each asks those before it for what it misses
             self.close(process)
         self.status.end()
@@ -76,7 +79,7 @@ class Supervisor:
     def end(self):
         """Ends what still runs, for example after an exception, within 10 s."""
         self.status.end()
-        processes = self.processes + ([self.logger] if self.logger else [])
+        processes = [process for process in (*self.processes, self.logger, self.completion) if process]
         stop(processes, signal.SIGTERM, 10)
         self.folder.remove_pid_files()
 
@@ -114,13 +117,27 @@ class Supervisor:
 
     def _check_logger(self):
         """Without the logger the run goes on, but it has failed."""
-        if not self.logger:
-            return
-        code = self.logger.take_exit_code()
+        code = self.logger.take_exit_code() if self.logger else None
         if code is not None:
             self.failed = True
             say(f"lcm-logger ended early (exit code {code}); run.lcm lacks what is on the bus from now on:")
             self.logger.show_last_words()
+        code = self.completion.take_exit_code() if self.completion else None
+        if code is not None:
+            say(f"kintsugi-complete-log ended early (exit code {code}); run.lcm lacks what lcm-logger misses from now on:")
+            self.completion.show_last_words()
+
+    def _complete_log(self):
+        """While those still run that send again what the log lacks. A log that lacks something, since who has sent it
+        has ended, is no failure of the run, but told."""
+        if not self.completion:
+            return
+        if self.num_stop_requests > 1:
+            stop([self.completion], signal.SIGKILL, STOP_TIMEOUT_S)  # it writes nothing
+            return
+        stop([self.completion], signal.SIGTERM, STOP_TIMEOUT_S)
+        if self.completion.take_exit_code() not in (None, 0):
+            self.advice += [f"run.lcm is not whole: {reason}" for reason in self.completion.reason()]
 
     def _note_disk(self):
         is_full = self.folder.is_disk_full()

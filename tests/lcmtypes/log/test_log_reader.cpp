@@ -87,6 +87,35 @@ TEST(LogReader, ReadsUpToACutAndReportsItsPlace) {
   }
 }
 
+TEST(LogReader, GoesOnWithWhatIsAppended) {
+  const TemporaryFolder folder;
+  const std::string bytes = write_log(folder / "run.lcm");
+  write(folder / "growing.lcm", bytes.substr(0, 28));
+  LogReader reader(folder / "growing.lcm");
+  int count = 0;
+  for (std::size_t size = 28; size <= bytes.size(); ++size) {
+    write(folder / "growing.lcm", bytes.substr(0, size));
+    reader.go_on();
+    while (const auto event = reader.next()) EXPECT_EQ(event->index, count++);
+    EXPECT_EQ(reader.is_cut_off(), reader.bytes_read() < static_cast<std::int64_t>(size)) << size;
+  }
+  EXPECT_EQ(count, kNumEvents);
+  EXPECT_FALSE(reader.damage());
+}
+
+TEST(LogReader, DoesNotGoOnBehindDamage) {
+  const TemporaryFolder folder;
+  const std::string bytes = write_log(folder / "run.lcm");
+  const std::string damaged = bytes + std::string(40, 'X');
+  write(folder / "damaged.lcm", damaged);
+  LogReader reader(folder / "damaged.lcm");
+  EXPECT_EQ(count_events(reader), kNumEvents);
+  write(folder / "damaged.lcm", damaged + bytes);
+  reader.go_on();
+  EXPECT_FALSE(reader.next());
+  EXPECT_THAT(reader.damage().value_or(""), HasSubstr("sync word"));
+}
+
 TEST(LogReader, StopsAtDamageInTheMiddle) {
   const TemporaryFolder folder;
   std::string bytes = write_log(folder / "run.lcm");
