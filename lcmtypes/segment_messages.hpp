@@ -213,7 +213,8 @@ struct SegmentAnswer {
   std::vector<DescribedSegment> segments;  ///< the largest first
   std::vector<SegmentContact> contacts;    ///< of each of `segments`, by ascending ids
   /// kViews: the oldest of the views that were asked for, as many as one answer may hold, in the
-  /// format of segmenter/io/views_file.hpp, with their poses as the map is corrected now.
+  /// format of segmenter/io/views_file.hpp, which is not empty without views either, with their
+  /// poses as the map is corrected now. Else empty.
   std::vector<std::uint8_t> views;
 
   bool operator==(const SegmentAnswer&) const = default;

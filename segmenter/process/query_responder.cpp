@@ -198,13 +198,14 @@ void QueryResponder::drop(const SegmentQuery& query) {
 SegmentAnswer QueryResponder::current_answer(const SegmentQuery& query) const {
   if (!needs_excerpt(query)) return answer(copy_->map, query);
   SegmentAnswer result = answer(excerpt_, query);
-  if (query.place == QueryPlace::kViews) result.views = recorded_views(query);
+  const bool is_about_views = query.place == QueryPlace::kViews && result.problem.empty();
+  if (is_about_views) result.views = recorded_views(query);
   return result;
 }
 
 std::vector<std::uint8_t> QueryResponder::recorded_views(const SegmentQuery& query) const {
   const auto all = recorded_ == nullptr ? nullptr : recorded_->views(excerpt_.map_session);
-  if (all == nullptr) return {};
+  if (all == nullptr) return view_bytes({excerpt_.map_session, excerpt_.map_name, {}});
   const auto first =
       std::ranges::lower_bound(all->views, query.changed_since, {}, &KeptView::utime);
   const auto count = std::min<std::ptrdiff_t>(kMaxViews, all->views.end() - first);

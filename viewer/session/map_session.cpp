@@ -59,6 +59,7 @@ const SmoothedCamera& MapSession::depth_camera(std::int32_t part) const {
 
 void MapSession::use(const SegmentAnswer& answer) {
   if (answer.utime < answer_utime_ || !answer.problem.empty()) return;
+  if (!answer.views.empty()) return;  // nobody has asked for segments
   answer_utime_ = answer.utime;
   answered_.clear();
   for (const DescribedSegment& segment : answer.segments) {

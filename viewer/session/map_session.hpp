@@ -30,7 +30,8 @@ class MapSession {
   void use(const CameraPose& pose);
   void use(CameraView view);
   void use(const SegmenterStatus& status) { history_.add_slice_time(status); }
-  /// Highlights the segments of the answer, if it is the newest by its time and has no problem.
+  /// Highlights the segments of the answer, if it is the newest by its time, has no problem, and is
+  /// not about views.
   void use(const SegmentAnswer& answer);
   void use(const ObjectDetection& detection, double now_s) { objects_.apply(detection, now_s); }
   void use(const DetectorStatus& status, double now_s) {

@@ -38,7 +38,6 @@ ViewSet next_views(QueryClient& segmenter, std::int64_t map_session, std::int64_
   query.changed_since = since_us;
   const SegmentAnswer answer = segmenter.ask(std::move(query), kPatience);
   if (!answer.problem.empty()) throw std::runtime_error(answer.problem);
-  if (answer.views.empty()) return {};  // it records none
   return views_of_bytes(answer.views, "the segmenter's answer");
 }
 

@@ -386,6 +386,21 @@ TEST_F(ViewerTest, HighlightsTheSegmentsOfTheNewestAnswer) {
   EXPECT_TRUE(of_floor == picture_after(answer_of(session, 60, {1})));
 }
 
+// kintsugi-objects detect asks for what the camera saw, each second.
+TEST_F(ViewerTest, AnAnswerAboutViewsChangesNoHighlight) {
+  ViewerProcess viewer = make_viewer();
+  const std::int64_t session = room_.slices.front().session;
+  add_session(viewer, session, 3, kNow_s);
+  viewer.add(answer_of(session, 10, {1}), kNow_s);
+  viewer.draw_if_due();
+  const std::size_t num_pictures = captions_.size();
+  SegmentAnswer about_views = answer_of(session, 20, {});
+  about_views.views = {1};
+  viewer.add(about_views, kNow_s);
+  viewer.draw_if_due();
+  EXPECT_EQ(num_pictures, captions_.size());
+}
+
 TEST_F(ViewerTest, LeavesAnswersOutOfTheFinalPictures) {
   std::string expected;
   for (const bool is_asked : {false, true}) {
