@@ -211,6 +211,18 @@ class SupervisorTest(FolderTest):
         self.assertIn("lcm-logger ended early (exit code 1)", self.said)
         self.assertIn("  logger: no space", self.said)
 
+    def test_nothing_is_requested_for_a_log_that_nobody_writes(self):
+        logger, completion = self.shell("logger", "exit 1"), self.until_term("completion")
+        viewer = self.shell("viewer", "sleep 0.5")
+        supervisor = self.supervisor(self.shell("mapper", UNTIL_TERM), viewer, logger=logger, completion=completion)
+        completion.start()
+        self.up(completion)
+        logger.start()
+        self.assertFalse(supervisor.watch())
+        self.assertFalse(completion.running)
+        self.assertFalse(self.folder.has("ends"))  # it was killed at once
+        self.assertNotIn("kintsugi-complete-log", self.said)
+
     def test_the_log_is_completed_before_those_end_that_send_again(self):
         mapper, segmenter, completion = (self.until_term(name) for name in ("mapper", "segmenter", "completion"))
         supervisor = self.supervisor(mapper, segmenter, self.shell("viewer", "sleep 0.2"), completion=completion)

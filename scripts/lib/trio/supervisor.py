@@ -122,6 +122,7 @@ class Supervisor:
             self.failed = True
             say(f"lcm-logger ended early (exit code {code}); run.lcm lacks what is on the bus from now on:")
             self.logger.show_last_words()
+            self._end_completion(signal.SIGKILL)  # nobody would record what it requests
         code = self.completion.take_exit_code() if self.completion else None
         if code is not None:
             say(f"kintsugi-complete-log ended early (exit code {code}); run.lcm lacks what lcm-logger misses from now on:")
@@ -130,14 +131,17 @@ class Supervisor:
     def _complete_log(self):
         """While those still run that send again what the log lacks. A log that lacks something, since who has sent it
         has ended, is no failure of the run, but told."""
-        if not self.completion:
-            return
         if self.num_stop_requests > 1:
-            stop([self.completion], signal.SIGKILL, STOP_TIMEOUT_S)  # it writes nothing
-            return
-        stop([self.completion], signal.SIGTERM, STOP_TIMEOUT_S)
-        if self.completion.take_exit_code() not in (None, 0):
+            self._end_completion(signal.SIGKILL)
+        elif self._end_completion(signal.SIGTERM) not in (None, 0):
             self.advice += [f"run.lcm is not whole: {reason}" for reason in self.completion.reason()]
+
+    def _end_completion(self, signal_number):
+        """It writes nothing, so that it can be killed. Returns its exit code; None: it does not run."""
+        if not self.completion:
+            return None
+        stop([self.completion], signal_number, STOP_TIMEOUT_S)
+        return self.completion.take_exit_code()
 
     def _note_disk(self):
         is_full = self.folder.is_disk_full()
