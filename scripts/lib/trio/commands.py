@@ -96,18 +96,18 @@ def run_trio(choice, folder):
             "detector": detector_process}
     watched = [make[name](choice, folder) for name in choice.only]
     recording = None if choice.no_log else Recording(folder.path, choice.durable)
-    loggers = logger_processes(folder, recording) if recording else []
+    logger, completion = logger_processes(folder, recording) if recording else (None, None)
     status_period_s = LONG_RUN_STATUS_S if choice.is_long else 0
-    with supervised(folder, watched, loggers, map_name(choice), status_period_s) as supervisor:
+    with supervised(folder, watched, logger, completion, map_name(choice), status_period_s) as supervisor:
         if recording:
             recording.begin()
-            for process in loggers:
-                process.start()
+            logger.start()
+            completion.start()
         for process in [*watched[1:], watched[0]] if "mapper" in choice.only else watched:
             process.start()
         good = supervisor.watch()
         if recording:
-            good = end_recording(loggers[0], recording) and good
+            good = end_recording(logger, recording) and good
         show_summary(folder, watched)
         tell_what_matters(supervisor, choice, watched[0])
     return 0 if good else 1
@@ -122,9 +122,10 @@ def tell_what_matters(supervisor, choice, leader):
 
 
 @contextlib.contextmanager
-def supervised(folder, processes, loggers=(), its_map=None, status_period_s=0):
+def supervised(folder, processes, logger=None, completion=None, its_map=None, status_period_s=0):
     """Yields a supervisor that handles signals. When the block ends, for whatever reason, its processes are ended."""
-    supervisor = Supervisor(folder, Status(folder.file("status.csv"), its_map, status_period_s), processes, *loggers)
+    status = Status(folder.file("status.csv"), its_map, status_period_s)
+    supervisor = Supervisor(folder, status, processes, logger, completion)
     supervisor.install_signal_handlers()
     try:
         yield supervisor
@@ -172,9 +173,9 @@ def detector_process(choice, folder):
 def logger_processes(folder, recording):
     """The one that writes the log, and the one that requests what the log lacks."""
     url = os.environ.get("LCM_DEFAULT_URL")
-    return [Process("logger", ["lcm-logger", "-q", "-a", *([f"--lcm-url={url}"] if url else []),
+    return (Process("logger", ["lcm-logger", "-q", "-a", *([f"--lcm-url={url}"] if url else []),
                                str(recording.partial)], folder),
-            Process("completion", [program("complete-log"), str(recording.partial)], folder)]
+            Process("completion", [program("complete-log"), str(recording.partial)], folder))
 
 
 def end_recording(logger, recording):

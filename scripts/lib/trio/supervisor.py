@@ -116,7 +116,7 @@ class Supervisor:
         return f"scripts/trio --resume --out {self.folder.path} goes on with the run"
 
     def _check_logger(self):
-        """Without the logger the run goes on, but it has failed."""
+        """Without the logger the run goes on, but it has failed. Without who completes its log, it only goes on."""
         code = self.logger.take_exit_code() if self.logger else None
         if code is not None:
             self.failed = True

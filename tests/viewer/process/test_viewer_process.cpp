@@ -399,6 +399,9 @@ TEST_F(ViewerTest, AnAnswerAboutViewsChangesNoHighlight) {
   viewer.add(about_views, kNow_s);
   viewer.draw_if_due();
   EXPECT_EQ(num_pictures, captions_.size());
+  viewer.add(answer_of(session, 15, {2}), kNow_s);  // still the newest about segments
+  viewer.draw_if_due();
+  EXPECT_EQ(num_pictures + 1, captions_.size());
 }
 
 TEST_F(ViewerTest, LeavesAnswersOutOfTheFinalPictures) {
