@@ -51,12 +51,12 @@ std::vector<NamedPicture> Painter::draw_final(MapSession& session, std::int32_t 
                                               const std::string& part_of_name) {
   const Stopwatch stopwatch;
   const ReceivedMap& map = session.map();
-  const Subject subject{map,
-                        part,
-                        map.slice_track(part),
-                        session.depth_camera(part),
-                        OverviewViewpoint{},
-                        config_.highlight};
+  Subject subject{map,
+                  part,
+                  map.slice_track(part),
+                  session.depth_camera(part),
+                  OverviewViewpoint{},
+                  config_.highlight};
   std::vector<NamedPicture> pictures;
   pictures.push_back(
       {"final", renderer_.draw_figure(subject, final_caption(map, part)), part_of_name});
@@ -64,6 +64,11 @@ std::vector<NamedPicture> Painter::draw_final(MapSession& session, std::int32_t 
   pictures.push_back({"map_final", renderer_.draw_map(subject, Coloring::kTrue), part_of_name});
   pictures.push_back(
       {"segments_final", renderer_.draw_map(subject, Coloring::kSegments), part_of_name});
+  subject.objects = session.objects();
+  if (!subject.objects.empty()) {
+    pictures.push_back(
+        {"objects_final", renderer_.draw_map(subject, Coloring::kTrue), part_of_name});
+  }
   return pictures;
 }
 

@@ -49,7 +49,8 @@ class Painter {
 
   /// Draws the final pictures, the figure first: of the part of the map in which the camera was
   /// last, then of the other parts that have points. They do not depend on poses, times and
-  /// answers, so that they are the same in every viewer that has the map; plots do.
+  /// answers, so that they are the same in every viewer that has the map; plots do, and one shows
+  /// the objects that were found, if there are any.
   std::vector<NamedPicture> draw_finals(MapSession& session);
 
   double render_ms() const { return render_ms_; }  ///< wall time of the last figure with its map

@@ -131,6 +131,7 @@ std::string ViewerProcess::final_suffix(const MapSession& session) const {
 }
 
 bool ViewerProcess::has_ended(const MapSession& session, double now_s, bool more_may_come) const {
+  if (session.is_searched(now_s)) return false;
   if (session.is_complete()) return true;
   // The mapper may have begun a new session without completing this one.
   const bool may_have_ended = session.map().final_update_seen() || !is_current(session);

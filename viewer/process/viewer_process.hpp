@@ -59,8 +59,8 @@ class ViewerProcess {
 
   /// Writes the final pictures of each session that has ended. A session has ended when the final
   /// update and every slice have arrived; or when the final update has arrived or a newer session
-  /// exists, nothing new arrived for 5 s, and nothing is expected. `more_may_come`: messages are
-  /// missing that may still be resent.
+  /// exists, nothing new arrived for 5 s, and nothing is expected; and no detector looks for
+  /// objects in it. `more_may_come`: messages are missing that may still be resent.
   void write_finals(double now_s, bool more_may_come);
   /// Every session that is kept has ended, and its final pictures are written or cannot be.
   bool finished() const { return finished_; }

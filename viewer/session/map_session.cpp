@@ -68,6 +68,16 @@ void MapSession::use(const SegmentAnswer& answer) {
   is_answer_new_ = true;
 }
 
+void MapSession::use(const ObjectDetection& detection, double now_s) {
+  if (objects_.apply(detection, now_s)) final_suffix_.reset();
+}
+
+void MapSession::use(const DetectorStatus& status, double now_s) {
+  objects_.hear_sender(status.map_session, status.session, now_s);
+  searched_s_.reset();
+  if (!status.finished) searched_s_ = now_s;
+}
+
 std::vector<DrawnObject> MapSession::objects() const {
   std::vector<DrawnObject> drawn;
   for (const ObjectDetection& detection : objects_.present()) {

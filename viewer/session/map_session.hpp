@@ -33,10 +33,8 @@ class MapSession {
   /// Highlights the segments of the answer, if it is the newest by its time, has no problem, and is
   /// not about views.
   void use(const SegmentAnswer& answer);
-  void use(const ObjectDetection& detection, double now_s) { objects_.apply(detection, now_s); }
-  void use(const DetectorStatus& status, double now_s) {
-    objects_.hear_sender(status.map_session, status.session, now_s);
-  }
+  void use(const ObjectDetection& detection, double now_s);
+  void use(const DetectorStatus& status, double now_s);
 
   const ReceivedMap& map() const { return map_; }
   /// In a part of the map; without a pose if it has not been there.
@@ -51,6 +49,9 @@ class MapSession {
 
   /// The segmenter has completed its map, and all of it has arrived.
   bool is_complete() const { return map_.final_update_seen() && map_.lag_slices() == 0; }
+  /// A detector still looks for objects in the map: it has not said that it is finished, and was
+  /// heard within kSilence_s.
+  bool is_searched(double now_s) const { return searched_s_ && now_s - *searched_s_ < kSilence_s; }
   /// Nothing has changed for kSilence_s.
   bool is_silent(double now_s) const { return now_s - last_change_s_ >= kSilence_s; }
 
@@ -105,6 +106,7 @@ class MapSession {
   std::int64_t labelled_utime_ = 0;   // of the newest slice with labels
   std::optional<Snapshot> snapshot_;  // the last one
   ObjectTable objects_;
+  std::optional<double> searched_s_;  // when a detector was heard that is not finished
   Highlight answered_;
   std::int64_t answer_utime_ = 0;
   bool is_answer_new_ = false;

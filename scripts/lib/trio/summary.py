@@ -12,6 +12,7 @@ WRITTEN_FILES = (
     ("final.png", "the map in true colour and in the colours of its segments"),
     ("map_final.png", "the whole map in true colour"),
     ("segments_final.png", "the whole map, each segment in its own colour"),
+    ("objects_final.png", "the objects that were found, in the whole map"),
     ("run.mp4", "the run as a video (H.264): the camera's image with the segments in it, and the map"),
     ("trajectory.txt", "the camera's path (TUM format)"),
     ("mapper.lcm", "everything the mapper published (scripts/replay plays it; --resume continues it)"),

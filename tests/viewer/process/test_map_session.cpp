@@ -1,3 +1,5 @@
+#include <string>
+
 #include <gtest/gtest.h>
 
 #include "viewer/session/map_session.hpp"
@@ -47,6 +49,24 @@ CloudSlice patch(std::int32_t id, std::int32_t part, std::int64_t utime) {
   return slice;
 }
 
+ObjectDetection detection_of(const std::string& name) {
+  ObjectDetection detection;
+  detection.session = 5;
+  detection.map_session = kSession;
+  detection.detection = 1;
+  detection.event_number = 1;
+  detection.name = name;
+  return detection;
+}
+
+DetectorStatus status_of_detector(bool is_finished) {
+  DetectorStatus status;
+  status.session = 5;
+  status.map_session = kSession;
+  status.finished = is_finished;
+  return status;
+}
+
 void expect_paths_apart(const MapSession& session) {
   for (const std::int32_t part : {0, 1}) {
     const CameraTrack track = session.map().received_track(part);
@@ -85,12 +105,7 @@ TEST(MapSession, AViewStandsForAPoseOfItsPart) {
 
 TEST(MapSession, HasTheObjectsThatAreNotGone) {
   MapSession session(kSession, 0.0);
-  ObjectDetection detection;
-  detection.session = 5;
-  detection.map_session = kSession;
-  detection.detection = 1;
-  detection.event_number = 1;
-  detection.name = "mug";
+  ObjectDetection detection = detection_of("mug");
   detection.box_max_O[1] = 0.25F;
   session.use(detection, 0.0);
   ASSERT_EQ(session.objects().size(), 1U);
@@ -105,6 +120,33 @@ TEST(MapSession, HasTheObjectsThatAreNotGone) {
   detection.event = DetectionEvent::kGone;
   session.use(detection, 2.0);
   EXPECT_TRUE(session.objects().empty());
+}
+
+TEST(MapSession, IsSearchedUntilTheDetectorHasFinishedOrIsSilent) {
+  MapSession session(kSession, 0.0);
+  EXPECT_FALSE(session.is_searched(0.0)) << "there is no detector";
+  session.use(status_of_detector(false), 1.0);
+  EXPECT_TRUE(session.is_searched(5.9));
+  EXPECT_FALSE(session.is_searched(6.0)) << "it was killed";
+  session.use(status_of_detector(false), 7.0);
+  EXPECT_TRUE(session.is_searched(7.0));
+  session.use(status_of_detector(true), 8.0);
+  EXPECT_FALSE(session.is_searched(8.0));
+}
+
+TEST(MapSession, HasToBeDrawnAgainWhenMoreIsKnownOfObjects) {
+  MapSession session(kSession, 0.0);
+  session.use(patch(0, 0, 1'000), 0.0);
+  session.note_final("");
+  ObjectDetection detection = detection_of("mug");
+  session.use(detection, 1.0);
+  EXPECT_TRUE(session.final_is_due(""));
+  session.note_final("");
+  session.use(detection, 2.0);  // repeated
+  EXPECT_FALSE(session.final_is_due(""));
+  detection.event_number = 2;
+  session.use(detection, 3.0);
+  EXPECT_TRUE(session.final_is_due(""));
 }
 
 }  // namespace

@@ -63,6 +63,20 @@ class ViewerTest : public ::testing::Test {
   std::set<std::int64_t> forgotten_;
 };
 
+/// Of an object of half a metre.
+ObjectDetection detection_of(std::int64_t map_session, const Eigen::Vector3f& middle_W) {
+  ObjectDetection detection;
+  detection.session = 5;
+  detection.map_session = map_session;
+  detection.detection = 1;
+  detection.event_number = 1;
+  detection.name = "mug";
+  detection.X_WO.translation() = middle_W.cast<double>();
+  std::ranges::fill(detection.box_min_O, -0.25F);
+  std::ranges::fill(detection.box_max_O, 0.25F);
+  return detection;
+}
+
 TEST_F(ViewerTest, WritesNothingWithoutAMap) {
   ViewerProcess viewer = make_viewer();
   viewer.add(room_.poses.front(), kNow_s);
@@ -463,6 +477,39 @@ TEST_F(ViewerTest, IsFinishedWhenTheFinalUpdateIsDrawn) {
   viewer.write_finals(kLater_s, false);  // nothing new to show
   viewer.close();
   EXPECT_EQ(3, viewer.status().snapshots_written);
+}
+
+TEST_F(ViewerTest, DrawsTheObjectsOfAMapWhenTheDetectorHasFinished) {
+  ViewerProcess viewer = make_viewer();
+  const std::int64_t session = room_.slices.front().session;
+  DetectorStatus status;
+  status.session = 5;
+  status.map_session = session;
+  add_session(viewer, session, 1, kNow_s);
+  viewer.add(status, kNow_s);
+  add_session(viewer, session, room_.slices.size(), kNow_s);
+  viewer.write_finals(kNow_s, false);
+  EXPECT_FALSE(exists("final.png"));
+  EXPECT_FALSE(viewer.finished());
+  const Eigen::Vector3f middle_W(room_.slices.front().points_W.front().x,
+                                 room_.slices.front().points_W.front().y,
+                                 room_.slices.front().points_W.front().z);
+  viewer.add(detection_of(session, middle_W), kNow_s);
+  status.finished = true;
+  viewer.add(status, kNow_s);
+  viewer.write_finals(kNow_s, false);
+  EXPECT_TRUE(viewer.finished());
+  EXPECT_TRUE(exists("final.png"));
+  ASSERT_TRUE(exists("objects_final.png"));
+  EXPECT_FALSE(read("objects_final.png") == read("map_final.png"));
+}
+
+TEST_F(ViewerTest, DrawsNoPictureOfObjectsWhereNoneWereFound) {
+  ViewerProcess viewer = make_viewer();
+  add_session(viewer, room_.slices.front().session, room_.slices.size(), kNow_s);
+  viewer.close();
+  EXPECT_TRUE(exists("final.png"));
+  EXPECT_FALSE(exists("objects_final.png"));
 }
 
 TEST_F(ViewerTest, WaitsForWhatMayStillBeResentAndGoesOnWithoutTheRest) {
