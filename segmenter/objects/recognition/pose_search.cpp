@@ -43,8 +43,13 @@ class TranslationVotes {
     most_ = 0;
   }
 
-  void add(const Eigen::Vector3f& t) {
-    const Eigen::Vector3f cell = (t - low_) / cell_m_;
+  /// In cells: add() is called often with differences of the same few points.
+  [[nodiscard]] Eigen::Vector3f cells(const Eigen::Vector3f& vector) const {
+    return vector / cell_m_;
+  }
+
+  /// @param cell what cells() tells of the translation from the lower corner of the box
+  void add(const Eigen::Vector3f& cell) {
     if (cell.minCoeff() < 0.0F) return;
     const Eigen::Vector3i at = cell.cast<int>();
     if ((at.array() >= size_.array()).any()) return;
@@ -68,6 +73,8 @@ class TranslationVotes {
     return {low_ + (cell.cast<float>().array() + 0.5F).matrix() * cell_m_, most_};
   }
 
+  [[nodiscard]] const Eigen::Vector3f& low() const { return low_; }
+
  private:
   Eigen::Vector3f low_;
   float cell_m_;
@@ -82,57 +89,71 @@ struct Vote {
   int votes = 0;
 };
 
-/// A seen and a model point that may be the same: like colours, and normals that a turn about the
-/// vertical can bring together.
-struct Pair {
-  Eigen::Vector3f position_O;
-  Eigen::Vector3f position_U;  ///< U: W turned so that its z is up
+/// A point of the model or of what is seen, with what its normal tells about turns about the
+/// vertical.
+struct Voter {
+  explicit Voter(const SurfacePoint& point)
+      : position(point.position),
+        lab(point.lab),
+        has_color(point.has_color),
+        normal_up(point.normal.z()),
+        normal_across(std::hypot(point.normal.x(), point.normal.y())),
+        azimuth_rad(std::atan2(point.normal.y(), point.normal.x())) {}
+
+  [[nodiscard]] bool is_upright() const { return std::abs(normal_up) > kUpright; }
+
+  Eigen::Vector3f position;
+  Eigen::Vector3f lab;
+  bool has_color;
+  float normal_up;
+  float normal_across;
+  float azimuth_rad;
 };
 
-bool may_be_same(const SurfacePoint& o, const SurfacePoint& u) {
-  const float horizontal =
-      std::hypot(o.normal.x(), o.normal.y()) * std::hypot(u.normal.x(), u.normal.y());
-  if (o.normal.z() * u.normal.z() + horizontal < kSameNormal) return false;
+using Voters = std::vector<Voter>;
+
+/// Like colours, and normals that a turn about the vertical can bring together.
+bool may_be_same(const Voter& o, const Voter& u) {
+  if (o.normal_up * u.normal_up + o.normal_across * u.normal_across < kSameNormal) return false;
   // Twice as far as colours of one thing may be: what the light changes is not known yet.
   return !o.has_color || !u.has_color ||
          (o.lab - u.lab).squaredNorm() <= 4 * kSameColor * kSameColor;
 }
 
+/// A model and a seen point that may be the same.
+struct Pair {
+  std::uint16_t o = 0;
+  std::uint16_t u = 0;
+};
+static_assert(kVotersOfModel < UINT16_MAX && kVotersSeen < UINT16_MAX);
+
+using Pairs = std::vector<Pair>;
+
 /// The pairs that speak for each turn: normals that are not upright tell it.
 struct PairsOfTurns {
-  std::vector<std::vector<Pair>> by_turn;
-  std::vector<Pair> of_all_turns;
+  std::vector<Pairs> by_turn;  ///< each pair once, at the turn that brings its normals together
+  int around = 0;              ///< it speaks for so many turns to each side, too
+  Pairs of_all_turns;
 };
 
-PairsOfTurns pairs_of_turns(const Surface& voters_O, const Surface& voters_U, int turns) {
-  PairsOfTurns result{.by_turn = std::vector<std::vector<Pair>>(static_cast<std::size_t>(turns)),
-                      .of_all_turns = {}};
+PairsOfTurns pairs_of_turns(const Voters& voters_O, const Voters& voters_U, int turns) {
   const float turn_rad = 2 * std::numbers::pi_v<float> / static_cast<float>(turns);
-  const auto azimuth = [](const SurfacePoint& point) {
-    return std::atan2(point.normal.y(), point.normal.x());
-  };
-  const auto is_upright = [](const SurfacePoint& point) {
-    return std::abs(point.normal.z()) > kUpright;
-  };
-  std::vector<float> azimuths_U;
-  azimuths_U.reserve(voters_U.size());
-  for (const SurfacePoint& u : voters_U) azimuths_U.push_back(azimuth(u));
-  const int around = static_cast<int>(std::ceil(kTurnTolerance_rad / turn_rad));
-  for (const SurfacePoint& o : voters_O) {
-    const float azimuth_O = azimuth(o);
-    for (std::size_t i = 0; i < voters_U.size(); ++i) {
-      const SurfacePoint& u = voters_U[i];
+  PairsOfTurns result{.by_turn = std::vector<Pairs>(static_cast<std::size_t>(turns)),
+                      .around = static_cast<int>(std::ceil(kTurnTolerance_rad / turn_rad)),
+                      .of_all_turns = {}};
+  for (std::size_t i = 0; i < voters_O.size(); ++i) {
+    const Voter& o = voters_O[i];
+    for (std::size_t k = 0; k < voters_U.size(); ++k) {
+      const Voter& u = voters_U[k];
       if (!may_be_same(o, u)) continue;
-      const Pair pair{o.position, u.position};
-      if (is_upright(o) || is_upright(u)) {
+      const Pair pair{static_cast<std::uint16_t>(i), static_cast<std::uint16_t>(k)};
+      if (o.is_upright() || u.is_upright()) {
         result.of_all_turns.push_back(pair);
         continue;
       }
-      const int middle =
-          static_cast<int>(std::lround((azimuths_U[i] - azimuth_O) / turn_rad)) + 2 * turns;
-      for (int turn = middle - around; turn <= middle + around; ++turn) {
-        result.by_turn[static_cast<std::size_t>(turn % turns)].push_back(pair);
-      }
+      const int turn =
+          static_cast<int>(std::lround((u.azimuth_rad - o.azimuth_rad) / turn_rad)) + 2 * turns;
+      result.by_turn[static_cast<std::size_t>(turn % turns)].push_back(pair);
     }
   }
   return result;
@@ -167,24 +188,37 @@ std::vector<Vote> votes_for_turns(const PreparedModel& model, const Surface& see
                                   const Eigen::Vector3d& up_W) {
   Pose X_UW = Pose::Identity();
   X_UW.linear() = shortest_rotation(up_W, Eigen::Vector3d::UnitZ()).toRotationMatrix();
-  const Surface voters_U = transformed(every_few(seen_W, kVotersSeen), X_UW);
-  const Surface voters_O = every_few(model.surface_O, kVotersOfModel);
+  const Surface seen_U = transformed(every_few(seen_W, kVotersSeen), X_UW);
+  const Surface some_O = every_few(model.surface_O, kVotersOfModel);
   const float cell_m = std::max(2 * model.spacing_m, model.radius_m / kCellsInRadius);
   const int turns = std::max(
       8, static_cast<int>(std::ceil(2 * std::numbers::pi_v<float> * model.radius_m / cell_m)));
-  TranslationVotes accumulator(origins_of(voters_O, voters_U, cell_m), cell_m);
+  TranslationVotes accumulator(origins_of(some_O, seen_U, cell_m), cell_m);
+  const Voters voters_O(some_O.begin(), some_O.end());
+  const Voters voters_U(seen_U.begin(), seen_U.end());
+  const PairsOfTurns pairs = pairs_of_turns(voters_O, voters_U, turns);
+  std::vector<Eigen::Vector3f> cells_U;
+  cells_U.reserve(voters_U.size());
+  for (const Voter& u : voters_U) {
+    cells_U.push_back(accumulator.cells(u.position - accumulator.low()));
+  }
+  std::vector<Eigen::Vector3f> cells_O(voters_O.size());  // turned
+  const auto vote_for = [&](const Pairs& some) {
+    for (const Pair& pair : some) accumulator.add(cells_U[pair.u] - cells_O[pair.o]);
+  };
   std::vector<Vote> votes;
   votes.reserve(static_cast<std::size_t>(turns));
-  int turn = 0;
-  const PairsOfTurns all_pairs = pairs_of_turns(voters_O, voters_U, turns);
-  for (const std::vector<Pair>& pairs : all_pairs.by_turn) {
+  for (int turn = 0; turn < turns; ++turn) {
     const Eigen::Matrix3d R_UO =
-        Eigen::AngleAxisd(2 * std::numbers::pi * turn++ / turns, Eigen::Vector3d::UnitZ())
+        Eigen::AngleAxisd(2 * std::numbers::pi * turn / turns, Eigen::Vector3d::UnitZ())
             .toRotationMatrix();
     const Eigen::Matrix3f R = R_UO.cast<float>();
+    std::ranges::transform(voters_O, cells_O.begin(),
+                           [&](const Voter& o) { return accumulator.cells(R * o.position); });
     accumulator.clear();
-    for (const std::vector<Pair>* const some : {&pairs, &all_pairs.of_all_turns}) {
-      for (const Pair& pair : *some) accumulator.add(pair.position_U - R * pair.position_O);
+    vote_for(pairs.of_all_turns);
+    for (int other = turn - pairs.around; other <= turn + pairs.around; ++other) {
+      vote_for(pairs.by_turn[static_cast<std::size_t>((other + 2 * turns) % turns)]);
     }
     const auto [t_U, count] = accumulator.best();
     if (count == 0) continue;

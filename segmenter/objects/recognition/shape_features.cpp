@@ -30,8 +30,9 @@ ShapeFeatures shape_features(const Surface& surface, float radius_m) {
   pcl::FPFHEstimation<pcl::PointNormal, pcl::PointNormal, pcl::FPFHSignature33> estimation;
   estimation.setInputCloud(cloud);
   estimation.setInputNormals(cloud);
+  // Unsorted: the sums do not depend on which neighbour is nearest.
   estimation.setSearchMethod(
-      pcl::search::KdTree<pcl::PointNormal>::Ptr(new pcl::search::KdTree<pcl::PointNormal>));
+      pcl::search::KdTree<pcl::PointNormal>::Ptr(new pcl::search::KdTree<pcl::PointNormal>(false)));
   estimation.setRadiusSearch(radius_m);
   pcl::PointCloud<pcl::FPFHSignature33> signatures;
   estimation.compute(signatures);
