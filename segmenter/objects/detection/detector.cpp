@@ -21,8 +21,9 @@ constexpr float kSameLight = 0.1F;
 // have work, and what is found is told soon, after some tens of milliseconds.
 constexpr std::size_t kManyOfCore = 2;
 
-// As a distance, see WaitingSegments::rank().
-constexpr float kAfterAll = std::numeric_limits<float>::infinity();
+// As a distance, see WaitingSegments::rank(): after all that may be an object, and before what
+// hardly is one, of which the distance is infinite.
+constexpr float kAfterOthers = std::numeric_limits<float>::max();
 
 // Of the points of an object: what is seen in n parts is searched for log2(n) times.
 constexpr std::int32_t kMuchMore = 2;
@@ -155,7 +156,7 @@ void Detector::rank_waiting(bool on_all_cores) {
   for (std::size_t i = 0; i < unranked.size(); ++i) {
     // What was told is examined once more when all else is known.
     const bool is_told = is_checking_all_ && told_of(unranked[i]) != detections_.end();
-    waiting_.rank(unranked[i], is_told ? kAfterAll : distances[i]);
+    waiting_.rank(unranked[i], is_told ? kAfterOthers : distances[i]);
   }
 }
 
@@ -200,16 +201,14 @@ Recognition Detector::followed(const Recognition& last) const {
 }
 
 /// What was recognised there is told when nothing waits that may tell otherwise: its other
-/// segments, those where the object was before, and those of what was told there.
+/// segments, those where the object was told before, and those of what was told there.
 void Detector::hurry_what_decides(std::span<const std::uint32_t> examined) {
   for (const std::uint32_t segment : examined) {
     for (const Recognition& recognition : recognitions_.at(segment)) {
       for (const std::uint32_t id : recognition.placement.segment_ids) waiting_.hurry(id);
       for (const Detection& detection : detections_) {
         if (!is_active(detection) || !are_rivals(detection.recognition, recognition)) continue;
-        for (const std::uint32_t id : detection.recognition.placement.segment_ids) {
-          waiting_.hurry(id);
-        }
+        for (const std::uint32_t id : segments_at(detection)) waiting_.hurry(id);
       }
     }
   }
@@ -233,7 +232,8 @@ void Detector::update_detections() {
   }
   std::erase_if(others, [&](const Recognition* each) { return is_disputed(*each, kept); });
   for (Detection& detection : detections_) {
-    if (!is_active(detection) || kept.contains(detection.number)) continue;
+    // While all is examined once more, an object may be told elsewhere before it is gone here.
+    if (is_checking_all_ || !is_active(detection) || kept.contains(detection.number)) continue;
     if (is_undecided(detection) || is_still_there(detection, best)) kept.insert(detection.number);
   }
   for (const Recognition* const recognition : others) {
@@ -249,9 +249,8 @@ void Detector::update_detections() {
     tell(*detection, has_moved ? DetectionEvent::kMoved : DetectionEvent::kFound);
   }
   for (Detection& detection : detections_) {
-    if (is_active(detection) && !kept.contains(detection.number)) {
-      tell(detection, DetectionEvent::kGone);
-    }
+    if (!is_active(detection) || kept.contains(detection.number)) continue;
+    if (!is_undecided(detection)) tell(detection, DetectionEvent::kGone);
   }
 }
 
@@ -303,6 +302,19 @@ bool Detector::is_near(const Detection& detection, const Recognition& recognitio
   return distance_m(detection, recognition) < recognizer_->radius_m(recognition.model) / 2;
 }
 
+/// Where a detection may be found again: its segments, and all that lie there now.
+std::set<std::uint32_t> Detector::segments_at(const Detection& detection) const {
+  const auto& [model, placement, searched_points] = detection.recognition;
+  std::set<std::uint32_t> segments = recognizer_->segments_around(model, placement, scene_);
+  segments.insert(placement.segment_ids.begin(), placement.segment_ids.end());
+  return segments;
+}
+
+bool Detector::may_be_found_again(const Detection& detection) const {
+  return std::ranges::any_of(segments_at(detection),
+                             [this](std::uint32_t id) { return waiting_.contains(id); });
+}
+
 bool Detector::is_waiting(const Recognition& recognition) const {
   return std::ranges::any_of(recognition.placement.segment_ids,
                              [this](std::uint32_t id) { return waiting_.contains(id); });
@@ -325,22 +337,19 @@ std::vector<Recognition> Detector::certain() const {
 }
 
 /// While all is examined once more: whether something that was told and speaks against it may still
-/// be found again: this object elsewhere, at any segment that waits, or something else of these
-/// segments, at one of its own.
+/// be found again, where it was: this object elsewhere, or something else of these segments.
 bool Detector::is_disputed(const Recognition& recognition,
                            const std::set<std::int32_t>& kept) const {
   if (!is_checking_all_ || waiting_.empty()) return false;
   return std::ranges::any_of(detections_, [&](const Detection& detection) {
     if (!is_active(detection) || kept.contains(detection.number)) return false;
-    if (detection.recognition.model == recognition.model) return true;
-    return share_segments(detection.recognition, recognition) && is_waiting(detection.recognition);
+    return are_rivals(detection.recognition, recognition) && may_be_found_again(detection);
   });
 }
 
 /// While the map grows, segments are cut anew, and then an object is not always recognised in one
 /// of them; it is not gone as long as the map shows it where it was, and nothing else there.
 bool Detector::is_still_there(Detection& detection, const std::vector<Recognition>& best) {
-  if (is_checking_all_) return false;  // what is found depends on the map alone
   Recognition now = followed(detection.recognition);
   const bool is_replaced = std::ranges::any_of(
       best, [&now](const Recognition& other) { return share_segments(now, other); });

@@ -95,7 +95,9 @@ class Detector {
                                     const std::set<std::int32_t>& kept);
   [[nodiscard]] double distance_m(const Detection& detection, const Recognition& recognition) const;
   [[nodiscard]] bool is_near(const Detection& detection, const Recognition& recognition) const;
+  [[nodiscard]] std::set<std::uint32_t> segments_at(const Detection& detection) const;
   [[nodiscard]] bool is_waiting(const Recognition& recognition) const;
+  [[nodiscard]] bool may_be_found_again(const Detection& detection) const;
   [[nodiscard]] bool is_undecided(const Detection& detection) const;
   [[nodiscard]] bool is_disputed(const Recognition& recognition,
                                  const std::set<std::int32_t>& kept) const;

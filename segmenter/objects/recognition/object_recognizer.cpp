@@ -180,6 +180,12 @@ Placement ObjectRecognizer::followed(std::size_t model, const Placement& last,
   return moved.score() < same.score() ? same : moved;
 }
 
+std::set<std::uint32_t> ObjectRecognizer::segments_around(std::size_t model,
+                                                          const Placement& placement,
+                                                          const Scene& scene) const {
+  return segmenter::segments_around(prepared(model), scene, placement.X_WO);
+}
+
 bool is_recognized(const Placement& placement) {
   return placement.is_distinct && placement.score() >= kLeastScore &&
          placement.seen >= kLeastSeen && placement.own >= kLeastOwn &&

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include "segmenter/objects/model/object_model.hpp"
@@ -61,6 +62,11 @@ class ObjectRecognizer {
   /// small part of a search.
   [[nodiscard]] Placement followed(std::size_t model, const Placement& last,
                                    const Scene& scene) const;
+
+  /// The segments that have points in the box of an object there.
+  [[nodiscard]] std::set<std::uint32_t> segments_around(std::size_t model,
+                                                        const Placement& placement,
+                                                        const Scene& scene) const;
 
  private:
   struct Known;

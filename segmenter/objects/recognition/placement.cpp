@@ -234,4 +234,16 @@ Placement placement_of(const PreparedModel& model, const Scene& scene,
   return placement;
 }
 
+std::set<std::uint32_t> segments_around(const PreparedModel& model, const Scene& scene,
+                                        const Pose& X_WO) {
+  std::set<std::uint32_t> segments;
+  std::uint32_t last = kNoSegment;
+  scene.surface().visit(box_around(model, X_WO), [&](const SurfacePoint&, std::uint32_t segment) {
+    if (segment != last) segments.insert(segment);
+    last = segment;
+  });
+  segments.erase(kNoSegment);
+  return segments;
+}
+
 }  // namespace kintsugi::segmenter

@@ -2,6 +2,7 @@
 // Whether an object is really where it could be.
 
 #include <cstdint>
+#include <set>
 #include <vector>
 
 #include "segmenter/objects/recognition/pose_hypothesis.hpp"
@@ -45,5 +46,9 @@ inline constexpr float kLeastScore = 0.6F;
 /// half.
 Placement placement_of(const PreparedModel& model, const Scene& scene,
                        const PoseHypothesis& hypothesis);
+
+/// The segments that have points in the box of the object there.
+std::set<std::uint32_t> segments_around(const PreparedModel& model, const Scene& scene,
+                                        const Pose& X_WO);
 
 }  // namespace kintsugi::segmenter

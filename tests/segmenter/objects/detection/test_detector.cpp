@@ -473,6 +473,43 @@ TEST(Detector, ExaminesAgainLastWhatWasTold) {
   }
 }
 
+TEST(Detector, TellsWhatHasMovedBeforeAllIsExaminedAgain) {
+  const ObservedMap map = copies_of(box_on_table(), 4);
+  Detector detector(box_and_ball(), 0.01F);
+  give(detector, map, kSecond_us, {kTable, kBox, kBall, 10 + kBall, 20 + kBall});
+  examine(detector);
+  ASSERT_THAT(names_of(detector), ElementsAre("ball", "ball", "ball", "box"));
+  const int number = detection_of(detector, "box").number;
+
+  take_away(detector, kBox, 2 * kSecond_us);
+  give(detector, map, 2 * kSecond_us, {30 + kBox});
+  detector.examine_all();
+  const auto has_moved = [&] {
+    return detection_of(detector, "box").event == DetectionEvent::kMoved;
+  };
+  while (detector.num_waiting() > 0 && !has_moved()) detector.examine_next();
+  EXPECT_GE(detector.num_waiting(), 2U) << "what was told";
+  examine(detector);
+  EXPECT_THAT(names_of(detector), ElementsAre("ball", "ball", "ball", "box"));
+  EXPECT_EQ(detection_of(detector, "box").number, number);
+}
+
+TEST(Detector, TellsNoSecondOneWhileTheFirstMayBeFoundAgain) {
+  const ObservedMap map = copies_of(box_on_table(), 2);
+  Detector detector(box_and_ball(), 0.01F);
+  give(detector, map, kSecond_us, {kTable, kBox});
+  examine(detector);
+  const int number = detection_of(detector, "box").number;
+  give(detector, map, 2 * kSecond_us, {10 + kBox});
+  detector.examine_all();
+  while (detector.num_waiting() > 0) {
+    detector.examine_next();
+    EXPECT_NE(detector.detections().front().event, DetectionEvent::kMoved);
+  }
+  EXPECT_THAT(names_of(detector), ElementsAre("box", "box"));
+  EXPECT_EQ(detector.detections().front().number, number);
+}
+
 TEST(Detector, TellsWhatIsInsteadOfSomethingBeforeAllIsExaminedAgain) {
   const ObservedMap map = copies_of(box_on_table(), 4);
   Detector detector(box_and_ball(), 0.01F);
