@@ -13,6 +13,11 @@ struct MapView {
   Pose X_WC = Pose::Identity();         ///< as the map is corrected now
   Intrinsics intrinsics;                ///< of the small depth image, pixels
   std::vector<std::uint16_t> depth_mm;  ///< along C's z, row after row; 0: not measured
+
+  bool operator==(const MapView& other) const {
+    return utime == other.utime && X_WC.matrix() == other.X_WC.matrix() &&
+           intrinsics == other.intrinsics && depth_mm == other.depth_mm;
+  }
 };
 
 }  // namespace kintsugi::segmenter

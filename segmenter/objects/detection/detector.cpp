@@ -82,9 +82,11 @@ void Detector::set_piece(std::int32_t id, LabelledMap::Points points_W,
   for (const std::uint32_t seed : recognitions_.seeds_of(changed)) wait_for(seed);
 }
 
-void Detector::set_views(std::span<const MapView> views) {
+bool Detector::set_views(std::span<const MapView> views) {
+  if (std::ranges::equal(views, observed_.views())) return false;
   observed_.clear();
   add_views(views);
+  return true;
 }
 
 void Detector::add_views(std::span<const MapView> views) {
@@ -93,9 +95,11 @@ void Detector::add_views(std::span<const MapView> views) {
 }
 
 void Detector::examine_all() {
-  const std::optional<LightChange> change = recognitions_.light();
-  is_light_expected_ =
-      change && is_same_light(change->log_gain) && scene_.light().log_gain.isZero();
+  if (!is_checking_all_) {  // when it begins again, not all is recognised that was before
+    const std::optional<LightChange> change = recognitions_.light();
+    is_light_expected_ =
+        change && is_same_light(change->log_gain) && scene_.light().log_gain.isZero();
+  }
   is_light_settled_ = false;
   is_checking_all_ = true;
   begin_again({});
@@ -140,14 +144,17 @@ std::optional<std::int64_t> Detector::examine_many() {
   rank_waiting(true);
   std::int64_t since_us = std::numeric_limits<std::int64_t>::max();
   std::vector<std::uint32_t> segments;
-  const auto num_cores = static_cast<std::size_t>(oneapi::tbb::this_task_arena::max_concurrency());
-  while (segments.size() < kManyOfCore * num_cores && !waiting_.empty()) {
+  while (segments.size() < most_at_once() && !waiting_.empty()) {
     const WaitingSegments::Next next = waiting_.pop();
     segments.push_back(next.segment);
     since_us = std::min(since_us, next.since_us);
   }
   examine(segments);
   return since_us;
+}
+
+std::size_t Detector::most_at_once() {
+  return kManyOfCore * static_cast<std::size_t>(oneapi::tbb::this_task_arena::max_concurrency());
 }
 
 void Detector::rank_waiting(bool on_all_cores) {

@@ -49,7 +49,8 @@ class Detector {
   void set_piece(std::int32_t id, LabelledMap::Points points_W,
                  std::vector<std::uint32_t> segment_ids, std::int64_t utime);
   /// What the cameras of the map saw. It counts for what is examined from now on.
-  void set_views(std::span<const MapView> views);
+  /// @return whether it is something else than before
+  bool set_views(std::span<const MapView> views);
   /// What they saw meanwhile.
   void add_views(std::span<const MapView> views);
   [[nodiscard]] std::size_t num_views() const { return observed_.views().size(); }
@@ -63,6 +64,8 @@ class Detector {
   std::optional<std::int64_t> examine_next();
   /// The same with several segments, on all cores. @return of the one that has waited longest
   std::optional<std::int64_t> examine_many();
+  /// So many segments at most.
+  [[nodiscard]] static std::size_t most_at_once();
   [[nodiscard]] std::size_t num_waiting() const { return waiting_.size(); }
 
   /// All detections, by number, gone ones included.

@@ -66,7 +66,7 @@ class DetectorProcess {
         100 * options_.cpu_share);
     while (!stop_requested() && !(options_.exit_on_final && is_finished_)) {
       receive();
-      if (detector_) views_.update(has_ended(), *detector_);
+      if (detector_ && views_.update(has_ended(), *detector_)) is_complete_pass_ = false;
       examine();
       publish();
       tell_service_manager();
@@ -79,7 +79,7 @@ class DetectorProcess {
 
  private:
   void receive() {
-    const bool can_work = detector_ && detector_->num_waiting() > 0 && may_work();
+    const bool can_work = detector_ && has_work() && may_work();
     const MapChanges changes = client_.wait(can_work ? milliseconds(0) : kWait);
     for (const std::int32_t piece : changes.pieces) pieces_.add(piece);
     if (const SegmentUpdate* newest = client_.newest_update()) {
@@ -143,13 +143,20 @@ class DetectorProcess {
   /// When all is mapped, the camera sees nothing any more that the processor would be needed for.
   bool may_work() { return client_.is_mapped() || budget_.has_some(); }
 
+  /// The last examination begins while the views are still asked for, and begins again if they are
+  /// others than before. Since what is gone is told at its end, some segments wait until then.
+  [[nodiscard]] bool has_work() const {
+    const bool may_end = !is_complete_pass_ || views_.are_complete();
+    return detector_->num_waiting() > (may_end ? 0 : Detector::most_at_once());
+  }
+
   [[nodiscard]] bool has_ended() const { return client_.is_complete() && client_.has_ended(); }
 
   void examine() {
     if (!detector_) return;
-    if (has_ended() && views_.are_complete()) finish();
+    if (has_ended()) finish();
     const Clock::time_point begin = Clock::now();
-    while (detector_->num_waiting() > 0 && Clock::now() - begin < kWait && may_work()) {
+    while (has_work() && Clock::now() - begin < kWait && may_work()) {
       const double cpu_s = CpuBudget::cpu_s();
       const std::int64_t since_us =
           is_complete_pass_ ? *detector_->examine_many() : *detector_->examine_next();
@@ -166,7 +173,7 @@ class DetectorProcess {
       is_complete_pass_ = true;
       detector_->examine_all();
     }
-    if (detector_->num_waiting() > 0) return;
+    if (detector_->num_waiting() > 0 || !views_.are_complete()) return;
     if (!is_finished_) spdlog::info("the map is complete and examined");
     is_finished_ = true;
   }

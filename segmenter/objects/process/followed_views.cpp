@@ -92,10 +92,11 @@ void FollowedViews::go_on() {
   problem_.clear();
 }
 
-void FollowedViews::update(bool map_has_ended, Detector& detector, Clock::time_point now) {
+bool FollowedViews::update(bool map_has_ended, Detector& detector, Clock::time_point now) {
+  bool is_news = false;
   if (running_.valid()) {
-    if (running_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
-    use(running_.get(), detector, now);
+    if (running_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return false;
+    is_news = use(running_.get(), detector, now);
   }
   if (!map_has_ended && end_.is_asked) go_on();
   if (map_has_ended && !end_.is_asked) {
@@ -103,7 +104,7 @@ void FollowedViews::update(bool map_has_ended, Detector& detector, Clock::time_p
     next_.since_us = 0;
     due_ = now;
   }
-  if (end_.is_told || now < due_) return;
+  if (end_.is_told || now < due_) return is_news;
   const bool is_stale = is_corrected_ || detector.num_views() > kMostViews;
   if (is_stale && !map_has_ended && now >= whole_due_) next_.since_us = 0;
   if (next_.since_us == 0) {
@@ -112,16 +113,20 @@ void FollowedViews::update(bool map_has_ended, Detector& detector, Clock::time_p
   }
   due_ = now + kPeriod;
   running_ = std::async(std::launch::async, ask_, next_);
+  return is_news;
 }
 
 /// What has come before a problem is kept: the next question begins behind it.
-void FollowedViews::use(const Answer& answer, Detector& detector, Clock::time_point now) {
+/// @return whether the detector was told something else than it knew
+bool FollowedViews::use(const Answer& answer, Detector& detector, Clock::time_point now) {
   // Of another map, or it lacks what a detector that was made meanwhile has to be told first.
-  if (answer.request != next_) return;
+  if (answer.request != next_) return false;
+  bool is_news = false;
   if (answer.request.since_us > 0) {
     detector.add_views(answer.views);
+    is_news = !answer.views.empty();
   } else if (answer.problem.empty() || !answer.views.empty()) {
-    detector.set_views(answer.views);
+    is_news = detector.set_views(answer.views);
   }
   if (!answer.views.empty()) next_.since_us = answer.views.back().utime + 1;
   if (answer.problem.empty()) {
@@ -134,6 +139,7 @@ void FollowedViews::use(const Answer& answer, Detector& detector, Clock::time_po
     has_warned_ = true;
     due_ = now + kSilence;
   }
+  return is_news;
 }
 
 void FollowedViews::give_up(const std::string& reason) {

@@ -53,7 +53,8 @@ class FollowedViews {
   /// The map was about to end, and goes on.
   void go_on();
   /// To be called regularly. @param now never goes back
-  void update(bool map_has_ended, Detector& detector, Clock::time_point now = Clock::now());
+  /// @return whether the detector was told something else than it knew
+  bool update(bool map_has_ended, Detector& detector, Clock::time_point now = Clock::now());
   /// An answer is on its way.
   [[nodiscard]] bool is_asking() const { return running_.valid(); }
   /// The detector has all views of a map that has ended, or nobody tells them.
@@ -62,7 +63,7 @@ class FollowedViews {
   [[nodiscard]] const std::string& problem() const { return problem_; }
 
  private:
-  void use(const Answer& answer, Detector& detector, Clock::time_point now);
+  bool use(const Answer& answer, Detector& detector, Clock::time_point now);
   void give_up(const std::string& reason);
 
   Ask ask_;

@@ -29,19 +29,22 @@ constexpr std::int64_t kSession = 5;
 class FollowedViewsTest : public ::testing::Test {
  protected:
   /// Until nothing is on its way. The clock stands still.
-  void settle(bool map_has_ended = false) {
+  /// @return whether something was news
+  bool settle(bool map_has_ended = false) {
+    bool is_news = false;
     do {
-      views_.update(map_has_ended, detector_, now_);
+      is_news |= views_.update(map_has_ended, detector_, now_);
       std::this_thread::yield();
     } while (views_.is_asking());
+    return is_news;
   }
 
-  static MapView view_at(std::int64_t utime) {
+  [[nodiscard]] MapView view_at(std::int64_t utime) const {
     MapView view;
     view.utime = utime;
     view.intrinsics.fx = view.intrinsics.fy = 1.0;
     view.intrinsics.width = view.intrinsics.height = 1;
-    view.depth_mm = {1000};
+    view.depth_mm = {depth_mm_};
     return view;
   }
 
@@ -62,6 +65,7 @@ class FollowedViewsTest : public ::testing::Test {
   // Nobody asks while the test changes these.
   std::vector<std::int64_t> recorded_;  // by time
   std::size_t most_ = 10'000;           // it does not tell more views at once
+  std::uint16_t depth_mm_ = 1000;       // in each view
   std::vector<std::int64_t> asked_;     // since when
   FollowedViews::Clock::time_point now_{seconds(1000)};
   Detector detector_{{}, 0.01F};
@@ -126,6 +130,25 @@ TEST_F(FollowedViewsTest, OfAMapThatHasEndedAreAskedForUntilAllHaveCome) {
   now_ += seconds(60);
   settle(true);
   EXPECT_EQ(asked_.size(), 3U);
+}
+
+TEST_F(FollowedViewsTest, OfAMapThatHasEndedAreNewsIfTheyAreOthersThanBefore) {
+  views_.begin(kSession);
+  recorded_ = {10, 20};
+  EXPECT_TRUE(settle());
+  EXPECT_FALSE(settle(true));
+  EXPECT_TRUE(views_.are_complete());
+  views_.go_on();
+  recorded_ = {10, 20, 30};
+  EXPECT_TRUE(settle(true));
+  EXPECT_TRUE(views_.are_complete());
+  views_.go_on();
+  recorded_ = {10, 30};  // as many views that are others
+  EXPECT_TRUE(settle(true));
+  views_.go_on();
+  depth_mm_ = 2000;
+  EXPECT_TRUE(settle(true));
+  EXPECT_FALSE(settle(true));
 }
 
 TEST_F(FollowedViewsTest, OfAMapThatHasEndedAreGivenUpAfterSomeTries) {
