@@ -75,10 +75,11 @@ whole_run() {
 not_restarted() { ! grep -q 'detector restarted' "$1"; }
 num_detections() { grep -c '"detection":' "$1" || true; }
 
-# same_detections FILE: the faulty run has to have found what is in the file.
+# same_detections FILE: the faulty run has to have found what is in the file, and to have drawn it.
 same_detections() {
   must "other objects were found than without the fault" "$kintsugi_root/scripts/lib/same_detections.py" "$1" \
     faulty/objects.json
+  must "there is no picture of the objects" test -s faulty/objects_final.png
 }
 
 kill_detector_row() {

@@ -16,8 +16,8 @@ LOCK_TIMEOUT_S = 3.0  # the processes of a supervisor that was killed end soon
 RUN_FILES = (
     "mapper.lcm", "mapper.*.lcm", "segmenter.map", "segmenter.map.views", "run.lcm", "run.lcm.partial", "segments*.ply", "segments*.json",
     "segments*.csv", "final.png", "final.part*.png", "final_*.png", "map_final*.png", "segments_final*.png",
-    "objects_final*.png", "snapshot_*.png", "highlight.png", "plots*.png", "timeline_*.png", "run.mp4", "*.partial.*", "trajectory.txt",
-    "trajectory.part*.txt", "status.csv", "mapper.log", "segmenter.log", "viewer.log",
+    "objects_final*.png", "snapshot_*.png", "highlight.png", "plots*.png", "timeline_*.png", "run.mp4", "*.partial.*",
+    "trajectory.txt", "trajectory.part*.txt", "status.csv", "mapper.log", "segmenter.log", "viewer.log",
     "detector.log", "objects.json", "logger.log", "completion.log", "trio.options")
 PROCESSES_WITH_PID_FILE = ("mapper", "segmenter", "viewer", "detector", "logger", "completion", "player")
 
