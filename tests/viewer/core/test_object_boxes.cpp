@@ -61,6 +61,20 @@ TEST(ObjectBoxes, NamesDoNotCoverEachOtherNorWhatIsReserved) {
   EXPECT_EQ(labels.front().object, 0U) << "the nearest is placed first";
 }
 
+TEST(ObjectBoxes, ALineLeadsFromANameThatIsAwayFromItsBox) {
+  const std::vector<DrawnObject> alone{object_at("mug", 0.0, 0.0, 2.0)};
+  EXPECT_FALSE(labels_of(alone).front().middle);
+  const std::vector<DrawnObject> two{alone.front(), object_at("cup", 0.1, 0.0, 2.0)};
+  const std::vector<ObjectLabel> labels = labels_of(two);
+  EXPECT_FALSE(labels[0].middle);
+  ASSERT_TRUE(labels[1].middle);
+  EXPECT_NEAR(labels[1].middle->x, 319.5 + 500 * 0.1 / 2.0, 5.0);
+  EXPECT_NEAR(labels[1].middle->y, 239.5, 5.0);
+  cv::Mat3b image(kHeight, kWidth, palette::kBackground);
+  draw_objects(image, camera(), two, {});
+  EXPECT_EQ(image(*labels[1].middle), cv::Vec3b(palette::kObject));
+}
+
 TEST(ObjectBoxes, WithoutAFreePlaceANameIsStillWritten) {
   const std::vector<cv::Rect> everything{{0, 0, kWidth, kHeight}};
   EXPECT_EQ(labels_of({object_at("mug", 0.0, 0.0, 2.0)}, everything).size(), 1U);

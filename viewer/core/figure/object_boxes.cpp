@@ -6,6 +6,8 @@
 #include <optional>
 #include <utility>
 
+#include <opencv2/imgproc.hpp>
+
 #include "viewer/core/drawing/palette.hpp"
 #include "viewer/core/drawing/text.hpp"
 #include "viewer/core/figure/line.hpp"
@@ -55,6 +57,15 @@ std::optional<Extent> extent_of(const Corners& corners, const VirtualCamera& cam
                 0.5 * (corners.front().z() + corners.back().z())};
 }
 
+/// Moved into the picture: a box around the camera reaches far out of it.
+cv::Point middle_of(const Extent& extent, cv::Size picture) {
+  const auto within = [](double middle, int size) {
+    return static_cast<int>(std::clamp(middle, 0.0, static_cast<double>(size)));
+  };
+  return {within(extent.box.x + 0.5 * extent.box.width, picture.width),
+          within(extent.box.y + 0.5 * extent.box.height, picture.height)};
+}
+
 double label_scale(cv::Size picture) { return std::clamp(picture.width / 1400.0, 0.35, 0.9); }
 
 /// Moved into the picture.
@@ -73,10 +84,8 @@ cv::Rect with_outline(const cv::Rect& box) {
 /// Places for a label of this size, best first: at the top of the box, then farther above and below
 /// and to the sides.
 std::vector<cv::Rect> places(const Extent& extent, cv::Size letters, cv::Size picture) {
-  const double middle =
-      std::clamp(extent.box.x + 0.5 * extent.box.width, 0.0, static_cast<double>(picture.width));
   const double top = std::clamp(extent.box.y, 0.0, static_cast<double>(picture.height));
-  const cv::Point at(static_cast<int>(middle) - letters.width / 2,
+  const cv::Point at(middle_of(extent, picture).x - letters.width / 2,
                      static_cast<int>(top) - letters.height - letters.height / 3);
   constexpr int kRows = 4;
   std::vector<cv::Rect> boxes;
@@ -118,6 +127,14 @@ void draw_box(cv::Mat3b& image, const VirtualCamera& camera, const Corners& corn
   });
 }
 
+/// From the nearest place of the text to the middle of its object, with a dot there.
+void draw_leader(cv::Mat3b& image, const cv::Rect& text, const cv::Point& middle) {
+  const cv::Point from(std::clamp(middle.x, text.x, text.br().x),
+                       std::clamp(middle.y, text.y, text.br().y));
+  cv::line(image, from, middle, palette::kObject, 1, cv::LINE_AA);
+  cv::circle(image, middle, line_width(image) + 1, palette::kObject, cv::FILLED, cv::LINE_AA);
+}
+
 }  // namespace
 
 std::vector<ObjectLabel> place_object_labels(cv::Size picture, const VirtualCamera& camera,
@@ -141,8 +158,12 @@ std::vector<ObjectLabel> place_object_labels(cv::Size picture, const VirtualCame
       return std::ranges::none_of(taken, [&](const cv::Rect& t) { return (t & box).area() > 0; });
     };
     const auto free = std::ranges::find_if(boxes, is_free);
-    labels.push_back({i, free == boxes.end() ? boxes.front() : *free, scale});
-    taken.push_back(with_outline(labels.back().box));
+    ObjectLabel& label = labels.emplace_back(ObjectLabel{i, boxes.front(), scale, {}});
+    if (free != boxes.end() && *free != boxes.front()) {
+      label.box = *free;
+      label.middle = middle_of(extent, picture);
+    }
+    taken.push_back(with_outline(label.box));
   }
   return labels;
 }
@@ -159,6 +180,9 @@ void draw_objects(cv::Mat3b& image, const VirtualCamera& camera,
     const bool is_dashed = !object.is_confirmed;
     if (!is_dashed) draw_box(image, camera, corners, false, palette::kPictureTextEdge, width + 2);
     draw_box(image, camera, corners, is_dashed, palette::kObject, width);
+  }
+  for (const ObjectLabel& label : labels) {
+    if (label.middle) draw_leader(image, label.box, *label.middle);
   }
   for (const ObjectLabel& label : labels) {
     draw_outlined_text(image, objects[label.object].name, {label.box.x, label.box.br().y},

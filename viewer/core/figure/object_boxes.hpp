@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -25,6 +26,8 @@ struct ObjectLabel {
   std::size_t object = 0;  ///< its place among the objects
   cv::Rect box;            ///< of the text
   double scale = 0.0;
+  /// The middle of the object in the picture, where the text is not at its top: a line leads there.
+  std::optional<cv::Point> middle;
 };
 
 /// Places the names above the boxes of the objects, the nearest object first. No label covers
@@ -35,7 +38,7 @@ std::vector<ObjectLabel> place_object_labels(cv::Size picture, const VirtualCame
                                              std::span<const cv::Rect> reserved);
 
 /// Draws the boxes of the objects over the map, in full lines where they are confirmed and dashed
-/// where they are not, and their names.
+/// where they are not, and their names, with lines from those that are away from their boxes.
 void draw_objects(cv::Mat3b& image, const VirtualCamera& camera,
                   std::span<const DrawnObject> objects, std::span<const cv::Rect> reserved);
 
