@@ -74,6 +74,7 @@ void MapSession::use(const ObjectDetection& detection, double now_s) {
 
 void MapSession::use(const DetectorStatus& status, double now_s) {
   objects_.hear_sender(status.map_session, status.session, now_s);
+  if (status.session != objects_.session()) return;  // of one before
   searched_s_.reset();
   if (!status.finished) searched_s_ = now_s;
 }

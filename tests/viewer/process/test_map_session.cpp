@@ -130,6 +130,10 @@ TEST(MapSession, IsSearchedUntilTheDetectorHasFinishedOrIsSilent) {
   EXPECT_FALSE(session.is_searched(6.0)) << "it was killed";
   session.use(status_of_detector(false), 7.0);
   EXPECT_TRUE(session.is_searched(7.0));
+  DetectorStatus before = status_of_detector(true);
+  before.session = 4;
+  session.use(before, 7.0);
+  EXPECT_TRUE(session.is_searched(7.0)) << "another detector has taken its place";
   session.use(status_of_detector(true), 8.0);
   EXPECT_FALSE(session.is_searched(8.0));
 }
