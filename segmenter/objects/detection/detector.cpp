@@ -34,13 +34,6 @@ bool is_same_light(const Eigen::Vector3f& log_change) {
 
 bool is_active(const Detection& detection) { return detection.event != DetectionEvent::kGone; }
 
-bool share_segments(const Recognition& a, const Recognition& b) {
-  const std::vector<std::uint32_t>& ids = b.placement.segment_ids;
-  return std::any_of(
-      a.placement.segment_ids.begin(), a.placement.segment_ids.end(),
-      [&ids](std::uint32_t id) { return std::binary_search(ids.begin(), ids.end(), id); });
-}
-
 /// Of one object, or of one surface: if one holds, the other may not.
 bool are_rivals(const Recognition& a, const Recognition& b) {
   return a.model == b.model || share_segments(a, b);
@@ -318,13 +311,11 @@ std::set<std::uint32_t> Detector::segments_at(const Detection& detection) const 
 }
 
 bool Detector::may_be_found_again(const Detection& detection) const {
-  return std::ranges::any_of(segments_at(detection),
-                             [this](std::uint32_t id) { return waiting_.contains(id); });
+  return waiting_.contains_any(segments_at(detection));
 }
 
 bool Detector::is_waiting(const Recognition& recognition) const {
-  return std::ranges::any_of(recognition.placement.segment_ids,
-                             [this](std::uint32_t id) { return waiting_.contains(id); });
+  return waiting_.contains_any(recognition.placement.segment_ids);
 }
 
 /// Some of its segments wait to be examined, or some of all that have to be.

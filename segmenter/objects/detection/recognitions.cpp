@@ -12,13 +12,6 @@ namespace kintsugi::segmenter {
 
 namespace {
 
-bool share_segments(const Recognition& a, const Recognition& b) {
-  const std::vector<std::uint32_t>& ids = b.placement.segment_ids;
-  return std::any_of(
-      a.placement.segment_ids.begin(), a.placement.segment_ids.end(),
-      [&ids](std::uint32_t id) { return std::binary_search(ids.begin(), ids.end(), id); });
-}
-
 /// The best first; of those that have segments in common only the best.
 std::vector<Recognition> without_overlap(std::vector<Recognition> all) {
   std::stable_sort(all.begin(), all.end(), [](const Recognition& a, const Recognition& b) {
@@ -60,6 +53,13 @@ void for_each_of(std::size_t count, bool on_all_cores, const Work& work) {
 }
 
 }  // namespace
+
+bool share_segments(const Recognition& a, const Recognition& b) {
+  const std::vector<std::uint32_t>& ids = b.placement.segment_ids;
+  return std::any_of(
+      a.placement.segment_ids.begin(), a.placement.segment_ids.end(),
+      [&ids](std::uint32_t id) { return std::binary_search(ids.begin(), ids.end(), id); });
+}
 
 std::vector<float> Recognitions::least_distances(std::span<const std::uint32_t> segments,
                                                  bool on_all_cores) const {

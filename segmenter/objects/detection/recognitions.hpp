@@ -14,6 +14,9 @@
 
 namespace kintsugi::segmenter {
 
+/// They explain the same surface, at least in part.
+bool share_segments(const Recognition& a, const Recognition& b);
+
 /// What each segment may be. It depends on the map alone, not on the order in which
 /// segments came and were examined.
 class Recognitions {

@@ -1,6 +1,7 @@
 #pragma once
 // Which segment is examined next.
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -56,6 +57,10 @@ class WaitingSegments {
   /// Whether so many points are another segment than was examined last.
   [[nodiscard]] bool has_changed_much(std::uint32_t segment, std::int64_t num_points) const;
   [[nodiscard]] bool contains(std::uint32_t segment) const { return waiting_.contains(segment); }
+  template <class Segments>
+  [[nodiscard]] bool contains_any(const Segments& segments) const {
+    return std::ranges::any_of(segments, [this](std::uint32_t id) { return contains(id); });
+  }
   [[nodiscard]] bool empty() const { return waiting_.empty(); }
   [[nodiscard]] std::size_t size() const { return waiting_.size(); }
 
