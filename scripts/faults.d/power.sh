@@ -1,8 +1,9 @@
-# The power is cut at a random moment of a run with --durable. A library writes down what each process does to the disk and
-# when it syncs it (tests/support/forgetful_disk.cpp); from that follows what a disk may have kept that loses all else.
-# KINTSUGI_POWER_CUTS: the number of runs, each with another moment (default 200, with --quick 2).
+# The power is cut at random moments of runs with --durable. A library writes down what each process does to the disk and
+# when it syncs it (tests/support/forgetful_disk.cpp); from that follows, for any moment, what a disk may have kept that loses
+# all else.
+# KINTSUGI_POWER_CUTS: the number of cuts (default 200, with --quick 2).
 
-fault_row power-cut "power cut at a random moment of each run, then scripts/trio --resume" power_cut_row
+fault_row power-cut "power cut at random moments of a run, then scripts/trio --resume" power_cut_row
 fault_row power-cut-limit "the same, of a log that is rewritten because of --store-limit" power_cut_limit_row
 
 # forgetful COMMAND...: runs it with the folder `faulty` on such a disk.
@@ -11,16 +12,19 @@ forgetful() {
   env LD_PRELOAD="$(realpath "$root/libforgetful_disk.so")" FORGETFUL_DISK="$PWD/faulty" FORGETFUL_JOURNAL="$PWD/journal" "$@"
 }
 
-# cut_power MOMENT SEED: leaves in `faulty` what a power cut does, and nothing else of the run.
+# cut_power MOMENT SEED: leaves in `faulty` what a power cut does at that moment of the last forgetful run, and nothing else.
 cut_power() {
   "$KINTSUGI_BIN/../tests/cut_power" --journal "$PWD/journal" --moment "$1" --seed "$2" --out faulty >cut.json
-  rm -f journal.*
 }
 
+# So many cuts of one run: what was done to the disk before a cut does not depend on what comes after it.
+cuts_of_a_run=8
+
+# A small map, because everything after a cut is mapped again.
 power_cut_row() {
-  choose_scene
+  small_scene
   reference
-  cut_each_run
+  cut_runs
 }
 
 # Of a log of 8 MB, some of which is rewritten before it has grown to 2 MB.
@@ -28,19 +32,21 @@ power_cut_limit_row() {
   scene+=(--device 'synthetic://patrol?sensor=lidar&noise=off&rate=10&speed=3&frames=200' --resolution 0.025 --every 1000000
     --mapper '--session=7')
   reference
-  cut_each_run --store-limit 4
+  cut_runs --store-limit 4
 }
 
-# cut_each_run [OPTION...]: further options of the runs.
-cut_each_run() {
-  local num_runs="${KINTSUGI_POWER_CUTS:-200}" run share moment seed_of_cut resumed=0 most_s=0
-  if_quick && num_runs="${KINTSUGI_POWER_CUTS:-2}"
-  for ((run = 1; run <= num_runs; ++run)); do
+# cut_runs [OPTION...]: further options of the runs.
+cut_runs() {
+  local num_cuts="${KINTSUGI_POWER_CUTS:-200}" cut moment seed_of_cut resumed=0 most_s=0
+  if_quick && num_cuts="${KINTSUGI_POWER_CUTS:-2}"
+  for ((cut = 0; cut < num_cuts; ++cut)); do
+    if ((cut % cuts_of_a_run == 0)); then
+      rm -rf faulty journal.* && mkdir faulty
+      forgetful "$kintsugi_root/scripts/trio" --durable --out faulty "${scene[@]}" "$@" >faulty.txt 2>&1 ||
+        { failures+=("the run failed: $PWD/faulty.txt"); return; }
+    fi
     draw_share
     moment="$share" seed_of_cut="$RANDOM"
-    rm -rf faulty && mkdir faulty
-    forgetful "$kintsugi_root/scripts/trio" --durable --out faulty "${scene[@]}" "$@" >faulty.txt 2>&1 ||
-      { failures+=("the run failed: $PWD/faulty.txt"); return; }
     cut_power "$moment" "$seed_of_cut"
     faulty_since="$EPOCHREALTIME"
     if [[ -e faulty/trio.options ]]; then
@@ -54,10 +60,11 @@ cut_each_run() {
     most_s="$(calculate "$most_s > ${figure[seconds]} ? $most_s : ${figure[seconds]}" 1)"
     same_map
     if ((${#failures[@]})); then
-      failures+=("in run $run: at $moment of what it did to the disk, seed $seed_of_cut")
+      failures+=("after cut $((cut + 1)): at $moment of what the run did to the disk, seed $seed_of_cut")
       return
     fi
   done
+  rm -f journal.*
   figure[seconds]="$most_s"
-  note "$num_runs runs, $resumed of them resumed; the time is the longest to the end after a cut"
+  note "$num_cuts cuts, after $resumed of them resumed; the time is the longest to the end after a cut"
 }

@@ -84,12 +84,13 @@ run_row() {
 scene=(--replay --no-log)
 if_quick() { ((quick)); }
 choose_scene() {
+  if if_quick; then small_scene; return; fi
   scene+=(--every "${snapshot_every:-1000000}")
-  if if_quick; then
-    scene+=(--device 'synthetic://office?frames=120' --resolution 0.02 --volume-size 3.2 --mapper '--session=7 --shift=8')
-  else
-    scene+=(--device synthetic://office --resolution 0.006 --volume-size 3.072 --mapper '--session=7 --shift=8')
-  fi
+  scene+=(--device synthetic://office --resolution 0.006 --volume-size 3.072 --mapper '--session=7 --shift=8')
+}
+small_scene() {
+  scene+=(--every "${snapshot_every:-1000000}")
+  scene+=(--device 'synthetic://office?frames=120' --resolution 0.02 --volume-size 3.2 --mapper '--session=7 --shift=8')
 }
 
 now_s() { printf '%s' "$EPOCHREALTIME"; }
