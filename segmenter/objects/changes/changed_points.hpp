@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "segmenter/objects/changes/map_errors.hpp"
 #include "segmenter/objects/changes/map_side.hpp"
 
 namespace kintsugi::segmenter {
@@ -16,10 +17,11 @@ enum class PointChange : std::uint8_t {
 };
 
 /// What the other map tells about each point. A point is the same where the other map has surface
-/// of a like direction within two voxels, one for the grids of both maps and one for the error of
-/// the alignment; and it has changed only where views that looked through it clearly outnumber
-/// those that measured something there. What they measured may be a surface behind it that is
-/// nearer than the noise of one view can tell, but not than the map can, which is made of many.
-std::vector<PointChange> changes_of(const MapSide& map, const MapSide& other);
+/// of a like direction within the maps' errors; and it has changed only where views that looked
+/// through it clearly outnumber those that measured something there. What they measured may be a
+/// surface behind it that is nearer than the noise of one view can tell, but not than the map can,
+/// which is made of many.
+std::vector<PointChange> changes_of(const MapSide& map, const MapSide& other,
+                                    const MapErrors& errors);
 
 }  // namespace kintsugi::segmenter

@@ -10,14 +10,14 @@
 namespace kintsugi::segmenter {
 namespace {
 
-constexpr double kMargin_vox = 2.0;       // as in changes_of(): nearer it may be the same surface
 constexpr double kLeastOfSegment = 0.25;  // less is what rooms are larger than things
 
 }  // namespace
 
 void mark_displaced(const MapSide& map, std::vector<PointChange>& changes, const MapSide& other,
-                    std::span<const ChangeGroup> other_groups, const Eigen::Vector3d& up) {
-  const auto margin_m = static_cast<float>(kMargin_vox * map.voxel_m());
+                    std::span<const ChangeGroup> other_groups, const Eigen::Vector3d& up,
+                    const MapErrors& errors) {
+  const auto margin_m = static_cast<float>(errors.distance_m);
   for (const ChangeGroup& group : other_groups) {
     if (!group.is_thing) continue;
     const FilledSpace room(other.points_at(group.points), up);

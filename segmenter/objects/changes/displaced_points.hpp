@@ -12,10 +12,11 @@ namespace kintsugi::segmenter {
 
 /// No camera sees that a place is free which another thing has taken. A segment of `map` is changed
 /// there, too, if a quarter of it and more is unknown and inside the room of one thing that `other`
-/// alone has, two voxels below its surface.
+/// alone has, deeper below its surface than both maps are exact.
 /// @param changes of each point of `map`; unknown ones become changed
 /// @param other_groups of `other`
 void mark_displaced(const MapSide& map, std::vector<PointChange>& changes, const MapSide& other,
-                    std::span<const ChangeGroup> other_groups, const Eigen::Vector3d& up);
+                    std::span<const ChangeGroup> other_groups, const Eigen::Vector3d& up,
+                    const MapErrors& errors);
 
 }  // namespace kintsugi::segmenter

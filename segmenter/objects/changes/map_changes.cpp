@@ -9,12 +9,14 @@
 #include <span>
 #include <utility>
 
+#include "lcmtypes/base/logger.hpp"
 #include "lcmtypes/scene/up_direction.hpp"
 #include "segmenter/core/points/transformed_points.hpp"
 #include "segmenter/objects/changes/change_groups.hpp"
 #include "segmenter/objects/changes/changed_points.hpp"
 #include "segmenter/objects/changes/displaced_points.hpp"
 #include "segmenter/objects/changes/filled_space.hpp"
+#include "segmenter/objects/changes/map_errors.hpp"
 #include "segmenter/objects/changes/map_side.hpp"
 #include "segmenter/objects/changes/moved_things.hpp"
 #include "segmenter/objects/maps/surface_samples.hpp"
@@ -66,8 +68,9 @@ void relight(std::vector<CloudPoint>& points, const std::array<double, 3>& gains
   }
 }
 
-ObservedSpace space_of(const ObservedMap& map, const Pose& X_AW, double voxel_m) {
-  ObservedSpace space(voxel_m);
+/// @param error_m of the map
+ObservedSpace space_of(const ObservedMap& map, const Pose& X_AW, double error_m) {
+  ObservedSpace space(error_m);
   for (MapView view : map.views) {
     view.X_WC = X_AW * view.X_WC;
     space.add(std::move(view));
@@ -97,13 +100,13 @@ struct Side {
 };
 
 /// Both maps, decided by what their cameras saw, and then by what takes the places of what.
-void find_changed(Side& before, Side& after, const Eigen::Vector3d& up) {
-  before.changes = changes_of(before.map, after.map);
-  after.changes = changes_of(after.map, before.map);
+void find_changed(Side& before, Side& after, const Eigen::Vector3d& up, const MapErrors& errors) {
+  before.changes = changes_of(before.map, after.map, errors);
+  after.changes = changes_of(after.map, before.map, errors);
   before.group();
   after.group();
-  mark_displaced(before.map, before.changes, after.map, after.groups, up);
-  mark_displaced(after.map, after.changes, before.map, before.groups, up);
+  mark_displaced(before.map, before.changes, after.map, after.groups, up, errors);
+  mark_displaced(after.map, after.changes, before.map, before.groups, up, errors);
   before.group();
   after.group();
 }
@@ -141,19 +144,19 @@ MapChanges find_changes(const ObservedMap& before, const ObservedMap& after, con
   const std::vector<CloudPoint> before_A = transformed(X_AB, before.points_W);
   std::vector<CloudPoint> relit_A = before_A;
   relight(relit_A, gains_of(before_A, after.points_W, voxel_m));
-  Side was{
-      .map = {std::move(relit_A), before.segment_ids, space_of(before, X_AB, voxel_m), voxel_m},
-      .changes = {},
-      .groups = {}};
-  Side is{.map = {after.points_W, after.segment_ids, space_of(after, Pose::Identity(), voxel_m),
-                  voxel_m},
-          .changes = {},
-          .groups = {}};
+  Side was{.map = {std::move(relit_A), before.segment_ids, voxel_m}, .changes = {}, .groups = {}};
+  Side is{.map = {after.points_W, after.segment_ids, voxel_m}, .changes = {}, .groups = {}};
+  const MapErrors errors = errors_of(was.map, is.map);
+  spdlog::debug("what differs by less than {:.1f} cm and {:.0f} in CIELAB is the same",
+                100.0 * errors.distance_m, errors.color);
+  // Of the maps' errors each has a half, and so have its views.
+  was.map.set_space(space_of(before, X_AB, errors.distance_m / 2.0));
+  is.map.set_space(space_of(after, Pose::Identity(), errors.distance_m / 2.0));
   UpDirection up;
   up.add(after.points_W);
-  find_changed(was, is, up.up_W());
-  const std::vector<MovedThing> moved =
-      find_moved({was.map, was.changes, was.groups}, {is.map, is.changes, is.groups}, up.up_W());
+  find_changed(was, is, up.up_W(), errors);
+  const std::vector<MovedThing> moved = find_moved(
+      {was.map, was.changes, was.groups}, {is.map, is.changes, is.groups}, up.up_W(), errors);
   MapChanges result;
   result.not_seen_again = num_unknown(was.changes);
   result.not_seen_before = num_unknown(is.changes);

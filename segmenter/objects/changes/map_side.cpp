@@ -16,10 +16,10 @@ std::int32_t index_of(float x) { return static_cast<std::int32_t>(std::floor(x /
 }  // namespace
 
 MapSide::MapSide(std::vector<CloudPoint> points, std::span<const std::uint32_t> segment_ids,
-                 ObservedSpace space, double voxel_m)
+                 double voxel_m)
     : points_(std::move(points)),
       segment_ids_(segment_ids),
-      space_(std::move(space)),
+      space_(voxel_m),
       voxel_m_(voxel_m),
       colors_(unthinned(points_, static_cast<float>(voxel_m))),
       tree_(points_) {

@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "lcmtypes/messages.hpp"
@@ -22,7 +23,9 @@ class MapSide {
  public:
   /// @param segment_ids of each point; must outlive this
   MapSide(std::vector<CloudPoint> points, std::span<const std::uint32_t> segment_ids,
-          ObservedSpace space, double voxel_m);
+          double voxel_m);
+  /// What its cameras saw; before, nothing is known of it.
+  void set_space(ObservedSpace space) { space_ = std::move(space); }
 
   [[nodiscard]] const std::vector<CloudPoint>& points() const { return points_; }
   [[nodiscard]] std::span<const std::uint32_t> segment_ids() const { return segment_ids_; }

@@ -5,6 +5,7 @@
 
 #include "segmenter/core/points/transformed_points.hpp"
 #include "segmenter/objects/changes/alike_colors.hpp"
+#include "segmenter/objects/changes/map_errors.hpp"
 #include "segmenter/objects/changes/surface_behind.hpp"
 #include "segmenter/objects/maps/surface_samples.hpp"
 
@@ -54,7 +55,8 @@ Evidence evidence_of(const MapSide& from, std::span<const std::size_t> points, c
   NearestNeighbours::Result result;
   map.tree().find(moved, kNeighbours, result);
   const auto neighbours = static_cast<std::size_t>(result.count);
-  const std::vector<bool> is_before_surface = have_surface_behind(moved, map);
+  const std::vector<bool> is_before_surface =
+      have_surface_behind(moved, map, kLeastError_vox * map.voxel_m());
   Evidence sum;
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t at = i * neighbours;

@@ -41,7 +41,6 @@ constexpr double kLeastBegin = 0.6;  // before what moves with it is added
 constexpr double kLeastFound = 0.7;
 // Of the other: a small part of a thing, a flat one above all, is found on many things.
 constexpr double kLeastFoundOfBoth = 0.3;
-constexpr double kLeastShift_vox = 2.0;  // less is the same place, see changes_of()
 constexpr double kBetterThanBefore = 0.05;
 constexpr double kMostShared = 0.2;
 constexpr double kLeastOfWhole = 0.5;
@@ -133,8 +132,14 @@ bool may_be_of_colors(const MapSide& map, const Thing& thing, const MapSide& oth
 /// One thing of each map, and how they would be one.
 class Motions {
  public:
-  Motions(const ChangedSide& before, const ChangedSide& after, const Eigen::Vector3d& up)
-      : before_(before), after_(after), up_(up), gone_(before, up), come_(after, up) {
+  Motions(const ChangedSide& before, const ChangedSide& after, const Eigen::Vector3d& up,
+          const MapErrors& errors)
+      : before_(before),
+        after_(after),
+        up_(up),
+        errors_(errors),
+        gone_(before, up),
+        come_(after, up) {
     for (std::size_t g = 0; g < gone_.size(); ++g) {
       now_.push_back(what_is_there(gone_.points(g), after.map, up));
     }
@@ -287,7 +292,7 @@ class Motions {
                          static_cast<double>(std::min(moved.before.points.size(),
                                                       moved.after.points.size())) >= least_points;
     const bool is_elsewhere =
-        shift_m(moved) > kLeastShift_vox * before_.map.voxel_m() && gain >= 2.0 * kBetterThanBefore;
+        shift_m(moved) > errors_.distance_m && gain >= 2.0 * kBetterThanBefore;
     moved.score = is_seen && is_elsewhere ? agreement : 0.0;
     moved.points = now.found * static_cast<double>(moved.before.points.size()) +
                    then.found * static_cast<double>(moved.after.points.size());
@@ -306,6 +311,7 @@ class Motions {
   ChangedSide before_;
   ChangedSide after_;
   Eigen::Vector3d up_;
+  MapErrors errors_;
   Candidates gone_;
   Candidates come_;
   std::vector<Thing> now_;   // what is at the place of each that is gone
@@ -346,8 +352,8 @@ std::vector<CloudPoint> whole_surface(const MovedThing& moved, const MapSide& be
 }
 
 std::vector<MovedThing> find_moved(const ChangedSide& before, const ChangedSide& after,
-                                   const Eigen::Vector3d& up) {
-  const Motions motions(before, after, up);
+                                   const Eigen::Vector3d& up, const MapErrors& errors) {
+  const Motions motions(before, after, up, errors);
   std::vector<std::optional<MovedThing>> tries(motions.num_tries());
   oneapi::tbb::parallel_for(std::size_t{0}, tries.size(),
                             [&](std::size_t i) { tries[i] = motions.best(i); });

@@ -8,6 +8,7 @@
 #include "lcmtypes/geometry.hpp"
 #include "segmenter/objects/changes/change_groups.hpp"
 #include "segmenter/objects/changes/changed_points.hpp"
+#include "segmenter/objects/changes/map_errors.hpp"
 #include "segmenter/objects/changes/map_side.hpp"
 #include "segmenter/objects/changes/whole_thing.hpp"
 
@@ -39,9 +40,9 @@ std::vector<CloudPoint> whole_surface(const MovedThing& moved, const MapSide& be
 /// by ObjectRecognizer, at the groups there that may be of its size and colours; and where it was,
 /// for what was turned or pushed aside a little. What moves with it is added. It has moved when
 /// nearly all that is to be seen of it in each map agrees with the other, the same place would not
-/// do as well, and some point of it moves by more than two voxels.
+/// do as well, and some point of it moves by more than the maps' errors.
 /// @param up unit vector
 std::vector<MovedThing> find_moved(const ChangedSide& before, const ChangedSide& after,
-                                   const Eigen::Vector3d& up);
+                                   const Eigen::Vector3d& up, const MapErrors& errors);
 
 }  // namespace kintsugi::segmenter

@@ -8,17 +8,18 @@
 namespace kintsugi::segmenter {
 namespace {
 
-constexpr double kNearest_vox = 2.5;  // up to two it is the same surface, see changes_of()
+constexpr double kBeyond_vox = 0.5;
 // What is farther behind a place is told from it by each view: its noise at 3 m, three times.
 constexpr double kFarthest_m = 0.05;
 constexpr float kAlike = 0.5F;  // cosine between normals: 60 degrees
 
 }  // namespace
 
-std::vector<bool> have_surface_behind(std::span<const CloudPoint> points, const MapSide& map) {
+std::vector<bool> have_surface_behind(std::span<const CloudPoint> points, const MapSide& map,
+                                      double same_m) {
   std::vector<bool> have(points.size(), false);
   const auto reach_m = static_cast<float>(map.voxel_m());
-  for (double depth_m = kNearest_vox * map.voxel_m(); depth_m <= kFarthest_m;
+  for (double depth_m = same_m + kBeyond_vox * map.voxel_m(); depth_m <= kFarthest_m;
        depth_m += map.voxel_m()) {
     std::vector<CloudPoint> behind(points.begin(), points.end());
     for (CloudPoint& p : behind) {

@@ -9,9 +9,10 @@
 
 namespace kintsugi::segmenter {
 
-/// Whether the map has a surface of the same direction behind each point, more than two voxels and
-/// at most 5 cm. What views measured there, whose noise is as large, is then that surface: the map,
-/// which is made of many views, is more exact.
-std::vector<bool> have_surface_behind(std::span<const CloudPoint> points, const MapSide& map);
+/// Whether the map has a surface of the same direction behind each point, farther than `same_m`, up
+/// to which it is the same surface, and at most 5 cm. What views measured there, whose noise is as
+/// large, is then that surface: the map, which is made of many views, is more exact.
+std::vector<bool> have_surface_behind(std::span<const CloudPoint> points, const MapSide& map,
+                                      double same_m);
 
 }  // namespace kintsugi::segmenter

@@ -1,6 +1,8 @@
 // What has come, gone and moved in a room of boxes.
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -72,6 +74,48 @@ TEST(MapChanges, ErrorsOfTheAlignmentUpToAVoxelAreNone) {
     EXPECT_THAT(find_changes(twice.before, twice.after, X_AB).changes, IsEmpty())
         << shift.transpose();
   }
+}
+
+/// The farther along the room, the higher is the map, by up to 7 cm.
+void bend(ObservedMap& map, const Pose& X_SW) {
+  const Eigen::Vector3f up_W = X_SW.linear().transpose().col(2).cast<float>();
+  for (CloudPoint& p : map.points_W) {
+    const double x_m = (X_SW * Eigen::Vector3d(p.x, p.y, p.z)).x();
+    const auto higher_m = static_cast<float>(0.07 * x_m / 4.0);
+    p.x += higher_m * up_W.x();
+    p.y += higher_m * up_W.y();
+    p.z += higher_m * up_W.z();
+  }
+}
+
+/// One part of the room was mapped with a third of the exposure of the other.
+void darken_a_part(ObservedMap& map, const Pose& X_SW) {
+  for (CloudPoint& p : map.points_W) {
+    if ((X_SW * Eigen::Vector3d(p.x, p.y, p.z)).x() > 1.4) continue;
+    for (std::uint8_t* const channel : {&p.red, &p.green, &p.blue}) *channel /= 3;
+  }
+}
+
+TEST(MapChanges, WhatABentMapIsOffAllOverIsNone) {
+  const ToyRoom was = furnished_room();
+  Twice twice(was, was);
+  bend(twice.before, twice.path_before.front());
+  EXPECT_THAT(twice.changes().changes, IsEmpty());
+  ToyRoom is = was;
+  is.boxes.push_back(kOnTable);
+  twice = Twice(was, is);
+  bend(twice.before, twice.path_before.front());
+  const MapChanges result = twice.changes();
+  ASSERT_EQ(result.changes.size(), 1U)
+      << "what is larger than the maps' errors is told all the same";
+  EXPECT_THAT(result.changes[0].after_segments, ElementsAre(11));
+}
+
+TEST(MapChanges, ExposureThatWasSetAnewIsNone) {
+  const ToyRoom room = furnished_room();
+  Twice twice(room, room);
+  darken_a_part(twice.before, twice.path_before.front());
+  EXPECT_THAT(twice.changes().changes, IsEmpty());
 }
 
 TEST(MapChanges, AThingThatCame) {

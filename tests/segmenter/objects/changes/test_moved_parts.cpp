@@ -7,6 +7,7 @@
 
 #include "segmenter/core/points/transformed_points.hpp"
 #include "segmenter/objects/changes/filled_space.hpp"
+#include "segmenter/objects/changes/map_errors.hpp"
 #include "segmenter/objects/changes/map_side.hpp"
 #include "segmenter/objects/changes/motion_evidence.hpp"
 #include "segmenter/objects/changes/surface_behind.hpp"
@@ -83,7 +84,7 @@ MapSide wall(double y_m, const std::vector<std::uint32_t>& ids, const Eigen::Vec
   ObservedMap map;
   testing::add_face({0.0, y_m, 0.0}, {0.5, 0.0, 0.0}, {0.0, 0.0, 0.5}, -Eigen::Vector3d::UnitY(),
                     color, 1, kFine_m, map);
-  return {map.points_W, std::span(ids).first(map.points_W.size()), ObservedSpace(kFine_m), kFine_m};
+  return {map.points_W, std::span(ids).first(map.points_W.size()), kFine_m};
 }
 
 TEST(SurfaceBehind, IsFartherThanTheErrorOfTheMapsAndNearerThanThatOfAView) {
@@ -95,13 +96,39 @@ TEST(SurfaceBehind, IsFartherThanTheErrorOfTheMapsAndNearerThanThatOfAView) {
     point.nx = normal.x();
     point.ny = normal.y();
     point.nz = normal.z();
-    return have_surface_behind({&point, 1}, map).front();
+    return have_surface_behind({&point, 1}, map, 2.0 * map.voxel_m()).front();
   };
   EXPECT_TRUE(is_behind(1.96, -Eigen::Vector3f::UnitY()));
   EXPECT_FALSE(is_behind(1.99, -Eigen::Vector3f::UnitY()));  // it is the wall
   EXPECT_FALSE(is_behind(1.9, -Eigen::Vector3f::UnitY()));
   EXPECT_FALSE(is_behind(2.04, -Eigen::Vector3f::UnitY()));  // the wall is before it
   EXPECT_FALSE(is_behind(1.96, Eigen::Vector3f::UnitY()));   // a back
+}
+
+TEST(MapErrors, AreThoseOfMostOfTheSurface) {
+  const std::vector<std::uint32_t> ids(10'000, 1);
+  const MapSide map = wall(2.0, ids, {200, 200, 200});
+  const MapErrors none = errors_of(map, map);
+  EXPECT_EQ(none.distance_m, kLeastError_vox * kFine_m);
+  EXPECT_EQ(none.color, kSameColor);
+  const MapErrors errors = errors_of(map, wall(2.03, ids, {90, 90, 200}));
+  EXPECT_NEAR(errors.distance_m, 4 * 0.03, 1e-3);
+  EXPECT_GT(errors.color, 4 * kSameColor);
+  EXPECT_EQ(errors_of(map, wall(2.5, ids, {90, 90, 200})).distance_m, none.distance_m)
+      << "the maps have no surface in common";
+}
+
+TEST(MapErrors, AreNotWhatASmallPartOfTheRoomDiffersBy) {
+  const std::vector<std::uint32_t> ids(10'000, 1);
+  const MapSide map = wall(2.0, ids, {200, 200, 200});
+  std::vector<CloudPoint> points = map.points();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (i % 100 < 15) points[i].y += 0.05F;
+    if (i % 100 < 15) points[i].red = 20;
+  }
+  const MapErrors errors = errors_of({points, map.segment_ids(), kFine_m}, map);
+  EXPECT_EQ(errors.distance_m, kLeastError_vox * kFine_m);
+  EXPECT_EQ(errors.color, kSameColor);
 }
 
 TEST(Evidence, IsOfPlaceDirectionAndColor) {
