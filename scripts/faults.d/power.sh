@@ -66,5 +66,5 @@ cut_runs() {
   done
   rm -f journal.*
   figure[seconds]="$most_s"
-  note "$num_cuts cuts, after $resumed of them resumed; the time is the longest to the end after a cut"
+  note "$num_cuts cuts, $resumed of the runs resumed; the time is the longest to the end after a cut"
 }

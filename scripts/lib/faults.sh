@@ -88,6 +88,7 @@ choose_scene() {
   scene+=(--every "${snapshot_every:-1000000}")
   scene+=(--device synthetic://office --resolution 0.006 --volume-size 3.072 --mapper '--session=7 --shift=8')
 }
+# For rows of many runs, and with --quick.
 small_scene() {
   scene+=(--every "${snapshot_every:-1000000}")
   scene+=(--device 'synthetic://office?frames=120' --resolution 0.02 --volume-size 3.2 --mapper '--session=7 --shift=8')

@@ -29,7 +29,7 @@ struct SightsOfSurface {
 
 class ObservedSpace {
  public:
-  /// @param resolution_m voxel size of the map, > 0
+  /// @param resolution_m how exact the map is: its voxel size, or its error if that is more; > 0
   explicit ObservedSpace(double resolution_m) : resolution_m_(resolution_m) {}
 
   /// @throws std::invalid_argument when the depth image has not the size that its intrinsics tell
@@ -39,8 +39,9 @@ class ObservedSpace {
   [[nodiscard]] const std::vector<MapView>& views() const { return views_; }
 
   /// What the views tell about a place. Conservative: it counts as seen through only where the
-  /// measurements around it, as far as a voxel and at least a pixel to each side, are all behind it
-  /// by more than a voxel and three standard deviations of the camera's depth there.
+  /// measurements around it, as far as the resolution and at least a pixel to each side, are all
+  /// behind it by more than the resolution and three standard deviations of the camera's depth
+  /// there.
   [[nodiscard]] Sights sights(const Eigen::Vector3f& p_W) const;
 
   /// The views that may show something of a sphere, or what is less than `within_m` in front of a

@@ -81,7 +81,7 @@ SECTIONS = (
     Section("fleets", "200 generated clouds through scripts/fleet, with one task at a time and with more (not in the default "
             "run: 15 minutes)", fleets.fleets, (*MAPPER, "kintsugi-ground-truth", "kintsugi-segment-cloud",
                                                 "kintsugi-segmenter"), in_default_run=False),
-    Section("faults", "scripts/faults --all (not in the default run: takes some ten hours)", others.faults, TRIO,
+    Section("faults", "scripts/faults --all (not in the default run: takes hours)", others.faults, TRIO,
             in_default_run=False),
 )
 

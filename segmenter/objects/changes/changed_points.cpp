@@ -14,8 +14,6 @@
 namespace kintsugi::segmenter {
 namespace {
 
-constexpr int kNeighbours = 8;  // of two surfaces that meet, some are on each
-constexpr float kAlike = 0.5F;  // cosine between normals: 60 degrees
 // Nearer than that it is the same surface whatever the normals, which are uncertain at edges.
 constexpr double kTouch_vox = 1.0;
 // One view may be of a moment when somebody walked by.
@@ -32,7 +30,7 @@ PointChange look_up(const CloudPoint& point, const SurfacePoint& color, const Ma
   for (std::size_t k = 0; k < indices.size(); ++k) {
     if (squared_m2[k] > reach_m * reach_m) break;
     const float alike = normal_of(point).dot(normal_of(other.points()[indices[k]]));
-    if (squared_m2[k] > touch_m * touch_m && alike < kAlike) continue;
+    if (squared_m2[k] > touch_m * touch_m && alike < kAlikeNormals) continue;
     if (are_alike_in_color(color, other.colors()[indices[k]], errors.color))
       return PointChange::kSame;
     change = PointChange::kRecolored;
@@ -48,7 +46,7 @@ std::vector<PointChange> look_up_all(const MapSide& map, const MapSide& other,
   oneapi::tbb::parallel_for(
       oneapi::tbb::blocked_range<std::size_t>(0, points.size(), kGrain), [&](const auto& range) {
         NearestNeighbours::Result result;
-        other.tree().find(points.subspan(range.begin(), range.size()), kNeighbours, result);
+        other.tree().find(points.subspan(range.begin(), range.size()), kNeighboursAround, result);
         const auto count = static_cast<std::size_t>(result.count);
         for (std::size_t i = range.begin(); i < range.end(); ++i) {
           const std::size_t at = (i - range.begin()) * count;

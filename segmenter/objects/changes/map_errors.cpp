@@ -18,8 +18,6 @@ constexpr double kUnchanged = 0.8;
 // alike over whole walls.
 constexpr double kFactor = 4.0;
 constexpr std::size_t kSamples = 20'000;  // tell a share of a fifth to a third of a per cent
-constexpr int kNeighbours = 8;            // of two surfaces that meet, some are on each
-constexpr float kAlike = 0.5F;            // cosine between normals: 60 degrees
 constexpr float kReach_m = 0.1F;          // the alignment finds no surface that is farther off
 
 struct Differences {
@@ -37,7 +35,7 @@ void add_differences(const CloudPoint& point, const SurfacePoint& color, const M
   for (std::size_t k = 0; k < indices.size() && squared_m2[k] <= kReach_m * kReach_m; ++k) {
     const CloudPoint& there = other.points()[indices[k]];
     const Eigen::Vector3f normal = normal_of(there);
-    if (normal.dot(normal_of(point)) < kAlike) continue;
+    if (normal.dot(normal_of(point)) < kAlikeNormals) continue;
     if (is_first) {
       differences.distances_m.push_back(
           std::abs(normal.dot(position_of(point) - position_of(there))));
@@ -70,7 +68,7 @@ MapErrors errors_of(const MapSide& before, const MapSide& after) {
   for (std::size_t i = 0; i < count; ++i) chosen.push_back(i * points.size() / count);
   NearestNeighbours::Result nearest;
   const std::vector<CloudPoint> samples = before.points_at(chosen);
-  after.tree().find(samples, kNeighbours, nearest);
+  after.tree().find(samples, kNeighboursAround, nearest);
   const auto neighbours = static_cast<std::size_t>(nearest.count);
   Differences differences;
   for (std::size_t i = 0; i < count; ++i) {

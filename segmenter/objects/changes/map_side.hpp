@@ -18,6 +18,11 @@
 
 namespace kintsugi::segmenter {
 
+/// So many points around a place tell what surface is there: of two that meet, some are on each.
+inline constexpr int kNeighboursAround = 8;
+/// Cosine between normals of one surface in two maps: 60 degrees, which they differ by at edges.
+inline constexpr float kAlikeNormals = 0.5F;
+
 /// All of it in the frame and the light of AFTER.
 class MapSide {
  public:

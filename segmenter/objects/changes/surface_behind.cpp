@@ -8,10 +8,9 @@
 namespace kintsugi::segmenter {
 namespace {
 
-constexpr double kBeyond_vox = 0.5;
+constexpr double kBeyond_vox = 0.5;  // of what is the same surface
 // What is farther behind a place is told from it by each view: its noise at 3 m, three times.
 constexpr double kFarthest_m = 0.05;
-constexpr float kAlike = 0.5F;  // cosine between normals: 60 degrees
 
 }  // namespace
 
@@ -32,7 +31,7 @@ std::vector<bool> have_surface_behind(std::span<const CloudPoint> points, const 
     for (std::size_t i = 0; i < behind.size() && nearest.count > 0; ++i) {
       const CloudPoint& there = map.points()[nearest.indices[i]];
       const bool is_there = nearest.squared_distances[i] <= reach_m * reach_m &&
-                            normal_of(there).dot(normal_of(behind[i])) >= kAlike;
+                            normal_of(there).dot(normal_of(behind[i])) >= kAlikeNormals;
       if (is_there) have[i] = true;
     }
   }
