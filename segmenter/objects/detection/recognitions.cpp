@@ -113,17 +113,20 @@ void Recognitions::recognize(const std::vector<std::vector<Candidate>>& candidat
   });
 }
 
+/// Of each object the best place that has the segment, and the best that has not: where two things
+/// alike touch, a union of both is best recognised as one of them, whatever its seed.
 void Recognitions::keep_best(std::uint32_t segment, const std::vector<Candidate>& candidates) {
-  std::map<std::size_t, Recognition> best;  // by model
+  std::map<std::pair<std::size_t, bool>, const Recognition*> best;  // by model, and has the segment
   for (const Candidate& candidate : candidates) {
     for (const Recognition& found : by_candidate_.at(candidate)) {
-      const auto [at, is_first] = best.try_emplace(found.model, found);
-      if (!is_first && found.placement.score() > at->second.placement.score()) at->second = found;
+      const bool has_segment = std::ranges::binary_search(found.placement.segment_ids, segment);
+      const Recognition*& known = best[{found.model, has_segment}];
+      if (known == nullptr || found.placement.score() > known->placement.score()) known = &found;
     }
   }
   if (best.empty()) return;
   std::vector<Recognition>& all = by_segment_[segment];
-  for (auto& [model, recognition] : best) all.push_back(std::move(recognition));
+  for (const auto& [key, recognition] : best) all.push_back(*recognition);
 }
 
 void Recognitions::set(std::uint32_t segment, Recognition recognition) {

@@ -414,6 +414,22 @@ TEST(Detector, DoesNotKeepWhatWouldStandInAnotherLightThanAllElse) {
   EXPECT_THAT(names_of(detector), ElementsAre("ball", "ball", "ball", "ball", "ball"));
 }
 
+// Of the second one less is seen: a union of both is the first one, better than the second one is
+// by itself.
+TEST(Detector, TellsBothOfTwoThingsAlikeThatTouch) {
+  constexpr std::uint32_t kSecond = 5;
+  MapOfThings things;
+  things.add_box({0.0F, -0.08F, 0.0F}, 0.0F, testing::kBoxSize_m, {"z", "-y", "x"}, kBox);
+  things.add_box({0.0F, 0.08F, 0.0F}, 0.0F, testing::kBoxSize_m, {"z", "x"}, kSecond);
+  ObservedMap map = things.take();
+  map.points_W.resize(map.points_W.size() - 60);
+  map.segment_ids.resize(map.points_W.size());
+  Detector detector({box_and_ball()[1]}, 0.01F);
+  give(detector, map, kSecond_us, {kBox, kSecond});
+  examine(detector);
+  EXPECT_THAT(names_of(detector), ElementsAre("box", "box"));
+}
+
 TEST(Detector, FindsTheSameOnAllCores) {
   const ObservedMap map = copies_of(box_on_table(), 4);
   const auto points = std::make_shared<const std::vector<CloudPoint>>(map.points_W);
