@@ -5,11 +5,6 @@
 #include "segmenter/core/ids/slice_labels.hpp"
 
 namespace kintsugi::segmenter {
-namespace {
-
-constexpr std::int64_t kSession = 1;  // there is one
-
-}  // namespace
 
 CloudSlices cut_into_slices(const FileCloud& cloud, float resolution_m,
                             const std::string& map_name) {
@@ -20,7 +15,7 @@ CloudSlices cut_into_slices(const FileCloud& cloud, float resolution_m,
   CloudSlices result;
   for (auto& [id, indices] : indices_by_id) {
     CloudSlice& slice = result.slices.emplace_back();
-    slice.session = kSession;
+    slice.session = kCloudSession;
     slice.map_name = map_name;
     slice.id = id;
     slice.kind = SliceKind::kShiftPlusX;

@@ -11,6 +11,9 @@
 
 namespace kintsugi::segmenter {
 
+/// Of all clouds: it does not tell one from another.
+inline constexpr std::int64_t kCloudSession = 1;
+
 /// Slices by ascending id, and where each of their points stood in the cloud.
 struct CloudSlices {
   std::vector<CloudSlice> slices;

@@ -45,14 +45,15 @@ bool is_same(const Placement& a, const Placement& b) {
 
 }  // namespace
 
-Detector::Detector(std::shared_ptr<const ObjectRecognizer> recognizer)
+Detector::Detector(std::shared_ptr<const ObjectRecognizer> recognizer, std::int64_t map_session)
     : recognizer_(std::move(recognizer)),
       scene_(recognizer_->resolution_m()),
       observed_(recognizer_->resolution_m()),
-      recognitions_(*recognizer_, scene_) {}
+      recognitions_(*recognizer_, scene_, map_session) {}
 
-Detector::Detector(std::vector<ObjectModel> models, float resolution_m)
-    : Detector(std::make_shared<const ObjectRecognizer>(std::move(models), resolution_m)) {}
+Detector::Detector(std::vector<ObjectModel> models, float resolution_m, std::int64_t map_session)
+    : Detector(std::make_shared<const ObjectRecognizer>(std::move(models), resolution_m),
+               map_session) {}
 
 void Detector::set_piece(std::int32_t id, LabelledMap::Points points_W,
                          std::vector<std::uint32_t> segment_ids, std::int64_t utime) {
@@ -88,14 +89,19 @@ void Detector::add_views(std::span<const MapView> views) {
 }
 
 void Detector::examine_all() {
-  if (!is_checking_all_) {  // when it begins again, not all is recognised that was before
-    const std::optional<LightChange> change = recognitions_.light();
-    is_light_expected_ =
-        change && is_same_light(change->log_gain) && scene_.light().log_gain.isZero();
-  }
+  // When it begins again, not all is recognised that was before.
+  if (!is_checking_all_) is_light_expected_ = expects_light();
   is_light_settled_ = false;
   is_checking_all_ = true;
   begin_again({});
+}
+
+/// What was recognised before tells the light of the scene, or something was told and nothing more
+/// can tell another light.
+bool Detector::expects_light() const {
+  if (!recognitions_.may_tell_light()) return !detections_.empty();
+  const std::optional<LightChange> change = recognitions_.light();
+  return change && is_same_light(change->log_gain) && scene_.light().log_gain.isZero();
 }
 
 void Detector::begin_again(const LightChange& light) {
@@ -196,7 +202,7 @@ std::vector<Detection>::const_iterator Detector::told_of(std::uint32_t segment) 
 Recognition Detector::followed(const Recognition& last) const {
   Recognition now = last;
   now.placement = recognizer_->followed(last.model, last.placement, scene_);
-  now.placement.light_agreement = recognitions_.scene_light().agreement(now.placement.light);
+  now.placement.light_agreement = recognitions_.light_of(now.model).agreement(now.placement.light);
   return now;
 }
 

@@ -38,9 +38,11 @@ struct Detection {
 class Detector {
  public:
   /// @param recognizer of the objects, for the resolution of the map
-  explicit Detector(std::shared_ptr<const ObjectRecognizer> recognizer);
+  /// @param map_session of its mapper; 0: not known
+  explicit Detector(std::shared_ptr<const ObjectRecognizer> recognizer,
+                    std::int64_t map_session = 0);
   /// @param resolution_m voxel size of the map, > 0
-  Detector(std::vector<ObjectModel> models, float resolution_m);
+  Detector(std::vector<ObjectModel> models, float resolution_m, std::int64_t map_session = 0);
   Detector(const Detector&) = delete;  // its parts refer to each other
   Detector& operator=(const Detector&) = delete;
 
@@ -82,6 +84,7 @@ class Detector {
  private:
   void wait_for(std::uint32_t segment, bool is_urgent = false);
   void begin_again(const LightChange& light);
+  [[nodiscard]] bool expects_light() const;
   void settle_light();
   void rank_waiting(bool on_all_cores);
   void examine(std::span<const std::uint32_t> segments);
@@ -111,7 +114,7 @@ class Detector {
   Scene scene_;
   ObservedSpace observed_;
   bool is_light_settled_ = false;
-  bool is_light_expected_ = false;  // what was recognised before tells the light of the scene
+  bool is_light_expected_ = false;  // what is recognised may be told before all is examined
   bool is_checking_all_ = false;    // since examine_all(), until the map changes
   Recognitions recognitions_;
   WaitingSegments waiting_;

@@ -36,13 +36,6 @@ std::vector<Recognition> all_of(
   return all;
 }
 
-SceneLight light_of_recognitions(const std::vector<Recognition>& recognitions) {
-  std::vector<const Placement*> placements;
-  placements.reserve(recognitions.size());
-  for (const Recognition& recognition : recognitions) placements.push_back(&recognition.placement);
-  return light_of_scene(placements);
-}
-
 template <class Work>
 void for_each_of(std::size_t count, bool on_all_cores, const Work& work) {
   if (on_all_cores) {
@@ -157,14 +150,36 @@ std::set<std::uint32_t> Recognitions::seeds_of(const std::set<std::uint32_t>& pa
   return seeds;
 }
 
-SceneLight Recognitions::scene_light() const {
-  return light_of_recognitions(without_overlap(all_of(by_segment_)));
+bool Recognitions::is_of_this_map(std::size_t model) const {
+  return map_session_ != 0 && recognizer_.model(model).map_session == map_session_;
+}
+
+SceneLights Recognitions::lights_of_others() const {
+  std::vector<Recognition> all = without_overlap(all_of(by_segment_));
+  std::erase_if(all, [this](const Recognition& each) { return is_of_this_map(each.model); });
+  return SceneLights(std::move(all));
+}
+
+SceneLight Recognitions::light_of(std::size_t model, const SceneLights& others) const {
+  return is_of_this_map(model) ? SceneLight::known({-scene_.light().log_gain}) : others.of(model);
+}
+
+SceneLight Recognitions::light_of(std::size_t model) const {
+  return light_of(model, lights_of_others());
+}
+
+bool Recognitions::may_tell_light() const {
+  std::size_t num_others = 0;
+  for (std::size_t model = 0; model < recognizer_.num_models(); ++model) {
+    if (!is_of_this_map(model)) ++num_others;
+  }
+  return num_others >= kFewestThatTellLight;
 }
 
 std::optional<LightChange> Recognitions::light() const {
-  const SceneLight light = scene_light();
-  if (!light.is_known) return std::nullopt;
-  return LightChange{light.log_gain};
+  const SceneLights lights = lights_of_others();
+  if (!lights.of_most_objects()) return std::nullopt;
+  return LightChange{lights.of_most_objects()->log_gain};
 }
 
 void Recognitions::forget_all() {
@@ -176,9 +191,12 @@ void Recognitions::forget_candidates() { by_candidate_.clear(); }
 
 std::vector<Recognition> Recognitions::best() const {
   std::vector<Recognition> all = all_of(by_segment_);
-  const SceneLight light = scene_light();
-  for (Recognition& recognition : all) {
-    recognition.placement.light_agreement = light.agreement(recognition.placement.light);
+  const SceneLights others = lights_of_others();
+  std::map<std::size_t, SceneLight> lights;  // by model
+  for (auto& [model, placement, searched_points] : all) {
+    const auto [at, is_new] = lights.try_emplace(model);
+    if (is_new) at->second = light_of(model, others);
+    placement.light_agreement = at->second.agreement(placement.light);
   }
   std::erase_if(all, [](const Recognition& recognition) {
     return recognition.placement.score() < kLeastScore;

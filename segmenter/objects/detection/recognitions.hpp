@@ -22,8 +22,9 @@ bool share_segments(const Recognition& a, const Recognition& b);
 class Recognitions {
  public:
   /// `recognizer` and `scene` must outlive this.
-  Recognitions(const ObjectRecognizer& recognizer, const Scene& scene)
-      : recognizer_(recognizer), scene_(scene) {}
+  /// @param map_session of the scene; 0: not known
+  Recognitions(const ObjectRecognizer& recognizer, const Scene& scene, std::int64_t map_session)
+      : recognizer_(recognizer), scene_(scene), map_session_(map_session) {}
 
   /// How unlike all objects a segment and its unions with neighbours are, of each of these
   /// segments: the least of ObjectRecognizer::least_distance().
@@ -51,10 +52,13 @@ class Recognitions {
   /// of the higher score counts. The highest score first.
   [[nodiscard]] std::vector<Recognition> best() const;
 
-  /// The light of the map beside that of the scene (Scene::set_light()), as best() has it.
-  [[nodiscard]] SceneLight scene_light() const;
-  /// How it differs from that of the scene as far as what is recognised tells; nothing: too little
-  /// is.
+  /// The light of the map as it falls on an object, beside that of the scene (Scene::set_light()),
+  /// as best() has it: where it was taught in this map, it is as it was then.
+  [[nodiscard]] SceneLight light_of(std::size_t model) const;
+  /// There are enough objects of other maps to tell the light.
+  [[nodiscard]] bool may_tell_light() const;
+  /// How it differs from that of the scene for objects of other maps, as far as what is recognised
+  /// tells; nothing: too little is.
   [[nodiscard]] std::optional<LightChange> light() const;
 
   /// All of the scene looks different.
@@ -66,6 +70,9 @@ class Recognitions {
   [[nodiscard]] std::int64_t num_candidates() const { return num_candidates_; }
 
  private:
+  [[nodiscard]] bool is_of_this_map(std::size_t model) const;
+  [[nodiscard]] SceneLights lights_of_others() const;
+  [[nodiscard]] SceneLight light_of(std::size_t model, const SceneLights& others) const;
   [[nodiscard]] float largest_box_m() const;
   [[nodiscard]] std::vector<Candidate> candidates_at(std::uint32_t segment) const;
   void recognize(const std::vector<std::vector<Candidate>>& candidates);
@@ -73,6 +80,7 @@ class Recognitions {
 
   const ObjectRecognizer& recognizer_;
   const Scene& scene_;
+  std::int64_t map_session_;
   std::map<std::uint32_t, std::vector<Recognition>> by_segment_;  // the best of each object
   /// What was found at each candidate since the map changed: most are those of several segments.
   std::map<Candidate, std::vector<Recognition>> by_candidate_;

@@ -23,6 +23,8 @@ struct ObjectModel {
   EmptySpace empty_O;                    ///< what was seen around it
   EngineConfig parameters;  ///< with which it comes out whole; resolution_m is the map's
   std::int32_t times_taught = 1;
+  /// Of the mapper whose map has the light of the colours, that of its first lesson; 0: not known.
+  std::int64_t map_session = 0;
 };
 
 }  // namespace kintsugi::segmenter

@@ -118,7 +118,7 @@ class DetectorProcess {
     recognizer_ = std::make_shared<const ObjectRecognizer>(
         models_of(library_), client_.resolution_m(), recognizer_.get());
     spdlog::info("{} objects prepared", recognizer_->num_prepared());
-    detector_ = std::make_unique<Detector>(recognizer_);
+    detector_ = std::make_unique<Detector>(recognizer_, source_.map_session);
     views_.begin(source_.map_session);
     published_ = 0;
     is_complete_pass_ = false;

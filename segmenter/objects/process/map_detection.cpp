@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "segmenter/io/cloud_slices.hpp"
 #include "segmenter/objects/process/cpu_budget.hpp"
 
 namespace kintsugi::segmenter {
@@ -9,14 +10,20 @@ namespace kintsugi::segmenter {
 std::vector<ObjectModel> models_of(const ObjectLibrary& library) {
   std::vector<ObjectModel> models;
   models.reserve(library.objects().size());
-  for (const KnownObject& object : library.objects()) models.push_back(object.model);
+  for (const KnownObject& object : library.objects()) {
+    ObjectModel& model = models.emplace_back(object.model);
+    if (object.lessons.empty()) continue;
+    const std::int64_t session = object.lessons.front().map_session;
+    if (session != kCloudSession) model.map_session = session;
+  }
   return models;
 }
 
 MapDetection detect_in(const ObservedMap& map, const ObjectLibrary& library) {
   MapDetection found;
   const double start_s = CpuBudget::cpu_s();
-  found.detector = std::make_unique<Detector>(models_of(library), map.resolution_m);
+  found.detector =
+      std::make_unique<Detector>(models_of(library), map.resolution_m, map.map_session);
   const double prepared_s = CpuBudget::cpu_s();
   Detector& detector = *found.detector;
   detector.set_piece(0, std::make_shared<const std::vector<CloudPoint>>(map.points_W),

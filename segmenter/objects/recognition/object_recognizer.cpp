@@ -67,8 +67,8 @@ Placement refined(const PreparedModel& object, const Scene& scene, const Placeme
 
 /// As far as recognition is concerned.
 bool are_same(const ObjectModel& a, const ObjectModel& b) {
-  return a.name == b.name && a.resolution_m == b.resolution_m && a.points_O == b.points_O &&
-         a.views_O == b.views_O && a.empty_O == b.empty_O;
+  return a.name == b.name && a.resolution_m == b.resolution_m && a.map_session == b.map_session &&
+         a.points_O == b.points_O && a.views_O == b.views_O && a.empty_O == b.empty_O;
 }
 
 std::vector<ViewDescriptor> views_of(const PreparedModel& prepared) {

@@ -495,31 +495,72 @@ TEST(ModelIndex, ComparesSizeAndShapeWithWhatHasNoColours) {
   }
 }
 
-TEST(SceneLight, IsThatOfMostPlacements) {
-  const auto with_light = [](const Eigen::Vector3f& log_gain) {
-    Placement placement;
-    placement.seen = placement.explained = 1.0F;
-    placement.light.log_gain = log_gain;
-    return placement;
-  };
-  const std::vector<Placement> placements = {
-      with_light({-0.2F, -0.4F, -0.8F}), with_light({0.5F, 0.5F, 0.5F}),
-      with_light({-0.25F, -0.45F, -0.8F}), with_light({-0.2F, -0.4F, -0.75F})};
-  std::vector<const Placement*> all;
-  for (const Placement& placement : placements) all.push_back(&placement);
-  const SceneLight light = light_of_scene(all);
-  EXPECT_LT((light.log_gain - Eigen::Vector3f(-0.22F, -0.42F, -0.78F)).norm(), 0.05F);
-  EXPECT_GT(light.agreement(placements[0].light), 0.95F);
-  EXPECT_LT(light.agreement(placements[1].light), 0.01F);
-  // A thing in the shadow, and one that is lit in another colour.
-  EXPECT_GT(light.agreement(with_light({-0.42F, -0.62F, -0.98F}).light), 0.7F);
-  EXPECT_LT(light.agreement(with_light({-0.02F, -0.42F, -0.98F}).light), 0.5F);
+Recognition with_light(std::size_t model, const Eigen::Vector3f& log_gain) {
+  Recognition recognition;
+  recognition.model = model;
+  recognition.placement.seen = recognition.placement.explained = 1.0F;
+  recognition.placement.light.log_gain = log_gain;
+  return recognition;
+}
 
-  const SceneLight unknown = light_of_scene(std::span(all).first(2));
+TEST(SceneLights, AreThatOnWhichMostObjectsAgree) {
+  const std::vector<Recognition> all = {
+      with_light(0, {-0.2F, -0.4F, -0.8F}), with_light(1, {0.5F, 0.5F, 0.5F}),
+      with_light(2, {-0.25F, -0.45F, -0.8F}), with_light(3, {-0.2F, -0.4F, -0.75F})};
+  const SceneLights lights(all);
+  ASSERT_TRUE(lights.of_most_objects());
+  const SceneLight light = *lights.of_most_objects();
+  EXPECT_LT((light.log_gain - Eigen::Vector3f(-0.22F, -0.42F, -0.78F)).norm(), 0.05F);
+  EXPECT_EQ(lights.of(1).log_gain, light.log_gain);
+  EXPECT_GT(light.agreement(all[0].placement.light), 0.95F);
+  EXPECT_LT(light.agreement(all[1].placement.light), 0.01F);
+  // A thing in the shadow, and one that is lit in another colour.
+  EXPECT_GT(light.agreement({{-0.42F, -0.62F, -0.98F}}), 0.7F);
+  EXPECT_LT(light.agreement({{-0.02F, -0.42F, -0.98F}}), 0.5F);
+}
+
+TEST(SceneLights, MayBeAnyAsLongAsTooFewObjectsTell) {
+  const std::vector<Recognition> all = {with_light(0, {-0.2F, -0.4F, -0.8F}),
+                                        with_light(1, {0.5F, 0.5F, 0.5F}),
+                                        with_light(2, {-0.25F, -0.45F, -0.8F})};
+  const SceneLights lights(all);
+  EXPECT_FALSE(lights.of_most_objects());
+  const SceneLight unknown = lights.of(0);
   EXPECT_EQ(unknown.log_gain, Eigen::Vector3f::Zero());
-  EXPECT_GT(unknown.agreement(placements[0].light), 0.7F) << "it may be another one";
-  EXPECT_LT(unknown.agreement(with_light({-1.5F, -1.0F, -0.5F}).light), 0.6F)
-      << "as far as allowed";
+  EXPECT_GT(unknown.agreement(all[0].placement.light), 0.7F) << "it may be another one";
+  EXPECT_LT(unknown.agreement({{-1.5F, -1.0F, -0.5F}}), 0.6F) << "as far as allowed";
+}
+
+const Eigen::Vector3f kDark = Eigen::Vector3f::Constant(-0.9F);
+const Eigen::Vector3f kBright = Eigen::Vector3f::Constant(0.1F);
+
+// Whatever is dark looks like a white thing in the dark: many such places of one object are one
+// opinion.
+TEST(SceneLights, AreNotThatOfManyPlacesOfOneObject) {
+  std::vector<Recognition> all(9, with_light(0, kDark));
+  EXPECT_FALSE(SceneLights(all).of_most_objects());
+  for (const std::size_t model : {0, 1, 2}) all.push_back(with_light(model, kBright));
+  const SceneLights lights(all);
+  ASSERT_TRUE(lights.of_most_objects());
+  EXPECT_LT((lights.of_most_objects()->log_gain - kBright).norm(), 1e-3F);
+}
+
+TEST(SceneLights, OfOneObjectAreThatInWhichItFitsBest) {
+  std::vector<Recognition> all(9, with_light(0, kDark));
+  for (Recognition& each : all) each.placement.explained = 0.7F;
+  all.resize(12, with_light(0, kBright));
+  const SceneLight light = SceneLights(all).of(0);
+  EXPECT_LT((light.log_gain - kBright).norm(), 1e-3F);
+  EXPECT_GT(light.agreement({kBright}), 0.95F);
+  EXPECT_LT(light.agreement({kDark}), 0.1F);
+  EXPECT_GT(SceneLights(all).of(1).agreement({kDark}), 0.6F) << "of another one it is not known";
+  // Two are too few to tell, but they say that it is not the other one.
+  all.resize(11);
+  EXPECT_GT(SceneLights(all).of(0).agreement({kDark}), 0.6F);
+  // That others agree does not make a light more likely than it is by itself.
+  all.resize(9);
+  const SceneLight dark = SceneLights(all).of(0);
+  EXPECT_FLOAT_EQ(dark.agreement({kDark}), SceneLight().agreement({kDark}));
 }
 
 }  // namespace
