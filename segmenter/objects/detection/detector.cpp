@@ -183,7 +183,7 @@ bool Detector::follow(std::uint32_t segment) {
   const auto told = told_of(segment);
   if (told == detections_.end() || map().num_points(segment) == 0) return false;
   Recognition now = followed(told->recognition);
-  if (!is_recognized(now.placement)) return false;
+  if (!recognizer_->is_recognized(now.placement)) return false;
   if (now.placement.points >= kMuchMore * now.searched_points) return false;
   recognitions_.set(segment, std::move(now));
   update_detections();
@@ -357,7 +357,7 @@ bool Detector::is_still_there(Detection& detection, const std::vector<Recognitio
   Recognition now = followed(detection.recognition);
   const bool is_replaced = std::ranges::any_of(
       best, [&now](const Recognition& other) { return share_segments(now, other); });
-  if (!is_recognized(now.placement) || is_replaced) return false;
+  if (!recognizer_->is_recognized(now.placement) || is_replaced) return false;
   recognitions_.add(now);
   detection.recognition = std::move(now);
   return true;

@@ -37,6 +37,8 @@ constexpr float kLeastPromise = kLeastScore / 2;
 // A third of what is known of an object, as when it is seen from another side; of less, too many
 // other things have alike faces.
 constexpr float kLeastSeen = 0.33F;
+// Few objects do not tell what else a thing may be: then most of it has to be seen.
+constexpr float kLeastSeenOfFew = 0.5F;
 // Otherwise the object is only a part of a larger thing that has the same surface.
 constexpr float kLeastOwn = 0.6F;
 
@@ -140,7 +142,7 @@ std::vector<Recognition> ObjectRecognizer::recognize(const Candidate& candidate,
   if (moments.empty()) return {};
   const SizeAndColors beginning =
       size_and_colors(moments, described_spacing_m(scene.resolution_m()));
-  const bool is_choice = known_.size() > kFew;
+  const bool is_choice = has_choice();
   if (is_choice && index_->least_distance(beginning) > kLargestDistance) return {};
   const ViewDescriptor descriptor = view_descriptor(beginning, scene.shape(candidate));
   const std::vector<ModelMatch> matches =
@@ -186,10 +188,12 @@ std::set<std::uint32_t> ObjectRecognizer::segments_around(std::size_t model,
   return segmenter::segments_around(prepared(model), scene, placement.X_WO);
 }
 
-bool is_recognized(const Placement& placement) {
+bool ObjectRecognizer::is_recognized(const Placement& placement) const {
   return placement.is_distinct && placement.score() >= kLeastScore &&
-         placement.seen >= kLeastSeen && placement.own >= kLeastOwn &&
-         placement.color_difference <= kSameMeanColor;
+         placement.seen >= (has_choice() ? kLeastSeen : kLeastSeenOfFew) &&
+         placement.own >= kLeastOwn && placement.color_difference <= kSameMeanColor;
 }
+
+bool ObjectRecognizer::has_choice() const { return known_.size() > kFew; }
 
 }  // namespace kintsugi::segmenter

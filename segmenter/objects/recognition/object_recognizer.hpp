@@ -63,6 +63,9 @@ class ObjectRecognizer {
   [[nodiscard]] Placement followed(std::size_t model, const Placement& last,
                                    const Scene& scene) const;
 
+  /// The placement is good enough to say that the object is there.
+  [[nodiscard]] bool is_recognized(const Placement& placement) const;
+
   /// The segments that have points in the box of an object there.
   [[nodiscard]] std::set<std::uint32_t> segments_around(std::size_t model,
                                                         const Placement& placement,
@@ -73,6 +76,7 @@ class ObjectRecognizer {
   using KnownModels = std::vector<std::shared_ptr<const Known>>;
 
   [[nodiscard]] const PreparedModel& prepared(std::size_t model) const;
+  [[nodiscard]] bool has_choice() const;
   void refine(std::size_t model, const Scene& scene, Placement& best) const;
 
   float resolution_m_;
@@ -81,8 +85,5 @@ class ObjectRecognizer {
   float largest_radius_m_ = 0.0F;
   std::optional<ModelIndex> index_;
 };
-
-/// The placement is good enough to say that the object is there.
-bool is_recognized(const Placement& placement);
 
 }  // namespace kintsugi::segmenter

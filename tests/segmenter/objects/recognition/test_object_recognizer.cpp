@@ -284,13 +284,14 @@ TEST(Placement, TellsAColourThatIsAnotherOnAverageOnly) {
   const auto placed = [&](const ObservedMap& map) {
     return placement_of(model, SceneOf(map).scene, {.X_WO = box.X_WO, .light = {}});
   };
+  const ObjectRecognizer recognizer({box.model}, white.resolution_m);
   const Placement nearly_white = placed(painted({184, 192, 186}));
   EXPECT_NEAR(nearly_white.color_difference, 3.2F, 0.1F);
-  EXPECT_TRUE(is_recognized(nearly_white));
+  EXPECT_TRUE(recognizer.is_recognized(nearly_white));
   const Placement greenish = placed(painted({164, 196, 180}));
   EXPECT_NEAR(greenish.color_difference, 13.4F, 0.1F);
   EXPECT_GT(greenish.score(), 0.9F);
-  EXPECT_FALSE(is_recognized(greenish));
+  EXPECT_FALSE(recognizer.is_recognized(greenish));
 }
 
 TEST(Placement, DoubtsAnObjectThatWouldReachIntoAWall) {
@@ -493,6 +494,21 @@ TEST(ModelIndex, ComparesSizeAndShapeWithWhatHasNoColours) {
     EXPECT_GT(index.least_distance(other.head<kSizeAndColors>()), kNear) << "of another size";
     EXPECT_TRUE(index.nearest(other, 2, kNear).empty());
   }
+}
+
+// Among many objects, another one would be more like what it is.
+TEST(ObjectRecognizer, AsksOfFewObjectsThatMostOfThemIsSeen) {
+  const MadeModel box = taught(box_on_table(kFourSides), kBox, "box");
+  const ObjectRecognizer few({box.model}, 0.01F);
+  const ObjectRecognizer many(std::vector<ObjectModel>(9, box.model), 0.01F);
+  Placement placement;
+  placement.is_distinct = true;
+  placement.explained = placement.own = 1.0F;
+  placement.seen = 0.4F;
+  EXPECT_FALSE(few.is_recognized(placement));
+  EXPECT_TRUE(many.is_recognized(placement));
+  placement.seen = 0.6F;
+  EXPECT_TRUE(few.is_recognized(placement));
 }
 
 Recognition with_light(std::size_t model, const Eigen::Vector3f& log_gain) {
