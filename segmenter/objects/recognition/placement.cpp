@@ -109,7 +109,8 @@ std::vector<std::size_t> views_of(const PreparedModel& model, const Scene& scene
 /// Counts of points of the map.
 struct Counts {
   std::int64_t explained = 0;
-  std::int64_t new_side = 0;  // not explained, but nothing is known of that side of the object
+  std::int64_t new_side = 0;     // not explained, but nothing is known of that side of the object
+  std::int64_t other_color = 0;  // on its surface, and counted there (Evidence::kContradicted)
 };
 
 struct SeenSurface {
@@ -134,7 +135,9 @@ SeenSurface seen_surface(const PreparedModel& model, const Scene& scene, const P
           if (!speaks_against(model, X_OW * seen.position, X_OW.linear() * seen.normal)) {
             ++counts->new_side;
           }
-        } else if (is_same_color(*difference)) {
+        } else if (!is_same_color(*difference)) {
+          ++counts->other_color;
+        } else {
           ++counts->explained;
           result.explained_W.push_back(seen);
           result.segments.push_back(segment);
@@ -163,7 +166,7 @@ void add_segments(const SeenSurface& seen, const LabelledMap& map, Placement& pl
     const std::int64_t all = map.num_points(id) - counts.new_side;
     if (id == kNoSegment || counts.explained == 0 || 2 * counts.explained <= all) continue;
     placement.segment_ids.push_back(id);
-    own += all;
+    own += all - counts.other_color;
     own_explained += counts.explained;
   }
   if (own == 0) return;

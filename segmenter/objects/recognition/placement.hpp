@@ -21,7 +21,8 @@ struct Placement {
   /// free, or another surface is there; by half, where another surface is so near in front of it
   /// that the object would reach into it or touch it.
   float contradicted = 0.0F;
-  /// Share of the points of `segment_ids` that are surface of the object.
+  /// Share of the points of `segment_ids` that are surface of the object, without those that are
+  /// on its surface in another colour: `contradicted` has these.
   float explained = 0.0F;
   /// Share of the map's points that are surface of the object that belong to `segment_ids`.
   float own = 0.0F;

@@ -294,6 +294,24 @@ TEST(Placement, TellsAColourThatIsAnotherOnAverageOnly) {
   EXPECT_FALSE(recognizer.is_recognized(greenish));
 }
 
+// It is missing from the object's surface: that once, and not from the segment's share again.
+TEST(Placement, CountsSurfaceInAnotherColourOnce) {
+  const ObservedMap map = box_on_table(kFourSides);
+  const MadeModel box = taught(map, kBox, "box");
+  const PreparedModel model(box.model, map.resolution_m);
+  ObservedMap repainted = map;
+  for (std::size_t i = 0; i < map.points_W.size(); ++i) {
+    CloudPoint& p = repainted.points_W[i];
+    if (map.segment_ids[i] == kBox && p.red == 200) p.red = 100;  // its lid
+  }
+  const Placement placement =
+      placement_of(model, SceneOf(repainted).scene, {.X_WO = box.X_WO, .light = {}});
+  EXPECT_GT(placement.contradicted, 0.2F);
+  EXPECT_NEAR(placement.seen + placement.contradicted, 1.0F, 0.05F);
+  EXPECT_GT(placement.explained, 0.95F);
+  EXPECT_EQ(placement.segment_ids, std::vector<std::uint32_t>{kBox});
+}
+
 TEST(Placement, DoubtsAnObjectThatWouldReachIntoAWall) {
   const ObservedMap taught_map = box_on_table(kFourSides);
   const MadeModel box = taught(taught_map, kBox, "box");
