@@ -81,7 +81,7 @@ class Recognitions {
   const ObjectRecognizer& recognizer_;
   const Scene& scene_;
   std::int64_t map_session_;
-  std::map<std::uint32_t, std::vector<Recognition>> by_segment_;  // see keep_best()
+  std::map<std::uint32_t, std::vector<Recognition>> by_segment_;  // what keep_best() kept
   /// What was found at each candidate since the map changed: most are those of several segments.
   std::map<Candidate, std::vector<Recognition>> by_candidate_;
   std::int64_t num_candidates_ = 0;

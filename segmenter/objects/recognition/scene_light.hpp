@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <numbers>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include "segmenter/objects/recognition/agreement.hpp"

@@ -13,6 +13,7 @@
 #include "segmenter/objects/detection/detector.hpp"
 #include "segmenter/objects/model/make_model.hpp"
 #include "tests/segmenter/objects/box_on_table.hpp"
+#include "tests/segmenter/objects/toy_room.hpp"
 
 namespace kintsugi::segmenter {
 namespace {
@@ -383,20 +384,12 @@ TEST(Detector, EndsWithTheSameDetectionsWhateverTheOrder) {
   }
 }
 
-/// Linear red, green and blue times the squares of these, about.
-void relight(ObservedMap& map, const Eigen::Vector3f& gain) {
-  for (CloudPoint& p : map.points_W) {
-    p.red = static_cast<std::uint8_t>(gain[0] * p.red);
-    p.green = static_cast<std::uint8_t>(gain[1] * p.green);
-    p.blue = static_cast<std::uint8_t>(gain[2] * p.blue);
-  }
-}
-
-const Eigen::Vector3f kOrange(1.10F, 0.95F, 0.95F);  // of linear colours 1.24, 0.89, 0.89: a lamp
+/// A lamp: linear red, green and blue times 1.24, 0.89, 0.89.
+void make_orange(ObservedMap& map) { testing::relight(map, 1.10, 0.95, 0.95); }
 
 TEST(Detector, ComparesColoursInTheLightThatMostObjectsTell) {
   ObservedMap map = three_things();
-  relight(map, {0.96F, 0.92F, 0.88F});
+  testing::relight(map, 0.96, 0.92, 0.88);
   const auto largest_change = [](const Detector& detector) {
     float largest = 0.0F;
     for (const Detection& detection : detector.detections()) {
@@ -443,7 +436,7 @@ ObservedMap copies_of(const ObservedMap& map, std::uint32_t count) {
 
 TEST(Detector, DoesNotKeepWhatWouldStandInAnotherLightThanAllElse) {
   ObservedMap orange = box_on_table();
-  relight(orange, kOrange);
+  make_orange(orange);
   Detector detector(box_ball_and_tower(), 0.01F);
   give(detector, orange, kSecond_us, {kTable, kBox});
   examine(detector);
@@ -464,7 +457,7 @@ TEST(Detector, LooksForAnObjectOfThisMapInItsLight) {
   std::vector<ObjectModel> models = box_and_ball();
   for (ObjectModel& model : models) model.map_session = kSession;
   ObservedMap orange = copies_of(box_on_table(), 2);
-  relight(orange, kOrange);
+  make_orange(orange);
   for (const std::int64_t session : {std::int64_t{0}, kSession, kSession + 1}) {
     Detector detector(models, 0.01F, session);
     give(detector, box_on_table(), kSecond_us, {kTable, kBox});
@@ -486,7 +479,8 @@ TEST(Detector, TellsBothOfTwoThingsAlikeThatTouch) {
   things.add_box({0.0F, -0.08F, 0.0F}, 0.0F, testing::kBoxSize_m, {"z", "-y", "x"}, kBox);
   things.add_box({0.0F, 0.08F, 0.0F}, 0.0F, testing::kBoxSize_m, {"z", "x"}, kSecond);
   ObservedMap map = things.take();
-  map.points_W.resize(map.points_W.size() - 60);
+  constexpr std::size_t kUnseen = 60;  // a tenth of it: else both are told with the same score
+  map.points_W.resize(map.points_W.size() - kUnseen);
   map.segment_ids.resize(map.points_W.size());
   Detector detector({box_and_ball()[1]}, 0.01F);
   give(detector, map, kSecond_us, {kBox, kSecond});
