@@ -86,6 +86,8 @@ class BufferedLog {
   std::vector<LogPart> closed() const;
   /// @throws as LogFiles::create_base()
   std::shared_ptr<LogWriter> create_base() const;
+  /// See LogFiles::remove_base().
+  void remove_base() const { files_.remove_base(); }
   /// Replaces the first `count` files of closed() by the base, which has all of them that is
   /// needed, and removes them. A kill or a power cut at any moment leaves the old files or the new
   /// one.

@@ -168,6 +168,11 @@ LogWriter LogFiles::create_base() const {
                               : LogWriter::create_anew(base_in_work(config_.path));
 }
 
+void LogFiles::remove_base() const {
+  std::error_code ignored;  // then it is left until the log is opened again
+  if (!config_.path.empty()) fs::remove(base_in_work(config_.path), ignored);
+}
+
 void LogFiles::install(LogWriter& base) const {
   if (config_.path.empty()) return;
   // Always: what it replaces is removed next, and perhaps sooner from the disk than this is on it.

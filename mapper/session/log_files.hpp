@@ -75,6 +75,8 @@ class LogFiles {
   /// Opens a file for what shall replace the first ones; has no effect on the log.
   /// @throws as LogWriter does
   LogWriter create_base() const;
+  /// Removes the file of create_base(), if it was not installed.
+  void remove_base() const;
   /// Gives the file of create_base(), which is whole, the name of the first file of the log, so
   /// that a log that is opened from now on begins with it, also after a power cut. May run in
   /// parallel to all others. @throws std::system_error; the log has its old first file then

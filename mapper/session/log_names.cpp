@@ -40,7 +40,7 @@ int last_number(const fs::path& path) {
 }
 
 fs::path base_in_work(const fs::path& path) {
-  return path.parent_path() / (path.stem().string() + ".base" + path.extension().string());
+  return path.parent_path() / ("." + path.stem().string() + ".base" + path.extension().string());
 }
 
 void remove_left(const fs::path& path, int next) {

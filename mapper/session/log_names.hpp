@@ -11,7 +11,8 @@ std::filesystem::path numbered(const std::filesystem::path& path, int number);
 /// NAME.partial.lcm, as AtomicFile names files.
 std::filesystem::path partial(const std::filesystem::path& path);
 
-/// NAME.base.lcm: a base until it is whole.
+/// .NAME.base.lcm: a base until it is whole. A name that no user gives a log: it is replaced and
+/// removed without a question.
 std::filesystem::path base_in_work(const std::filesystem::path& path);
 
 /// The largest number that a file of this log bears; 0: there is only the first, or none.

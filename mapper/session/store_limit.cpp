@@ -66,6 +66,7 @@ void StoreLimit::rewrite() {
     log_.replace_first(base, parts.size(), [&] { on_rewritten_(parts.back().number, streams); });
     note_size(base->size_bytes());
   } catch (const std::exception& error) {
+    log_.remove_base();  // on a full disk the log needs its space
     next_try_ = Clock::now() + kRetryPeriod;
     if (!is_stopped_) spdlog::warn("the log cannot be rewritten, and grows: {}", error.what());
   }

@@ -21,7 +21,7 @@ grep -q 'mapper was killed' trio.txt || fail "the mapper was not killed during t
 expect_same_partition all/segments.ply limited/segments.ply
 expect_same all/map_final.png limited/map_final.png
 expect_no_partial_files limited
-[[ ! -e limited/mapper.base.lcm && ! -e limited/run.lcm ]] || fail "there is: $(ls limited)"
+[[ ! -e limited/.mapper.base.lcm && ! -e limited/run.lcm ]] || fail "there is: $(ls limited)"
 bytes="$(cat limited/mapper*.lcm | wc -c)"
 ((bytes < 8000000)) || fail "the log has $bytes bytes"
 ((bytes < $(cat all/mapper*.lcm | wc -c))) || fail "nothing was removed"

@@ -338,7 +338,7 @@ TEST_P(StoreLimits, LeaveAWholeLogWhereverTheyAreKilled) {
   {  // before the base is whole
     const TemporaryFolder killed;
     fs::copy(full.path(), killed.path());
-    std::ofstream(killed / "run.base.lcm") << "half of it";
+    std::ofstream(killed / ".run.base.lcm") << "half of it";
     expect_resumable(killed / "run.lcm", mapper);
     EXPECT_EQ(files_in(killed.path()), all);
   }
@@ -361,6 +361,21 @@ TEST_P(StoreLimits, LeaveAWholeLogWhereverTheyAreKilled) {
     expect_resumable(killed / "run.lcm", mapper);
     EXPECT_EQ(files_in(killed.path()), left) << num_removed;
   }
+}
+
+/// As on a full disk, of which the log itself needs what is left.
+TEST_P(StoreLimits, LeaveNoHalfABase) {
+  std::optional<SessionStore> store(std::in_place, config_);
+  store->begin_session(kSession, {{"device", "a"}});
+  Mapper mapper(*store);
+  while (!fs::exists(folder_ / "run.2.lcm")) mapper.step();
+  fs::resize_file(folder_ / "run.1.lcm", 10);  // so that it cannot be rewritten
+  while (step_if_there_is_room(mapper, *store)) {
+  }
+  store->retry();
+  store.reset();
+  EXPECT_FALSE(fs::exists(folder_ / ".run.base.lcm"));
+  EXPECT_TRUE(fs::exists(folder_ / "run.1.lcm"));
 }
 
 TEST_P(StoreLimits, NeverLoseAMapThatIsLargerAndSaySo) {
