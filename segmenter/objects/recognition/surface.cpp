@@ -66,6 +66,16 @@ Eigen::Vector3f linear_rgb_of(const CloudPoint& p) {
   return {values[p.red], values[p.green], values[p.blue]};
 }
 
+/// The value that is nearest.
+std::uint8_t encoded(float linear) {
+  const std::array<float, 256>& values = linear_values();
+  const auto above = std::ranges::lower_bound(values, linear);
+  if (above == values.begin()) return 0;
+  const bool is_below_nearer =
+      above == values.end() || linear - *std::prev(above) < *above - linear;
+  return static_cast<std::uint8_t>(above - values.begin() - (is_below_nearer ? 1 : 0));
+}
+
 struct Sums {
   Eigen::Vector3f position = Eigen::Vector3f::Zero();
   Eigen::Vector3f normal = Eigen::Vector3f::Zero();
@@ -251,6 +261,15 @@ void relight(Surface& surface, const Eigen::Array3f& gain) {
     if (!point.has_color) continue;
     point.rgb.array() *= gain;
     point.lab = lab_of(point.rgb);
+  }
+}
+
+void relight(std::span<CloudPoint> points, const Eigen::Array3f& gain) {
+  for (CloudPoint& p : points) {
+    const Eigen::Array3f rgb = linear_rgb_of(p).array() * gain;
+    p.red = encoded(rgb.x());
+    p.green = encoded(rgb.y());
+    p.blue = encoded(rgb.z());
   }
 }
 

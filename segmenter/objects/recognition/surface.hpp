@@ -53,6 +53,7 @@ void smooth_colors(Surface& surface, float radius_m);
 
 /// The surface as it would look if all light on it were multiplied by `gain` (red, green, blue).
 void relight(Surface& surface, const Eigen::Array3f& gain);
+void relight(std::span<CloudPoint> points, const Eigen::Array3f& gain);
 
 /// The surface where `X_BA` puts it.
 Surface transformed(const Surface& surface_A, const Pose& X_BA);

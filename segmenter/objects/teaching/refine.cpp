@@ -124,14 +124,10 @@ class FitSearch {
   /// X_OL between the level frames.
   [[nodiscard]] ObservationFit best() const {
     ObservationFit best;
-    LightChange best_light;
     const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
     const auto consider = [&](const Pose& X_OL, const LightChange& light) {
       const ObservationFit fit = fit_at(X_OL, light);
-      if (fit.common * fit.agreement > best.common * best.agreement) {
-        best = fit;
-        best_light = light;
-      }
+      if (fit.common * fit.agreement > best.common * best.agreement) best = fit;
     };
     // Of a hypothesis W is the frame of what is seen, and `light` what that has more.
     for (const PoseHypothesis& found : upright_poses(known_, lesson_.surface_O, up, kHypotheses)) {
@@ -145,9 +141,9 @@ class FitSearch {
       consider(fine.X_WO, light);
     }
     if (!best.is_one_object()) return best;
-    return fit_at(slid(known_.object->points_O, lesson_.object->points_O, best.X_OL, best_light,
+    return fit_at(slid(known_.object->points_O, lesson_.object->points_O, best.X_OL, best.light,
                        known_.spacing_m),
-                  best_light);
+                  best.light);
   }
 
  private:
@@ -159,6 +155,7 @@ class FitSearch {
     const Counts known = compare(lesson_, known_.surface_O, X_OL, back, lesson_sides_);
     ObservationFit fit;
     fit.X_OL = X_OL;
+    fit.light = light;
     fit.common = std::max(share(lesson.same, lesson.points), share(known.same, known.points));
     fit.agreement = share(lesson.same + known.same, lesson.comparable + known.comparable);
     return fit;
@@ -223,6 +220,7 @@ Refinement refined(const KnownObject& known, const KnownObject& lesson) {
   for (const CloudPoint& p : lesson.model.points_O) {
     more_O.push_back(transformed(p, refinement.fit.X_OL));
   }
+  relight(more_O, (-refinement.fit.light.log_gain.array()).exp());
   refinement.num_added = merge_surface(
       model.points_O, more_O, std::max(known.model.resolution_m, lesson.model.resolution_m));
   std::vector<Eigen::Vector3f> views_O;

@@ -3,12 +3,14 @@
 
 #include "lcmtypes/geometry.hpp"
 #include "segmenter/objects/library/known_object.hpp"
+#include "segmenter/objects/recognition/agreement.hpp"
 
 namespace kintsugi::segmenter {
 
 /// How two observations of what may be one object lie upon each other.
 struct ObservationFit {
   Pose X_OL = Pose::Identity();  ///< of the frame of the lesson in that of the known object
+  LightChange light;             ///< what fell on the lesson, over what fell on the known object
   /// Share of the surface that is in both, of the smaller of the two: 0 to 1.
   double common = 0.0;
   /// Of the points whose normals both observations have, the share that is in both: sides that only
@@ -28,8 +30,8 @@ struct Refinement {
 };
 
 /// The known object with what the lesson adds: surface that both have is averaged, other surface is
-/// added, also the views and lessons; times_taught are summed. The parameters are those with which
-/// one of the two came out more whole.
+/// added, in the light of the known object, also the views and lessons; times_taught are summed.
+/// The parameters are those with which one of the two came out more whole.
 /// @throws std::runtime_error naming the reason when they do not fit, or become too large
 Refinement refined(const KnownObject& known, const KnownObject& lesson);
 

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "segmenter/core/parameters/presets.hpp"
 #include "segmenter/core/points/transformed_points.hpp"
 #include "segmenter/objects/model/make_model.hpp"
+#include "segmenter/objects/recognition/surface.hpp"
 #include "segmenter/objects/teaching/learned_parameters.hpp"
 #include "segmenter/objects/teaching/refine.hpp"
 #include "segmenter/objects/teaching/taught_surface.hpp"
@@ -171,6 +173,26 @@ TEST(Refine, AveragesTheSameSidesAndAddsTheOthers) {
     box_O.extend(Eigen::Vector3f(p.x, p.y, p.z));
   }
   EXPECT_LT((box_O.sizes() - kBoxSize_m).cwiseAbs().maxCoeff(), 0.02F);
+}
+
+// Its light is that of its first lesson, by which it is looked for in the map of that.
+TEST(Refine, KeepsTheLightOfTheFirstLesson) {
+  const KnownObject known = taught("box", box_on_table({"z", "-y", "x"}));
+  const ObservedMap noon = box_on_table({"z", "-y", "-x"}, {-0.15F, 0.1F, 0.0F}, 0.7F);
+  ObservedMap dusk = noon;
+  relight(dusk.points_W, {0.45F, 0.5F, 0.55F});
+  const Refinement refinement = refined(known, taught("box", dusk));
+  EXPECT_NEAR(refinement.fit.light.log_gain.x(), std::log(0.45F), 0.05F);
+  const ObjectModel expected = refined(known, taught("box", noon)).object.model;
+  for (const CloudPoint& p : refinement.object.model.points_O) {
+    EXPECT_TRUE(std::ranges::any_of(expected.points_O,
+                                    [&p](const CloudPoint& q) {
+                                      return std::abs(p.red - q.red) < 10 &&
+                                             std::abs(p.green - q.green) < 10 &&
+                                             std::abs(p.blue - q.blue) < 10;
+                                    }))
+        << int{p.red} << ' ' << int{p.green} << ' ' << int{p.blue};
+  }
 }
 
 TEST(Refine, RefusesAnotherThing) {
