@@ -1,5 +1,7 @@
 #include "segmenter/objects/changes/change_files.hpp"
 
+#include <algorithm>
+#include <charconv>
 #include <cstddef>
 #include <cstdint>
 #include <stdexcept>
@@ -81,6 +83,16 @@ void write_bytes(const std::filesystem::path& path, const std::string& bytes) {
   file.commit();
 }
 
+std::string file_of_change(std::int64_t id) { return fmt::format("change_{}.ply", id); }
+
+/// Other files in the folder belong to the user.
+bool is_of_change(const std::string& name) {
+  std::int64_t id = 0;
+  const char* const digits = name.data() + std::min(name.size(), std::string("change_").size());
+  const auto [end, error] = std::from_chars(digits, name.data() + name.size(), id);
+  return error == std::errc() && name == file_of_change(id);
+}
+
 /// Removes what an earlier run has left: it would be taken for changes of this one.
 void clean(const std::filesystem::path& folder) {
   std::error_code error;
@@ -91,8 +103,7 @@ void clean(const std::filesystem::path& folder) {
   std::filesystem::remove(folder / "changes.json");
   std::vector<std::filesystem::path> old;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    const std::string name = entry.path().filename().string();
-    if (name.starts_with("change_") && name.ends_with(".ply")) old.push_back(entry.path());
+    if (is_of_change(entry.path().filename().string())) old.push_back(entry.path());
   }
   for (const auto& path : old) std::filesystem::remove(path);
 }
@@ -103,6 +114,8 @@ std::string changes_json(const MapDifference& difference) {
   Json json;
   json["before"] = difference.before;
   json["after"] = difference.after;
+  json["before_session"] = difference.before_session;
+  json["after_session"] = difference.after_session;
   json["X_AB"] = numbers_of(difference.alignment.X_AB);
   json["alignment_rms_m"] = difference.alignment.rms_m;
   json["alignment_sigma_m"] = difference.alignment.sigma_m;
@@ -115,14 +128,15 @@ std::string changes_json(const MapDifference& difference) {
   for (const MapChange& change : difference.changes.changes) {
     json["changes"].push_back(json_of(change));
   }
-  return json.dump(1) + "\n";
+  // Bytes that are no UTF-8, as a path may have, are replaced.
+  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 void write_changes(const MapDifference& difference, const ObservedMap& after,
                    const std::filesystem::path& folder) {
   clean(folder);
   for (const MapChange& change : difference.changes.changes) {
-    write_ply(change, folder / fmt::format("change_{}.ply", change.id));
+    write_ply(change, folder / file_of_change(change.id));
   }
   write_bytes(folder / "changes.png", change_picture_png(difference.changes.changes, after));
   write_bytes(folder / "changes.json", changes_json(difference));

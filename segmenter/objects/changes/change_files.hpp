@@ -1,6 +1,7 @@
 #pragma once
 // Changes between two maps, as files.
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 
@@ -11,8 +12,10 @@ namespace kintsugi::segmenter {
 
 /// Two maps, what puts one on the other, and what differs.
 struct MapDifference {
-  std::string before;  ///< where it was read
+  std::string before;  ///< where it was read; of a map on the bus, its name
   std::string after;
+  std::int64_t before_session = 0;  ///< of the mapper
+  std::int64_t after_session = 0;
   MapAlignment alignment;
   MapChanges changes;
 };

@@ -82,7 +82,8 @@ std::string detections_json(const Detector& detector, const DetectionSource& sou
     entry["utime"] = detection.event_utime;
     json["detections"].push_back(std::move(entry));
   }
-  return json.dump(1) + '\n';
+  // Bytes that are no UTF-8, as the name of a map may have, are replaced.
+  return json.dump(1, ' ', false, Json::error_handler_t::replace) + '\n';
 }
 
 std::string detections_text(const Detector& detector) {

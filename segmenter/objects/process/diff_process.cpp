@@ -19,6 +19,7 @@
 #include "segmenter/objects/changes/change_files.hpp"
 #include "segmenter/objects/maps/align_maps.hpp"
 #include "segmenter/objects/process/change_reports.hpp"
+#include "segmenter/objects/process/comparison_schedule.hpp"
 #include "segmenter/process/view_recorder.hpp"
 
 namespace kintsugi::segmenter {
@@ -48,6 +49,8 @@ Comparison compare(const ObservedMap& before, const ObservedMap& now, ReportedMa
   }
   const MapDifference difference{.before = before.source,
                                  .after = now.source,
+                                 .before_session = before.map_session,
+                                 .after_session = now.map_session,
                                  .alignment = *aligned.alignment,
                                  .changes = find_changes(before, now, aligned.alignment->X_AB)};
   write_changes(difference, now, out);
@@ -64,7 +67,8 @@ class DiffProcess {
         client_(MapClient::connect({.url = options.lcm_url, .map_name = options.map_name})),
         views_(options.map_name),
         camera_views_(channels::kCameraView, [this](const CameraView& view) { views_.add(view); }),
-        slices_(channels::kCloudSlice, [this](const CloudSlice& slice) { views_.add(slice); }) {
+        slices_(channels::kCloudSlice, [this](const CloudSlice& slice) { views_.add(slice); }),
+        schedule_(std::chrono::duration<double>(options.every_s)) {
     camera_views_.subscribe(bus_);
     slices_.subscribe(bus_);
   }
@@ -93,7 +97,7 @@ class DiffProcess {
     for (const SegmentUpdate& update : changes.updates) {
       map_.utime = std::max(map_.utime, update.utime);
     }
-    has_news_ = has_news_ || !changes.updates.empty() || !changes.pieces.empty();
+    if (!changes.updates.empty() || !changes.pieces.empty()) schedule_.note_news();
   }
 
   void begin_map(const SegmentUpdate& newest) {
@@ -101,15 +105,15 @@ class DiffProcess {
     session_ = std::max(new_session(), session_ + 1);
     reports_ = std::make_unique<ChangeReports>(session_, before_.source);
     published_ = 0;
-    has_news_ = true;
+    schedule_.note_news();
     is_finished_ = false;
   }
 
+  [[nodiscard]] bool is_complete() const { return client_.is_complete() && client_.has_ended(); }
+
   [[nodiscard]] bool is_due() const {
-    if (!has_news_ || running_.valid() || client_.resolution_m() <= 0.0F) return false;
-    const bool is_complete = client_.is_complete() && client_.has_ended();
-    return is_complete ||
-           Clock::now() - last_begin_ >= std::chrono::duration<double>(options_.every_s);
+    if (running_.valid() || client_.resolution_m() <= 0.0F) return false;
+    return schedule_.is_due(is_complete(), Clock::now());
   }
 
   /// The map as it is now. A copy: it grows while it is compared.
@@ -135,16 +139,14 @@ class DiffProcess {
   }
 
   void begin_comparison() {
-    last_begin_ = Clock::now();
-    has_news_ = false;
-    running_ = std::async(
-        std::launch::async, [this, now = snapshot(), map = map_,
-                             is_complete = client_.is_complete() && client_.has_ended()]() mutable {
-          lower_priority_of_thread();
-          Comparison comparison = compare(before_, now, std::move(map), options_.out);
-          comparison.is_of_complete_map = is_complete;
-          return comparison;
-        });
+    schedule_.begin(is_complete(), Clock::now());
+    running_ = std::async(std::launch::async, [this, now = snapshot(), map = map_,
+                                               is_of_complete_map = is_complete()]() mutable {
+      lower_priority_of_thread();
+      Comparison comparison = compare(before_, now, std::move(map), options_.out);
+      comparison.is_of_complete_map = is_of_complete_map;
+      return comparison;
+    });
   }
 
   void take_comparison() {
@@ -202,10 +204,9 @@ class DiffProcess {
   std::int64_t session_ = 0;
   std::unique_ptr<ChangeReports> reports_;  // null: no map is known yet
   std::int64_t published_ = 0;              // the newest event
-  bool has_news_ = false;
+  ComparisonSchedule schedule_;
   bool is_finished_ = false;
   std::string refusal_;  // that was told last
-  Clock::time_point last_begin_{};
   Clock::time_point last_repeat_{};
   std::future<Comparison> running_;  // the last: it is waited for before the others end
 };

@@ -118,6 +118,8 @@ int run(const DiffOptions& options) {
   }
   MapDifference difference{.before = options.before.string(),
                            .after = options.after.string(),
+                           .before_session = before.map_session,
+                           .after_session = after.map_session,
                            .alignment = *aligned.alignment,
                            .changes = find_changes(before, after, aligned.alignment->X_AB)};
   write_changes(difference, after, options.live.out);

@@ -13,6 +13,7 @@
 #include "segmenter/objects/library/library_lock.hpp"
 #include "segmenter/objects/library/object_files.hpp"
 #include "segmenter/objects/library/object_library.hpp"
+#include "segmenter/objects/library/object_name.hpp"
 #include "segmenter/tools/objects/command.hpp"
 #include "segmenter/tools/objects/object_text.hpp"
 
@@ -25,11 +26,16 @@ struct ForgetOptions {
 };
 
 /// All of them are there, or none is removed. Damaged objects can be forgotten, too.
-void require_all(const ObjectLibrary& library, const std::vector<std::string>& names) {
+void require_all(const std::filesystem::path& folder, const std::vector<std::string>& names) {
+  const ObjectLibrary library = ObjectLibrary::read(folder);
   for (const std::string& name : names) {
+    if (const auto reason = reason_to_refuse_name(name)) throw std::runtime_error(*reason);
     const bool is_refused = std::any_of(library.refusals().begin(), library.refusals().end(),
                                         [&](const RefusedObject& r) { return r.name == name; });
     if (!is_refused) require_object(library, name);
+    if (!std::filesystem::is_directory(folder / name)) {
+      throw std::runtime_error((folder / name).string() + ": is no folder of an object");
+    }
   }
 }
 
@@ -41,7 +47,7 @@ int forget(const ForgetOptions& options) {
   std::vector<std::string> names = options.names;
   std::sort(names.begin(), names.end());
   names.erase(std::unique(names.begin(), names.end()), names.end());
-  require_all(ObjectLibrary::read(options.library), names);
+  require_all(options.library, names);
   for (const std::string& name : names) {
     remove_object(name, options.library);
     std::cout << name << ": forgotten\n";

@@ -47,7 +47,8 @@ int list(const ListOptions& options) {
   for (const RefusedObject& refused : library.refusals()) {
     all["refused"].push_back({{"name", refused.name}, {"reason", refused.reason}});
   }
-  std::cout << all.dump(2) << '\n';
+  // Bytes that are no UTF-8, as the name of a folder may have, are replaced.
+  std::cout << all.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
   return 0;
 }
 

@@ -63,7 +63,8 @@ Pose alignment_of(const Json& root) {
   return pose_of(rows);
 }
 
-ShownChange change_of(const Json& root, const Json& entry, const fs::path& folder) {
+ShownChange change_of(const Json& root, const Json& entry, const fs::path& folder,
+                      const fs::path& map_after) {
   ShownChange change;
   change.id = entry.at("id").get<std::int64_t>();
   change.kind = entry.at("kind").get<std::string>();
@@ -72,7 +73,11 @@ ShownChange change_of(const Json& root, const Json& entry, const fs::path& folde
       entry.at(before ? "before_segments" : "after_segments").get<std::vector<std::uint32_t>>();
   std::sort(change.segment_ids.begin(), change.segment_ids.end());
   if (before) change.X_WA = alignment_of(root).inverse();
-  change.map = found_map(root.at(before ? "before" : "after").get<std::string>(), folder);
+  change.map = before || map_after.empty()
+                   ? found_map(root.at(before ? "before" : "after").get<std::string>(), folder)
+                   : map_after;
+  // What an older kintsugi-diff wrote lacks it.
+  change.map_session = root.value(before ? "before_session" : "after_session", std::int64_t{0});
   return change;
 }
 
@@ -88,14 +93,14 @@ ShownChange change_of(const Json& root, const Json& entry, const fs::path& folde
 }
 
 std::vector<ShownChange> parse_changes(const std::string& text, const fs::path& folder,
-                                       std::optional<std::int64_t> id) {
+                                       std::optional<std::int64_t> id, const fs::path& map_after) {
   const Json root = Json::parse(text);
   const Json& entries = root.at("changes");
   std::vector<ShownChange> changes;
   for (const Json& entry : entries) {
     if (!shows_object(entry.at("kind").get<std::string>())) continue;
     if (id.has_value() && entry.at("id").get<std::int64_t>() != *id) continue;
-    changes.push_back(change_of(root, entry, folder));
+    changes.push_back(change_of(root, entry, folder, map_after));
   }
   if (changes.empty() && id.has_value()) refuse_id(entries, *id);
   return changes;
@@ -103,12 +108,13 @@ std::vector<ShownChange> parse_changes(const std::string& text, const fs::path& 
 
 }  // namespace
 
-std::vector<ShownChange> read_changes(const fs::path& folder, std::optional<std::int64_t> id) {
+std::vector<ShownChange> read_changes(const fs::path& folder, std::optional<std::int64_t> id,
+                                      const fs::path& map_after) {
   const fs::path path = folder / "changes.json";
   const std::string text = read_file_bytes(path);
   std::vector<ShownChange> changes;
   try {
-    changes = parse_changes(text, folder, id);
+    changes = parse_changes(text, folder, id, map_after);
   } catch (const std::exception& error) {
     throw std::runtime_error(path.string() + ": " + error.what());
   }

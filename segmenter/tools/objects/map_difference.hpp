@@ -21,13 +21,16 @@ struct ShownChange {
   std::vector<std::uint32_t> segment_ids;  ///< of that map, ascending
   Pose X_WA = Pose::Identity();            ///< of the W of the map after in that of `map`
   std::filesystem::path map;
+  std::int64_t map_session = 0;  ///< of that map, as it was compared; 0: not known
 };
 
 /// Reads changes.json and change_ID.ply of `folder`: the change with that id, or all of the three
 /// kinds.
+/// @param map_after where the map after is saved; empty: changes.json tells
 /// @throws std::runtime_error naming the file, the place and the reason; the ids there are, if
 ///   there is none with `id`
 std::vector<ShownChange> read_changes(const std::filesystem::path& folder,
-                                      std::optional<std::int64_t> id);
+                                      std::optional<std::int64_t> id,
+                                      const std::filesystem::path& map_after = {});
 
 }  // namespace kintsugi::segmenter

@@ -92,9 +92,12 @@ void teach_from_map(const TeachOptions& options) {
   learn(lesson, options);
 }
 
-/// "new_3", or "new_3_2" where that is taken.
-std::string free_name(const ShownChange& change, const fs::path& library) {
+/// "new_3", or "new_3_2" where that is taken and not to be replaced.
+std::string name_of(const ShownChange& change, const TeachOptions& options) {
+  if (!options.name.empty()) return options.name;
+  const fs::path& library = options.library;
   const std::string name = change.kind + "_" + std::to_string(change.id);
+  if (options.replace) return name;
   std::string free = name;
   for (int i = 2; fs::exists(fs::symlink_status(library / free)); ++i) {
     free = name + "_" + std::to_string(i);
@@ -113,8 +116,31 @@ TaughtSurface surface_of(const ShownChange& change, const ObservedMap& map) {
   return surface;
 }
 
+/// Of all changes, before anything is taught.
+std::map<fs::path, ObservedMap> maps_of(const std::vector<ShownChange>& changes) {
+  std::map<fs::path, ObservedMap> maps;
+  for (const ShownChange& change : changes) {
+    if (!maps.contains(change.map)) {
+      if (!fs::exists(change.map)) {
+        throw std::runtime_error(change.map.string() +
+                                 ": there is no such map; if it was on the bus when it was " +
+                                 "compared, --map tells where it was saved");
+      }
+      maps[change.map] = read_taught_map(change.map);
+    }
+    const std::int64_t session = maps[change.map].map_session;
+    if (change.map_session != 0 && session != change.map_session) {
+      throw std::runtime_error(change.map.string() + ": is of session " + std::to_string(session) +
+                               ", and the map that was compared is of session " +
+                               std::to_string(change.map_session));
+    }
+  }
+  return maps;
+}
+
 void teach_from_difference(const TeachOptions& options) {
-  const std::vector<ShownChange> changes = read_changes(options.difference, options.change);
+  const std::vector<ShownChange> changes =
+      read_changes(options.difference, options.change, options.map);
   if (!options.name.empty() && changes.size() > 1) {
     throw std::runtime_error(
         options.difference.string() + ": has " + std::to_string(changes.size()) +
@@ -123,13 +149,12 @@ void teach_from_difference(const TeachOptions& options) {
   if (changes.empty()) {
     spdlog::warn("{}: nothing is new, gone or moved", options.difference.string());
   }
-  std::map<fs::path, ObservedMap> maps;
+  const std::map<fs::path, ObservedMap> maps = maps_of(changes);
   const LibraryLock lock(options.library);
+  std::size_t num_taught = 0;
   for (const ShownChange& change : changes) {
-    if (!maps.contains(change.map)) maps[change.map] = read_taught_map(change.map);
-    const ObservedMap& map = maps[change.map];
-    const std::string name =
-        options.name.empty() ? free_name(change, options.library) : options.name;
+    const ObservedMap& map = maps.at(change.map);
+    const std::string name = name_of(change, options);
     std::optional<KnownObject> lesson;
     try {
       lesson = taught_object(name, map, change.points_W, surface_of(change, map), now_s());
@@ -140,11 +165,16 @@ void teach_from_difference(const TeachOptions& options) {
       continue;
     }
     learn(*lesson, options);
+    ++num_taught;
+  }
+  if (num_taught == 0 && !changes.empty()) {
+    throw std::runtime_error(options.difference.string() + ": none of its " +
+                             std::to_string(changes.size()) + " changes could be taught");
   }
 }
 
 int teach(const TeachOptions& options) {
-  if (options.map.empty() == options.difference.empty()) {
+  if (options.map.empty() && options.difference.empty()) {
     throw std::runtime_error("give either --map with --ids and --name, or --from-diff");
   }
   if (!options.name.empty()) {
@@ -171,21 +201,24 @@ void add_teach_command(CLI::App& app, ObjectsAction& action) {
       command.add_option("--map", options->map,
                          "the map in which it is: a saved map (kintsugi-segmenter --save) or an "
                          "LCM log, with what the "
-                         "camera saw, or a labelled PLY file");
+                         "camera saw, or a labelled PLY file; with --from-diff of a map on the "
+                         "bus: where it was saved");
   add_log_trust_flags(command);
-  command.add_option("--ids", options->ids, "ID,...: the segments of that map that are the object")
-      ->delimiter(',')
-      ->needs(map);
+  CLI::Option* const ids =
+      command
+          .add_option("--ids", options->ids, "ID,...: the segments of that map that are the object")
+          ->delimiter(',')
+          ->needs(map);
   CLI::Option* const difference =
       command
           .add_option("--from-diff", options->difference,
                       "output of kintsugi-diff: teaches what is new, gone or moved")
-          ->excludes(map);
+          ->excludes(ids);
   command.add_option("--change", options->change, "of it only the change with this id")
       ->needs(difference);
   command.add_option("--name", options->name,
                      "of the object: letters, digits, '-', '_' (default with --from-diff: kind and "
-                     "id of the change)");
+                     "id of the change, as new_3, and new_3_2 where that is taken)");
   command.add_flag("--replace", options->replace,
                    "forget what was known of an object of that name");
   add_library_option(command, options->library);

@@ -314,17 +314,21 @@ TEST(ChangeFiles, SayWhatWasFound) {
   const Twice twice(was, is);
   MapDifference difference;
   difference.before = "a";
-  difference.after = "b";
+  difference.after = "caf\xe9.map";  // not UTF-8
+  difference.after_session = std::int64_t{1} << 62;
   difference.alignment.X_AB = twice.X_AB;
   difference.changes = twice.changes();
   const kintsugi::testing::TemporaryFolder temporary;
   const std::filesystem::path folder = temporary / "new" / "folder";
   std::filesystem::create_directories(folder);
   std::ofstream(folder / "change_9.ply") << "of an earlier run";
+  std::ofstream(folder / "change_notes.ply") << "of the user";
   write_changes(difference, twice.after, folder);
   std::ifstream file(folder / "changes.json");
   const auto json = nlohmann::json::parse(file);
   EXPECT_EQ(json["before"], "a");
+  EXPECT_THAT(json["after"].get<std::string>(), ::testing::EndsWith(".map"));
+  EXPECT_EQ(json["after_session"], difference.after_session);
   EXPECT_EQ(json["X_AB"].size(), 12U);
   EXPECT_EQ(json["X_AB"][3], twice.X_AB.translation().x());
   ASSERT_EQ(json["changes"].size(), 2U);
@@ -337,6 +341,7 @@ TEST(ChangeFiles, SayWhatWasFound) {
     EXPECT_TRUE(std::filesystem::exists(folder / ("change_" + std::to_string(i + 1) + ".ply")));
   }
   EXPECT_FALSE(std::filesystem::exists(folder / "change_9.ply"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "change_notes.ply"));
   EXPECT_GT(std::filesystem::file_size(folder / "changes.png"), 10'000U);
 }
 

@@ -167,6 +167,46 @@ TEST_F(Objects, AreTaughtFromADifference) {
   expect_error("teach --from-diff FOLDER/diff", "changes.json: ");
 }
 
+TEST_F(Objects, OfADifferenceCanBeReplaced) {
+  write_difference();
+  expect_success("teach --from-diff FOLDER/diff --change 1");
+  expect_success("teach --from-diff FOLDER/diff --change 1 --replace");
+  EXPECT_EQ(library().objects().size(), 1U);
+  EXPECT_EQ(library().find("new_1")->model.times_taught, 1);
+}
+
+TEST_F(Objects, OfAMapThatWasOnTheBusAreTaughtFromWhereItWasSaved) {
+  write_difference();
+  const fs::path path = folder_ / "diff" / "changes.json";
+  std::ifstream file(path);
+  json root = json::parse(file);
+  root["after"] = "map";
+  write_text(path, root.dump());
+  expect_error("teach --from-diff FOLDER/diff", "map: there is no such map; if it was on the bus");
+  EXPECT_TRUE(library().objects().empty());
+  expect_success("teach --from-diff FOLDER/diff --map FOLDER/room.ply");
+  EXPECT_EQ(library().objects().size(), 2U);
+}
+
+TEST_F(Objects, AreNotTaughtFromAnotherMapThanWasCompared) {
+  write_difference();
+  const fs::path path = folder_ / "diff" / "changes.json";
+  std::ifstream file(path);
+  json root = json::parse(file);
+  root["after_session"] = 77;
+  write_text(path, root.dump());
+  expect_error("teach --from-diff FOLDER/diff", "and the map that was compared is of session 77");
+}
+
+TEST_F(Objects, AreAllForgottenOrNone) {
+  expect_success("teach --map FOLDER/hall.ply --ids 2 --name box");
+  write_text(folder_ / "objects" / "notes", "of the user");
+  expect_error("forget box 'my box'", "my box");
+  expect_error("forget box notes", "is no folder of an object");
+  EXPECT_NE(library().find("box"), nullptr);
+  EXPECT_TRUE(fs::exists(folder_ / "objects" / "notes"));
+}
+
 TEST_F(Objects, WhatIsGoneIsTaughtWhereItStoodInTheMapBefore) {
   // The map after begins 2 m aside and turned by a quarter about z; changes are told in its W.
   Pose X_AB = Pose(Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitZ()));
