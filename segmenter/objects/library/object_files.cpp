@@ -88,6 +88,7 @@ void exchange(const fs::path& beside, const fs::path& path) {
   if (renameat2(AT_FDCWD, beside.c_str(), AT_FDCWD, path.c_str(), RENAME_EXCHANGE) == 0) return;
   if (errno == ENOENT) return rename_folder(beside, path);  // there was nothing
   if (errno != EINVAL && errno != ENOSYS) fail("replace", path, errno);
+  if (!fs::exists(fs::symlink_status(path))) return rename_folder(beside, path);
   // A file system that cannot exchange two names. When this is interrupted, the older object is
   // still beside, under a name that nobody reads.
   fs::path older = path;

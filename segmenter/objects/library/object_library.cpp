@@ -42,7 +42,7 @@ EntryStamp entry_of(const fs::path& folder, const std::string& name) {
 std::vector<EntryStamp> entries_of(const fs::path& folder) {
   std::vector<EntryStamp> entries;
   std::error_code error;
-  if (!fs::exists(folder, error)) return entries;
+  if (!fs::exists(folder, error) && !error) return entries;
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
        entry.increment(error)) {
     const std::string name = entry->path().filename().string();

@@ -216,9 +216,10 @@ class DetectorProcess {
   /// Objects that were taught meanwhile are looked for, too.
   void reload_library() {
     try {
-      if (!library_.has_changed()) return;
+      const bool has_changed = library_.has_changed();
+      problem_.clear();  // it can be read
+      if (!has_changed) return;
       library_ = read_library(options_.library, library_);
-      problem_.clear();
     } catch (const std::exception& error) {
       if (problem_ != error.what()) spdlog::error("{}", error.what());
       problem_ = error.what();

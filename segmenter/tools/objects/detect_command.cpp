@@ -37,6 +37,13 @@ ObjectLibrary read_library(const std::filesystem::path& folder) {
   return ObjectLibrary::read(folder);
 }
 
+/// Before hours of work, and not after them.
+void require_folder_of(const std::filesystem::path& file) {
+  const std::filesystem::path folder = file.parent_path();
+  if (folder.empty() || std::filesystem::is_directory(folder)) return;
+  throw std::runtime_error(file.string() + ": there is no folder " + folder.string());
+}
+
 int detect_in_map(const DetectOptions& options) {
   const ObjectLibrary library = read_library(options.live.library);
   warn_of_refusals(library);
@@ -54,6 +61,7 @@ int detect_in_map(const DetectOptions& options) {
 }
 
 int detect(const DetectOptions& options) {
+  require_folder_of(options.live.json);
   if (options.only_check) {
     warn_of_refusals(read_library(options.live.library));
     return 0;

@@ -4,6 +4,7 @@
 #include <csignal>
 #include <cstdint>
 #include <filesystem>
+#include <fstream>
 #include <string>
 #include <vector>
 
@@ -104,6 +105,26 @@ TEST_F(DetectOnBus, FindsWhatItFindsInTheSavedMapAndItsViewsAlsoWhenItComesLate)
   EXPECT_EQ(saved, found);
   std::filesystem::remove(views_file_of(folder_ / "map"));
   EXPECT_NE(found_in_saved_map("without.json"), found);  // the views do tell something
+}
+
+TEST_F(DetectOnBus, TellsAProblemOfTheLibraryUntilItIsBack) {
+  teach_box();
+  Bus bus(kPrivateBusUrl);
+  std::string problem = "no status yet";
+  subscribe<DetectorStatus>(bus, channels::kDetectorStatus, [&](const DetectorStatus& status) {
+    problem = status.problem;
+  });
+  ChildProgram detector = start("kintsugi-objects", {"detect", "--library", path("objects"), url_});
+  ASSERT_TRUE(hears(bus, [&] { return problem.empty(); }));
+  std::filesystem::rename(folder_ / "objects", folder_ / "moved");
+  std::ofstream(folder_ / "objects") << "no folder";
+  ASSERT_TRUE(hears(bus, [&] { return !problem.empty(); }));
+  EXPECT_THAT(problem, ::testing::HasSubstr("cannot be read as a library of objects"));
+  std::filesystem::remove(folder_ / "objects");
+  std::filesystem::rename(folder_ / "moved", folder_ / "objects");
+  EXPECT_TRUE(hears(bus, [&] { return problem.empty(); })) << problem;
+  detector.signal(SIGTERM);
+  EXPECT_EQ(detector.wait(), 0) << text_of(path("kintsugi-objects.log"));
 }
 
 TEST_F(DetectOnBus, KeepsAnObjectUntilItsPatchIsSegmentedAnew) {

@@ -225,6 +225,11 @@ TEST_F(Objects, WhatIsGoneIsTaughtWhereItStoodInTheMapBefore) {
   expect_error("teach --from-diff FOLDER/diff --change 2", "'X_AB' has 2 numbers, expected 12");
 }
 
+TEST_F(Objects, AreNotLookedForWhereTheResultCannotBeWritten) {
+  expect_success("teach --map FOLDER/hall.ply --ids 2 --name box");
+  expect_error("detect --check --json FOLDER/none/found.json", "found.json: there is no folder");
+}
+
 TEST_F(Objects, WhatCannotBeTaughtSaysWhy) {
   expect_error("teach --map FOLDER/hall.ply --ids 9 --name box",
                "there is no segment 9 among its 3; the nearest ids are 3");
