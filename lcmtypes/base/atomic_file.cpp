@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cerrno>
+#include <stdexcept>
 #include <streambuf>
 #include <string>
 #include <system_error>
@@ -50,6 +51,19 @@ class Descriptor {
   int value_;
 };
 
+/// The file to which links lead, which remain. A device or a pipe would be replaced by a file.
+fs::path checked(fs::path path) {
+  if (!path.has_filename()) {
+    throw std::invalid_argument("output file '" + path.string() + "' has no file name");
+  }
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status)) {
+    throw std::invalid_argument("output file '" + path.string() + "' is no regular file");
+  }
+  return fs::is_regular_file(status) && fs::is_symlink(path, error) ? fs::canonical(path) : path;
+}
+
 fs::path partial_name(const fs::path& path) {
   fs::path partial = path;
   // The extension stays at the end: libraries choose the format by it.
@@ -94,11 +108,8 @@ class AtomicFile::FileBuffer : public std::streambuf {
   std::array<char, std::size_t{1} << 16U> buffer_;
 };
 
-AtomicFile::AtomicFile(fs::path path) : path_(std::move(path)), partial_path_(partial_name(path_)) {
-  if (!path_.has_filename()) {
-    throw std::invalid_argument("output file '" + path_.string() + "' has no file name");
-  }
-}
+AtomicFile::AtomicFile(fs::path path)
+    : path_(checked(std::move(path))), partial_path_(partial_name(path_)) {}
 
 AtomicFile::~AtomicFile() {
   if (committed_) return;

@@ -15,7 +15,8 @@ namespace kintsugi {
 /// the stream if the library can write to memory: few libraries report a full disk.
 class AtomicFile {
  public:
-  /// Opens nothing yet. @throws std::invalid_argument when `path` has no file name
+  /// Opens nothing yet. Links are followed. @throws std::invalid_argument when `path` has no file
+  /// name, or is a device or a pipe
   explicit AtomicFile(std::filesystem::path path);
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;

@@ -2,7 +2,10 @@
 #include <fstream>
 #include <random>
 #include <span>
+#include <stdexcept>
 #include <system_error>
+
+#include <sys/stat.h>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -103,6 +106,29 @@ TEST(AtomicFile, GivesThePartialFileTheSameExtension) {
   file.commit();
   EXPECT_EQ(content(folder / "run.final.png"), "picture");
   EXPECT_EQ(num_files(folder.path()), 1U);
+}
+
+TEST(AtomicFile, IsWhereALinkLeads) {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "real.json") << "old";
+  fs::create_symlink("real.json", folder / "link.json");
+  AtomicFile file(folder / "link.json");
+  file.stream() << "new";
+  file.commit();
+  EXPECT_TRUE(fs::is_symlink(folder / "link.json"));
+  EXPECT_EQ(content(folder / "real.json"), "new");
+}
+
+TEST(AtomicFile, DoesNotReplaceWhatIsNoFile) {
+  const TemporaryFolder folder;
+  const fs::path pipe = folder / "pipe";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  fs::create_symlink("pipe", folder / "link");
+  for (const fs::path& path : {pipe, folder / "link"}) {
+    EXPECT_THAT([&] { AtomicFile file(path); },
+                ::testing::ThrowsMessage<std::invalid_argument>(HasSubstr("is no regular file")));
+  }
+  EXPECT_TRUE(fs::is_fifo(pipe));
 }
 
 TEST(AtomicFile, WritesMoreThanItsBufferInOrder) {

@@ -1,4 +1,5 @@
 #include <array>
+#include <iostream>
 #include <stdexcept>
 
 #include <gtest/gtest.h>
@@ -18,6 +19,18 @@ TEST(RunMain, WritesAnExceptionWithTheProgramsNameToStderr) {
   ::testing::internal::CaptureStderr();
   EXPECT_EQ(run_main(kArguments.data(), []() -> int { throw std::runtime_error("no file x"); }), 1);
   EXPECT_EQ(::testing::internal::GetCapturedStderr(), "kintsugi-tool: no file x\n");
+}
+
+TEST(RunMain, FailsWhereTheOutputIsNotWritten) {
+  ::testing::internal::CaptureStderr();
+  const int exit_code = run_main(kArguments.data(), [] {
+    std::cout.setstate(std::ios::badbit);  // as on a full disk
+    return 0;
+  });
+  std::cout.clear();
+  EXPECT_EQ(exit_code, 1);
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(),
+            "kintsugi-tool: standard output cannot be written\n");
 }
 
 }  // namespace
