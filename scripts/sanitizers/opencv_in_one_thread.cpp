@@ -1,6 +1,7 @@
-// For the thread sanitizer, in every program that uses OpenCV: its parallel loops run in the thread that
-// begins them. The part of TBB that is compiled into OpenCV is not instrumented: how such a loop waits for
-// its workers is not seen, and they look at its context, which is on the stack of who began it.
+// For the thread sanitizer, in every program that uses OpenCV: its parallel loops run in the thread
+// that begins them. The part of TBB that is compiled into OpenCV is not instrumented: how such a
+// loop waits for its workers is not seen, and they look at its context, which is on the stack of
+// who began it.
 
 #include <opencv2/core/utility.hpp>
 

@@ -14,6 +14,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include "lcmtypes/base/command_line.hpp"
+#include "lcmtypes/base/number_range.hpp"
 #include "lcmtypes/signing/process_key.hpp"
 #include "segmenter/core/parameters/presets.hpp"
 
@@ -116,19 +117,19 @@ void add_slice_flags(CLI::App& app, Options& options) {
   app.add_option("--gap-timeout", options.gap_timeout_s,
                  "seconds to wait for a missing slice that nobody resends before the map "
                  "continues without it, > 0")
-      ->check(CLI::Range(0.001, 1e6))
+      ->check(number_range(0.001, 1e6))
       ->capture_default_str();
   app.add_option("--max-queue", options.max_queue_mb,
                  "MB of slices that are received but not yet segmented; further slices are "
                  "refused and requested again when there is room, > 0")
-      ->check(CLI::Range(1e-6, 1e6))
+      ->check(number_range(1e-6, 1e6))
       ->capture_default_str();
   app.add_option("--max-memory", options.max_memory_mb,
                  "mode exact: MB of memory that the process may have, not counted what the system "
                  "can take back at any time; parts of the map that are not used for long go to a "
                  "file, and come back when something touches them. The result is the same. 0: no "
                  "limit")
-      ->check(CLI::Range(0.0, 1e9))
+      ->check(number_range(0.0, 1e9))
       ->capture_default_str();
   app.add_option("--swap-folder", options.swap_folder,
                  "folder, on a disk, of the file for --max-memory, which has no name and is gone "
@@ -145,7 +146,7 @@ void add_bus_flags(CLI::App& app, Options& options) {
                  "the bus (default: LCM_DEFAULT_URL); with --log, publish the results there");
   add_log_trust_flags(app);
   app.add_option("--rate", options.rate_mb_per_s, "MB/s of updates on the bus, > 0")
-      ->check(CLI::Range(1e-3, 1e6))
+      ->check(number_range(1e-3, 1e6))
       ->capture_default_str();
   app.add_flag("--exit-on-final", options.process.exit_on_final,
                "exit when the final slice is segmented and published");
@@ -169,6 +170,10 @@ SegmenterProcess::Config Options::config() const {
     const std::string& mode = maps.map.mode;
     if (mode != "exact") {
       throw std::invalid_argument("--max-memory needs mode exact, the mode is " + mode);
+    }
+    if (!swap_folder.empty() && !std::filesystem::is_directory(swap_folder)) {
+      throw std::invalid_argument("--swap-folder " + swap_folder.string() +
+                                  ": there is no such folder");
     }
     config.segmentation.swap = {
         .folder = swap_folder.empty() ? config.segmentation.files.folder : swap_folder,

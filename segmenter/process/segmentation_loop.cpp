@@ -126,8 +126,8 @@ void SegmentationLoop::trim_memory() {
   swap_->trim();
   if (is_first && swap_->file_bytes() > 0) {
     spdlog::info(
-        "{} MB of memory are in use: parts of the map that are not used for long go to "
-        "a file in {}",
+        "the limit of {} MB of memory is reached: parts of the map that are not used for long go "
+        "to a file in {}",
         config_.swap->max_anonymous_bytes / 1'000'000, config_.swap->folder.string());
   }
   const std::lock_guard lock(mutex_);

@@ -11,6 +11,7 @@
 
 #include "lcmtypes/base/argument_check.hpp"
 #include "lcmtypes/base/command_line.hpp"
+#include "lcmtypes/base/number_range.hpp"
 #include "lcmtypes/signing/process_key.hpp"
 
 namespace kintsugi::viewer {
@@ -51,7 +52,7 @@ void add_input_flags(CLI::App& app, Flags& flags) {
   app.add_option("--max-queue", options.max_queue_mb,
                  "Memory for messages that wait while a picture is drawn, MB; further ones are "
                  "refused and requested again")
-      ->check(CLI::Range(1.0, 1e6))
+      ->check(number_range(1.0, 1e6))
       ->capture_default_str();
   app.add_flag("--exit-on-final", options.exit_on_final,
                "Exit when the final pictures are written");

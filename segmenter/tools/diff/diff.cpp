@@ -11,6 +11,7 @@
 
 #include "lcmtypes/base/command_line.hpp"
 #include "lcmtypes/base/logger.hpp"
+#include "lcmtypes/base/number_range.hpp"
 #include "lcmtypes/base/run_main.hpp"
 #include "lcmtypes/base/stop_signal.hpp"
 #include "lcmtypes/client/object_text.hpp"
@@ -48,7 +49,7 @@ void add_options(CLI::App& app, DiffOptions& options) {
   add_log_trust_flags(app);
   app.add_option("--every", options.live.every_s,
                  "on the bus: seconds from one comparison to the next while the map grows")
-      ->check(CLI::Range(1.0, 86'400.0))
+      ->check(number_range(1.0, 86'400.0))
       ->capture_default_str()
       ->excludes(after);
   app.add_flag("--exit-on-final", options.live.exit_on_final,

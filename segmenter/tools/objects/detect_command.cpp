@@ -10,6 +10,7 @@
 
 #include "lcmtypes/base/atomic_file.hpp"
 #include "lcmtypes/base/logger.hpp"
+#include "lcmtypes/base/number_range.hpp"
 #include "lcmtypes/base/stop_signal.hpp"
 #include "lcmtypes/signing/process_key.hpp"
 #include "segmenter/objects/library/object_library.hpp"
@@ -94,7 +95,7 @@ void add_detect_command(CLI::App& app, ObjectsAction& action) {
           "on the bus: as much of one core may be used on average while the map grows; what "
           "does not fit waits")
       ->capture_default_str()
-      ->check(CLI::Range(0.001, 1.0));
+      ->check(number_range(0.001, 1.0));
   command.add_flag("--exit-on-final", options->live.exit_on_final,
                    "on the bus: exit when the final slice is segmented and examined");
   command.add_flag(

@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "lcmtypes/base/number_range.hpp"
 #include "lcmtypes/codec/codec.hpp"
 #include "lcmtypes/signing/process_key.hpp"
 #include "segmenter/query/pixel_ray.hpp"
@@ -111,7 +112,7 @@ void add_options(CLI::App& app, QueryOptions& options) {
          "--radius", query.radius_m,
          "--at, --pixel, --ray: maximum distance to a map point, metres; 0: two voxels, for "
          "--pixel without --pose at least 0.03")
-      ->check(CLI::Range(0.0, kMaxQueryRadius_m))
+      ->check(number_range(0.0, kMaxQueryRadius_m))
       ->capture_default_str();
   auto* const pose =
       app.add_option(
@@ -133,7 +134,7 @@ void add_options(CLI::App& app, QueryOptions& options) {
   app.add_option("--lcm-url", options.lcm_url, "the bus (default: LCM_DEFAULT_URL)");
   add_bus_key_flag(app);
   app.add_option("--timeout", options.timeout_s, "seconds to wait for an answer, > 0")
-      ->check(CLI::Range(0.001, 1e6))
+      ->check(number_range(0.001, 1e6))
       ->capture_default_str();
   app.add_flag("--json", options.json, "print a JSON object instead of a table");
 }

@@ -5,10 +5,9 @@
 #include <stdexcept>
 #include <system_error>
 
-#include <sys/stat.h>
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include "lcmtypes/base/atomic_file.hpp"
 #include "lcmtypes/base/file_sync.hpp"

@@ -151,6 +151,7 @@ TEST_F(SegmenterProgram, RefusesALimitOfMemoryThatItCannotKeep) {
   const auto nowhere = run(log + " --max-memory 100 --swap-folder " + path("nowhere"));
   EXPECT_NE(nowhere.exit_code, 0);
   EXPECT_THAT(nowhere.output, HasSubstr(path("nowhere")));
+  EXPECT_NE(run("--check --max-memory 100 --swap-folder " + path("nowhere")).exit_code, 0);
   EXPECT_NE(run(log + " --swap-folder " + path("")).exit_code, 0);
 }
 

@@ -1,6 +1,6 @@
-#include "segmenter/objects/process/comparison_schedule.hpp"
-
 #include <gtest/gtest.h>
+
+#include "segmenter/objects/process/comparison_schedule.hpp"
 
 namespace kintsugi::segmenter {
 namespace {

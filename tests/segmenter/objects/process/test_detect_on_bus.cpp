@@ -111,9 +111,8 @@ TEST_F(DetectOnBus, TellsAProblemOfTheLibraryUntilItIsBack) {
   teach_box();
   Bus bus(kPrivateBusUrl);
   std::string problem = "no status yet";
-  subscribe<DetectorStatus>(bus, channels::kDetectorStatus, [&](const DetectorStatus& status) {
-    problem = status.problem;
-  });
+  subscribe<DetectorStatus>(bus, channels::kDetectorStatus,
+                            [&](const DetectorStatus& status) { problem = status.problem; });
   ChildProgram detector = start("kintsugi-objects", {"detect", "--library", path("objects"), url_});
   ASSERT_TRUE(hears(bus, [&] { return problem.empty(); }));
   std::filesystem::rename(folder_ / "objects", folder_ / "moved");
