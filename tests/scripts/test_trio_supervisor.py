@@ -9,7 +9,7 @@ from trio_fakes import UNTIL_TERM, FolderTest, wait_until
 from trio import status as status_module
 from trio import supervisor as supervisor_module
 from trio.status import Status
-from trio.supervisor import IDLE_AFTER_ERROR_S, Supervisor
+from trio.supervisor import IDLE_AFTER_ERROR_S, IDLE_S, Supervisor
 
 
 class FakeStatus:
@@ -20,12 +20,16 @@ class FakeStatus:
         self.shown = []
         self.shows_progress = True
         self.lingers = True
+        self.finished = []  # processes
 
     def show_progress(self, idle_s):
         self.shown.append(idle_s)
 
     def take_result(self):
         return self.results.pop(0) if self.results else None
+
+    def has_finished(self, process):
+        return process in self.finished
 
     def mapper_has_finished(self):
         return self.lingers
@@ -172,13 +176,37 @@ class SupervisorTest(FolderTest):
         supervisor.request_stop()
         self.assertTrue(supervisor.watch())
         self.assertIn(IDLE_AFTER_ERROR_S, self.status.shown)
+        self.assertEqual(supervisor.failures, [])
 
-    def test_a_viewer_that_does_not_get_on_after_the_map_is_stopped(self):
-        mapper, viewer = self.until_term("mapper"), self.until_term("viewer")
-        supervisor = self.supervisor(mapper, viewer)
-        self.up(mapper, viewer)
-        self.status.results = [False]
-        self.assertTrue(supervisor.watch())
+    def test_a_viewer_that_does_not_get_on_after_the_map_is_stopped_and_the_run_has_failed(self):
+        for leader, requests in (("mapper", 0), ("mapper", 1), ("player", 0)):
+            first, viewer = self.until_term(leader), self.until_term("viewer")
+            supervisor = self.supervisor(first, viewer)
+            self.up(first, viewer)
+            self.status.results = [False]
+            for _ in range(requests):
+                supervisor.request_stop()
+            self.assertFalse(supervisor.watch())
+            self.said = ""
+            supervisor.tell_failures()
+            self.assertIn(f"the run is not complete: there was no progress for {IDLE_S} s", self.said)
+
+    def test_who_has_finished_and_lingers_does_not_stand_still(self):
+        mapper, segmenter = self.until_term("mapper"), self.until_term("segmenter")
+        for processes, finished in (([mapper], []), ([mapper, segmenter], ["segmenter"])):
+            supervisor = self.supervisor(*processes)
+            self.up(*processes)
+            self.status.results, self.status.finished = [False], finished
+            self.assertTrue(supervisor.watch())
+            self.assertEqual(supervisor.failures, [])
+
+    def test_an_error_is_the_reason_why_the_others_stand_still(self):
+        viewer = self.until_term("viewer")
+        supervisor = self.supervisor(self.shell("mapper", "exit 1"), viewer)
+        self.up(viewer)
+        self.status.results = [None] * 20 + [False]
+        self.assertFalse(supervisor.watch())
+        self.assertEqual(len(supervisor.failures), 1)
 
     def test_a_silent_camera_may_come_back(self):
         self.status.lingers = False

@@ -81,8 +81,12 @@ class Status:
             pass
         return value
 
+    def has_finished(self, process):
+        """Whether its newest status that was recorded in this run says so."""
+        return self.last(process, "finished") == "1"
+
     def mapper_has_finished(self):
-        return self.last("mapper", "finished") == "1" or self.hears_lingering_mapper(2)
+        return self.has_finished("mapper") or self.hears_lingering_mapper(2)
 
     def hears_lingering_mapper(self, timeout_s, give_up=lambda: False):
         """Waits until the mapper has published everything and only answers requests."""

@@ -27,7 +27,7 @@ class Supervisor:
         self.logger = logger
         self.completion = completion
         self.failed = False
-        self.failures = []  # what ended with an error, and its reason
+        self.failures = []  # what has failed, and why
         self.advice = []  # what to do about them
         self.num_stop_requests = 0
         self._disk_was_full = False
@@ -68,7 +68,10 @@ class Supervisor:
             if self.num_stop_requests and not stop_announced:
                 stop_announced = True
                 self._begin_to_stop()
-            if self.num_stop_requests > 1 or self._stands_still():
+            if self.num_stop_requests > 1:
+                self._stop(self.last)
+            elif self._stands_still():
+                self._note_standstill()
                 self._stop(self.last)
         self._complete_log()
         for process in reversed(self.processes):  # each asks those before it for what it misses
@@ -172,6 +175,18 @@ class Supervisor:
             return True
         self.status.show_progress(IDLE_S)
         return False
+
+    def _note_standstill(self):
+        """The run has failed, unless its last process has finished and only lingers, or why it stands still is known:
+        something ended with an error, or the log was not played to its end."""
+        has_finished = self.last.name == "mapper" or self.status.has_finished(self.last.name)
+        is_cut_short = self.num_stop_requests and self.leader.name == "player"
+        if has_finished or is_cut_short or self.failures:
+            return
+        self.failed = True
+        self.failures.append(f"the run is not complete: there was no progress for {IDLE_S} s; the map and its pictures may "
+                             "lack something")
+        say(self.failures[-1])
 
     def _stop(self, process):
         if not stop([process], signal.SIGTERM, STOP_TIMEOUT_S):
