@@ -319,6 +319,15 @@ class Replay(CommandTest):
         self.assertNotRegex("SEGMENT_UPDATE", played)
         self.assertIn("--preset=paper", self.call("kintsugi-segmenter"))
 
+    def test_what_an_earlier_replay_wrote_does_not_count_as_written(self):
+        (self.work / "again").mkdir()
+        for name in ("segments.ply", "map_final.png", "run.lcm"):
+            (self.work / "again" / name).write_text("of an earlier replay")
+        said = self.expect(0, "replay", "again/run.lcm", "--out", "again")
+        self.assertNotIn("segments.ply", said)
+        self.assertNotIn("map_final.png", said)
+        self.assertTrue((self.work / "again/run.lcm").exists())
+
     def test_a_log_that_is_missing_or_empty_is_told(self):
         (self.work / "empty.lcm").touch()
         for log in ("missing.lcm", "empty.lcm"):

@@ -54,6 +54,16 @@ class RunFolderTest(FolderTest):
         self.assertEqual((kept[0] / "mapper.1.lcm").read_text(), "mapper.1.lcm")
         self.assertIn(f"{self.folder.path} held an earlier run; it is now in {kept[0]}", self.said)
 
+    def test_of_an_earlier_replay_nothing_stays_and_of_a_run_what_a_replay_reads(self):
+        kept = ["run.lcm", "run.lcm.partial", "mapper.lcm", "mapper.1.lcm", "segmenter.map", "segmenter.map.views",
+                "run.mp4", "trajectory.txt", "trio.options", "mapper.log", "notes.txt"]
+        for name in (*kept, "segments.ply", "segments.part1.json", "segments.csv", "final.png", "map_final.part1.png",
+                     "snapshot_0001.png", "plots.png", "highlight.png", "timeline_12.png", "objects.json", "status.csv",
+                     "player.log", "viewer.log"):
+            (self.folder.path / name).write_text(name)
+        self.folder.remove_earlier_replay()
+        self.assertEqual(sorted(path.name for path in self.folder.path.iterdir()), sorted(kept))
+
     def test_no_earlier_run_replaces_another(self):
         for content in ("first", "second"):
             file = self.folder.path / "mapper.lcm"

@@ -201,10 +201,7 @@ def replay(arguments):
     check_options({name: [*library_option(name, choice), *getattr(choice, name)] for name in choice.only})
     folder.create()
     folder.lock()
-    for name in ("segmenter.log", "viewer.log", "detector.log", "player.log", "status.csv",
-                 "objects.json"):
-        with contextlib.suppress(FileNotFoundError):
-            os.remove(folder.file(name))
+    folder.remove_earlier_replay()
     network.tell_how_to_ask()
     return run_replay(choice, folder)
 

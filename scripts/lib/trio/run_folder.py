@@ -12,13 +12,16 @@ from .messages import Problem, command_name, say
 
 LOCK_TIMEOUT_S = 3.0  # the processes of a supervisor that was killed end soon
 
-# All that a run writes. Other files in the folder belong to the user.
+# What segmenter, viewer and detector make of a map, and what the processes of a replay say.
+REPLAY_FILES = (
+    "segments*.ply", "segments*.json", "segments*.csv", "final.png", "final.part*.png", "final_*.png", "map_final*.png",
+    "segments_final*.png", "objects_final*.png", "snapshot_*.png", "highlight.png", "plots*.png", "timeline_*.png",
+    "objects.json", "status.csv", "segmenter.log", "viewer.log", "detector.log", "player.log")
+# All that a run writes, a replay too. Other files in the folder belong to the user.
 RUN_FILES = (
-    "mapper.lcm", "mapper.*.lcm", "segmenter.map", "segmenter.map.views", "run.lcm", "run.lcm.partial", "segments*.ply", "segments*.json",
-    "segments*.csv", "final.png", "final.part*.png", "final_*.png", "map_final*.png", "segments_final*.png",
-    "objects_final*.png", "snapshot_*.png", "highlight.png", "plots*.png", "timeline_*.png", "run.mp4", "*.partial.*",
-    "trajectory.txt", "trajectory.part*.txt", "status.csv", "mapper.log", "segmenter.log", "viewer.log",
-    "detector.log", "objects.json", "logger.log", "completion.log", "trio.options")
+    "mapper.lcm", "mapper.*.lcm", "segmenter.map", "segmenter.map.views", "run.lcm", "run.lcm.partial", "run.mp4",
+    "trajectory.txt", "trajectory.part*.txt", "*.partial.*", "mapper.log", "logger.log", "completion.log", "trio.options",
+    *REPLAY_FILES)
 PROCESSES_WITH_PID_FILE = ("mapper", "segmenter", "viewer", "detector", "logger", "completion", "player")
 
 
@@ -74,7 +77,7 @@ class RunFolder:
     def keep_earlier_run(self, durable=False):
         """Moves the files of a run that is there into earlier/DATE. `durable`: after a power cut, too, they are either
         here or there."""
-        found = list(dict.fromkeys(file for pattern in RUN_FILES for file in sorted(self.path.glob(pattern))))
+        found = self._find(RUN_FILES)
         if not found:
             return
         date = time.strftime("%Y%m%d-%H%M%S", time.localtime(found[0].stat().st_mtime))
@@ -88,6 +91,15 @@ class RunFolder:
             for folder in (kept, kept.parent, self.path):
                 sync_folder(folder)
         say(f"{self.path} held an earlier run; it is now in {kept}")
+
+    def remove_earlier_replay(self):
+        """Removes what a replay writes. No log of messages is among it: the one that is to be played may lie here."""
+        for file in self._find(REPLAY_FILES):
+            file.unlink()
+
+    def _find(self, patterns):
+        """The files that match, each once."""
+        return list(dict.fromkeys(file for pattern in patterns for file in sorted(self.path.glob(pattern))))
 
     def begin_run(self, arguments, durable=False):
         """Makes the folder that of a new run with these arguments. On a full disk the earlier run stays where it is.
