@@ -129,6 +129,13 @@ class Trio(CommandTest):
         with mock.patch.dict(os.environ, {"KINTSUGI_BUS_KEY": "its.key"}):
             self.expect(0, "trio", "--out", "run", "--no-log", "--resume")
         self.assertEqual(keys(), {name: str(self.work / "its.key") for name in names})
+        with mock.patch.dict(os.environ, {"KINTSUGI_BUS_KEY": "its.key"}):
+            self.expect(0, "trio", "--out", "run", "--no-log")
+            keys()
+        self.expect(0, "trio", "--out", "run", "--no-log", "--resume")
+        self.assertEqual(keys(), {name: str(self.work / "its.key") for name in names})
+        self.expect(0, "trio", "--out", "run", "--no-log", "--resume", "--bus-key", "new.key")
+        self.assertEqual(keys(), {name: str(self.work / "new.key") for name in names})
 
     def test_a_name_of_the_map_is_that_of_all_processes(self):
         for number, options in enumerate((["--map-name", "attic"], ["--mapper", "--map-name attic"],

@@ -64,7 +64,7 @@ def trio(arguments):
     if choice.resume:
         os.chdir(choice.started_in)
     else:
-        folder.begin_run(arguments, choice.durable)
+        folder.begin_run([*network.bus_key_option(), *arguments], choice.durable)
     network.tell_how_to_ask()
     return run_trio(choice, folder)
 

@@ -47,6 +47,11 @@ def use_bus_key(file="", folder=None):
         os.environ[BUS_KEY] = os.path.abspath(os.path.join(folder or os.curdir, file))
 
 
+def bus_key_option():
+    """The key of this run as an option, for a later run that has another environment; [] without a key."""
+    return [f"--bus-key={os.environ[BUS_KEY]}"] if os.environ.get(BUS_KEY) else []
+
+
 def enter_private_network(command):
     """Replaces this process by `command` there, unless the environment says that it is there already."""
     if os.environ.get(PRIVATE):
