@@ -12,6 +12,8 @@ from unittest import mock
 
 from trio_fakes import ROOT, UNTIL_TERM, environment, process_is_gone, wait_until, write_program
 
+from trio.recording import HEADER, SYNC_WORD
+
 # Each program accepts all options, and notes how it was called. The display of the progress lasts until it is ended;
 # questions are answered at once: there is no other mapper on the bus, everything else is so.
 CHECK = 'case " $* " in *" --check "*) echo "$@" >>"$CALLS/checked-$(basename "$0")"; exit 0 ;; esac; '
@@ -19,6 +21,7 @@ NOTE = 'echo "$@" >>"$CALLS/$(basename "$0")"; '
 FINISHES = NOTE + "sleep 0.2"
 LASTS = NOTE + UNTIL_TERM
 STATUS = NOTE + f'case "$*" in *--viewer*) {UNTIL_TERM} ;; "--until-ready mapper --map-name"*) exit 2 ;; esac'
+A_LOG = HEADER.pack(SYNC_WORD, 0, 1_000, 4, 4) + b"CHANdata"
 LOGGER = 'for file; do :; done; echo a log >"$file"; trap "exit 0" INT; while :; do sleep 0.02; done'
 
 
@@ -258,7 +261,7 @@ class Trio(CommandTest):
                       "echo Run with --help for more information. >&2; exit 109")
         self.assertIn("trio: viewer: --x: no such flag; see kintsugi-viewer --help",
                       self.expect(2, "trio", "--out", "run"))
-        (self.work / "run.lcm").write_text("a log")
+        (self.work / "run.lcm").write_bytes(A_LOG)
         self.assertIn("replay: viewer: --x: no such flag", self.expect(2, "replay", "run.lcm", "--out", "again"))
         self.assertFalse((self.work / "again").exists())
 
@@ -314,7 +317,7 @@ class Trio(CommandTest):
 class Replay(CommandTest):
     def setUp(self):
         super().setUp()
-        (self.work / "run.lcm").write_text("a log")
+        (self.work / "run.lcm").write_bytes(A_LOG)
 
     def test_the_log_is_played_for_those_who_listen(self):
         self.expect(0, "replay", "run.lcm", "--speed", "4", "--out", "again", "--preset", "paper")
@@ -329,16 +332,31 @@ class Replay(CommandTest):
     def test_what_an_earlier_replay_wrote_does_not_count_as_written(self):
         (self.work / "again").mkdir()
         for name in ("segments.ply", "map_final.png", "run.lcm"):
-            (self.work / "again" / name).write_text("of an earlier replay")
+            (self.work / "again" / name).write_bytes(A_LOG)
         said = self.expect(0, "replay", "again/run.lcm", "--out", "again")
         self.assertNotIn("segments.ply", said)
         self.assertNotIn("map_final.png", said)
         self.assertTrue((self.work / "again/run.lcm").exists())
 
-    def test_a_log_that_is_missing_or_empty_is_told(self):
+    def test_what_is_wrong_with_the_log_is_told_before_anything_is_started(self):
         (self.work / "empty.lcm").touch()
-        for log in ("missing.lcm", "empty.lcm"):
-            self.assertIn(f"{log}: no such log, or it is empty", self.expect(1, "replay", log))
+        (self.work / "bus.key").write_bytes(bytes(32))
+        for log, reason in (("missing.lcm", "No such file or directory"), (".", "Is a directory"),
+                            ("empty.lcm", "not an LCM log"), ("bus.key", "not an LCM log")):
+            said = self.expect(1, "replay", log, "--out", "again")
+            self.assertEqual(said.count("\n"), 1, said)
+            self.assertIn(f"replay: {log}: {reason}", said)
+        self.assertFalse((self.work / "again").exists())
+
+    @unittest.skipIf(os.geteuid() == 0, "root may read everything")
+    def test_a_log_that_may_not_be_read_is_told(self):
+        (self.work / "run.lcm").chmod(0)
+        self.assertIn("replay: run.lcm: Permission denied", self.expect(1, "replay", "run.lcm"))
+
+    def test_why_the_log_is_not_played_is_told(self):
+        write_program(self.programs / "lcm-logplayer", "echo 'Error: Failed to open run.lcm'; echo bye; exit 1")
+        said = self.expect(1, "replay", "run.lcm", "--out", "again")
+        self.assertIn("player ended with an error (exit code 1): Error: Failed to open run.lcm", said.splitlines()[-1])
 
     def test_who_does_not_come_up_is_told(self):
         self.program("viewer", "echo no screen; exit 1")

@@ -76,6 +76,7 @@ class ProcessTest(FolderTest):
         for words, reason in (("[12:00] [error] disk; [12:01] [info] done", ["[12:00] [error] disk"]),
                               ("12:02 segmenter error: disk; 12:03 segmenter info: bye", ["12:02 segmenter error: disk"]),
                               ("kintsugi-mapper: no file; bye", ["kintsugi-mapper: no file"]),
+                              ("Error: Failed to open run.lcm; bye", ["Error: Failed to open run.lcm"]),  # lcm-logplayer
                               ("one; two", ["two"])):
             process = self.shell("one", f"echo '{words}' | tr ';' '\n' | sed 's/^ *//'")
             self.run_to_end(process)

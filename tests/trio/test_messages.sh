@@ -13,7 +13,7 @@ on_a_bus=("$root/scripts/private_bus")
 
 expect_error 'unknown option --nonsense' "$root/scripts/trio" --nonsense
 expect_error 'needs a value' "$root/scripts/trio" --out
-expect_error 'no such log' "$root/scripts/replay" missing.lcm
+expect_error 'no such file' "$root/scripts/replay" missing.lcm
 mapper=("${on_a_bus[@]}" "$KINTSUGI_BIN/kintsugi-mapper" --replay)
 expect_error 'missing' "${mapper[@]}" --device folder://missing
 expect_error 'no synthetic scene.*office' "${mapper[@]}" --device synthetic://nowhere

@@ -6,13 +6,13 @@ from dataclasses import dataclass
 from trio.messages import Problem
 from trio.process_options import ProcessOptions, with_given
 from trio.programs import program
+from trio.recording import begins_as_log
 
 from .inputs import ADDRESS
 from .options import PROGRAMS
 
 CLOUDS = (".ply", ".pcd", ".las", ".npy", ".xyz", ".pts", ".txt", ".asc", ".csv")
 RECORDINGS = (".oni", ".klg", ".sens", ".bag")
-LCM_EVENT = b"\xed\xa1\xda\x01"  # begins each event of an LCM log
 GIVEN_PATH = "groundtruth.txt"  # in folders of recordings
 
 # Where the programs write.
@@ -41,12 +41,11 @@ def kind_of(given):
     try:
         if os.path.isdir(given.device):
             return given.kind or "recording"
-        with open(given.device, "rb") as file:
-            start = file.read(len(LCM_EVENT))
+        is_log = begins_as_log(given.device)
     except OSError as error:
         raise Problem(f"{given.device}: {error.strerror}") from error
     ending = os.path.splitext(given.device)[1].lower()
-    for kind, is_it in (("log", start == LCM_EVENT or ending == ".lcm"), ("cloud", ending in CLOUDS),
+    for kind, is_it in (("log", is_log or ending == ".lcm"), ("cloud", ending in CLOUDS),
                         ("recording", ending in RECORDINGS)):
         if given.kind == kind or (is_it and not given.kind):
             return kind

@@ -12,7 +12,7 @@ from .messages import Problem, os_error_text, say
 from .process import Process, stop
 from .process_options import with_given
 from .programs import check_programs, command_of, program
-from .recording import Recording
+from .recording import Recording, begins_as_log
 from .run_folder import RunFolder
 from .status import Status
 from .summary import show_summary
@@ -192,8 +192,8 @@ def end_recording(logger, recording):
 def replay(arguments):
     choice = options.parse_replay(arguments)
     network.use_bus_key(choice.bus_key)
-    if not (os.access(choice.log, os.R_OK) and os.path.getsize(choice.log)):
-        raise Problem(f"{choice.log}: no such log, or it is empty")
+    if not begins_as_log(choice.log):
+        raise Problem(f"{choice.log}: not an LCM log: it does not begin with an event")
     check_programs([*choice.only, "status"], ["setpriv", "lcm-logplayer"])
     network.choose_network(choice.private, this_command())
     folder = RunFolder(choice.out)

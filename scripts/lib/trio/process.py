@@ -9,7 +9,7 @@ import time
 from .messages import STDERR, os_error_text, say, write
 
 LAST_LINES = 5
-ERROR_LEVEL = re.compile(r"\[(error|critical)\]|\b(error|critical): ")  # as in the logs of the processes
+ERROR_LEVEL = re.compile(r"\[(error|critical)\]|\b([Ee]rror|critical): ")  # as in the logs of the processes
 QUICK_DEATH_S = 2.0  # a process that a signal killed within this time of its start ...
 MAX_QUICK_DEATHS = 5  # ... so many times running is not started again
 CLOCK_TICKS_PER_S = os.sysconf("SC_CLK_TCK")

@@ -7,9 +7,15 @@ import struct
 from .durable import sync_file, sync_folder
 
 # As lcmtypes/log/log_format.hpp describes it: sync word, number, time, bytes of the channel and of the data.
-HEADER = struct.Struct(">IqqII")
-SYNC_WORD = 0xEDA1DA01
+HEADER = struct.Struct(">4sqqII")
+SYNC_WORD = b"\xed\xa1\xda\x01"
 MAX_CHANNEL_BYTES = 63
+
+
+def begins_as_log(path):
+    """Whether the file begins with an event of a log. Raises OSError if it cannot be read."""
+    with open(path, "rb") as file:
+        return file.read(len(SYNC_WORD)) == SYNC_WORD
 
 
 class Recording:
