@@ -71,6 +71,16 @@ class Flaky(unittest.TestCase):
         self.assertIn("missing: failed in 1 of 1 rounds", said)
         self.assertIn("skipped: skipped\n", said)
 
+    def test_the_folder_for_the_output_may_be_relative(self):
+        self.suite(bad="exit 1")
+        here = self.folder / "elsewhere"
+        here.mkdir()
+        done = subprocess.run([FLAKY, "--test-dir", "..", "--out", "out", "--quiet", "1", "--loaded", "0"], cwd=here,
+                              capture_output=True, text=True, check=False)
+        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assertIn("  quiet 1: out/quiet-01/bad.txt\n", done.stdout)
+        self.assertTrue((here / "out/quiet-01/bad.txt").exists())
+
     def test_options_of_ctest_choose_the_tests(self):
         self.suite(good="true", bad="exit 1")
         self.assertIn("0 of 1 tests failed", self.flaky("--quiet", "1", "--loaded", "0", "-R", "good"))
