@@ -47,6 +47,21 @@ class ListTest(FleetTest):
         names = [given.name for given in self.read("same.ply\nsame.ply\n")]
         self.assertEqual(len(set(names)), 2)
 
+    def test_an_input_keeps_its_name_when_others_are_added(self):
+        before = self.read("s1/scan.ply\nsame.ply\nsame.ply cloud='--unit cm'\n")
+        self.assertEqual(before[0].name, "scan")
+        text = "s2/scan.ply\nsame.ply cloud='--unit cm'\ns1/scan.ply\nsame.ply\nsame.ply\ns2/scan.ply name=mine\n"
+        now = read_list(str(self.write("list.txt", text)), before)
+        self.assertEqual(now[1:4], [before[2], before[0], before[1]])
+        self.assertEqual([now[0].name, now[5].name], ["s2_scan", "mine"])
+        self.assertEqual(len({given.name for given in now}), 6)
+        self.assertEqual(read_list(str(self.here / "list.txt"), now), now)
+
+    def test_a_name_that_a_line_gives_is_taken_from_the_input_that_had_it(self):
+        before = self.read("s1/scan.ply\n")
+        now = read_list(str(self.write("list.txt", "s1/scan.ply\ns2/scan.ply name=scan\n")), before)
+        self.assertEqual([given.name for given in now], ["s1_scan", "scan"])
+
     def test_a_name_can_be_a_folder_whatever_the_path_is(self):
         for path in ("'/a/.hidden'", "/a/b/", "'/a/weird *name;.ply'", "synthetic://office?frames=9&speed=2", "/",
                      "/a/" + "x" * 300 + ".ply"):

@@ -45,6 +45,16 @@ class ParallelTest(WholeRuns, FleetTest):
             self.assertNotEqual(*lists)
         self.assertEqual(self.runs()[0]["workers"], 2)
 
+    def test_an_input_whose_file_has_the_name_of_another_may_be_added(self):
+        for folder in "ab":
+            (self.here / folder).mkdir()
+            self.write(f"{folder}/scan.ply", "")
+        self.write("list.txt", "a/scan.ply\n")
+        self.run_fleet()
+        self.write("list.txt", "b/scan.ply\na/scan.ply\n")
+        self.assertIn("1 of 2 inputs have been done before", self.run_fleet())
+        self.assertEqual(list(self.table()), ["b_scan", "scan"])
+
     def test_options_of_parallel_that_it_does_not_know_are_told(self):
         self.write_list(a="")
         self.assertIn("Unknown option: nonsense", self.run_fleet("--parallel=--nonsense", expect=1))

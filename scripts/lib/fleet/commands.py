@@ -47,12 +47,12 @@ def main(arguments):
 def run(arguments):
     choice = RunParser().parse(arguments)
     use_bus_key()
-    inputs, settings = read_list(choice.list), settings_of(choice)
+    folder = FleetFolder(choice.out)
+    folder.lock_if_used()
+    inputs, settings = read_list(choice.list, folder.recorded()), settings_of(choice)
     for name in NEEDED:
         check_program(name)
     check_programs([], ["setpriv"])
-    folder = FleetFolder(choice.out)
-    folder.lock_if_used()
     folder.check_is_of(inputs, settings)
     scheduler = scheduler_for(choice, folder)
     check_flags(inputs, settings)

@@ -75,6 +75,10 @@ class FleetFolder:
         except (ValueError, KeyError, TypeError) as error:
             raise Problem(f"{file} is damaged ({error}); choose another folder with --out") from error
 
+    def recorded(self):
+        """The inputs that it is of; none of a new one."""
+        return self.recall()[0] if (self.path / FLEET).exists() else []
+
     def row(self, name):
         """The row of an input in the table, or None if there is no result."""
         try:

@@ -1,11 +1,12 @@
 """The list of inputs: one a line."""
 
+import json
 import os
 import re
 import shlex
 import sys
-from collections import Counter
-from dataclasses import asdict, dataclass, field
+from collections import Counter, defaultdict
+from dataclasses import asdict, dataclass, field, replace
 
 from trio.messages import Problem, os_error_text
 
@@ -33,10 +34,13 @@ class Input:
     def as_json(self):
         return asdict(self)
 
+    def but_for_its_name(self):
+        return json.dumps(replace(self, name="").as_json(), sort_keys=True)
 
-def read_list(file):
-    """The inputs of a list (a path, or - for standard input), in its order. Raises Problem, which names the first
-    lines that are wrong."""
+
+def read_list(file, recorded=()):
+    """The inputs of a list (a path, or - for standard input), in its order. `recorded`: those that the folder of the
+    fleet has already. Raises Problem, which names the first lines that are wrong."""
     try:
         if file == "-":
             text, folder, file = sys.stdin.read(), os.getcwd(), "standard input"
@@ -59,7 +63,7 @@ def read_list(file):
         raise Problem("\n  ".join(lines[:SHOWN_ERRORS] + rest), 2)
     if not parsed:
         raise Problem(f"{file}: there is no input in it; expected one a line, see scripts/fleet run --help", 2)
-    return with_names([given for _, given in parsed])
+    return with_names(with_recorded_names([given for _, given in parsed], recorded))
 
 
 def words_of(line):
@@ -125,6 +129,17 @@ def repeated(parsed):
         first.setdefault(given.name, number)
 
 
+def with_recorded_names(inputs, recorded):
+    """Inputs without a name that were recorded before keep the name that they got then."""
+    given_names = {given.name for given in inputs}
+    names = defaultdict(list)
+    for before in recorded:
+        if before.name not in given_names:
+            names[before.but_for_its_name()].append(before.name)
+    return [replace(given, name=names[key].pop(0)) if not given.name and names[key := given.but_for_its_name()] else given
+            for given in inputs]
+
+
 def with_names(inputs):
     """Inputs without a name get that of their file; as many folders before it as tell equal ones apart, and else a
     number."""
@@ -140,7 +155,7 @@ def with_names(inputs):
     for given in inputs:
         name = given.name or unused(names[given.device], taken)
         taken[name] += not given.name
-        result.append(Input(**{**given.as_json(), "name": name}))
+        result.append(replace(given, name=name))
     return result
 
 
