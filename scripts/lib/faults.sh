@@ -119,7 +119,7 @@ reference() {
   key="$(printf '%s\n' "$quick" "${LCM_DEFAULT_URL}" "${scene[@]}" "$@" | cksum | cut -d' ' -f1)"
   reference="$runs/reference-$key"
   if [[ ! -e "$reference/seconds" ]]; then
-    (cd "$runs" && run_to_end "reference-$key" "${scene[@]}" "$@") || {
+    run_to_end "$reference" "${scene[@]}" "$@" || {
       say "$row_name: the run without a fault failed: $reference.txt"
       tail -n 20 "$reference.txt" >&2
       exit 1

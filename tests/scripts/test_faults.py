@@ -1,11 +1,14 @@
 """scripts/faults: the seed fixes the moments of kills and power cuts; lines of rows that hold are kept."""
 
+import contextlib
+import os
 import pathlib
+import signal
 import subprocess
 import tempfile
 import unittest
 
-from trio_fakes import ROOT, environment, write_program
+from trio_fakes import ROOT, environment, wait_until, write_program
 
 DRAWS = """
 set -euo pipefail
@@ -78,6 +81,41 @@ class KeptLinesTest(unittest.TestCase):
         shown = subprocess.run([f"{ROOT}/scripts/faults", "--quick", "--missing", "--out", self.folder, "loss-5"], check=True,
                                capture_output=True, text=True, env=environment(self.folder)).stdout
         self.assertEqual(shown.splitlines()[2:], ["| loss-5 | as it was |"])
+
+
+# Ends with 0 after Ctrl-C, as a trio does whose map is shortened.
+INTERRUPTED_TRIO = 'trap "exit 0" INT; mkdir -p "$2"; touch "$2/begun"; while :; do sleep 0.02; done'
+
+
+def end_group(pid):
+    with contextlib.suppress(ProcessLookupError):
+        os.killpg(pid, signal.SIGKILL)
+
+
+class InterruptTest(unittest.TestCase):
+    def test_ctrl_c_in_a_reference_ends_all_and_leaves_none(self):
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        folder = pathlib.Path(temporary.name).resolve()
+        scripts, runs = folder / "scripts", folder / "runs"
+        (scripts / "faults.d").mkdir(parents=True)
+        for name in ("faults", "lib"):
+            (scripts / name).symlink_to(ROOT / "scripts" / name)
+        (scripts / "faults.d/rows.sh").write_text("LCM_DEFAULT_URL=memq://\nfault_row one nothing reference\n"
+                                                  "fault_row two nothing reference --further\n")
+        for name, script in (("scripts/private_bus", 'exec "$@"'), ("scripts/trio", INTERRUPTED_TRIO),
+                             ("kintsugi-mapper", "exit 1")):
+            write_program(folder / name, script)
+        faults = subprocess.Popen([scripts / "faults", "--out", runs, "one", "two"], env=environment(folder),
+                                  stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, start_new_session=True)
+        self.addCleanup(faults.communicate)
+        self.addCleanup(end_group, faults.pid)
+        self.assertTrue(wait_until(lambda: list(runs.glob("reference-*/begun"))))
+        os.killpg(faults.pid, signal.SIGINT)
+        self.assertTrue(wait_until(lambda: faults.poll() is not None or len(list(runs.glob("reference-*/begun"))) > 1))
+        self.assertEqual(faults.poll(), 130)
+        self.assertEqual(list(runs.glob("*/seconds")), [])
+        self.assertEqual(len(list(runs.glob("reference-*/begun"))), 1)
 
 
 if __name__ == "__main__":
