@@ -175,6 +175,21 @@ class WholeRuns:
         self.assertEqual([row["state"] for row in self.table().values()], ["done", "failed"])
         self.assertIn("its last words", (self.out / "results" / "victim" / "messages.txt").read_text())
 
+    def test_what_a_lost_worker_said_is_told_of_its_own_input(self):
+        dies = "echo x >> $1.times; echo no room for {} >> /proc/$PPID/fd/2; kill -KILL $PPID; sleep 60"
+        self.write_list(late="echo x >> $1.times; [ $(wc -l < $1.times) = 3 ] || { kill -KILL $PPID; sleep 60; }",
+                        first=dies.format("first"), second=dies.format("second"))
+        text = self.run_fleet(expect=1)
+        for name in ("first", "second"):
+            self.assertRegex(text, f"{name} failed: its worker ended 3 times without a result: .*no room for {name}")
+        self.assertEqual(self.table()["late"]["state"], "done")
+
+    def test_the_folder_may_have_any_name(self):
+        self.out = self.here / "it's 5 {} {.} {%} {1} {= $_ =} %a%j"
+        self.write_list(a="")
+        self.run_fleet()
+        self.assertEqual(self.table()["a"]["state"], "done")
+
     def test_a_run_that_is_stopped_is_gone_on_with(self):
         self.write_list(first="", slow="touch $1.begun; [ -e $1.cure ] || sleep 60", last="")
         run = self.begin("run", "list.txt", "--out", self.out, *self.scheduler, "--jobs", "1")

@@ -3,7 +3,7 @@
     fleet.json            the inputs and the options that it is of
     results/NAME/         of each input: row.json, messages.txt and what the programs wrote; appears as a whole
     work/NAME/            of a task that is at work, or was killed
-    jobs/                 tasks that a run has to do, what Slurm printed, earlier runs
+    jobs/                 tasks that a run has to do, what they printed, earlier runs
     results.csv, report.html
 """
 
@@ -20,6 +20,7 @@ from .inputs import Input
 
 FLEET, ROW = "fleet.json", "row.json"
 DONE = "done"
+OUTPUTS = ("slurm-*.txt", "parallel-*.txt")
 
 
 class FleetFolder:
@@ -129,12 +130,23 @@ class FleetFolder:
         """Removes what tasks that have ended needed. Not while one is at work."""
         for file in (self.path / "work").glob(".*.lock"):
             file.unlink(missing_ok=True)
-        for file in (self.path / "jobs").glob("slurm-*.txt"):
-            if not file.stat().st_size:
-                file.unlink(missing_ok=True)
+        self.remove_outputs(lambda file: not file.stat().st_size)
+
+    def remove_outputs(self, which=lambda _: True):
+        """Removes what tasks have printed, each into a file."""
+        for pattern in OUTPUTS:
+            for file in (self.path / "jobs").glob(pattern):
+                if which(file):
+                    file.unlink(missing_ok=True)
 
     def job_file(self, name):
         return self.path / "jobs" / name
+
+    def last_line(self, name):
+        """Of a file of the folder jobs; nothing if there is none."""
+        file = self.job_file(name)
+        lines = file.read_text(errors="replace").strip().splitlines() if file.exists() else []
+        return lines[-1] if lines else ""
 
     def runs(self):
         """What earlier runs took, the newest last."""

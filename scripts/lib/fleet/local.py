@@ -13,6 +13,7 @@ from trio.process import spawn
 from .folder import write_text
 
 STOP_S = 10.0
+TASK = "KINTSUGI_FLEET_TASK"  # in the environment of parallel: what the shell of a task does
 
 
 class Local:
@@ -30,18 +31,22 @@ class Local:
 
     def start(self, task_command, count):
         """Starts tasks 1 to `count`: task_command with the number of the task and of its slot behind."""
+        self._folder.remove_outputs()
         # exec: no shell between parallel and a task, which is killed when parallel dies.
-        task = shlex.join(["exec", "setpriv", "--pdeathsig", "KILL", sys.executable, *task_command]) + " {} {%}"
+        task = shlex.join(["exec", "setpriv", "--pdeathsig", "KILL", sys.executable, *task_command])
+        output = shlex.quote(str(self._folder.job_file("parallel-")))
         environment = {key: value for key, value in os.environ.items() if key != "PARALLEL"}  # its default options
+        # Not in the command of parallel, which would replace {} and the like in a path, too.
+        environment[TASK] = f'{task} "$1" "$2" >{output}"$1".txt 2>&1'
         lock = self._folder.lock_descriptor
         numbers = self._folder.job_file("numbers.txt")
         write_text(numbers, "".join(f"{number}\n" for number in range(1, count + 1)))
         with open(self._folder.job_file("parallel.txt"), "wb") as log:
             # Without --ungroup the output of tasks would go through files; they have none.
             self._parallel = spawn(
-                ["parallel", "--will-cite", "--ungroup", f"--jobs={self.workers}", *self._words, task, "::::",
-                 str(numbers)], "KILL", env=environment, stdout=log, stderr=subprocess.STDOUT,
-                pass_fds=() if lock is None else (lock,))
+                ["parallel", "--will-cite", "--ungroup", f"--jobs={self.workers}", *self._words,
+                 f'exec /bin/sh -c "${TASK}" sh {{}} {{%}}', "::::", str(numbers)], "KILL", env=environment, stdout=log,
+                stderr=subprocess.STDOUT, pass_fds=() if lock is None else (lock,))
 
     def is_at_work(self):
         return self._parallel is not None and self._parallel.poll() is None
@@ -52,9 +57,9 @@ class Local:
         os.killpg(self._parallel.pid, signal.SIGKILL)
         self._parallel.wait(STOP_S)
 
-    def last_words(self, _):
-        """Why task NUMBER has ended without a result, if that is known: nothing."""
-        return ""
+    def last_words(self, number):
+        """What a task said that has ended without a result."""
+        return self._folder.last_line(f"parallel-{number}.txt")
 
     def problem(self):
         """What parallel says when it could not start tasks."""

@@ -41,6 +41,7 @@ class Rounds:
         try:
             for number in range(MAX_ROUNDS):
                 self._round(left)
+                numbers = {given.name: place for place, given in enumerate(left, 1)}
                 left = self._without_result()
                 if not left:
                     return True
@@ -55,8 +56,8 @@ class Rounds:
             self._scheduler.stop()
             for number, handler in handlers.items():
                 signal.signal(number, handler)
-        for number, given in enumerate(left, 1):
-            said = self._scheduler.last_words(number)
+        for given in left:
+            said = self._scheduler.last_words(numbers[given.name])
             reason = f"its worker ended {MAX_ROUNDS} times without a result"
             lost(self._folder, given, f"{reason}: {said}" if said else reason)
         return True

@@ -54,7 +54,8 @@ class Slurm:
                          f"--wrap=exec {shlex.join(task_command)} {number}", before=before)
 
     def _submit(self, *words, before):
-        done = call("sbatch", "--parsable", f"--output={self._folder.path}/jobs/slurm-%A_%a.txt", *self._options, *words)
+        folder = str(self._folder.path).replace("%", "%%")
+        done = call("sbatch", "--parsable", f"--output={folder}/jobs/slurm-%A_%a.txt", *self._options, *words)
         if done.returncode:
             self.stop()
             raise Problem(f"sbatch: {done.stderr.strip().removeprefix('sbatch: ')}")
@@ -77,12 +78,10 @@ class Slurm:
             time.sleep(0.2)
 
     def last_words(self, number):
-        """What Slurm said of a task that has ended without a result."""
+        """What a task said that has ended without a result, or Slurm of it."""
         for array, before in reversed(self._arrays):
             if number > before:
-                file = self._folder.job_file(f"slurm-{array}_{number - before}.txt")
-                lines = file.read_text(errors="replace").strip().splitlines() if file.exists() else []
-                return lines[-1] if lines else ""
+                return self._folder.last_line(f"slurm-{array}_{number - before}.txt")
         return ""
 
     def problem(self):
