@@ -16,7 +16,7 @@ class Network(FolderTest):
                    mock.patch.object(network, "has_multicast_route"), mock.patch.object(network, "RMEM_MAX", "missing")]
         _, self.execv, self.has_route, _ = [patch.start() for patch in patches]
         self.addCleanup(mock.patch.stopall)
-        for name in ("KINTSUGI_PRIVATE_BUS", "LCM_DEFAULT_URL"):
+        for name in ("KINTSUGI_PRIVATE_BUS", "KINTSUGI_BUS_KEY", "LCM_DEFAULT_URL"):
             os.environ.pop(name, None)
 
     def expect_private(self):
@@ -46,6 +46,14 @@ class Network(FolderTest):
             network.tell_how_to_ask()
             self.assertIn(enter + options, self.said)
             self.assertIn("kintsugi-status --once", self.said)
+
+    def test_who_asks_a_signed_private_run_is_told_its_key(self):
+        os.environ["KINTSUGI_PRIVATE_BUS"] = "1"
+        network.tell_how_to_ask()
+        self.assertNotIn("--bus-key", self.said)
+        network.use_bus_key("my keys/bus.key", "/folder")
+        network.tell_how_to_ask()
+        self.assertIn("kintsugi-status --once '--bus-key=/folder/my keys/bus.key' (", self.said)
 
     def test_without_a_route_the_cure_is_named_and_the_run_is_private(self):
         self.has_route.return_value = False

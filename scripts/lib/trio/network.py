@@ -1,6 +1,7 @@
 """Whether LCM can work on this machine, the private network where it cannot, and the key of the bus."""
 
 import os
+import shlex
 import socket
 
 from .messages import say
@@ -34,8 +35,9 @@ def tell_how_to_ask():
     if not os.environ.get(PRIVATE):
         return
     user = " --user --preserve-credentials" if os.environ[PRIVATE] == OWN_USERS else ""
+    question = shlex.join([program("status"), "--once", *bus_key_option()])
     say(f"in a private network. To ask the run from another terminal: nsenter --target {os.getpid()}{user} --net "
-        f"{program('status')} --once (kintsugi-query and others alike)")
+        f"{question} (kintsugi-query and others alike)")
 
 
 def use_bus_key(file="", folder=None):
@@ -48,7 +50,7 @@ def use_bus_key(file="", folder=None):
 
 
 def bus_key_option():
-    """The key of this run as an option, for a later run that has another environment; [] without a key."""
+    """The key of this run as an option, for what has another environment; [] without a key."""
     return [f"--bus-key={os.environ[BUS_KEY]}"] if os.environ.get(BUS_KEY) else []
 
 
