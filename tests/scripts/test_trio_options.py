@@ -51,7 +51,10 @@ class TrioOptions(unittest.TestCase):
             options = parse_trio(arguments)
             self.assertEqual("=".join(options.mapper), "--store-limit=500")
             self.assertTrue(options.is_long and options.no_log)
-        self.assertFalse(parse_trio([]).is_long or parse_trio([]).no_log)
+        for arguments in ([], ["--store-limit", "0"], ["--mapper", "--store-limit 0.0"],
+                          ["--store-limit", "500", "--store-limit", "0"]):
+            options = parse_trio(arguments)
+            self.assertFalse(options.is_long or options.no_log, arguments)
 
     def test_objects_add_the_detector_before_the_last_process(self):
         self.assertEqual(parse_trio([]).only, ["mapper", "segmenter", "viewer"])

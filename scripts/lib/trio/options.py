@@ -5,7 +5,7 @@ import argparse
 import shlex
 
 from .messages import Problem
-from .process_options import ProcessOptions
+from .process_options import ProcessOptions, value_of
 
 PROCESSES = ("mapper", "segmenter", "viewer")
 STORE_LIMIT = "--store-limit"
@@ -50,7 +50,7 @@ TRIO_OPTIONS = (
      "files of the run are synced)"),
     (STORE_LIMIT, "MB", PASS_ON, "mapper",
      "for runs of days: what the map needs no more is removed from mapper.lcm, so that it stays below this; and the bus "
-     "is not recorded, of the statuses only some"),
+     "is not recorded, of the statuses only some (0: no limit)"),
     ("--map-name", "NAME", STORE, None,
      "name of the map (default: map). Several runs on one bus need a name each; segmenter and viewer then use only "
      "this map"),
@@ -93,9 +93,17 @@ def parse_trio(arguments):
         "the map to be drawn)."))
     options = parser.parse(arguments)
     options.only = with_detector(chosen_processes(options.only), options)
-    options.is_long = any(word.startswith(STORE_LIMIT) for word in options.mapper)
+    options.is_long = is_limit(value_of(STORE_LIMIT, options.mapper))
     options.no_log |= options.is_long  # run.lcm has no limit
     return options
+
+
+def is_limit(text):
+    """Of a value of --store-limit; None: there is none. What is no number the mapper refuses."""
+    try:
+        return text is not None and float(text) != 0
+    except ValueError:
+        return True
 
 
 def parse_replay(arguments):

@@ -73,6 +73,15 @@ def is_flag(word):
     return word.startswith("--") or word == "-h"
 
 
+def value_of(flag, words):
+    """The value of an option among the words of a process; None without."""
+    for place, word in enumerate(words):
+        name, equals, value = word.partition("=")
+        if name == flag:
+            return value if equals else "".join(words[place + 1:place + 2])
+    return None
+
+
 def with_given(own, given):
     """The words of a command line: `own`, each FLAG or FLAG=VALUE, without those that are given, then `given`."""
     flags = {word.partition("=")[0] for word in given if is_flag(word)}
