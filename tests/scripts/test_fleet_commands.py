@@ -4,6 +4,7 @@ import signal
 from unittest import mock
 
 from fleet_fakes import FleetTest
+from trio_fakes import write_program
 
 from fleet import commands, local, slurm
 from fleet.folder import FleetFolder
@@ -59,6 +60,15 @@ class FlagsTest(FleetTest):
             self.check([Input("a", "/a.ply")], cloud=["--wrong"])
         with self.assertRaisesRegex(Problem, "b in the list: --wrong: not known"):
             self.check([Input("a", "/a.ply"), Input("b", "/b.ply", words={"cloud": ["--wrong"]})])
+
+    def test_what_is_wrong_is_told_of_where_it_was_given(self):
+        write_program(self.programs / "kintsugi-segment-cloud", "case \"$*\" in *foo*) echo '--preset: foo not known' >&2; "
+                      "exit 105 ;; *--wrong*) echo '--wrong: not known' >&2; exit 109 ;; esac")
+        given = [Input("a", "/a.ply", words={"cloud": ["--right"]})]
+        with self.assertRaisesRegex(Problem, "^--preset: foo not known"):
+            self.check(given, preset="foo", cloud=["--right"])
+        with self.assertRaisesRegex(Problem, "^--cloud: --wrong: not known"):
+            self.check(given, preset="paper", cloud=["--wrong"])
 
     def test_values_that_begin_with_a_dash_belong_to_their_flag(self):
         choice = RunParser().parse(["list.txt", "--mapper", "--resolution=0.02", "--sbatch", "--mem=4G -p long"])

@@ -5,6 +5,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from dataclasses import replace
 
 from trio.check import reason
 from trio.messages import STDOUT, Problem, os_error_text, say, write
@@ -114,16 +115,25 @@ def check_flags(inputs, settings):
             "mapper": ("--check", "--device=synthetic://plane", "--lcm-url=memq://")}
     with tempfile.TemporaryDirectory() as empty:
         for given in inputs:
-            for word, name in PROGRAMS.items():
-                words = words_of(word, given, settings)
+            for word, where, words in options_of(given, settings):
                 if not words or (word, *words) in tried:
                     continue
                 tried.add((word, *words))
+                name = PROGRAMS[word]
                 done = subprocess.run([program(name), *ways[word], *words], cwd=empty, stdin=subprocess.DEVNULL,
                                       capture_output=True, text=True, errors="replace", check=False)
                 if done.returncode >= WRONG_FLAG:
-                    where = f"{given.name} in the list" if given.words.get(word) else f"--{word}"
-                    raise Problem(f"{where}: {reason(name, done)}", 2)
+                    raise Problem(f"{where}: {reason(name, done).removeprefix(f'{where}: ')}", 2)
+
+
+def options_of(given, settings):
+    """The options of each program for an input: those of one place, and then with those of the next one, so that what
+    is wrong is of the last place. Yields the word of the program, the place and the options."""
+    without = replace(given, words={})
+    for word in PROGRAMS:
+        yield word, "--preset", words_of(word, without, {**settings, word: []})
+        yield word, f"--{word}", words_of(word, without, settings)
+        yield word, f"{given.name} in the list", words_of(word, given, settings)
 
 
 def report(arguments):
