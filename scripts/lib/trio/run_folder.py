@@ -19,7 +19,7 @@ REPLAY_FILES = (
     "objects.json", "status.csv", "segmenter.log", "viewer.log", "detector.log", "player.log")
 # All that a run writes, a replay too. Other files in the folder belong to the user.
 RUN_FILES = (
-    "mapper.lcm", "mapper.*.lcm", "segmenter.map", "segmenter.map.views", "run.lcm", "run.lcm.partial", "run.mp4",
+    "mapper.lcm", "mapper.*.lcm", ".mapper.base.lcm", "segmenter.map", "segmenter.map.views", "run.lcm", "run.lcm.partial", "run.mp4",
     "trajectory.txt", "trajectory.part*.txt", "*.partial.*", "mapper.log", "logger.log", "completion.log", "trio.options",
     *REPLAY_FILES)
 PROCESSES_WITH_PID_FILE = ("mapper", "segmenter", "viewer", "detector", "logger", "completion", "player")
