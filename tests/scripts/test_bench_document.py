@@ -99,6 +99,15 @@ class BenchDocument(unittest.TestCase):
         self.assertIn("old two", self.file.read_text())
         self.assertNotIn("old one", self.file.read_text())
 
+    def test_a_section_that_is_skipped_keeps_what_was_there(self):
+        sections = (commands.Section("one", "", lambda run: "new one", needs_recording=True),)
+        mock.patch.object(commands, "SECTIONS", sections).start()
+        code, printed = self.bench("--only", "one")
+        self.assertEqual(code, 0)
+        self.assertIn("section 'one' is skipped: no recording was given", self.messages())
+        self.assertNotIn("## one", printed)
+        self.assertIn("<!-- bench:one -->\nold one\n<!-- /bench:one -->", self.file.read_text())
+
     def test_an_unknown_section_is_a_wrong_option(self):
         self.assertEqual(self.bench("--only", "four")[0], 2)
         self.assertIn("no section 'four'", self.messages())

@@ -147,8 +147,6 @@ def load():
 
 def measure(section, run):
     """What the section prints, or None if it failed."""
-    if section.needs_recording and not run.recordings:
-        return "Skipped: no recording was given.\n"
     start = time.monotonic()
     try:
         return section.measure(run)
@@ -160,8 +158,8 @@ def measure(section, run):
 
 
 def run_sections(options, run):
-    """The exit code: 1 if a section failed. In FILE, what stands there of such a section is kept. What is measured by
-    itself says on which machine: that may be another one than the rest is from."""
+    """The exit code: 1 if a section failed. In FILE, what stands there of such a section, and of one that is skipped, is
+    kept. What is measured by itself says on which machine: that may be another one than the rest is from."""
     document = Document(options.write) if options.write else None
     is_whole = options.only is None
     if document:
@@ -173,6 +171,9 @@ def run_sections(options, run):
         document.replace("machine", texts["machine"])
     failed = 0
     for section in options.sections:
+        if section.needs_recording and not run.recordings:
+            say(f"section '{section.name}' is skipped: no recording was given")
+            continue
         text = measure(section, run)
         failed += text is None
         if text is None:
