@@ -70,6 +70,24 @@ class FlagsTest(FleetTest):
         with self.assertRaisesRegex(Problem, "^--cloud: --wrong: not known"):
             self.check(given, preset="paper", cloud=["--wrong"])
 
+    def test_a_file_that_is_not_found_from_the_folder_of_a_task_is_told(self):
+        write_program(self.programs / "kintsugi-mapper",
+                      'for file; do :; done; file="${file#--calibration=}"\n'
+                      'case "$*" in *--calibration*) [ -e "$file" ] ;; esac || '
+                      '{ echo "kintsugi-mapper: $file: cannot be read" >&2; exit 1; }')
+        self.write("cam.txt", "")
+        given = [Input("a", "/a.klg")]
+        for words in (["--calibration", "cam.txt"], ["--calibration=cam.txt"]):
+            with self.assertRaisesRegex(Problem, "^--mapper: cam.txt: cannot be read; .* needs its whole path"):
+                self.check(given, mapper=words)
+            with self.assertRaisesRegex(Problem, "^b in the list: cam.txt: cannot be read; a file"):
+                self.check([*given, Input("b", "/b.klg", words={"mapper": words})])
+        self.check(given, mapper=["--calibration", f"{self.here}/cam.txt"])
+
+    def test_what_only_the_device_of_an_input_offers_is_not_tried(self):
+        write_program(self.programs / "kintsugi-mapper", 'case "$*" in *mode*) exit 1 ;; *--right) ;; *) exit 2 ;; esac')
+        self.check([Input("a", "/a.klg")], mapper=["--depth-mode", "320x240@30", "--color-mode=320x240", "--right"])
+
     def test_values_that_begin_with_a_dash_belong_to_their_flag(self):
         choice = RunParser().parse(["list.txt", "--mapper", "--resolution=0.02", "--sbatch", "--mem=4G -p long"])
         self.assertEqual((choice.mapper, choice.sbatch), (["--resolution=0.02"], ["--mem=4G", "-p", "long"]))

@@ -10,6 +10,7 @@ from dataclasses import replace
 from trio.check import reason
 from trio.messages import STDOUT, Problem, os_error_text, say, write
 from trio.network import use_bus_key
+from trio.process_options import without
 from trio.programs import check_programs, program
 
 from . import slurm, table
@@ -20,10 +21,14 @@ from .options import PROGRAMS, USAGE, RunParser, settings_of
 from .page import page
 from .rounds import Rounds, todo
 from .task import do_task, use_processors
-from .work import words_of
+from .work import LOG, words_of
 
 INTERRUPTED = 130  # exit code, as shells have it
 WRONG_FLAG = 100  # the lowest exit code of a program with a wrong flag
+# How the options of a program are tried, and the lowest exit code for which they are to blame: a cloud is never there.
+TRIALS = {"cloud": (("no/such/input.ply", "labelled.ply"), WRONG_FLAG), "segmenter": (("--check",), 1),
+          "mapper": (("--check", "--device=synthetic://plane", "--lcm-url=memq://", f"--store={LOG}"), 1)}
+OF_DEVICE = ("--depth-mode", "--color-mode")  # the plane offers others than a camera does
 SHOWN_FAILURES = 20
 NEEDED = ("segment-cloud", "segmenter", "mapper", "evaluate", "ground-truth")
 
@@ -108,31 +113,38 @@ def check_program(name):
 
 
 def check_flags(inputs, settings):
-    """Raises Problem for options that a program does not know: they would let every input fail. Each set of options is
-    tried once, without an input."""
+    """Raises Problem for options that a program does not take: they would let every input fail. Each set of options is
+    tried once, without an input, in an empty folder as that of a task."""
     tried = set()
-    ways = {"cloud": ("no/such/input.ply", "labelled.ply"), "segmenter": ("--check",),
-            "mapper": ("--check", "--device=synthetic://plane", "--lcm-url=memq://")}
     with tempfile.TemporaryDirectory() as empty:
         for given in inputs:
             for word, where, words in options_of(given, settings):
                 if not words or (word, *words) in tried:
                     continue
                 tried.add((word, *words))
-                name = PROGRAMS[word]
-                done = subprocess.run([program(name), *ways[word], *words], cwd=empty, stdin=subprocess.DEVNULL,
-                                      capture_output=True, text=True, errors="replace", check=False)
-                if done.returncode >= WRONG_FLAG:
-                    raise Problem(f"{where}: {reason(name, done).removeprefix(f'{where}: ')}", 2)
+                name, (arguments, to_blame) = PROGRAMS[word], TRIALS[word]
+                done = subprocess.run([program(name), *arguments, *without(OF_DEVICE, words)], cwd=empty,
+                                      stdin=subprocess.DEVNULL, capture_output=True, text=True, errors="replace",
+                                      check=False)
+                if done.returncode >= to_blame:
+                    text = reason(name, done).removeprefix(f"{where}: ")
+                    raise Problem(f"{where}: {text}{hint_at_path(text, words)}", 2)
+
+
+def hint_at_path(text, words):
+    """For a message FILE: REASON of a program."""
+    file, is_pair, _ = text.partition(": ")
+    is_given = is_pair and any(file in (word, word.partition("=")[2]) for word in words)
+    return "; a file in options needs its whole path" if is_given and not os.path.isabs(file) else ""
 
 
 def options_of(given, settings):
     """The options of each program for an input: those of one place, and then with those of the next one, so that what
     is wrong is of the last place. Yields the word of the program, the place and the options."""
-    without = replace(given, words={})
+    plain = replace(given, words={})
     for word in PROGRAMS:
-        yield word, "--preset", words_of(word, without, {**settings, word: []})
-        yield word, f"--{word}", words_of(word, without, settings)
+        yield word, "--preset", words_of(word, plain, {**settings, word: []})
+        yield word, f"--{word}", words_of(word, plain, settings)
         yield word, f"{given.name} in the list", words_of(word, given, settings)
 
 

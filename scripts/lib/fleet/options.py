@@ -41,8 +41,9 @@ LIST is a file with one input a line, or - for standard input:
 PATH is a point cloud (PLY, PCD, LAS, NPY, text), an LCM log of a mapper, or a recording: what --device of
 kintsugi-mapper takes, a folder or synthetic://NAME too. kind=cloud, log or recording says so where the name does not.
 truth is a PLY file with the true instances, path the camera's true path (TUM format); both are known of synthetic
-scenes, and the path of folders with groundtruth.txt. Paths are relative to the folder of LIST (of -: to the current
-folder). Words with blanks are quoted as in a shell; # begins a comment.
+scenes, and the path of folders with groundtruth.txt. These paths are relative to the folder of LIST (of -: to the
+current folder); files in ARGS need their whole paths, because the programs run in the folder of the result. Words with
+blanks are quoted as in a shell; # begins a comment.
 """
 
 USAGE = """\

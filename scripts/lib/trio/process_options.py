@@ -82,6 +82,15 @@ def value_of(flag, words):
     return None
 
 
+def without(flags, words):
+    """The words of a process without these options and their values."""
+    options = ProcessOptions(None)
+    options.add(words)
+    for flag in flags:
+        options.replace(flag, [])
+    return options.words()
+
+
 def with_given(own, given):
     """The words of a command line: `own`, each FLAG or FLAG=VALUE, without those that are given, then `given`."""
     flags = {word.partition("=")[0] for word in given if is_flag(word)}
