@@ -3,7 +3,7 @@
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 group=239.255.76.67 port=7667
-# Ethernet's MTU. A datagram that leaves the host has at most 1,451 bytes.
+# Ethernet's MTU, into which every datagram fits that leaves the host.
 ethernet_mtu=1500
 receive_buffer=4194304
 unfit=0
