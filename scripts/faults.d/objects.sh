@@ -105,6 +105,8 @@ kill_detector_row() {
   note "$kills kills in $num_runs runs; $(num_detections "$found") objects found in each"
 }
 
+tells_of_invalid() { grep -q 'messages of objects dropped: [0-9]' "$1.err"; }
+
 hostile_objects_row() {
   local hostile="${KINTSUGI_TEST_BIN:-$kintsugi_root/build/release/tests}/hostile_publisher" events query=0 sender
   [[ -x "$hostile" ]] || skip_row "hostile_publisher is not built (scripts/build)"
@@ -116,16 +118,15 @@ hostile_objects_row() {
   # Until the run has ended.
   "$hostile" --seconds=600 --seed="$seed" --listen=0.5 --report=hostile.json >hostile.txt 2>&1 &
   sender=$!
+  # Until it has also heard invalid messages: on a busy machine they begin late.
   while kill -0 "$faulty_pid" 2>/dev/null && ((!query)); do
-    "$KINTSUGI_BIN/kintsugi-query" --objects --timeout 5 >query.txt 2>query.err && query=1
+    "$KINTSUGI_BIN/kintsugi-query" --objects --timeout 5 >query.txt 2>query.err && tells_of_invalid query && query=1
   done
   faulty_wait
   kill -TERM "$sender" && wait "$sender" || true
   wait "$events" || failures+=("kintsugi-segment-events failed, see $PWD/events.err")
-  must "kintsugi-query never found an object" test "$query" = 1
-  for client in query events; do
-    must "$client does not tell of invalid messages" grep -q 'messages of objects dropped: [0-9]' "$client.err"
-  done
+  must "kintsugi-query never found an object and told of invalid messages" test "$query" = 1
+  must "kintsugi-segment-events does not tell of invalid messages" tells_of_invalid events
   note "$(json_number hostile.json OBJECT_DETECTION) hostile detections and $(json_number hostile.json DETECTOR_STATUS) \
 statuses of detectors"
   same_detections "$found"
