@@ -9,7 +9,7 @@ namespace kintsugi::segmenter {
 
 /// A wall of 5 m x 10 m at 5 mm has as many; an object is smaller.
 inline constexpr std::size_t kMaxObjectPoints = std::size_t{1} << 21U;
-/// Directions a degree and a half apart have fewer, all around.
+/// Directions 1.7 degrees apart are about as many, all around.
 inline constexpr std::size_t kMaxObjectViews = std::size_t{1} << 14U;
 /// An object is so many voxels from its origin at most, along each axis: then 16 bits are enough
 /// for a voxel's index.

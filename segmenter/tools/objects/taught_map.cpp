@@ -1,5 +1,6 @@
 #include "segmenter/tools/objects/taught_map.hpp"
 
+#include <algorithm>
 #include <array>
 #include <fstream>
 #include <stdexcept>
@@ -9,6 +10,7 @@
 
 #include "segmenter/io/ply/ply_reader.hpp"
 #include "segmenter/objects/maps/observed_map_file.hpp"
+#include "segmenter/objects/maps/surface_samples.hpp"
 #include "segmenter/preprocess/cloud_preparation.hpp"
 
 namespace kintsugi::segmenter {
@@ -28,6 +30,14 @@ ObservedMap read_labelled_ply(const std::filesystem::path& path) {
                              ": has no points with segment_id: expected a labelled PLY file");
   }
   normalize_normals(cloud.points_W);
+  const bool has_normals = std::ranges::any_of(cloud.points_W, [](const CloudPoint& p) {
+    return normal_of(p).squaredNorm() > 0.0F;  // also of none that is NaN
+  });
+  if (!has_normals) {
+    throw std::runtime_error(path.string() + ": none of its " +
+                             std::to_string(cloud.points_W.size()) +
+                             " points has a normal (nx, ny, nz), by which objects are known");
+  }
   ObservedMap map;
   map.source = path.string();
   map.resolution_m = usable_spacing_m(cloud.points_W);

@@ -128,8 +128,8 @@ std::map<fs::path, ObservedMap> maps_of(const std::vector<ShownChange>& changes)
       }
       maps[change.map] = read_taught_map(change.map);
     }
-    const std::int64_t session = maps[change.map].map_session;
-    if (change.map_session != 0 && session != change.map_session) {
+    const std::int64_t session = maps[change.map].map_session;  // a PLY file tells none
+    if (session != 0 && change.map_session != 0 && session != change.map_session) {
       throw std::runtime_error(change.map.string() + ": is of session " + std::to_string(session) +
                                ", and the map that was compared is of session " +
                                std::to_string(change.map_session));

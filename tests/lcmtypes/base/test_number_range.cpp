@@ -1,6 +1,6 @@
-#include "lcmtypes/base/number_range.hpp"
-
 #include <gmock/gmock.h>
+
+#include "lcmtypes/base/number_range.hpp"
 
 namespace kintsugi {
 namespace {

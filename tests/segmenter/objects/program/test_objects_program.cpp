@@ -16,6 +16,7 @@
 #include "segmenter/objects/library/object_library.hpp"
 #include "segmenter/objects/model/make_model.hpp"
 #include "tests/segmenter/objects/box_on_table.hpp"
+#include "tests/segmenter/objects/saved_room.hpp"
 #include "tests/segmenter/tools/program.hpp"
 #include "tests/support/file_size_limit.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -190,12 +191,15 @@ TEST_F(Objects, OfAMapThatWasOnTheBusAreTaughtFromWhereItWasSaved) {
 
 TEST_F(Objects, AreNotTaughtFromAnotherMapThanWasCompared) {
   write_difference();
+  const testing::ToyRoom room = testing::furnished_room();
+  testing::save(room, testing::walk_through(room), folder_ / "saved");
   const fs::path path = folder_ / "diff" / "changes.json";
   std::ifstream file(path);
   json root = json::parse(file);
   root["after_session"] = 77;
   write_text(path, root.dump());
-  expect_error("teach --from-diff FOLDER/diff", "and the map that was compared is of session 77");
+  expect_error("teach --from-diff FOLDER/diff --map FOLDER/saved",
+               "saved: is of session 5, and the map that was compared is of session 77");
 }
 
 TEST_F(Objects, AreAllForgottenOrNone) {
@@ -228,6 +232,14 @@ TEST_F(Objects, WhatIsGoneIsTaughtWhereItStoodInTheMapBefore) {
 TEST_F(Objects, AreNotLookedForWhereTheResultCannotBeWritten) {
   expect_success("teach --map FOLDER/hall.ply --ids 2 --name box");
   expect_error("detect --check --json FOLDER/none/found.json", "found.json: there is no folder");
+}
+
+TEST_F(Objects, AreNotLookedForWithoutNormals) {
+  expect_success("teach --map FOLDER/hall.ply --ids 2 --name box");
+  write_text(folder_ / "bare.ply",
+             "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\n"
+             "property float z\nproperty uint segment_id\nend_header\n0 0 0 1\n0 0.01 0 1\n");
+  expect_error("detect FOLDER/bare.ply", "none of its 2 points has a normal");
 }
 
 TEST_F(Objects, WhatCannotBeTaughtSaysWhy) {
