@@ -52,7 +52,7 @@ class Descriptor {
 };
 
 /// The file to which links lead, which remain. A device or a pipe would be replaced by a file.
-fs::path checked(fs::path path) {
+fs::path checked(const fs::path& path) {
   if (!path.has_filename()) {
     throw std::invalid_argument("output file '" + path.string() + "' has no file name");
   }
@@ -108,8 +108,8 @@ class AtomicFile::FileBuffer : public std::streambuf {
   std::array<char, std::size_t{1} << 16U> buffer_;
 };
 
-AtomicFile::AtomicFile(fs::path path)
-    : path_(checked(std::move(path))), partial_path_(partial_name(path_)) {}
+AtomicFile::AtomicFile(const fs::path& path)
+    : path_(checked(path)), partial_path_(partial_name(path_)) {}
 
 AtomicFile::~AtomicFile() {
   if (committed_) return;

@@ -17,7 +17,7 @@ class AtomicFile {
  public:
   /// Opens nothing yet. Links are followed. @throws std::invalid_argument when `path` has no file
   /// name, or is a device or a pipe
-  explicit AtomicFile(std::filesystem::path path);
+  explicit AtomicFile(const std::filesystem::path& path);
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;

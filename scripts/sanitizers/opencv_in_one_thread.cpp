@@ -3,7 +3,11 @@
 // loop waits for its workers is not seen, and they look at its context, which is on the stack of
 // who began it.
 
-#include <opencv2/core/utility.hpp>
+// As in opencv2/core/utility.hpp. clang-tidy, which takes the options of other builds, has no
+// header of OpenCV here.
+namespace cv {
+void setNumThreads(int nthreads);
+}
 
 namespace {
 

@@ -96,7 +96,7 @@ void teach_from_map(const TeachOptions& options) {
 std::string name_of(const ShownChange& change, const TeachOptions& options) {
   if (!options.name.empty()) return options.name;
   const fs::path& library = options.library;
-  const std::string name = change.kind + "_" + std::to_string(change.id);
+  std::string name = change.kind + "_" + std::to_string(change.id);
   if (options.replace) return name;
   std::string free = name;
   for (int i = 2; fs::exists(fs::symlink_status(library / free)); ++i) {
