@@ -1,3 +1,4 @@
+#include "lcmtypes/base/json_text.hpp"
 #include "lcmtypes/client/segment_table_text.hpp"
 #include "lcmtypes/client/statistics_json.hpp"
 
@@ -32,7 +33,7 @@ Json header_json(const SegmentTable& table, bool is_whole) {
 }  // namespace
 
 void write_table_json(const SegmentTable& table, bool is_whole, std::ostream& out) {
-  std::string head = header_json(table, is_whole).dump(1);
+  std::string head = json_text(header_json(table, is_whole), 1);
   head.resize(head.rfind('\n'));
   out << head << ",\n \"segments\": [";
   const char* separator = "\n";  // one line for each segment

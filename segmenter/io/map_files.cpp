@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "lcmtypes/base/atomic_file.hpp"
+#include "lcmtypes/base/json_text.hpp"
 #include "lcmtypes/client/statistics_json.hpp"
 #include "segmenter/io/ply/labelled_ply_writer.hpp"
 #include "segmenter/io/segments_csv.hpp"
@@ -146,7 +147,7 @@ void write_json(const Json& head, std::span<const SegmentDescription> segments,
   AtomicFile file(path);
   std::ostream& out = file.stream();
   // One line for each segment: a person can read it, and the text of millions is never in memory.
-  std::string text = head.dump(1);
+  std::string text = json_text(head, 1);
   text.resize(text.rfind('\n'));
   out << text << ",\n \"segments\": [";
   const char* separator = "\n";

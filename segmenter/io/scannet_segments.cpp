@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "lcmtypes/base/atomic_file.hpp"
+#include "lcmtypes/base/json_text.hpp"
 
 namespace kintsugi::segmenter {
 
@@ -21,7 +22,7 @@ void write_scannet_segments(const std::string& scene_id,
   std::ostream& out = file.stream();
   // Written one by one: as JSON, the indices of millions of points would need much memory.
   out << "{\"params\":" << params.dump()
-      << ",\"sceneId\":" << nlohmann::ordered_json(scene_id).dump() << ",\"segIndices\":[";
+      << ",\"sceneId\":" << json_text(nlohmann::ordered_json(scene_id)) << ",\"segIndices\":[";
   const char* separator = "";
   for (const std::uint32_t id : segment_ids) {
     out << separator << id;

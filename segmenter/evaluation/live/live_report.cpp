@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "lcmtypes/base/json_text.hpp"
 #include "segmenter/evaluation/report/table.hpp"
 
 namespace kintsugi::segmenter {
@@ -114,7 +115,7 @@ std::string to_json(const LiveLogReport& result) {
                   {"points_sent", r.points_sent},
                   {"points", r.num_points},
                   {"times_sent", json(rates.times_sent)}};
-  return root.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  return json_text(root, 2) + "\n";
 }
 
 }  // namespace kintsugi::segmenter

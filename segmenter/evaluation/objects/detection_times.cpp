@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 #include <spdlog/fmt/fmt.h>
 
+#include "lcmtypes/base/json_text.hpp"
 #include "lcmtypes/channels.hpp"
 #include "lcmtypes/codec/codec.hpp"
 #include "lcmtypes/log/log_reader.hpp"
@@ -274,7 +275,7 @@ std::string to_json(const DetectionTimes& times) {
                   {"delay_of_whole_p99_s", json(times.delay_of_whole_s(0.99))},
                   {"cpu_share", json(times.cpu_share)},
                   {"detections", list}};
-  return root.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text(root, 1) + "\n";
 }
 
 }  // namespace kintsugi::segmenter

@@ -9,6 +9,8 @@
 #include <nlohmann/json.hpp>
 #include <spdlog/fmt/fmt.h>
 
+#include "lcmtypes/base/json_text.hpp"
+
 namespace kintsugi::segmenter {
 namespace {
 
@@ -156,7 +158,7 @@ std::string to_json(const TrajectoryReport& report) {
       json[error][std::string(statistic)] = value;
     }
   }
-  return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  return json_text(json, 2) + "\n";
 }
 
 }  // namespace kintsugi::segmenter

@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "lcmtypes/base/atomic_file.hpp"
+#include "lcmtypes/base/json_text.hpp"
 #include "lcmtypes/base/ply_writer.hpp"
 #include "lcmtypes/client/object_text.hpp"
 #include "segmenter/objects/changes/change_picture.hpp"
@@ -128,8 +129,7 @@ std::string changes_json(const MapDifference& difference) {
   for (const MapChange& change : difference.changes.changes) {
     json["changes"].push_back(json_of(change));
   }
-  // Bytes that are no UTF-8, as a path may have, are replaced.
-  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text(json, 1) + "\n";
 }
 
 void write_changes(const MapDifference& difference, const ObservedMap& after,

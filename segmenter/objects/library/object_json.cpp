@@ -14,6 +14,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "lcmtypes/base/json_text.hpp"
 #include "lcmtypes/base/number_text.hpp"
 #include "lcmtypes/geometry.hpp"
 
@@ -250,15 +251,11 @@ EmptySpace empty_of(const Json& json) {
   return {vector_of(at(json, "low_O"), "low_O"), cell_m, size, std::move(cells)};
 }
 
-/// Bytes that are no UTF-8, as a name of a map may have, are replaced.
-std::string dump(const OrderedJson& json) {
-  return json.dump(-1, ' ', false, OrderedJson::error_handler_t::replace);
-}
-
 /// A list with a line for each entry; dump(2) would give each number a line of its own.
 std::string lines(const OrderedJson& list) {
   std::string text;
-  for (const OrderedJson& entry : list) text += (text.empty() ? "\n    " : ",\n    ") + dump(entry);
+  for (const OrderedJson& entry : list)
+    text += (text.empty() ? "\n    " : ",\n    ") + json_text(entry);
   return "[" + text + (list.empty() ? "]" : "\n  ]");
 }
 
@@ -331,7 +328,7 @@ std::string object_json(const KnownObject& object, std::uint32_t model_crc32) {
   add("model_crc32", Json(crc_text(model_crc32)).dump());
   add("lessons", lines(lessons));
   add("views_O", lines(views_O));
-  if (!model.empty_O.is_unknown()) add("empty_O", dump(empty_json(model.empty_O)));
+  if (!model.empty_O.is_unknown()) add("empty_O", json_text(empty_json(model.empty_O)));
   return text + "\n}\n";
 }
 

@@ -9,6 +9,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "lcmtypes/base/json_text.hpp"
 #include "lcmtypes/client/object_text.hpp"
 
 namespace kintsugi::segmenter {
@@ -82,8 +83,7 @@ std::string detections_json(const Detector& detector, const DetectionSource& sou
     entry["utime"] = detection.event_utime;
     json["detections"].push_back(std::move(entry));
   }
-  // Bytes that are no UTF-8, as the name of a map may have, are replaced.
-  return json.dump(1, ' ', false, Json::error_handler_t::replace) + '\n';
+  return json_text(json, 1) + '\n';
 }
 
 std::string detections_text(const Detector& detector) {

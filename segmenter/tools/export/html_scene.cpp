@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "lcmtypes/base/atomic_file.hpp"
+#include "lcmtypes/base/json_text.hpp"
 #include "lcmtypes/scene/page.hpp"
 #include "lcmtypes/scene/scene_json.hpp"
 #include "lcmtypes/scene/up_direction.hpp"
@@ -142,7 +143,7 @@ void write_html_scene(const MapSnapshot& map, std::span<const SegmentDescription
   scene["segments"]["removed"] = Json::array();
 
   AtomicFile html(file);
-  html.stream() << scene::file_begin() << scene::data_element("scene", scene.dump());
+  html.stream() << scene::file_begin() << scene::data_element("scene", json_text(scene));
   html.stream() << "<script type=\"text/plain\" id=\"tiles\">";
   const char* separator = "";
   for (const scene::Tile& tile : tiles) {

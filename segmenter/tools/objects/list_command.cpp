@@ -9,6 +9,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "lcmtypes/base/json_text.hpp"
 #include "segmenter/io/points/file_bytes.hpp"
 #include "segmenter/objects/library/object_files.hpp"
 #include "segmenter/objects/library/object_library.hpp"
@@ -47,8 +48,7 @@ int list(const ListOptions& options) {
   for (const RefusedObject& refused : library.refusals()) {
     all["refused"].push_back({{"name", refused.name}, {"reason", refused.reason}});
   }
-  // Bytes that are no UTF-8, as the name of a folder may have, are replaced.
-  std::cout << all.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
+  std::cout << json_text(all, 2) << '\n';
   return 0;
 }
 

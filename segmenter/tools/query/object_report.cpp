@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "lcmtypes/base/json_text.hpp"
 #include "lcmtypes/client/object_text.hpp"
 #include "lcmtypes/client/statistics_json.hpp"
 
@@ -73,7 +74,7 @@ std::string objects_json(const FoundObjects& found) {
       {"map",
        {{"name", found.map_name}, {"map_session", found.map_session}, {"session", found.session}}},
       {"objects", std::move(objects)}};
-  return root.dump(1) + "\n";
+  return json_text(root, 1) + "\n";
 }
 
 }  // namespace kintsugi::segmenter

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "lcmtypes/base/json_text.hpp"
 #include "lcmtypes/client/statistics_json.hpp"
 
 namespace kintsugi::segmenter {
@@ -175,7 +176,7 @@ std::string answer_json(const SegmentAnswer& answer, QueryPlace place) {
         is_measured ? Json(readable(answer.surface_distance_m)) : Json(nullptr);
   }
   root["segments"] = std::move(segments);
-  return root.dump(1) + "\n";
+  return json_text(root, 1) + "\n";
 }
 
 }  // namespace kintsugi::segmenter

@@ -1,5 +1,6 @@
 #include "viewer/web/scene/live_scene.hpp"
 
+#include "lcmtypes/base/json_text.hpp"
 #include "lcmtypes/scene/scene_json.hpp"
 #include "viewer/core/charts/segment_timeline.hpp"
 #include "viewer/web/scene/neighbours.hpp"
@@ -103,7 +104,7 @@ std::string LiveScene::state(std::int64_t epoch, std::uint64_t since) {
   }
   json["tiles"] = std::move(tiles);
   json["removed"] = std::move(removed);
-  return json.dump();
+  return json_text(json);
 }
 
 std::string LiveScene::segments(std::int64_t epoch, std::uint64_t since) const {
@@ -120,7 +121,7 @@ std::string LiveScene::segments(std::int64_t epoch, std::uint64_t since) const {
   nlohmann::ordered_json json;
   json["segments"] = std::move(segments);
   json["removed"] = removed;
-  return json.dump();
+  return json_text(json);
 }
 
 std::optional<std::string> LiveScene::segment(std::uint32_t segment_id) {
