@@ -14,6 +14,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include "lcmtypes/base/command_line.hpp"
+#include "lcmtypes/base/different_files.hpp"
 #include "lcmtypes/base/number_range.hpp"
 #include "lcmtypes/signing/process_key.hpp"
 #include "segmenter/core/parameters/presets.hpp"
@@ -181,6 +182,7 @@ SegmenterProcess::Config Options::config() const {
   } else if (!swap_folder.empty()) {
     throw std::invalid_argument("--swap-folder needs --max-memory MB");
   }
+  check_different({{"--log", config.log}}, {{"--save", config.segmentation.files.save_file}});
   config.publish = config.log.empty() || !config.lcm_url.empty();
   if (resume_if_saved) {
     const std::filesystem::path& saved = config.segmentation.files.save_file;

@@ -5,6 +5,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "lcmtypes/base/different_files.hpp"
+
 namespace kintsugi::segmenter {
 namespace {
 
@@ -61,6 +63,12 @@ void validate(const ExportOptions& options) {
   if (!options.mesh.empty() && options.segs.empty()) {
     throw std::runtime_error("--mesh is of no use without --segs");
   }
+  check_different({{"MAP", options.input}, {"--mesh", options.mesh}}, {{"--json", options.json},
+                                                                       {"--csv", options.csv},
+                                                                       {"--graph", options.graph},
+                                                                       {"--html", options.html},
+                                                                       {"--ply", options.ply},
+                                                                       {"--segs", options.segs}});
   for (const auto& file : files) {
     if (file.has_parent_path()) require_folder(file.parent_path(), file);
   }

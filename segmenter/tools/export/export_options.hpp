@@ -30,7 +30,8 @@ struct ExportOptions {
 
 void add_options(CLI::App& app, ExportOptions& options);
 
-/// @throws std::runtime_error when there is nothing to write, or a folder does not exist
+/// @throws std::runtime_error when there is nothing to write, a folder does not exist, or two files
+///   are one
 void validate(const ExportOptions& options);
 
 }  // namespace kintsugi::segmenter

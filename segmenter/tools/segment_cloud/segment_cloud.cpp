@@ -6,13 +6,13 @@
 #include <span>
 #include <stdexcept>
 #include <string>
-#include <system_error>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 #include <spdlog/sinks/stdout_color_sinks.h>
 
 #include "lcmtypes/base/command_line.hpp"
+#include "lcmtypes/base/different_files.hpp"
 #include "lcmtypes/base/logger.hpp"
 #include "lcmtypes/base/run_main.hpp"
 #include "segmenter/io/cloud_input.hpp"
@@ -47,20 +47,6 @@ void add_options(CLI::App& app, SegmentCloudOptions& options) {
   add_segmentation_options(app, options.map);
 }
 
-/// Whether two paths lead to the same file, by links, other spellings, or as they are.
-bool is_same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
-  std::error_code error;
-  if (std::filesystem::equivalent(a, b, error)) return true;
-  return std::filesystem::weakly_canonical(a, error) == std::filesystem::weakly_canonical(b, error);
-}
-
-void check_different(const std::filesystem::path& taken, const std::filesystem::path& output,
-                     const std::string& name) {
-  if (output.empty() || !is_same_file(taken, output)) return;
-  throw std::runtime_error(name + " is " + output.string() + ", the same file as " +
-                           taken.string() + ": give it another name");
-}
-
 /// A file whose name promises another format would be refused by the program that opens it.
 void check_extension(const std::filesystem::path& output) {
   const std::string extension = output.extension().string();
@@ -73,9 +59,7 @@ void validate(const SegmentCloudOptions& options) {
   options.input_config.validate();
   options.map.validate();
   check_extension(options.output);
-  check_different(options.input, options.output, "OUT");
-  check_different(options.input, options.json, "--json");
-  check_different(options.output, options.json, "--json");
+  check_different({{"IN", options.input}}, {{"OUT", options.output}, {"--json", options.json}});
   for (const auto& path : {options.output, options.json}) {
     if (path.has_parent_path() && !std::filesystem::is_directory(path.parent_path())) {
       throw std::runtime_error(path.string() + ": there is no folder " +

@@ -167,6 +167,8 @@ TEST_F(Export, OneFileForEachChosenSegment) {
 
 TEST_F(Export, SaysWhatIsWrongAndWritesNothing) {
   expect_error("FOLDER/map.kseg", "nothing to write");
+  expect_error("FOLDER/map.kseg --json FOLDER/map.kseg", "the same file as that of MAP");
+  expect_error("FOLDER/map.kseg --json FOLDER/a --csv FOLDER/a", "the same file as that of --json");
   expect_error("FOLDER/map.kseg --csv FOLDER/absent/a.csv", "there is no folder");
   expect_error("FOLDER/map.kseg --csv FOLDER/a.csv --segment-plys FOLDER/map.kseg/parts",
                "cannot be made");
