@@ -14,7 +14,7 @@ std::unique_ptr<RecordingWriter> open_recording_writer(const std::filesystem::pa
   }
   if (path.extension() == ".klg") return make_klg_writer(path, options);
   if (path.extension() == ".lcm") return make_frame_log_writer(path, options);
-  return make_tum_writer(path);
+  return make_tum_writer(path.has_filename() ? path : path.parent_path());
 }
 
 }  // namespace kintsugi::mapper

@@ -14,6 +14,7 @@
 #include "lcmtypes/codec/codec.hpp"
 #include "lcmtypes/signing/process_key.hpp"
 #include "mapper/core/frame/sensors.hpp"
+#include "mapper/process/output_files.hpp"
 #include "mapper/source/open_source.hpp"
 #include "mapper/source/openni2/device_listing.hpp"
 #include "mapper/source/probe.hpp"
@@ -96,9 +97,7 @@ void validate(const Options& options) {
   if (options.durable && options.store_file.empty() && options.resume_file.empty()) {
     throw std::invalid_argument("--durable needs --store FILE or --resume FILE");
   }
-  if (!options.cloud_file.empty() && options.cloud_file == options.mesh_file) {
-    throw std::invalid_argument("--cloud and --mesh are both '" + options.cloud_file + "'");
-  }
+  check_output_files(options);
   if (options.map_name.empty() || options.map_name.size() > kMaxStringBytes) {
     throw std::invalid_argument("--map-name has " + std::to_string(options.map_name.size()) +
                                 " bytes, must have 1 to " + std::to_string(kMaxStringBytes));

@@ -13,6 +13,7 @@
 #include "mapper/process/map_name_claim.hpp"
 #include "mapper/process/map_publisher.hpp"
 #include "mapper/process/mapper_process.hpp"
+#include "mapper/process/output_files.hpp"
 #include "mapper/session/resumption.hpp"
 #include "mapper/session/session_store.hpp"
 
@@ -32,6 +33,7 @@ SessionStore::Config store_config(const Options& options) {
 /// For a session that is complete: answers requests for its slices.
 void resend_only(const Options& options, SessionStore& store, const StoredSession& ended) {
   spdlog::info("session {} is complete: its slices are only sent again", ended.session);
+  warn_of_missing_files(options);
   MapPublisher publisher(publisher_config(options, ended.session), store);
   MapperStatus status = ended.last_status.value_or(MapperStatus());
   status.device = options.source.device;

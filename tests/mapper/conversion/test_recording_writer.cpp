@@ -85,7 +85,7 @@ void expect_the_frames(const fs::path& path) {
 TEST_F(RecordingWriterTest, ATumFolderComesBackToTheBit) {
   Trajectory poses = {{.utime = test::RecordingFolder::depth_utime(0)}};
   poses.front().X_WC.translation().x() = 0.25;
-  const fs::path path = write("walk", {}, poses);
+  const fs::path path = write("walk/", {}, poses);
   expect_the_frames(path);
   EXPECT_EQ(FileRecording(read_recording(path, {})).intrinsics().fx, 50.25);
   const Trajectory read_back = read_tum_file((path / "groundtruth.txt").string());

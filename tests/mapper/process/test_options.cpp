@@ -94,7 +94,12 @@ TEST(Options, TakesTheFlagsOfCameras) {
   EXPECT_FALSE(options_of({}).source.lock_exposure_after_s);
   EXPECT_THAT(error_of({"--depth-mode", "big"}), HasSubstr("depth_mode"));
   EXPECT_THAT(error_of({"--cloud", "a.ply", "--mesh", "a.ply"}),
-              HasSubstr("--cloud and --mesh are both 'a.ply'"));
+              HasSubstr("--mesh is a.ply, the same file as that of --cloud"));
+  EXPECT_THAT(error_of({"--store", "./a.lcm", "--timings", "a.lcm"}),
+              HasSubstr("--store is ./a.lcm, the same file as that of --timings"));
+  EXPECT_THAT(error_of({"--cloud", "none/such/a.ply"}),
+              HasSubstr("--cloud is 'none/such/a.ply': there is no folder 'none/such'"));
+  EXPECT_THAT(error_of({"--output-trajectory", "/tmp"}), HasSubstr("that is a folder"));
   EXPECT_THAT(error_of({"--lock-exposure", "nan"}), HasSubstr("--lock-exposure is nan"));
 }
 
