@@ -49,7 +49,8 @@ void SessionMap::Config::validate() const {
 SessionMap::SessionMap(const Config& config, std::unique_ptr<SegmentMap> map)
     : config_((config.validate(), config)),
       map_(std::move(map)),
-      sequencer_(config.order, slices_in(*map_)) {
+      sequencer_(config.order, slices_in(*map_)),
+      is_saved_(map_->cloud().slices().empty()) {
   counts_.map_session = map_->map_session();
   counts_.map_name = map_->map_name();
   counts_.received = counts_.segmented = std::ssize(map_->cloud().slices());

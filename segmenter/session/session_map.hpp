@@ -114,7 +114,7 @@ class SessionMap {
   Config config_;
   std::shared_ptr<SegmentMap> map_;
   SliceSequencer sequencer_;
-  bool is_saved_ = true;
+  bool is_saved_;                     // not a map that is resumed: its files may be older
   bool is_broken_ = false;            // the engine has failed half way
   std::int64_t num_since_write_ = 0;  // slices since the last request of kind kCurrent
   std::int64_t num_since_save_ = 0;   // slices since the last request of either kind

@@ -279,6 +279,18 @@ TEST_F(SessionMapTest, SavesWhenAskedAndWhenDue) {
   EXPECT_EQ(saves_.back().num_points, 250U);
 }
 
+// Its files may be older, as after a kill, or of another name.
+TEST_F(SessionMapTest, SavesAMapThatWasResumedAlsoWithoutNewSlices) {
+  const auto slices = wavy_session(3, 50);
+  auto resumed = std::make_unique<SegmentMap>(SegmentMapConfig(), 99, slices[0]);
+  (void)resumed->add(slices);
+  SessionMap map(SessionMap::Config(), std::move(resumed));
+  save(map);
+  save(map);  // nothing new
+  ASSERT_EQ(saves_.size(), 1U);
+  EXPECT_EQ(saves_.back().num_points, 150U);
+}
+
 TEST_F(SessionMapTest, SavesAgainWhenTold) {
   SessionMap map = make("batch");
   map.offer(wavy_session(1, 50)[0], now_);
