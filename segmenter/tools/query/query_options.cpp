@@ -119,7 +119,8 @@ void add_options(CLI::App& app, QueryOptions& options) {
              "--pose", options.pose,
              "TX TY TZ QX QY QZ QW: with --pixel, the pose of a camera, instead of what the "
              "camera on the bus measures")
-          ->expected(7);
+          ->expected(7)
+          ->needs(app.get_option("--pixel"));
   app.add_option("--intrinsics", options.intrinsics,
                  "FX FY CX CY WIDTH HEIGHT: of the camera at --pose (default: a Kinect's, 525 525 "
                  "319.5 239.5 640 480)")

@@ -194,6 +194,7 @@ TEST_F(QueryOnTheBus, ProgramTellsOfSilence) {
   EXPECT_THAT(alone.output, AllOf(HasSubstr("nobody answered within 0.7 s"), HasSubstr("2 times"),
                                   HasSubstr("is kintsugi-segmenter running?")));
   EXPECT_THAT(run_query("--pixel 320 240 --map x").output, HasSubstr("needs --pose"));
+  EXPECT_THAT(run_query("--map x --pose 0 0 1 0 0 0 1").output, HasSubstr("requires --pixel"));
   EXPECT_THAT(run_query("--pixel 320 240 --intrinsics 500 500 320 240 640 480").output,
               HasSubstr("--intrinsics requires --pose"));
   EXPECT_THAT(run_query("--map " + (folder_ / "none.kseg").string()).output,
