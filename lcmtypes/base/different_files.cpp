@@ -20,7 +20,8 @@ bool is_same_file(const fs::path& a, const fs::path& b) {
   std::error_code error;
   if (fs::equivalent(a, b, error)) return true;
   // Of a relative path that does not exist the folder would be left out.
-  return fs::weakly_canonical(fs::absolute(a), error) == fs::weakly_canonical(fs::absolute(b), error);
+  return fs::weakly_canonical(fs::absolute(a), error) ==
+         fs::weakly_canonical(fs::absolute(b), error);
 }
 
 void check_different(const std::vector<NamedFile>& read, const std::vector<NamedFile>& written) {

@@ -1,10 +1,9 @@
-#include "lcmtypes/base/different_files.hpp"
-
 #include <fstream>
 #include <stdexcept>
 
 #include <gmock/gmock.h>
 
+#include "lcmtypes/base/different_files.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace kintsugi {
@@ -24,11 +23,17 @@ TEST(DifferentFiles, AreThoseThatAreNotOneByLinksOrOtherSpellings) {
 
 TEST(DifferentFiles, AreWhatIsWrittenAndWhatIsRead) {
   check_different({{"MAP", "m"}, {"--mesh", "m"}}, {{"--ply", "a"}, {"--json", ""}, {"--csv", ""}});
-  EXPECT_THAT([] { check_different({{"MAP", "m"}}, {{"--json", "./m"}}); },
-              ThrowsMessage<std::runtime_error>(
-                  HasSubstr("--json is ./m, the same file as that of MAP: give it another name")));
-  EXPECT_THAT([] { check_different({}, {{"--json", "z"}, {"--csv", "z"}}); },
-              ThrowsMessage<std::runtime_error>(HasSubstr("--csv is z, the same file as that of")));
+  EXPECT_THAT(
+      [] {
+        check_different({{"MAP", "m"}}, {{"--json", "./m"}});
+      },
+      ThrowsMessage<std::runtime_error>(
+          HasSubstr("--json is ./m, the same file as that of MAP: give it another name")));
+  EXPECT_THAT(
+      [] {
+        check_different({}, {{"--json", "z"}, {"--csv", "z"}});
+      },
+      ThrowsMessage<std::runtime_error>(HasSubstr("--csv is z, the same file as that of")));
 }
 
 }  // namespace

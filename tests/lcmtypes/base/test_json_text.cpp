@@ -1,7 +1,7 @@
-#include "lcmtypes/base/json_text.hpp"
-
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+
+#include "lcmtypes/base/json_text.hpp"
 
 namespace kintsugi {
 namespace {
