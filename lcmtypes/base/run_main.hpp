@@ -5,8 +5,9 @@
 
 namespace kintsugi {
 
-/// Calls `run` and returns its exit code. When `run` throws, writes "PROGRAM: MESSAGE" to stderr
-/// and returns 1; PROGRAM is the file name in `argv[0]`. Usual form:
+/// Calls `run` and returns its exit code. When `run` throws, or standard output was not written,
+/// writes "PROGRAM: MESSAGE" to stderr and returns 1; PROGRAM is the file name in `argv[0]`. Usual
+/// form:
 ///
 ///   int main(int argc, char** argv) {
 ///     return kintsugi::run_main(argv, [&] {

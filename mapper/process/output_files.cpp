@@ -1,12 +1,10 @@
 #include "mapper/process/output_files.hpp"
 
 #include <filesystem>
-#include <stdexcept>
-#include <string>
 #include <vector>
 
-#include "lcmtypes/base/different_files.hpp"
 #include "lcmtypes/base/logger.hpp"
+#include "lcmtypes/base/output_files.hpp"
 
 namespace kintsugi::mapper {
 namespace {
@@ -37,23 +35,11 @@ std::vector<NamedFile> output_files(const Options& options) {
   return files;
 }
 
-[[noreturn]] void refuse(const NamedFile& file, const std::string& reason) {
-  throw std::runtime_error(file.name + " is '" + file.path.string() + "': " + reason);
-}
-
-void check_is_file_in_folder(const NamedFile& file) {
-  const fs::path folder = file.path.parent_path();
-  if (!folder.empty() && !fs::is_directory(folder)) {
-    refuse(file, "there is no folder '" + folder.string() + "'");
-  }
-  if (fs::is_directory(file.path)) refuse(file, "that is a folder");
-}
-
 }  // namespace
 
 void check_output_files(const Options& options) {
   const std::vector<NamedFile> written = output_files(options);
-  for (const NamedFile& file : written) check_is_file_in_folder(file);
+  for (const NamedFile& file : written) check_folder_of(file.path);
   check_different({{"--trajectory", options.given_path_file},
                    {"--calibration", options.source.calibration_file}},
                   written);

@@ -14,8 +14,8 @@
 #include <spdlog/fmt/fmt.h>
 
 #include "lcmtypes/base/command_line.hpp"
-#include "lcmtypes/base/different_files.hpp"
 #include "lcmtypes/base/number_range.hpp"
+#include "lcmtypes/base/output_files.hpp"
 #include "lcmtypes/signing/process_key.hpp"
 #include "segmenter/core/parameters/presets.hpp"
 

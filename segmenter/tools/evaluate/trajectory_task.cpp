@@ -5,7 +5,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "lcmtypes/base/different_files.hpp"
+#include "lcmtypes/base/output_files.hpp"
 #include "lcmtypes/trajectory.hpp"
 #include "segmenter/evaluation/report/table.hpp"
 #include "segmenter/evaluation/report/text_file.hpp"
@@ -51,7 +51,7 @@ void add_trajectory_options(CLI::App& app, TrajectoryOptions& options) {
 
 void evaluate_trajectory(const TrajectoryOptions& options) {
   check_different({{"--trajectory", options.estimate_file}, {"--truth", options.truth_file}},
-                  {{"--csv", options.csv_file}});
+                  {{"--csv", options.csv_file}, {"--json", options.json_file}});
   TrajectoryReport report = report_trajectory(read_tum_file(options.estimate_file),
                                               read_tum_file(options.truth_file), options.relative);
   report.estimate_name = options.estimate_file;

@@ -5,19 +5,9 @@
 
 #include <CLI/CLI.hpp>
 
-#include "lcmtypes/base/different_files.hpp"
+#include "lcmtypes/base/output_files.hpp"
 
 namespace kintsugi::segmenter {
-namespace {
-
-void require_folder(const std::filesystem::path& folder, const std::filesystem::path& of) {
-  if (!std::filesystem::is_directory(folder)) {
-    throw std::runtime_error(of.string() + ": there is no folder " + folder.string());
-  }
-}
-
-}  // namespace
-
 void add_options(CLI::App& app, ExportOptions& options) {
   app.add_option("MAP", options.input,
                  "a saved map (kintsugi-segmenter --save), or a labelled PLY file")
@@ -69,9 +59,7 @@ void validate(const ExportOptions& options) {
                                                                        {"--html", options.html},
                                                                        {"--ply", options.ply},
                                                                        {"--segs", options.segs}});
-  for (const auto& file : files) {
-    if (file.has_parent_path()) require_folder(file.parent_path(), file);
-  }
+  for (const auto& file : files) check_folder_of(file);
 }
 
 }  // namespace kintsugi::segmenter

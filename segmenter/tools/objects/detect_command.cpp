@@ -11,6 +11,7 @@
 #include "lcmtypes/base/atomic_file.hpp"
 #include "lcmtypes/base/logger.hpp"
 #include "lcmtypes/base/number_range.hpp"
+#include "lcmtypes/base/output_files.hpp"
 #include "lcmtypes/base/stop_signal.hpp"
 #include "lcmtypes/signing/process_key.hpp"
 #include "segmenter/objects/library/object_library.hpp"
@@ -38,13 +39,6 @@ ObjectLibrary read_library(const std::filesystem::path& folder) {
   return ObjectLibrary::read(folder);
 }
 
-/// Before hours of work, and not after them.
-void require_folder_of(const std::filesystem::path& file) {
-  const std::filesystem::path folder = file.parent_path();
-  if (folder.empty() || std::filesystem::is_directory(folder)) return;
-  throw std::runtime_error(file.string() + ": there is no folder " + folder.string());
-}
-
 int detect_in_map(const DetectOptions& options) {
   const ObjectLibrary library = read_library(options.live.library);
   warn_of_refusals(library);
@@ -62,7 +56,7 @@ int detect_in_map(const DetectOptions& options) {
 }
 
 int detect(const DetectOptions& options) {
-  require_folder_of(options.live.json);
+  check_folder_of(options.live.json);
   if (options.only_check) {
     warn_of_refusals(read_library(options.live.library));
     return 0;

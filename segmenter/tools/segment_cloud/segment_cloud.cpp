@@ -12,8 +12,8 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 
 #include "lcmtypes/base/command_line.hpp"
-#include "lcmtypes/base/different_files.hpp"
 #include "lcmtypes/base/logger.hpp"
+#include "lcmtypes/base/output_files.hpp"
 #include "lcmtypes/base/run_main.hpp"
 #include "segmenter/io/cloud_input.hpp"
 #include "segmenter/io/cloud_slices.hpp"
@@ -60,12 +60,7 @@ void validate(const SegmentCloudOptions& options) {
   options.map.validate();
   check_extension(options.output);
   check_different({{"IN", options.input}}, {{"OUT", options.output}, {"--json", options.json}});
-  for (const auto& path : {options.output, options.json}) {
-    if (path.has_parent_path() && !std::filesystem::is_directory(path.parent_path())) {
-      throw std::runtime_error(path.string() + ": there is no folder " +
-                               path.parent_path().string());
-    }
-  }
+  for (const auto& file : {options.output, options.json}) check_folder_of(file);
 }
 
 /// Segments slices in order: all in one run of the engine in mode `batch`, else one by one. Calls

@@ -98,8 +98,8 @@ TEST(Options, TakesTheFlagsOfCameras) {
   EXPECT_THAT(error_of({"--store", "./a.lcm", "--timings", "a.lcm"}),
               HasSubstr("--store is ./a.lcm, the same file as that of --timings"));
   EXPECT_THAT(error_of({"--cloud", "none/such/a.ply"}),
-              HasSubstr("--cloud is 'none/such/a.ply': there is no folder 'none/such'"));
-  EXPECT_THAT(error_of({"--output-trajectory", "/tmp"}), HasSubstr("that is a folder"));
+              HasSubstr("none/such/a.ply: there is no folder none/such"));
+  EXPECT_THAT(error_of({"--output-trajectory", "/tmp"}), HasSubstr("/tmp: is a folder"));
   EXPECT_THAT(error_of({"--lock-exposure", "nan"}), HasSubstr("--lock-exposure is nan"));
 }
 

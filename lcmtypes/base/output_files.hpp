@@ -1,5 +1,5 @@
 #pragma once
-// Files of a program that must not be one.
+// Where a program is to write: checked before it works.
 
 #include <filesystem>
 #include <string>
@@ -19,5 +19,9 @@ bool is_same_file(const std::filesystem::path& a, const std::filesystem::path& b
 /// What is written takes the place of no other file. Those without a path are not asked for.
 /// @throws std::runtime_error naming both, when a file is written twice, or read, too
 void check_different(const std::vector<NamedFile>& read, const std::vector<NamedFile>& written);
+
+/// The folder of a file is there, and the file is no folder. An empty path is not asked for.
+/// @throws std::runtime_error naming the file
+void check_folder_of(const std::filesystem::path& file);
 
 }  // namespace kintsugi

@@ -1,4 +1,4 @@
-#include "lcmtypes/base/different_files.hpp"
+#include "lcmtypes/base/output_files.hpp"
 
 #include <stdexcept>
 #include <system_error>
@@ -30,6 +30,14 @@ void check_different(const std::vector<NamedFile>& read, const std::vector<Named
     for (const NamedFile& other : others) check_different(other, file);
     others.push_back(file);
   }
+}
+
+void check_folder_of(const fs::path& file) {
+  const fs::path folder = file.parent_path();
+  if (!folder.empty() && !fs::is_directory(folder)) {
+    throw std::runtime_error(file.string() + ": there is no folder " + folder.string());
+  }
+  if (fs::is_directory(file)) throw std::runtime_error(file.string() + ": is a folder");
 }
 
 }  // namespace kintsugi
