@@ -19,7 +19,7 @@
 #include "lcmtypes/client/object_text.hpp"
 #include "lcmtypes/client/segment_listener.hpp"
 #include "lcmtypes/client/segment_table_text.hpp"
-#include "lcmtypes/log/log_reader.hpp"
+#include "lcmtypes/log/whole_log_reader.hpp"
 #include "lcmtypes/signing/process_key.hpp"
 
 namespace kintsugi {
@@ -62,7 +62,7 @@ void listen(SegmentListener& listener, ObjectListener& objects, const Options& o
 
 /// Reads the log up to its end or first damage, which it reports. False: it is damaged.
 bool read_log(SegmentListener& listener, ObjectListener& objects, const std::string& path) {
-  LogReader log(path);
+  WholeLogReader log(path);
   double now_s = 0.0;  // may not go back, as the clock of a computer may
   while (const auto event = log.next()) {
     if (stop_requested()) return true;

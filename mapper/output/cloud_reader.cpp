@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "lcmtypes/channels.hpp"
-#include "lcmtypes/log/log_reader.hpp"
+#include "lcmtypes/log/whole_log_reader.hpp"
 #include "lcmtypes/patch_motions.hpp"
 #include "lcmtypes/stream/stream_subscriber.hpp"
 
@@ -91,8 +91,11 @@ std::vector<CloudPoint> read_log(const std::filesystem::path& path) {
     CloudSlice& known = sessions[slice.session][slice.id];
     if (slice.revision >= known.revision) known = std::move(slice);
   });
-  LogReader log(path);
+  WholeLogReader log(path);
   while (const auto event = log.next()) subscriber.handle(event->channel, event->data);
+  if (log.damage()) throw std::runtime_error(*log.damage());
+  if (sessions.empty())
+    fail(path, std::string("has no slices of a map (") + channels::kCloudSlice + ")");
   std::vector<CloudSlice*> slices;
   for (auto& [id, slice] : sessions[last_session]) slices.push_back(&slice);
   apply_corrections(slices);

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "lcmtypes/channels.hpp"
+#include "lcmtypes/log/session_log.hpp"
 #include "mapper/session/mapped_frames.hpp"
 #include "mapper/session/stored_sessions.hpp"
 

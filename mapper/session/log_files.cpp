@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <cstdlib>
 #include <optional>
+#include <ranges>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
 
 #include "lcmtypes/base/file_sync.hpp"
 #include "lcmtypes/log/log_format.hpp"
-#include "mapper/session/log_base.hpp"
+#include "lcmtypes/log/session_log.hpp"
 #include "mapper/session/log_marks.hpp"
 #include "mapper/session/log_names.hpp"
 
@@ -80,21 +81,13 @@ LogFiles::LogFiles(Config config, const OnEvent& on_event) : config_(std::move(c
   remove_left(config_.path, next_after_base(config_.path));
 }
 
-/// What a base has replaced is passed over: it was killed before it could remove that.
 void LogFiles::open_files() {
-  const int last = last_number(config_.path);
-  const auto open = [&](int number) {
-    const fs::path file = numbered(config_.path, number);
-    std::error_code ignored;
-    if (last > 0 && !fs::exists(file, ignored)) {
-      throw std::runtime_error("log '" + file.string() + "' is missing, '" +
-                               numbered(config_.path, last).string() + "' is there");
-    }
-    return LogWriter::open(file);
-  };
-  last_ = part(0, open(0));
+  const std::vector<int> numbers = numbers_of_files(config_.path);
+  last_ = part(0, LogWriter::open(config_.path));
   next_number_ = next_after_base(config_.path);
-  while (next_number_ <= last) continue_in(open(next_number_));
+  for (const int number : numbers | std::views::drop(1)) {
+    continue_in(LogWriter::open(numbered(config_.path, number)));
+  }
 }
 
 std::vector<LogPart> LogFiles::all() const {

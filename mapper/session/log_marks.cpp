@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "lcmtypes/log/log_format.hpp"
+#include "lcmtypes/log/session_log.hpp"
 
 namespace kintsugi::mapper {
 namespace {

@@ -1,6 +1,5 @@
 #pragma once
-// Marks in a durable log, each of which tells that all before it in its file, and all files before,
-// were on the disk when it was written; and what the end of a log says about who left it so.
+// Marks in a durable log (kMarkChannel), and what the end of a log says about who left it so.
 
 #include <cstdint>
 #include <filesystem>
@@ -9,9 +8,6 @@
 #include "lcmtypes/log/log_reader.hpp"
 
 namespace kintsugi::mapper {
-
-/// Channel of the marks, in the log only.
-inline constexpr char kMarkChannel[] = "MAPPER_LOG_MARK";
 
 /// The data of a mark whose event begins at byte `position` of its file: by it a mark is known from
 /// bytes that look like one.

@@ -1,12 +1,9 @@
 #pragma once
-// The names of the files of a log that is called NAME.lcm.
+// The names of files of a log that is called NAME.lcm, beside those of session_log.hpp.
 
 #include <filesystem>
 
 namespace kintsugi::mapper {
-
-/// NAME.lcm for 0, NAME.2.lcm for 2.
-std::filesystem::path numbered(const std::filesystem::path& path, int number);
 
 /// NAME.partial.lcm, as AtomicFile names files.
 std::filesystem::path partial(const std::filesystem::path& path);
@@ -14,9 +11,6 @@ std::filesystem::path partial(const std::filesystem::path& path);
 /// .NAME.base.lcm: a base until it is whole. A name that no user gives a log: it is replaced and
 /// removed without a question.
 std::filesystem::path base_in_work(const std::filesystem::path& path);
-
-/// The largest number that a file of this log bears; 0: there is only the first, or none.
-int last_number(const std::filesystem::path& path);
 
 /// Removes what a rewriting of the log was killed before: the files that its base replaces, numbers
 /// 1 to the one before `next`, and a base that was not whole.

@@ -5,7 +5,7 @@
 
 #include "lcmtypes/channels.hpp"
 #include "lcmtypes/codec/codec.hpp"
-#include "mapper/session/log_base.hpp"
+#include "lcmtypes/log/session_log.hpp"
 #include "mapper/session/log_contents.hpp"
 #include "mapper/session/log_marks.hpp"
 #include "mapper/session/mapped_frames.hpp"

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "lcmtypes/log/session_log.hpp"
 #include "mapper/session/chunk_fates.hpp"
 
 namespace kintsugi::mapper {

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "lcmtypes/channels.hpp"
+#include "lcmtypes/log/session_log.hpp"
 #include "mapper/session/chunk_fates.hpp"
 #include "mapper/session/mapped_frames.hpp"
 

@@ -13,10 +13,6 @@
 
 namespace kintsugi::mapper {
 
-/// Channel of the first event of each session, in the log only: its number and its options
-/// as JSON.
-inline constexpr char kOptionsChannel[] = "MAPPER_OPTIONS";
-
 /// The data of the event on kOptionsChannel.
 Bytes encode_options(std::int64_t session, const MappingOptions& options);
 

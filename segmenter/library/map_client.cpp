@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "lcmtypes/base/patient_clock.hpp"
-#include "lcmtypes/log/log_reader.hpp"
+#include "lcmtypes/log/whole_log_reader.hpp"
 #include "lcmtypes/signing/process_key.hpp"
 #include "segmenter/library/bus.hpp"
 #include "segmenter/library/map_follower.hpp"
@@ -101,7 +101,7 @@ class MapClient::Implementation {
   const MapClientOptions options_;
   segmenter::MapFollower follower_;
   std::optional<Bus> bus_;  // after follower_, which it calls
-  std::optional<LogReader> log_;
+  std::optional<WholeLogReader> log_;
   bool log_ended_ = false;
   double log_time_s_ = 0.0;
   mutable PatientClock clock_;

@@ -9,7 +9,7 @@
 
 #include "lcmtypes/base/logger.hpp"
 #include "lcmtypes/channels.hpp"
-#include "lcmtypes/log/log_reader.hpp"
+#include "lcmtypes/log/whole_log_reader.hpp"
 
 namespace kintsugi::segmenter {
 
@@ -45,7 +45,7 @@ void SliceReceiver::ask(Bus& bus, double now_s) { subscriber_.ask(bus, now_s); }
 
 void SliceReceiver::read(const std::filesystem::path& log) {
   reads_log_ = true;
-  reader_ = std::thread([this, reader = std::make_shared<LogReader>(log)] {
+  reader_ = std::thread([this, reader = std::make_shared<WholeLogReader>(log)] {
     try {
       while (!stopping_) {
         if (!queue_.wait_for_room(std::chrono::milliseconds(50))) continue;

@@ -1,6 +1,7 @@
 // Messages and logs of them.
 
 #include "lcmtypes/channels.hpp"
+#include "lcmtypes/log/session_log.hpp"
 #include "mapper/session/chunk_fates.hpp"
 #include "mapper/session/mapped_frames.hpp"
 #include "mapper/session/stored_sessions.hpp"

@@ -12,7 +12,7 @@
 #include "lcmtypes/base/stop_signal.hpp"
 #include "lcmtypes/bus/bus.hpp"
 #include "lcmtypes/bus/bus_thread.hpp"
-#include "lcmtypes/log/log_reader.hpp"
+#include "lcmtypes/log/whole_log_reader.hpp"
 #include "viewer/process/viewer_publisher.hpp"
 #include "viewer/receiving/inbox.hpp"
 #include "viewer/receiving/receiver.hpp"
@@ -125,7 +125,7 @@ void serve_until_stopped(WebView& web, const ViewerProcess& process) {
 }
 
 int run_on_log(const Options& options) {
-  LogReader log(*options.log);
+  WholeLogReader log(*options.log);
   ViewerProcess process(options.process, {});
   constexpr double kNow_s = 0.0;  // a log is read as fast as possible: no waiting, no retries
   std::optional<WebView> web;

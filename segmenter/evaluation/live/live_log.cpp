@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "lcmtypes/channels.hpp"
-#include "lcmtypes/log/log_reader.hpp"
+#include "lcmtypes/log/whole_log_reader.hpp"
 #include "lcmtypes/stream/stream_subscriber.hpp"
 
 namespace kintsugi::segmenter {
@@ -44,7 +44,7 @@ Sessions read_log(const std::filesystem::path& path, const LiveConfig& config,
   StreamSubscriber<CameraView> views(channels::kCameraView, [&](const CameraView& view) {
     session_of(view.session).add(view, now_s);
   });
-  LogReader log(path);
+  WholeLogReader log(path);
   while (const auto event = log.next()) {
     now_s = 1e-6 * static_cast<double>(event->utime);
     slices.handle(event->channel, event->data);

@@ -15,7 +15,7 @@
 #include "lcmtypes/base/json_text.hpp"
 #include "lcmtypes/channels.hpp"
 #include "lcmtypes/codec/codec.hpp"
-#include "lcmtypes/log/log_reader.hpp"
+#include "lcmtypes/log/whole_log_reader.hpp"
 #include "lcmtypes/object_messages.hpp"
 #include "lcmtypes/patch_motions.hpp"
 #include "lcmtypes/stream/stream_subscriber.hpp"
@@ -58,7 +58,7 @@ ToldById read_told(const std::filesystem::path& path, DetectionTimes& result) {
   ToldById told;
   std::int64_t session = 0;
   std::int64_t num_bad = 0;
-  LogReader log(path);
+  WholeLogReader log(path);
   while (const auto event = log.next()) {
     if (event->channel != channels::kObjectDetection) continue;
     try {
@@ -169,7 +169,7 @@ std::vector<BoxContents> read_contents(const std::filesystem::path& path,
     const std::vector<CloudPoint> points_W = moved(slice.points_W, motions.place_of(slice).X_WP);
     for (BoxContents& box : contents) box.take(slice, points_W, now_s);
   });
-  LogReader log(path);
+  WholeLogReader log(path);
   while (const auto event = log.next()) {
     now_s = seconds(event->utime);
     slices.handle(event->channel, event->data);

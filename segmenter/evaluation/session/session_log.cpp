@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "lcmtypes/channels.hpp"
-#include "lcmtypes/log/log_reader.hpp"
+#include "lcmtypes/log/whole_log_reader.hpp"
 #include "lcmtypes/patch_motions.hpp"
 #include "lcmtypes/stream/stream_subscriber.hpp"
 
@@ -63,7 +63,7 @@ void note_segments(std::span<const std::uint8_t> data, LoggedSessions& sessions)
 
 /// Reads all sessions of the log; adds to `faults` what was wrong with it.
 LoggedSessions read_log(const std::filesystem::path& path, std::vector<std::string>& faults) {
-  LogReader log(path);
+  WholeLogReader log(path);
   LoggedSessions sessions;
   std::int64_t num_bad_poses = 0;
   StreamSubscriber<CloudSlice> subscriber(channels::kCloudSlice, [&](CloudSlice slice) {

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "lcmtypes/channels.hpp"
-#include "lcmtypes/log/log_reader.hpp"
+#include "lcmtypes/log/whole_log_reader.hpp"
 #include "lcmtypes/stream/stream_subscriber.hpp"
 #include "segmenter/core/parameters/presets.hpp"
 #include "segmenter/evaluation/session/session_log.hpp"
@@ -112,7 +112,7 @@ ViewSet views_in_log(const std::filesystem::path& path, std::int64_t map_session
     StreamSubscriber<Message> stream(channel, [&](const Message& message) {
       if (message.session == map_session) record.add(message);
     });
-    LogReader log(path);
+    WholeLogReader log(path);
     while (const auto event = log.next()) {
       if (event->channel == channel) stream.handle(event->channel, event->data);
     }

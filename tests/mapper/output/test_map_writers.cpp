@@ -11,6 +11,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "lcmtypes/channels.hpp"
+#include "lcmtypes/codec/codec.hpp"
+#include "lcmtypes/log/log_writer.hpp"
 #include "mapper/output/cloud_reader.hpp"
 #include "mapper/output/map_writers.hpp"
 #include "tests/support/allocation_limit.hpp"
@@ -193,6 +196,30 @@ TEST(CloudReader, RefusesAHeaderWithoutAnEnd) {
   std::ofstream(path, std::ios::binary) << header;
   EXPECT_THAT([&] { read_cloud(path); },
               ThrowsMessage<std::runtime_error>(HasSubstr("ends with its header")));
+}
+
+TEST(CloudReader, RefusesALogThatIsDamagedOrHasNoSlices) {
+  const kintsugi::testing::TemporaryFolder folder;
+  const auto path = folder.path() / "run.lcm";
+  {
+    LogWriter log = LogWriter::create(path);
+    for (std::int32_t id = 0; id < 2; ++id) {
+      CloudSlice slice;
+      slice.session = 1;
+      slice.id = id;
+      slice.map_name = "map";
+      slice.resolution_m = 0.01F;
+      slice.points_W = {example_point(id)};
+      log.append(1, channels::kCloudSlice, encode_chunk(slice, id, 0, kDefaultMaxChunkBytes));
+    }
+  }
+  EXPECT_EQ(read_cloud(path).size(), 2U);
+  std::filesystem::resize_file(path, std::filesystem::file_size(path) - 1);
+  EXPECT_THAT([&] { read_cloud(path); },
+              ThrowsMessage<std::runtime_error>(HasSubstr("the event lacks its last 1 bytes")));
+  LogWriter::create_anew(path).append(1, channels::kCameraPose, kintsugi::Bytes(9));
+  EXPECT_THAT([&] { read_cloud(path); },
+              ThrowsMessage<std::runtime_error>(HasSubstr("run.lcm: has no slices")));
 }
 
 TEST(CloudWriter, MovesPointsOfPatchesWhenTheFileIsCompleted) {

@@ -12,6 +12,7 @@
 
 #include "lcmtypes/channels.hpp"
 #include "lcmtypes/log/log_format.hpp"
+#include "lcmtypes/log/session_log.hpp"
 #include "mapper/session/log_marks.hpp"
 #include "mapper/session/session_store.hpp"
 #include "mapper/session/stored_stream.hpp"

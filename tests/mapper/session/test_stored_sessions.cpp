@@ -5,6 +5,7 @@
 
 #include <gmock/gmock.h>
 
+#include "lcmtypes/log/session_log.hpp"
 #include "mapper/session/stored_sessions.hpp"
 
 namespace kintsugi::mapper {
