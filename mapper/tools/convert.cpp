@@ -54,9 +54,11 @@ int convert(const Options& options) {
   const auto poses = kintsugi::mapper::recorded_poses(options.source.device);
   writer->finish(poses);
   const auto status = source->status();
-  std::fprintf(stderr, "wrote %s: %d frames, %zu poses, %lld images could not be read\n",
+  std::fprintf(stderr,
+               "wrote %s: %d frames, %zu poses, %lld images could not be read, %lld were dropped\n",
                options.output.c_str(), num_frames, poses.size(),
-               static_cast<long long>(status.counts.frames_bad));
+               static_cast<long long>(status.counts.frames_bad),
+               static_cast<long long>(status.counts.frames_dropped));
   if (status.ended_well) return 0;
   std::fprintf(stderr, "kintsugi-convert: %s\n", status.end_reason.c_str());
   return 1;
@@ -69,6 +71,7 @@ int main(int argc, char** argv) {
   return kintsugi::run_main(argv, [&] {
     Options options;
     options.source.max_range_m = 65.0;  // what the output can hold decides
+    options.source.replay = true;       // to write takes longer than to send
     options.source.stop_requested = kintsugi::stop_requested;
     options.source.notify = [](const SourceNotice& notice) {
       std::fprintf(stderr, "%s\n", notice.text.c_str());

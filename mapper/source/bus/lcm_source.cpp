@@ -1,13 +1,13 @@
 #include "mapper/source/bus/lcm_source.hpp"
 
 #include <chrono>
+#include <cmath>
 #include <condition_variable>
 #include <deque>
 #include <mutex>
 #include <stdexcept>
 #include <utility>
 
-#include "lcmtypes/base/patient_clock.hpp"
 #include "lcmtypes/base/stopwatch.hpp"
 #include "lcmtypes/bus/bus.hpp"
 #include "lcmtypes/bus/bus_thread.hpp"
@@ -84,7 +84,8 @@ LcmSource::LcmSource(const SourceConfig& config) : config_(config) {
 LcmSource::~LcmSource() = default;
 
 std::optional<RgbdFrame> LcmSource::next() {
-  while (const auto message = wait_for_message()) {
+  PatientClock patience;
+  while (const auto message = wait_for_message(patience)) {
     if (auto frame = convert(*message)) return frame;
   }
   return std::nullopt;
@@ -99,21 +100,23 @@ SourceStatus LcmSource::status() const {
   return status;
 }
 
-std::optional<RgbdFrameMessage> LcmSource::wait_for_message() {
-  PatientClock patience;
+/// @param patience since when no frame was good
+std::optional<RgbdFrameMessage> LcmSource::wait_for_message(PatientClock& patience) {
   while (status_.end_reason.empty()) {
-    if (auto message = receiver_->pop(kPoll)) return message;
-    const bool silent =
+    // The sender has ended, or all that comes is refused, as of one that began anew.
+    const bool is_silent =
         session_ != 0 && config_.lcm_silence_s > 0.0 && patience.now_s() > config_.lcm_silence_s;
-    if (config_.stop_requested()) {
+    if (is_silent) {
+      end(true, "no frame that can be used came on " + config_.device + " for " +
+                    std::to_string(std::lround(config_.lcm_silence_s)) + " s");
+    } else if (auto message = receiver_->pop(kPoll)) {
+      return message;
+    } else if (config_.stop_requested()) {
       end(true, "stopped on request");
     } else if (receiver_->thread->failed()) {
       // LCM reads a log like a bus, and its end is the end of the connection.
-      const bool is_log = config_.lcm_url.starts_with("file:");
+      const bool is_log = receiver_->bus.url().starts_with("file:");
       end(is_log, is_log ? "end of the log" : "the connection to the bus failed");
-    } else if (silent) {
-      end(true, "nothing came on " + config_.device + " for " +
-                    std::to_string(config_.lcm_silence_s) + " s");
     }
   }
   return std::nullopt;
@@ -122,9 +125,16 @@ std::optional<RgbdFrameMessage> LcmSource::wait_for_message() {
 /// nullopt for a frame that is refused.
 std::optional<RgbdFrame> LcmSource::convert(const RgbdFrameMessage& message) {
   if (session_ == 0) session_ = message.session;
-  const bool next_in_session = message.session == session_ && message.utime > last_utime_;
   try {
-    if (!next_in_session) throw std::runtime_error("another session, or out of order");
+    if (message.session != session_) {
+      throw std::runtime_error("it is of session " + std::to_string(message.session) +
+                               ", the frames before are of " + std::to_string(session_));
+    }
+    if (message.utime <= last_utime_) {
+      throw std::runtime_error("its time, " + std::to_string(message.utime) +
+                               " us, is not after that of the frame before, " +
+                               std::to_string(last_utime_) + " us");
+    }
     const Stopwatch stopwatch;
     RgbdFrame frame = decoder_->decode(message);
     status_.counts.convert_ms += stopwatch.elapsed_ms();
@@ -132,8 +142,12 @@ std::optional<RgbdFrame> LcmSource::convert(const RgbdFrameMessage& message) {
     ++status_.counts.frames_delivered;
     if (frame.color_rgb.empty()) ++status_.counts.depth_unpaired;
     return frame;
-  } catch (const std::exception&) {
-    ++status_.counts.frames_bad;
+  } catch (const std::exception& error) {
+    if (status_.counts.frames_bad++ == 0) {
+      config_.notify({SourceNotice::Kind::kWarning, "a frame on " + config_.device +
+                                                        " is refused: " + error.what() +
+                                                        "; further ones are only counted, as bad"});
+    }
     return std::nullopt;
   }
 }

@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "lcmtypes/base/patient_clock.hpp"
 #include "lcmtypes/messages.hpp"
 #include "mapper/source/frames/frame_source.hpp"
 #include "mapper/source/frames/source_config.hpp"
@@ -19,7 +20,8 @@ inline constexpr std::string_view kLcmScheme = "lcm://";
 /// Frames from RGBD_FRAME messages on a bus (`lcm://CHANNEL`). The sender is a mapper with
 /// --publish-frames, another driver, or lcm-logplayer.
 ///
-/// Only frames of the session heard first are read; others are counted as bad. With
+/// Only frames of the session heard first are read; others are counted as bad, and when no frame
+/// but these comes for SourceConfig::lcm_silence_s, the source ends. With
 /// SourceConfig::replay frames wait in memory, compressed, until next() is called; otherwise only
 /// the newest waits, and the frames that it replaces are counted as dropped.
 class LcmSource : public FrameSource {
@@ -37,7 +39,7 @@ class LcmSource : public FrameSource {
  private:
   struct Receiver;
 
-  std::optional<RgbdFrameMessage> wait_for_message();
+  std::optional<RgbdFrameMessage> wait_for_message(PatientClock& patience);
   std::optional<RgbdFrame> convert(const RgbdFrameMessage& message);
   void end(bool well, const std::string& reason);
 

@@ -1,8 +1,12 @@
 // Frames over LCM: through the codec and a log file, which LCM reads like a bus.
 
 #include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <map>
+#include <thread>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -13,9 +17,13 @@
 #include "mapper/source/bus/rgbd_frame_encoder.hpp"
 #include "mapper/source/open_source.hpp"
 #include "tests/mapper/openni2_driver/recording_folder.hpp"
+#include "tests/support/private_bus.hpp"
 
 namespace kintsugi::mapper {
 namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
 
 constexpr std::int64_t kSession = 77;
 
@@ -55,15 +63,19 @@ bool same_depth(const cv::Mat_<float>& a, const cv::Mat_<float>& b) {
          });
 }
 
-class FramesInALog : public testing::Test {
+class FramesInALog : public ::testing::Test {
  protected:
   void write(const std::vector<RgbdFrameMessage>& messages) {
     Bus log("file://" + file_.string() + "?mode=w");
     StreamPublisher::Config config;
     config.rate_bytes_per_s = 1e9;
-    StreamPublisher publisher(log, channels::kRgbdFrame, kSession, config);
-    for (const auto& message : messages) publisher.publish(message);
-    publisher.flush();
+    std::map<std::int64_t, StreamPublisher> publishers;  // by session
+    for (const auto& message : messages) {
+      const auto publisher = publishers.try_emplace(message.session, log, channels::kRgbdFrame,
+                                                    message.session, config);
+      publisher.first->second.publish(message);
+      publisher.first->second.flush();
+    }
   }
 
   std::unique_ptr<FrameSource> open() {
@@ -71,11 +83,13 @@ class FramesInALog : public testing::Test {
     config.device = "lcm://RGBD_FRAME";
     config.lcm_url = "file://" + file_.string() + "?speed=0";
     config.replay = true;
+    config.notify = [this](const SourceNotice& notice) { said_.push_back(notice.text); };
     return open_frame_source(config);
   }
 
   test::RecordingFolder folder_;
   std::filesystem::path file_ = folder_.path() / "frames.lcmlog";
+  std::vector<std::string> said_;
 };
 
 TEST_F(FramesInALog, ComeBackAsTheyWere) {
@@ -105,9 +119,50 @@ TEST_F(FramesInALog, AreRefusedOneByOneWhenBad) {
   const auto source = open();
   std::vector<std::int64_t> indices;
   while (const auto frame = source->next()) indices.push_back(frame->frame_index);
-  EXPECT_THAT(indices, testing::ElementsAre(1, 4, 5));
+  EXPECT_THAT(indices, ElementsAre(1, 4, 5));
   EXPECT_EQ(source->status().counts.frames_bad, 2);
   EXPECT_EQ(source->status().counts.depth_unpaired, 1);
+  ASSERT_EQ(said_.size(), 1U) << "the first";
+  EXPECT_THAT(said_[0], HasSubstr("a frame on lcm://RGBD_FRAME is refused: "));
+}
+
+TEST_F(FramesInALog, OfAnotherSessionAreRefusedWithTheReason) {
+  std::vector<RgbdFrameMessage> messages = encoded_frames(3, 90);
+  messages[1].session = kSession + 1;
+  write(messages);
+  const auto source = open();
+  while (source->next()) {
+  }
+  EXPECT_EQ(source->status().counts.frames_bad, 1);
+  EXPECT_THAT(said_, ElementsAre(HasSubstr("it is of session 78, the frames before are of 77")));
+}
+
+/// Its frames are refused, so that the source would wait for ever.
+TEST(LcmSource, EndsWhenItsSenderHasBegunAnew) {
+  if (const auto why_not = kintsugi::testing::enter_private_bus()) GTEST_SKIP() << *why_not;
+  SourceConfig config;
+  config.device = "lcm://RGBD_FRAME";
+  config.lcm_url = kintsugi::testing::kPrivateBusUrl;
+  config.replay = true;
+  config.lcm_silence_s = 0.5;
+  const auto source = open_frame_source(config);
+  std::atomic<bool> has_ended = false;
+  std::thread sender([&] {
+    Bus bus(kintsugi::testing::kPrivateBusUrl);
+    for (std::int64_t session = kSession; !has_ended; ++session) {
+      StreamPublisher publisher(bus, channels::kRgbdFrame, session, {});
+      publisher.publish(encode_rgbd_frame(test_frame(0), session, 0));
+      publisher.flush();
+      std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    }
+  });
+  EXPECT_TRUE(source->next());
+  EXPECT_FALSE(source->next());
+  has_ended = true;
+  sender.join();
+  EXPECT_THAT(source->status().end_reason,
+              HasSubstr("no frame that can be used came on lcm://RGBD_FRAME"));
+  EXPECT_GT(source->status().counts.frames_bad, 0);
 }
 
 TEST(LcmSource, WantsAChannel) {
