@@ -10,8 +10,9 @@ constexpr std::int64_t kSecond_us = 1'000'000;
 constexpr std::int64_t kMaxMedianStep = 10;
 
 bool all_whole(const std::vector<TimedImage>& images) {
-  return std::ranges::all_of(images,
-                             [](const TimedImage& image) { return image.utime % kSecond_us == 0; });
+  return std::ranges::all_of(images, [](const TimedImage& image) {
+    return !image.has_point && image.utime % kSecond_us == 0;
+  });
 }
 
 /// @param images at least 2, at whole seconds

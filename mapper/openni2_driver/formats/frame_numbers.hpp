@@ -12,8 +12,9 @@ namespace kintsugi::mapper {
 /// the TUM layout was made.
 inline constexpr int kNumberedFrames_Hz = 30;
 
-/// Whether the times of all images, depth and colour, are frame numbers: whole numbers, in steps
-/// that are small (the median step of the depth images is at most 10).
+/// Whether the times of all images, depth and colour, are frame numbers: whole numbers, written
+/// without a decimal point, in steps that are small (the median step of the depth images is at most
+/// 10).
 ///
 /// Such a list cannot be one of seconds. Whole seconds in ascending order mean at most one image a
 /// second, each exactly on a second: a hand-held camera at that rate cannot be followed, and no

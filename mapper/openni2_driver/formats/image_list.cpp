@@ -29,7 +29,9 @@ class ListReader {
     const std::string& time = line.words[first_word];
     const auto utime = parse_seconds(time);
     if (!utime) fail(line, "'" + time + "' is not a time in decimal seconds");
-    return {.utime = *utime, .file = file_.parent_path() / line.words[first_word + 1]};
+    return {.utime = *utime,
+            .has_point = time.find('.') != std::string::npos,
+            .file = file_.parent_path() / line.words[first_word + 1]};
   }
 
   void append(const TextLine& line, std::vector<TimedImage>& images, TimedImage image) const {

@@ -8,6 +8,7 @@ namespace kintsugi::mapper {
 
 struct TimedImage {
   std::int64_t utime = 0;      ///< microseconds
+  bool has_point = false;      ///< the time is written with a decimal point
   std::filesystem::path file;  ///< path with the folder
 };
 

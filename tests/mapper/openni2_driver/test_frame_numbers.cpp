@@ -10,7 +10,7 @@ namespace {
 std::vector<TimedImage> images_at(const std::vector<double>& times_s) {
   std::vector<TimedImage> images;
   for (const double time_s : times_s)
-    images.push_back({.utime = std::llround(1e6 * time_s), .file = {}});
+    images.push_back({.utime = std::llround(1e6 * time_s), .has_point = false, .file = {}});
   return images;
 }
 
@@ -30,6 +30,14 @@ TEST(FrameNumbers, AreNotSeconds) {
   EXPECT_FALSE(numbered({1, 2, 3.5}));
   EXPECT_FALSE(numbered({1, 2, 3}, {1.01, 2.01, 3.01})) << "colour has times";
   EXPECT_FALSE(numbered({5})) << "a single image tells nothing";
+}
+
+/// 1 Hz, as kintsugi-convert writes it.
+TEST(FrameNumbers, AreWrittenWithoutADecimalPoint) {
+  ImageLists lists{.depth = images_at({1, 2, 3}), .color = images_at({1, 2, 3})};
+  EXPECT_TRUE(has_frame_numbers(lists));
+  for (TimedImage& image : lists.depth) image.has_point = true;
+  EXPECT_FALSE(has_frame_numbers(lists));
 }
 
 TEST(FrameNumbers, AreNotMilliseconds) { EXPECT_FALSE(numbered({0, 33, 67, 100, 133})); }
