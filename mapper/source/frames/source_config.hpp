@@ -23,8 +23,8 @@ struct SourceConfig {
   /// Empty: the first camera. Otherwise the path of a .oni file, `folder://PATH`,
   /// `synthetic://NAME?key=value`, `lcm://CHANNEL`, or the URI of a camera as OpenNI2 lists it.
   std::string device;
-  /// Intrinsics and distortion (camera.txt); empty: what the device knows about itself, or a
-  /// camera.txt beside the recording.
+  /// Intrinsics and distortion (camera.txt, of which depth_scale is not used); empty: what the
+  /// device knows about itself, or a camera.txt beside an .oni file.
   std::string calibration_file;
   double max_range_m = 6.5;  ///< depth beyond it is invalid, metres, > 0
 

@@ -83,7 +83,8 @@ std::unique_ptr<OpenNi2Device> open_device(const SourceConfig& config, std::stri
 
 Intrinsics find_intrinsics(const SourceConfig& config, const OpenNi2Device& device) {
   fs::path file = config.calibration_file;
-  if (file.empty() && names_a_file(config.device) && !fs::is_directory(config.device)) {
+  // Every other recording tells its own.
+  if (file.empty() && names_a_file(config.device) && is_oni_file(config.device)) {
     file = fs::absolute(config.device).parent_path() / "camera.txt";
     if (!fs::exists(file)) file.clear();
   }

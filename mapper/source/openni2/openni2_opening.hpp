@@ -20,7 +20,7 @@ std::string driver_address(const std::string& device);
 /// @throws std::runtime_error naming the device or file and what is wrong with it
 std::unique_ptr<OpenNi2Device> open_device(const SourceConfig& config, std::string& damage);
 
-/// The intrinsics from `config.calibration_file`, a camera.txt beside a file, or the device,
+/// The intrinsics from `config.calibration_file`, a camera.txt beside an .oni file, or the device,
 /// in this order.
 /// @throws std::runtime_error when the file cannot be read or is for images of another size, or the
 ///   device does not provide them

@@ -1,5 +1,6 @@
 #include "mapper/source/openni2/openni2_source.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <stdexcept>
@@ -14,6 +15,8 @@ namespace {
 constexpr auto kPoll = std::chrono::milliseconds(100);
 // A disk on the network, or a machine that is busy with other things, may take long for an image.
 constexpr double kMaxSilenceOfRecording_s = 60.0;
+// A second of a camera: longer than one takes to start.
+constexpr std::int64_t kImagesWithoutDepth = 30;
 
 std::int64_t depth_period_us(const OpenNi2Device& device) {
   return 1'000'000 / device.depth_rate_hz();
@@ -22,6 +25,12 @@ std::int64_t depth_period_us(const OpenNi2Device& device) {
 std::string in_seconds(double seconds) {
   std::array<char, 32> text{};
   std::snprintf(text.data(), text.size(), "%.1f s", seconds);
+  return text.data();
+}
+
+std::string in_metres(double metres) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.3g m", metres);
   return text.data();
 }
 
@@ -56,9 +65,13 @@ std::optional<RgbdFrame> OpenNi2Source::next() {
       const Stopwatch stopwatch;
       RgbdFrame frame = converter_->convert(*raw);
       status_.counts.convert_ms += stopwatch.elapsed_ms();
+      look_for_depth(frame);
       return frame;
     }
-    if (!status_.end_reason.empty()) return std::nullopt;
+    if (!status_.end_reason.empty()) {
+      warn_of_no_depth();
+      return std::nullopt;
+    }
     if (config_.stop_requested()) {
       end(true, "stopped on request");
     } else if (device_) {
@@ -67,6 +80,25 @@ std::optional<RgbdFrame> OpenNi2Source::next() {
       wait_for_camera();
     }
   }
+}
+
+void OpenNi2Source::look_for_depth(const RgbdFrame& frame) {
+  if (!looks_for_depth_) return;
+  if (std::ranges::any_of(frame.depth_m, [](float z_m) { return z_m > 0.0F; })) {
+    looks_for_depth_ = false;
+  } else if (status_.counts.frames_delivered == kImagesWithoutDepth) {
+    warn_of_no_depth();
+  }
+}
+
+/// Once, unless there was some.
+void OpenNi2Source::warn_of_no_depth() {
+  if (!looks_for_depth_ || status_.counts.frames_delivered == 0) return;
+  looks_for_depth_ = false;
+  config_.notify({SourceNotice::Kind::kWarning,
+                  "the first " + std::to_string(status_.counts.frames_delivered) +
+                      " depth images have no depth within 0 to " + in_metres(config_.max_range_m) +
+                      " (--max-range): is the camera covered, or depth_scale wrong?"});
 }
 
 SourceStatus OpenNi2Source::status() const {
@@ -101,7 +133,8 @@ void OpenNi2Source::count_unread() {
 }
 
 void OpenNi2Source::add(DeviceImage image) {
-  lock_exposure_when_due(image.utime);
+  // Exposure is the colour camera's, whose clock may be another one than that of depth.
+  if (!image.is_depth || !device_->has_color()) lock_exposure_when_due(image.utime);
   const auto stream = image.is_depth ? DeviceClock::Stream::kDepth : DeviceClock::Stream::kColor;
   const std::int64_t utime = clock_.time_of(stream, image.utime, Clock::now());
   if (!image.is_depth) {

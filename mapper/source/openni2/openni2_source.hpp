@@ -37,6 +37,8 @@ class OpenNi2Source : public FrameSource {
   void tell_how_it_is_read(bool y_points_up);
   void read_image();
   void count_unread();
+  void look_for_depth(const RgbdFrame& frame);
+  void warn_of_no_depth();
   void add(DeviceImage image);
   void compare_clocks(std::int64_t depth_utime);
   std::int64_t continuous_index(std::int64_t index);
@@ -60,6 +62,7 @@ class OpenNi2Source : public FrameSource {
   std::optional<std::int64_t> frame_index_;     ///< the same, continued over interruptions
   std::optional<std::int64_t> first_stamp_us_;  ///< since it was opened
   bool exposure_locked_ = false;
+  bool looks_for_depth_ = true;  ///< no image had any so far, and that was not said
   PatientClock patience_;
   double last_depth_s_;       ///< of patience_
   std::string last_refusal_;  ///< why the last bad image was refused

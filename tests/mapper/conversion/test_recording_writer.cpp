@@ -15,6 +15,7 @@
 #include "mapper/conversion/recording_writer.hpp"
 #include "mapper/openni2_driver/formats/read_recording.hpp"
 #include "mapper/openni2_driver/recording/file_recording.hpp"
+#include "mapper/source/open_source.hpp"
 #include "tests/mapper/openni2_driver/recording_folder.hpp"
 #include "tests/support/file_size_limit.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -100,6 +101,16 @@ TEST_F(RecordingWriterTest, AKlgFileComesBackToTheBitWithItsCameraBeside) {
   const FileRecording recording(read_recording(path, {}));
   EXPECT_EQ(recording.intrinsics().fy, 51.5) << "of walk.klg.camera.txt, and not the default";
   EXPECT_EQ(recording.remark(), "");
+}
+
+/// That is for .oni files, which do not tell their camera.
+TEST_F(RecordingWriterTest, AKlgFileBesideACameraTxtHasItsOwnCamera) {
+  SourceConfig config;
+  config.device = write("walk.klg", kLossless).string();
+  test::write_text(folder_ / "camera.txt", "60 61 30 20 64 48 1000 0.1 0 0 0 0\n");
+  const auto frame = open_frame_source(config)->next();
+  ASSERT_TRUE(frame);
+  EXPECT_EQ(frame->intrinsics.fx, 50.25);
 }
 
 TEST_F(RecordingWriterTest, JpegIsSmallerAndLosesLittle) {

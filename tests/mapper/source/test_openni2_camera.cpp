@@ -1,6 +1,7 @@
 // Cameras as the driver imitates them, through the system's own OpenNI2.
 
 #include <cmath>
+#include <set>
 #include <thread>
 
 #include <gmock/gmock.h>
@@ -291,6 +292,16 @@ TEST_F(Camera, HasItsExposureLockedAfterAWhile) {
   for (std::size_t i = 1; i < 14; ++i) changes += green(i) == green(i - 1) ? 0 : 1;
   EXPECT_GT(changes, 6) << "adapting";
   for (std::size_t i = 19; i < kManyFrames; ++i) EXPECT_EQ(green(i), green(18)) << i;
+}
+
+TEST_F(Camera, WhoseColorHasAnotherClockHasItsExposureLockedAfterAWhile) {
+  config_.lock_exposure_after_s = 0.5;
+  const auto frames = read_as("?exposure=on&color_clock_ms=100000");
+  std::set<std::uint8_t> greens;  // of the first half a second
+  for (std::size_t i = 0; i < 14; ++i) {
+    if (!frames.at(i).color_rgb.empty()) greens.insert(frames[i].color_rgb(20, 30)[1]);
+  }
+  EXPECT_GT(greens.size(), 4U) << "adapting";
 }
 
 TEST_F(Camera, WithoutSettingsSaysThatItsExposureIsNotLocked) {

@@ -136,6 +136,16 @@ TEST(OpenNi2Source, PassesOverImagesThatCannotBeRead) {
   EXPECT_THAT(heard.notices[1].text, HasSubstr("3 images of the recording were passed over"));
 }
 
+TEST(OpenNi2Source, WarnsWhenNoImageHasDepthWithinRange) {
+  const RecordingFolder folder("50 51 31.5 23.5 64 48 10\n");  // raw depth would be 100 m and more
+  const Heard heard(config_of(folder.uri()));
+  EXPECT_EQ(heard.frames.size(), kNumFrames);
+  ASSERT_EQ(heard.notices.size(), 1U);
+  EXPECT_EQ(heard.notices[0].kind, SourceNotice::Kind::kWarning);
+  EXPECT_THAT(heard.notices[0].text, HasSubstr("the first " + std::to_string(kNumFrames) +
+                                               " depth images have no depth within 0 to 6.5 m"));
+}
+
 TEST(OpenNi2Source, FailsWhenNoImageCanBeRead) {
   const RecordingFolder folder;
   fs::remove_all(folder.path() / "depth");
