@@ -25,6 +25,9 @@ class FrameLog {
   void append(const RgbdFrame& frame, int part, const TrackingResult& tracking, bool is_fused,
               std::size_t num_slices, const FrameTimings& timings);
 
+  /// Lines are missing at the end of the file.
+  [[nodiscard]] bool failed() const { return !out_; }
+
  private:
   std::filesystem::path path_;
   std::ofstream out_;

@@ -58,18 +58,6 @@ MapperPipeline::Config pipeline_config(const Options& options, MapFiles& map_fil
   return config;
 }
 
-/// One file for each part; that of part 0 also where it is empty.
-void write_path_files(const std::string& name, std::map<int, Trajectory> paths) {
-  if (name.empty()) return;
-  paths.try_emplace(0);
-  for (const auto& [part, path] : paths) {
-    AtomicFile file(part_file(name, part));
-    write_tum(file.stream(), path);
-    file.commit();
-    spdlog::info("camera path of {} poses in {}", path.size(), part_file(name, part).string());
-  }
-}
-
 }  // namespace
 
 MapperProcess::MapperProcess(const Options& options, SessionStore& store, Resumption& resumption)
@@ -225,9 +213,27 @@ void MapperProcess::commit_map_files() {
   map_files_.commit([&](int patch) { return pipeline_.place_of_patch(patch); });
 }
 
-void MapperProcess::write_paths() const {
+void MapperProcess::write_paths() {
   write_path_files(options_.output_path_file, pipeline_.corrected_paths());
   write_path_files(options_.online_path_file, online_paths_);
+}
+
+/// One file for each part; that of part 0 also where it is empty. What cannot be written loses
+/// nothing else.
+void MapperProcess::write_path_files(const std::string& name, std::map<int, Trajectory> paths) {
+  if (name.empty()) return;
+  paths.try_emplace(0);
+  for (const auto& [part, path] : paths) {
+    try {
+      AtomicFile file(part_file(name, part));
+      write_tum(file.stream(), path);
+      file.commit();
+      spdlog::info("camera path of {} poses in {}", path.size(), part_file(name, part).string());
+    } catch (const std::exception& error) {
+      spdlog::error("{}", error.what());
+      path_files_failed_ = true;
+    }
+  }
 }
 
 void MapperProcess::publish_status() {
@@ -377,9 +383,8 @@ void MapperProcess::throw_failures() const {
     throw std::runtime_error("the device ended early; the frames before that are mapped: " +
                              source.end_reason);
   }
-  if (map_files_.failed()) {
-    throw std::runtime_error(
-        "a file of the map could not be written, see above; everything else is complete");
+  if (map_files_.failed() || path_files_failed_ || (frame_log_ && frame_log_->failed())) {
+    throw std::runtime_error("a file could not be written, see above; everything else is complete");
   }
 }
 

@@ -48,7 +48,8 @@ class MapperProcess {
   void measure(const TimedFrame& read, FrameTimings& timings);
   void publish_rest();
   void commit_map_files();
-  void write_paths() const;
+  void write_paths();
+  void write_path_files(const std::string& name, std::map<int, Trajectory> paths);
   void publish_status();
   void publish_status_when_due();
   void log_start() const;
@@ -88,6 +89,7 @@ class MapperProcess {
   Stopwatch status_clock_;
   bool said_interrupted_ = false;  ///< the last status reported a disconnected camera
   bool finished_ = false;          ///< every slice is published
+  bool path_files_failed_ = false;
   bool lingering_ = false;
   std::int64_t last_utime_ = -1;  ///< of the last mapped frame
   std::int64_t frames_resumed_ =

@@ -1,11 +1,14 @@
 #include "mapper/process/options.hpp"
 
 #include <algorithm>
+#include <array>
 #include <iostream>
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <type_traits>
+#include <utility>
 
 #include <CLI/CLI.hpp>
 
@@ -76,10 +79,37 @@ void validate_join(const Options& options) {
   }
 }
 
+/// Members whose bounds are checked where they are used, and their flags.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 9> kFlagsOfFields = {{
+    {"device_silence_s", "--device-silence"},
+    {"max_kept_mb", "--kept-memory"},
+    {"max_memory_mb", "--volume-memory"},
+    {"max_range_m", "--max-range"},
+    {"reconnect_s", "--reconnect"},
+    {"resolution_m", "--resolution"},
+    {"shift_vox", "--shift"},
+    {"volume_size_m", "--volume-size"},
+    {"weight_threshold", "--min-weight"},
+}};
+
+/// @throws std::invalid_argument naming the flag, its value and its bound
+void validate_members(const Options& options) {
+  try {
+    options.pipeline.validate();  // first: the range of the source may follow from it
+    options.source.validate();
+  } catch (const std::invalid_argument& error) {
+    const std::string_view text = error.what();
+    for (const auto& [field, flag] : kFlagsOfFields) {
+      if (!text.starts_with(std::string(field) + " is ")) continue;
+      throw std::invalid_argument(std::string(flag).append(text.substr(field.size())));
+    }
+    throw;
+  }
+}
+
 /// @throws std::invalid_argument naming the flag or field, its value and its bound
 void validate(const Options& options) {
-  options.source.validate();
-  options.pipeline.validate();
+  validate_members(options);
   Options copy = options;  // the table points to members that can be written
   for (const OptionGroup& group : option_table(copy)) {
     for (const MapperOption& option : group.options) option.check_bounds();
@@ -94,8 +124,11 @@ void validate(const Options& options) {
     throw std::invalid_argument(
         "--store-limit cannot be kept with --store-frames, which needs every frame");
   }
-  if (options.durable && options.store_file.empty() && options.resume_file.empty()) {
-    throw std::invalid_argument("--durable needs --store FILE or --resume FILE");
+  for (const auto& [is_given, flag] : {std::pair(options.durable, "--durable"),
+                                       std::pair(options.store_frames, "--store-frames")}) {
+    if (is_given && options.store_file.empty() && options.resume_file.empty()) {
+      throw std::invalid_argument(std::string(flag) + " needs --store FILE or --resume FILE");
+    }
   }
   check_output_files(options);
   if (options.map_name.empty() || options.map_name.size() > kMaxStringBytes) {

@@ -14,7 +14,10 @@ static_assert(1 << BlockLayout::kVoxelBits == kBlockVoxels);
 static_assert(BlockLayout::kDistanceScale == kDistanceScale);
 
 constexpr int kMinSideBlocks = 4;
-constexpr int kMaxSideBlocks = 256;     // the table of blocks reserves 64 MB
+constexpr int kMaxSideBlocks = 256;  // the table of blocks reserves 64 MB
+constexpr int kMaxRadiusBlocks = (kMaxSideBlocks - 1) / 2;
+constexpr double kShortestRange_m = 0.01;
+constexpr double kLongestRange_m = 100.0;
 constexpr double kMaxPosition_m = 1e5;  // voxel coordinates stay well inside an int
 
 int blocks_along(double length_m, const TsdfVolume::Config& config) {
@@ -28,6 +31,13 @@ double ball_radius_m(const TsdfVolume::Config& config) {
   return config.max_range_m + (config.truncation_vox + slack_vox) * config.resolution_m;
 }
 
+/// With which the ball still has a range of kShortestRange_m.
+int largest_shift_vox(const TsdfVolume::Config& config) {
+  const double range_vox = kShortestRange_m / config.resolution_m;
+  const double slack_vox = kMaxRadiusBlocks * kBlockSide - range_vox - config.truncation_vox;
+  return static_cast<int>(slack_vox / std::sqrt(3.0) - 0.5 * kBlockSide);
+}
+
 /// Of the cube around the region.
 int side_blocks_of(const TsdfVolume::Config& config) {
   return config.region == RegionShape::kCube ? blocks_along(config.volume_size_m, config)
@@ -37,9 +47,8 @@ int side_blocks_of(const TsdfVolume::Config& config) {
 }  // namespace
 
 void TsdfVolume::Config::validate() const {
-  check_range("max_range_m", max_range_m, 0.01, 100.0);
-  check_range("volume_size_m", volume_size_m, 0.01, 100.0);
   check_range("resolution_m", resolution_m, 0.0005, 1.0);
+  check_range("volume_size_m", volume_size_m, kShortestRange_m, kLongestRange_m);
   check_range("truncation_vox", truncation_vox, 2.0, 16.0);
   check_range("max_truncation_vox", max_truncation_vox, truncation_vox, 64.0);
   check_range("max_weight", max_weight, 1, 65535);
@@ -49,14 +58,15 @@ void TsdfVolume::Config::validate() const {
                 side_blocks_of(*this), kMinSideBlocks, kMaxSideBlocks);
     // The cube moves by whole blocks; at the upper bound the camera is still inside it.
     check_range("shift_vox", shift_vox, kBlockSide, side_blocks_of(*this) * kBlockSide / 2 - 1);
+    check_range("max_range_m", max_range_m, kShortestRange_m, kLongestRange_m);
   } else {
-    check_range("shift_vox", shift_vox, kBlockSide, kMaxSideBlocks * kBlockSide / 2);
-    check_range("max_range_m", max_range_m, 0.01, longest_range_m(*this));
+    check_range("shift_vox", shift_vox, kBlockSide, largest_shift_vox(*this));
+    check_range("max_range_m", max_range_m, kShortestRange_m,
+                std::min(kLongestRange_m, longest_range_m(*this)));
   }
 }
 
 double TsdfVolume::longest_range_m(const Config& config) {
-  constexpr int kMaxRadiusBlocks = (kMaxSideBlocks - 1) / 2;
   Config without_range = config;
   without_range.max_range_m = 0.0;
   return kMaxRadiusBlocks * kBlockSide * config.resolution_m - ball_radius_m(without_range);

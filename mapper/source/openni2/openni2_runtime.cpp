@@ -31,6 +31,10 @@ std::string openni2_error() {
   // What a driver says comes first, and OpenNI2 adds that the device could not be opened.
   const std::size_t added = text.find(" DeviceOpen: ");
   if (added != std::string::npos) text.erase(added);
+  // No driver knows the name.
+  if (text.starts_with("DeviceOpen: ")) {
+    return "there is no file or folder of this name, and no such camera (--list-devices)";
+  }
   return text.empty() ? "OpenNI2 gives no reason" : text;
 }
 

@@ -58,7 +58,7 @@ TEST(Mapper, PrintsItsConfiguration) {
 TEST(Mapper, RefusesBadFlagsWithAMessage) {
   for (const auto& [flags, message] :
        {std::pair{"--no-such-flag", "--no-such-flag"}, std::pair{"--volume-size big", "big"},
-        std::pair{"--volume-size -4", "volume_size_m"}, std::pair{"--max-frames -1", "is -1"},
+        std::pair{"--volume-size -4", "--volume-size is -4"}, std::pair{"--max-frames -1", "is -1"},
         std::pair{"--trajectory /no/such/file", "/no/such/file: No such file"},
         std::pair{"--config /no/such/file", "/no/such/file"}}) {
     const Outcome outcome = run_mapper(flags);

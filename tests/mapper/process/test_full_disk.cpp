@@ -9,6 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "lcmtypes/trajectory.hpp"
 #include "tests/mapper/process/mapper_program.hpp"
 #include "tests/mapper/process/stored_run.hpp"
 #include "tests/support/private_bus.hpp"
@@ -102,6 +103,20 @@ TEST_F(FullDisk, InTheEndLeavesAWholeLogThatCanBeResumed) {
   EXPECT_GT(after.slice_chunks.size(), before.slice_chunks.size());
   EXPECT_EQ(after.pose_utimes.size(), static_cast<std::size_t>(kNumFrames));
   EXPECT_TRUE(after.has_final_slice);
+}
+
+TEST_F(FullDisk, LosesNoFileThatIsElsewhere) {
+  std::ofstream(folder_ / "disk" / "filling") << std::string(60'000, 'x');
+  Flags with_files = flags(folder_ / "run.lcm");
+  with_files.insert(with_files.end(),
+                    {"--timings", folder_ / "disk" / "timings.csv", "--output-trajectory",
+                     folder_ / "disk" / "path.txt", "--online-trajectory", folder_ / "online.txt"});
+  EXPECT_EQ(MapperProgram(with_files, folder_ / "said.txt").wait(), 1);
+  EXPECT_THAT(said(), HasSubstr("timings.csv: No space left on device"));
+  EXPECT_THAT(said(), HasSubstr("a file could not be written, see above"));
+  EXPECT_THAT(said(), HasSubstr(std::to_string(kNumFrames) + " frames in ")) << "the summary";
+  std::ifstream in(folder_ / "online.txt");
+  EXPECT_EQ(read_tum(in, "online.txt").size(), static_cast<std::size_t>(kNumFrames));
 }
 
 TEST_F(FullDisk, BeforeTheFirstEventIsAnErrorAndLeavesNoFile) {

@@ -138,7 +138,7 @@ TEST(Options, TheVolumeReachesAsFarAsDepthIsUsed) {
   EXPECT_DOUBLE_EQ(options.pipeline.volume.max_range_m, 4.0);
   EXPECT_DOUBLE_EQ(options.pipeline.integrator.max_depth_m, 4.0);
   EXPECT_GE(options.pipeline.raycaster.max_depth_m, 4.0);
-  EXPECT_THAT(error_of({"--max-range", "9"}), HasSubstr("max_range_m is 9"));
+  EXPECT_THAT(error_of({"--max-range", "9"}), HasSubstr("--max-range is 9, must be "));
 }
 
 TEST(Options, TheRangeEndsWhereDepthIsTooNoisyOrTheVolumeEnds) {
@@ -155,8 +155,19 @@ TEST(Options, TheRangeEndsWhereDepthIsTooNoisyOrTheVolumeEnds) {
 
 TEST(Options, NamesWhatIsWrong) {
   EXPECT_THAT(error_of({"--max-frames", "-1"}), HasSubstr("--max-frames is -1"));
-  EXPECT_THAT(error_of({"--volume-size", "-4"}), HasSubstr("volume_size_m"));
-  EXPECT_THAT(error_of({"--volume-size", "nan"}), HasSubstr("volume_size_m"));
+  EXPECT_THAT(error_of({"--volume-size", "-4"}), HasSubstr("--volume-size is -4"));
+  EXPECT_THAT(error_of({"--volume-size", "nan"}), HasSubstr("--volume-size is nan"));
+  EXPECT_THAT(error_of({"--volume-memory", "0"}), HasSubstr("--volume-memory is 0, must be"));
+  EXPECT_THAT(error_of({"--kept-memory", "-1"}), HasSubstr("--kept-memory is -1, must be"));
+  EXPECT_THAT(error_of({"--min-weight", "-1"}), HasSubstr("--min-weight is -1, must be"));
+  EXPECT_THAT(error_of({"--device-silence", "0"}), HasSubstr("--device-silence is 0, must be"));
+  EXPECT_THAT(error_of({"--lock-exposure", "-2"}), HasSubstr("--lock-exposure is -2, must be"));
+  // What follows from them is not named instead.
+  for (const char* shift : {"1000", "2000000000"}) {
+    EXPECT_THAT(error_of({"--shift", shift}), HasSubstr(std::string("--shift is ") + shift));
+  }
+  EXPECT_THAT(error_of({"--resolution", "1e-9"}), HasSubstr("--resolution is 1e-09, must be"));
+  EXPECT_THAT(error_of({"--store-frames"}), HasSubstr("--store-frames needs --store FILE"));
   EXPECT_THAT(error_of({"--map-name", ""}), HasSubstr("--map-name has 0 bytes"));
   EXPECT_THAT(error_of({"--join", "map"}), HasSubstr("it names the map of another mapper"));
   EXPECT_THAT(error_of({"--join", "other", "--slices", "shift"}),
