@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "lcmtypes/base/file_sync.hpp"
+#include "segmenter/objects/library/object_files.hpp"
 
 namespace kintsugi::segmenter {
 
@@ -19,6 +20,12 @@ LibraryLock::LibraryLock(const std::filesystem::path& library) {
                             "cannot open the folder '" + library.string() + "'");
   }
   while (flock(descriptor_, LOCK_EX) != 0 && errno == EINTR) {
+  }
+  try {
+    bring_back_objects(library);
+  } catch (...) {
+    close(descriptor_);
+    throw;
   }
 }
 

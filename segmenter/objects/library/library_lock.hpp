@@ -8,8 +8,9 @@ namespace kintsugi::segmenter {
 /// time does. Who only reads needs none. Where the file system has no locks, it locks nothing.
 class LibraryLock {
  public:
-  /// Waits for its turn. Makes the folder when it is absent.
-  /// @throws std::system_error naming a folder that cannot be made or opened
+  /// Waits for its turn. Makes the folder when it is absent, and mends what a program has left that
+  /// was killed (bring_back_objects()).
+  /// @throws std::system_error naming a folder that cannot be made, opened or mended
   explicit LibraryLock(const std::filesystem::path& library);
   ~LibraryLock();
   LibraryLock(const LibraryLock&) = delete;

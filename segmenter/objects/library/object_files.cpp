@@ -29,6 +29,10 @@ constexpr std::uintmax_t kMaxJsonBytes = std::uintmax_t{2} << 20U;
 constexpr std::uintmax_t kPointBytes = 31;
 constexpr std::uintmax_t kMaxHeaderBytes = 4096;
 
+// Around the name of an object that is being replaced.
+constexpr const char* kOlderBegin = ".";
+constexpr const char* kOlderEnd = ".old";
+
 std::string read_bounded(const fs::path& path, std::uintmax_t max_bytes) {
   std::error_code error;
   const std::uintmax_t size = fs::file_size(path, error);
@@ -89,10 +93,10 @@ void exchange(const fs::path& beside, const fs::path& path) {
   if (errno == ENOENT) return rename_folder(beside, path);  // there was nothing
   if (errno != EINVAL && errno != ENOSYS) fail("replace", path, errno);
   if (!fs::exists(fs::symlink_status(path))) return rename_folder(beside, path);
-  // A file system that cannot exchange two names. When this is interrupted, the older object is
-  // still beside, under a name that nobody reads.
-  fs::path older = path;
-  older.replace_filename("." + path.filename().string() + ".old");
+  // A file system that cannot exchange two names. When this is interrupted, bring_back_objects()
+  // finds the older object.
+  const fs::path older =
+      path.parent_path() / (std::string(kOlderBegin) + path.filename().string() + kOlderEnd);
   fs::remove_all(older);
   rename_folder(path, older);
   rename_folder(beside, path);
@@ -173,6 +177,23 @@ void write_object(const KnownObject& object, const fs::path& library) {
   sync_folder(beside.path());
   exchange(beside.path(), library / object.model.name);
   sync_folder(library);
+}
+
+void bring_back_objects(const fs::path& library) {
+  std::vector<fs::path> olders;
+  for (const auto& entry : fs::directory_iterator(library)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with(kOlderBegin) && name.ends_with(kOlderEnd)) olders.push_back(entry.path());
+  }
+  for (const fs::path& older : olders) {
+    const fs::path path = library / older.stem().string().substr(std::string(kOlderBegin).size());
+    if (reason_to_refuse_name(path.filename().string())) continue;  // not one of ours
+    if (fs::exists(fs::symlink_status(path))) {
+      fs::remove_all(older);
+    } else {
+      rename_folder(older, path);
+    }
+  }
 }
 
 void remove_object(const std::string& name, const fs::path& library) {

@@ -30,6 +30,11 @@ KnownObject parse_object(std::string_view json, std::string_view model,
 ///   older one is still there
 void write_object(const KnownObject& object, const std::filesystem::path& library);
 
+/// Where the file system cannot exchange two names: puts objects back of which the replacement was
+/// interrupted. Nobody may write meanwhile.
+/// @throws std::system_error naming what cannot be read, renamed or removed
+void bring_back_objects(const std::filesystem::path& library);
+
 /// Removes an object, whole or damaged.
 /// @throws std::runtime_error naming the folder when there is none of that name, or it cannot be
 ///   removed

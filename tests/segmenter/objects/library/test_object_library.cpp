@@ -334,6 +334,23 @@ TEST_F(Library, IsWholeForThoseWhoReadWhileItIsWritten) {
   EXPECT_EQ(read().objects().size(), 3U);
 }
 
+/// Of a program that was killed where two names cannot be exchanged.
+TEST(LibraryLock, BringsBackWhatWasBeingReplaced) {
+  const kintsugi::testing::TemporaryFolder folder;
+  const std::filesystem::path library = folder / "objects";
+  write_object(example_object("mug"), library);
+  write_object(example_object("globe"), library);
+  std::filesystem::rename(library / "mug", library / ".mug.old");
+  std::filesystem::create_directory(library / ".globe.old");   // the new one is there
+  std::filesystem::create_directory(library / ".GLOBE .old");  // no object's name
+  EXPECT_EQ(ObjectLibrary::read(library).objects().size(), 1U);
+  const LibraryLock lock(library);
+  EXPECT_EQ(ObjectLibrary::read(library).objects().size(), 2U);
+  EXPECT_FALSE(std::filesystem::exists(library / ".mug.old"));
+  EXPECT_FALSE(std::filesystem::exists(library / ".globe.old"));
+  EXPECT_TRUE(std::filesystem::exists(library / ".GLOBE .old"));
+}
+
 TEST(LibraryLock, LetsOneProgramChangeTheLibraryAtATime) {
   const kintsugi::testing::TemporaryFolder folder;
   // A sum in two steps, unprotected but for the lock. That it is one is not seen by the thread
