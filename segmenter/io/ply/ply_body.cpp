@@ -119,6 +119,11 @@ class AsciiBody final : public PlyBody {
     }
     const std::optional<double> value = parse_number(word);
     if (!value) fail(element, row, "property '" + property.name + "' is not a number");
+    if (!holds(type, *value)) {
+      fail(element, row,
+           "property '" + property.name + "' has " + in_quotes(word) +
+               ", expected a whole number of type " + std::string(name_of(type)));
+    }
     keep(*value, type);
     return *value;
   }

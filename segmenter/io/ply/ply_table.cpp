@@ -23,16 +23,7 @@ void add_fields(const PlyElement& vertex, PointTable& table) {
   }
 }
 
-/// An ascii file may have numbers that are not of the type that its header declares.
-[[noreturn]] void fail_in_value(const std::string& name, std::int64_t row, const PointField& field,
-                                double value) {
-  throw std::runtime_error(name + ": vertex " + std::to_string(row) + ": property '" + field.name +
-                           "' is " + std::to_string(value) + ", expected a whole number of type " +
-                           std::string(name_of(field.type)));
-}
-
-void read_vertices(PlyBody& body, const PlyElement& vertex, const std::string& name,
-                   PointTable& table) {
+void read_vertices(PlyBody& body, const PlyElement& vertex, PointTable& table) {
   body.check_count(vertex);
   table.reserve(static_cast<std::size_t>(vertex.count));
   std::vector<double> values;
@@ -41,7 +32,6 @@ void read_vertices(PlyBody& body, const PlyElement& vertex, const std::string& n
     char* const record = table.append();
     for (std::size_t i = 0; i < values.size(); ++i) {
       const PointField& field = table.fields()[i];
-      if (!holds(field.type, values[i])) fail_in_value(name, row, field, values[i]);
       write_scalar(values[i], field.type, record + field.offset);
     }
   }
@@ -75,7 +65,7 @@ PointTable parse_ply_table(std::string_view bytes, const std::string& name, Labe
       has_vertices = true;
       add_fields(element, table);
       find_roles(table, name, labels);  // before memory is taken for what cannot be used
-      read_vertices(*body, element, name, table);
+      read_vertices(*body, element, table);
     } else if (others == OtherElements::kKeep) {
       table.other_elements.push_back(keep(*body, element));
     } else {

@@ -229,6 +229,24 @@ TEST(PlyReader, NamesThePlaceOfBadData) {
               HasSubstr("list 'v' claims -1 entries, expected 0 to the 0"));
 }
 
+// A binary file would hold other numbers, and a list of another length than follows.
+TEST(PlyReader, RefusesAsciiListsThatDoNotFitTheirTypes) {
+  const auto error_with = [](const std::string& types, const std::string& face) {
+    return error_of(ascii_header("element vertex 1\n" + kXyz + "element face 1\nproperty list " +
+                                 types + " corners\n") +
+                    "0 0 0\n" + face + "\n");
+  };
+  std::string corners;
+  for (int i = 0; i < 300; ++i) corners += " 0";
+  EXPECT_EQ(error_with("ushort int", "300" + corners), "no error");
+  EXPECT_THAT(error_with("uchar int", "300" + corners),
+              AllOf(HasSubstr("row 0 of element 'face': property 'corners' has '300'"),
+                    HasSubstr("expected a whole number of type uchar")));
+  EXPECT_THAT(error_with("uchar int", "1.5 0 0"), HasSubstr("has '1.5'"));
+  EXPECT_THAT(error_with("uchar uchar", "3 0 1999 1"), HasSubstr("has '1999'"));
+  EXPECT_THAT(error_with("uchar uchar", "3 0 1 -5"), HasSubstr("has '-5'"));
+}
+
 TEST(PlyReader, NamesAFileItCannotRead) {
   EXPECT_THROW(read_ply("no/such/cloud.ply"), std::runtime_error);
   EXPECT_THROW(read_ply("/"), std::runtime_error);
