@@ -13,6 +13,7 @@
 #include "lcmtypes/base/choice_check.hpp"
 #include "lcmtypes/base/logger.hpp"
 #include "segmenter/io/formats/cloud_file.hpp"
+#include "segmenter/io/points/length_unit.hpp"
 #include "segmenter/preprocess/cloud_preparation.hpp"
 
 namespace kintsugi::segmenter {
@@ -31,22 +32,18 @@ NormalsConfig normals_of(const CloudInputConfig& config, const Eigen::Vector3d& 
 
 /// Rooms are mapped at centimetres, and laser scans of buildings rarely thinned out to decimetres;
 /// in millimetres even the finest clouds are 0.25 units apart.
-void ask_for_unit(float spacing_m, CloudFormat format, const std::string& name,
-                  const CloudInputConfig& config) {
+void ask_for_unit(float spacing_m, CloudFormat format, const std::string& name) {
   constexpr float kFarApart_m = 0.25F;
   // LAS files are in metres by convention, and from the air points may be this far apart.
-  if (!config.unit.empty() || format == CloudFormat::kLas || spacing_m < kFarApart_m) return;
+  if (format == CloudFormat::kLas || spacing_m < kFarApart_m) return;
   spdlog::warn(
       "{}: its points are {:.4g} apart, too far for metres: if the unit is millimetres give "
       "--unit mm, if it is metres --unit m",
       name, spacing_m);
 }
 
-float choose_resolution_m(const FileCloud& cloud, CloudFormat format, const std::string& name,
-                          const CloudInputConfig& config) {
-  if (config.resolution_m > 0.0) {
-    return static_cast<float>(config.resolution_m);
-  }
+/// The median spacing of the points.
+float find_resolution_m(const FileCloud& cloud, const std::string& name) {
   const float resolution_m = usable_spacing_m(cloud.points_W);
   if (!(resolution_m > 0.0F)) {
     throw std::runtime_error(name +
@@ -54,8 +51,16 @@ float choose_resolution_m(const FileCloud& cloud, CloudFormat format, const std:
                              "give --resolution");
   }
   spdlog::info("resolution {:.6g} m: the median spacing of the points", resolution_m);
-  ask_for_unit(resolution_m, format, name, config);
   return resolution_m;
+}
+
+/// The unit that is given, or that the header tells; empty: neither.
+std::string choose_unit(const CloudFile& file, const std::string& name,
+                        const CloudInputConfig& config) {
+  if (!config.unit.empty()) return config.unit;
+  std::string unit = unit_told_by(file.table.comments);
+  if (!unit.empty()) spdlog::info("{}: its header tells the unit: {}", name, unit);
+  return unit;
 }
 
 void log_contents(const CloudFile& file, const FileCloud& cloud, const std::string& name) {
@@ -127,11 +132,6 @@ void log_rejections(const FileCloud& cloud, const std::string& name) {
 
 }  // namespace
 
-double CloudInputConfig::metres_per_unit() const {
-  if (unit == "mm") return 0.001;
-  return unit == "cm" ? 0.01 : 1.0;
-}
-
 void CloudInputConfig::validate() const {
   constexpr std::array<std::string_view, 4> kUnits{"", "m", "cm", "mm"};
   require(resolution_m >= 0.0, "resolution_m", resolution_m, ">= 0");
@@ -149,7 +149,8 @@ CloudInput read_cloud(const std::filesystem::path& path, const CloudInputConfig&
     throw std::runtime_error(name + ": holds no points");
   }
   const PointRoles roles = find_roles(file.table, name, config.labels);
-  PositionFrame frame{.metres_per_unit = config.metres_per_unit()};
+  const std::string unit = choose_unit(file, name, config);
+  PositionFrame frame{.metres_per_unit = metres_per(unit)};
   if (config.shifts_origin) {
     frame.origin_W = choose_origin_W(file.table, roles, frame.metres_per_unit);
   }
@@ -158,7 +159,11 @@ CloudInput read_cloud(const std::filesystem::path& path, const CloudInputConfig&
   input.origin_W = frame.origin_W;
   log_contents(file, input.cloud, name);
   log_origin(file, roles, frame.origin_W, name);
-  input.resolution_m = choose_resolution_m(input.cloud, file.format, name, config);
+  input.resolution_m = static_cast<float>(config.resolution_m);
+  if (config.resolution_m == 0.0) {
+    input.resolution_m = find_resolution_m(input.cloud, name);
+    if (unit.empty()) ask_for_unit(input.resolution_m, file.format, name);
+  }
   const NormalsConfig normals = normals_of(config, frame.origin_W);
   if (input.cloud.has_normals) {
     complete_normals(input.cloud, input.resolution_m, name, config, normals);

@@ -17,8 +17,8 @@ struct CloudInputConfig {
   /// Also average the normals that the file gives, as is always done with computed ones.
   bool averages_given_normals = false;
   std::vector<double> viewpoint_W;  ///< computed normals point towards it; empty: the mean
-  /// Unit of the file's coordinates: m, cm or mm; empty: metres, with a warning where these seem
-  /// wrong.
+  /// Unit of the file's coordinates: m, cm or mm; empty: the one that its header tells
+  /// (unit_told_by()), else metres, with a warning where these seem wrong.
   std::string unit;
   /// Move points that are far from the origin of the file near that of W (choose_origin_W()).
   bool shifts_origin = false;
@@ -26,14 +26,14 @@ struct CloudInputConfig {
 
   /// @throws std::invalid_argument naming field, value and bound.
   void validate() const;
-  double metres_per_unit() const;
 };
 
 struct CloudInput {
   FileCloud cloud;  ///< with unit normals; still contains the points that will be rejected
   float resolution_m = 0.0F;
-  Eigen::Vector3d origin_W = Eigen::Vector3d::Zero();  ///< the file's p is metres_per_unit p - this
-  PointTable table;                                    ///< of all that the file says
+  Eigen::Vector3d origin_W =
+      Eigen::Vector3d::Zero();  ///< the file's p is metres_per(unit) p - this
+  PointTable table;             ///< of all that the file says
 };
 
 /// Reads a file (read_cloud_file()), chooses the resolution, and computes missing normals: if all

@@ -20,8 +20,8 @@ void add_cloud_options(CLI::App& app, CloudInputConfig& config) {
       ->expected(3);
   app.add_option(
          "--unit", config.unit,
-         "unit of the coordinates: m, cm or mm (default: m, with a warning where that seems "
-         "wrong)")
+         "unit of the coordinates: m, cm or mm (default: the one that the header tells by a line "
+         "'comment unit mm', else m, with a warning where that seems wrong)")
       ->check(CLI::IsMember({"m", "cm", "mm"}));
 }
 

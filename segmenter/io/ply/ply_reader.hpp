@@ -13,7 +13,8 @@ namespace kintsugi::segmenter {
 using PlyCloud = FileCloud;
 
 /// Reads ascii and binary PLY of either byte order. Of element `vertex` it uses the properties that
-/// find_roles() names. Other properties and elements are skipped, but must be complete.
+/// find_roles() names. Other properties and elements are skipped, but must be complete. Coordinates
+/// are metres unless a comment tells their unit (unit_told_by()).
 ///
 /// @throws std::runtime_error naming the file, the place (line, byte offset, vertex) and what was
 ///   expected, as read_file_bytes(), parse_ply_table(), find_roles() and cloud_of()

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "segmenter/io/ply/ply_reader.hpp"
 #include "segmenter/io/ply/ply_table.hpp"
 #include "segmenter/io/points/file_bytes.hpp"
 #include "tests/segmenter/io/formats/example_clouds.hpp"
@@ -261,6 +262,25 @@ TEST_F(SegmentCloudFormats, AsksForTheUnitOfMillimetres) {
   const auto table = expect_two_plates(input, "--unit mm");
   EXPECT_EQ(value(table, 798, "x"), 190.0);                               // as the file has it
   EXPECT_EQ(run(input + " " + out() + " --unit parsec").exit_code, 105);  // CLI11: not in the set
+}
+
+// The file that --unit mm has written tells the unit in its header.
+TEST_F(SegmentCloudFormats, TakesTheUnitThatTheHeaderTells) {
+  auto points = two_plates();
+  for (Position& p : points) {
+    for (double& coordinate : p) coordinate *= 1000.0;
+  }
+  const std::string in_mm = (folder_ / "mm.ply").string();
+  ASSERT_EQ(run(write("mm.xyz", text_of(points)) + " " + in_mm + " --unit mm").exit_code, 0);
+  EXPECT_EQ(read_ply(in_mm).points_W[798].x, 0.19F);
+  EXPECT_THAT(run(in_mm + " " + out()).output,
+              AllOf(HasSubstr("its header tells the unit: mm"), HasSubstr("resolution 0.0100"),
+                    Not(HasSubstr("--unit"))));
+  EXPECT_THAT(run(in_mm + " " + out() + " --unit m").output, HasSubstr("resolution 10.0"));
+
+  const auto exported = testing::run_program(
+      "kintsugi-export", in_mm + " --json " + (folder_ / "mm.json").string(), folder_ / "log.txt");
+  EXPECT_THAT(exported.output, HasSubstr("resolution 0.0100"));
 }
 
 }  // namespace
