@@ -14,6 +14,7 @@
 #include "lcmtypes/scene/page.hpp"
 #include "lcmtypes/scene/scene_json.hpp"
 #include "lcmtypes/scene/up_direction.hpp"
+#include "segmenter/core/points/admission.hpp"
 
 namespace kintsugi::segmenter {
 namespace {
@@ -36,13 +37,13 @@ Cube cube_of(const CloudPoint& point, std::int32_t part, double edge_m) {
   return {part, index(point.x), index(point.y), index(point.z)};
 }
 
-Json parts_json(const MapSnapshot& map) {
+Json parts_json(const MapSnapshot& map, std::span<const scene::Tile> tiles) {
   std::map<std::int32_t, std::pair<std::int64_t, UpDirection>> parts;
+  for (const scene::Tile& tile : tiles) parts[tile.part].first += tile.points->count;
   for (const SliceRecord& slice : map.state.slices) {
-    if (slice.count == 0) continue;
-    auto& [count, up] = parts[slice.place.part];
-    count += slice.count;
-    up.add(std::span(map.state.points_W).subspan(slice.first, slice.count));
+    const auto of_part = parts.find(slice.place.part);
+    if (of_part == parts.end()) continue;
+    of_part->second.second.add(std::span(map.state.points_W).subspan(slice.first, slice.count));
   }
   Json json = Json::array();
   for (const auto& [part, of_part] : parts) {
@@ -68,8 +69,12 @@ std::int32_t largest_part(const Json& parts) {
 /// As the state of a viewer that has the whole map.
 Json state_json(const MapSnapshot& map, std::span<const scene::Tile> tiles) {
   Json tile_entries = Json::array();
-  for (const scene::Tile& tile : tiles) tile_entries.push_back(scene::tile_json(tile));
-  const Json parts = parts_json(map);
+  std::int64_t num_points = 0;
+  for (const scene::Tile& tile : tiles) {
+    tile_entries.push_back(scene::tile_json(tile));
+    num_points += tile.points->count;
+  }
+  const Json parts = parts_json(map, tiles);
   return {{"epoch", 1},
           {"version", 1},
           {"segments_version", 1},
@@ -77,7 +82,7 @@ Json state_json(const MapSnapshot& map, std::span<const scene::Tile> tiles) {
           {"path_version", 0},
           {"map", map.state.map_name},
           {"time_s", 0},
-          {"points", map.state.points_W.size()},
+          {"points", num_points},
           {"segments", map.segments.size()},
           {"slices", map.state.slices.size()},
           {"lag", 0},
@@ -112,6 +117,7 @@ std::vector<scene::Tile> tiles_of(const MapSnapshot& map) {
   for (const SliceRecord& slice : map.state.slices) {
     for (std::size_t i = slice.first; i < std::size_t{slice.first} + slice.count; ++i) {
       const CloudPoint& point = map.state.points_W[i];
+      if (reason_to_reject_position(point).has_value()) continue;
       CubePoints& cube = cubes[cube_of(point, slice.place.part, kTile_vox * resolution_m)];
       cube.points_W.push_back(point);
       cube.segment_ids.push_back(map.state.segment_ids[i]);

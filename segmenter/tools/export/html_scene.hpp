@@ -18,7 +18,8 @@ namespace kintsugi::segmenter {
 void write_html_scene(const MapSnapshot& map, std::span<const SegmentDescription> segments,
                       const std::filesystem::path& file);
 
-/// The points of the map in cubes of 64 voxels, each part of the map for itself.
+/// The points of the map in cubes of 64 voxels, each part of the map for itself; without those
+/// whose position could not be segmented, which a labelled PLY file keeps.
 std::vector<scene::Tile> tiles_of(const MapSnapshot& map);
 
 }  // namespace kintsugi::segmenter

@@ -31,6 +31,13 @@ std::string contents(const std::filesystem::path& path) {
   return text.str();
 }
 
+/// The text of the element with this id in a page.
+std::string data_of(const std::string& html, const std::string& id) {
+  const std::string begin = "id=\"" + id + "\">";
+  const std::size_t from = html.find(begin) + begin.size();
+  return html.substr(from, html.find("</script>", from) - from);
+}
+
 /// A saved map, and the files that the segmenter wrote of it.
 class Export : public ::testing::Test {
  protected:
@@ -126,23 +133,35 @@ TEST_F(Export, APageHasTheMapAndLoadsNothing) {
        {"http://", "https://", "src=\"page", "href=\"page", "@import"}) {
     EXPECT_THAT(html, ::testing::Not(HasSubstr(loading)));
   }
-  const auto data = [&](const std::string& id) {
-    const std::string begin = "id=\"" + id + "\">";
-    const std::size_t from = html.find(begin) + begin.size();
-    return html.substr(from, html.find("</script>", from) - from);
-  };
-  const json scene = json::parse(data("scene"));
+  const json scene = json::parse(data_of(html, "scene"));
   EXPECT_EQ(scene.at("segments").at("segments").size(), map_.segments.size());
   std::size_t points = 0;
   for (const json& tile : scene.at("state").at("tiles")) points += tile.at(3).get<std::size_t>();
   EXPECT_EQ(points, map_.state.points_W.size());
-  const std::string blocks = data("tiles");
+  const std::string blocks = data_of(html, "tiles");
   EXPECT_EQ(std::count(blocks.begin(), blocks.end(), '\n') + 1,
             static_cast<std::ptrdiff_t>(scene.at("state").at("tiles").size()));
   EXPECT_EQ(blocks.substr(0, 5), "S1RMM");  // "KTL1" in base 64
 
   expect_success("FOLDER/segments.ply --resolution 0.01 --html FOLDER/of_ply.html");
   expect_error("FOLDER/map.kseg --html FOLDER/absent/a.html", "there is no folder");
+}
+
+// The page looks at all that it has.
+TEST_F(Export, APageLeavesPointsOutThatCannotBeSegmented) {
+  std::ofstream ply(folder_ / "far.ply");
+  ply << "ply\nformat ascii 1.0\nelement vertex 7\nproperty float x\nproperty float y\n"
+      << "property float z\nproperty int segment_id\nend_header\n"
+      << "nan nan nan 0\nnan 0 0 0\ninf 0 0 0\n1e30 0 0 0\n"
+      << "5 5 5 1\n5.01 5 5 1\n5 5.01 5 1\n";
+  ply.close();
+  expect_success("FOLDER/far.ply --resolution 0.01 --html FOLDER/far.html");
+  const json state = json::parse(data_of(read("far.html"), "scene")).at("state");
+  EXPECT_EQ(state.at("points"), 3);
+  ASSERT_EQ(state.at("tiles").size(), 1U);
+  EXPECT_EQ(state.at("tiles").at(0).at(3), 3);
+  ASSERT_EQ(state.at("parts").size(), 1U);
+  EXPECT_EQ(state.at("parts").at(0).at("points"), 3);
 }
 
 TEST_F(Export, OneFileForEachChosenSegment) {
