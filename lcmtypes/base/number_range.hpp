@@ -1,5 +1,5 @@
 #pragma once
-// Flags whose value is a number within bounds.
+// Flags whose value is a number within bounds, or any that is finite.
 
 #include <cmath>
 #include <string>
@@ -18,6 +18,17 @@ inline CLI::Validator number_range(double low, double high) {
         return is_nan ? "'" + text + "' is no number" : range(text);
       },
       range.get_description());
+}
+
+/// Refuses NaN and infinity.
+inline CLI::Validator finite_number() {
+  return CLI::Validator(
+      [](const std::string& text) -> std::string {
+        double number = 0.0;
+        const bool is_finite = CLI::detail::lexical_cast(text, number) && std::isfinite(number);
+        return is_finite ? "" : "'" + text + "' is no finite number";
+      },
+      "");
 }
 
 }  // namespace kintsugi

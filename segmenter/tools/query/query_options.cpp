@@ -1,11 +1,14 @@
 #include "segmenter/tools/query/query_options.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <tuple>
+#include <utility>
 
 #include <CLI/CLI.hpp>
 
+#include "lcmtypes/base/argument_check.hpp"
 #include "lcmtypes/base/number_range.hpp"
 #include "lcmtypes/codec/codec.hpp"
 #include "lcmtypes/signing/process_key.hpp"
@@ -21,7 +24,8 @@ void add_places(CLI::App& app, QueryOptions& options) {
   place
       .add_option("--at", options.point_W,
                   "X Y Z: the segment of the nearest map point, metres, frame W")
-      ->expected(3);
+      ->expected(3)
+      ->check(finite_number());
   place
       .add_option(
           "--pixel", options.pixel,
@@ -30,15 +34,18 @@ void add_places(CLI::App& app, QueryOptions& options) {
           "now; integers are pixel centres. Exit code 3: no view of the camera, 4: it measures "
           "nothing there, 5: the surface is in no segment yet. With --pose: what a camera there "
           "would see of the map")
-      ->expected(2);
+      ->expected(2)
+      ->check(finite_number());
   place
       .add_option("--ray", options.ray,
                   "X Y Z DX DY DZ: the segment seen from X Y Z in direction DX DY DZ, frame W")
-      ->expected(6);
+      ->expected(6)
+      ->check(finite_number());
   place
       .add_option("--box", options.box_W,
                   "X Y Z X Y Z: segments with a point between these corners, metres, frame W")
-      ->expected(6);
+      ->expected(6)
+      ->check(finite_number());
   place.add_option("--id", options.query.segment_ids, "ID,...: the segments with these ids")
       ->delimiter(',');
   place
@@ -54,7 +61,16 @@ void add_places(CLI::App& app, QueryOptions& options) {
   place.add_flag("--objects", options.objects, "all known objects that are found");
 }
 
+/// Within the bounds of a message's.
 Intrinsics given_intrinsics(const std::vector<double>& v) {
+  constexpr double kMaxFocalLength_px = 10.0 * kMaxImageSide_px;
+  check_range("--intrinsics: FX", v[0], 1.0, kMaxFocalLength_px);
+  check_range("--intrinsics: FY", v[1], 1.0, kMaxFocalLength_px);
+  for (const auto& [name, side_px] : {std::pair{"WIDTH", v[4]}, {"HEIGHT", v[5]}}) {
+    const std::string field = std::string("--intrinsics: ") + name;
+    check_range(field, side_px, 1.0, double{kMaxImageSide_px});
+    require(side_px == std::floor(side_px), field, side_px, "a whole number");
+  }
   return {.fx = v[0],
           .fy = v[1],
           .cx = v[2],
@@ -120,14 +136,18 @@ void add_options(CLI::App& app, QueryOptions& options) {
              "TX TY TZ QX QY QZ QW: with --pixel, the pose of a camera, instead of what the "
              "camera on the bus measures")
           ->expected(7)
+          ->check(finite_number())
           ->needs(app.get_option("--pixel"));
   app.add_option("--intrinsics", options.intrinsics,
                  "FX FY CX CY WIDTH HEIGHT: of the camera at --pose (default: a Kinect's, 525 525 "
                  "319.5 239.5 640 480)")
       ->expected(6)
+      ->check(finite_number())
       ->needs(pose);
   app.add_option("--map", options.map,
-                 "query this saved map (kintsugi-segmenter --save) instead of the bus");
+                 "query this saved map (kintsugi-segmenter --save) instead of the bus")
+      ->check(CLI::Validator(
+          [](const std::string& file) { return file.empty() ? "is empty" : std::string(); }, ""));
   app.add_option("--map-name", query.map_name, "name of the map, when there are several");
   app.add_option("--map-session", query.map_session,
                  "mapper session of the map, when there are several")

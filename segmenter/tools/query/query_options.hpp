@@ -41,8 +41,8 @@ inline bool asks_for_objects(const QueryOptions& options) {
 
 /// The query of the options. --pixel asks for what the camera measures there now, and with --pose
 /// for what a camera there would see of the map: that is a ray.
-/// @throws std::invalid_argument for a direction or rotation that is zero, and for --pixel of a
-///   saved map without --pose
+/// @throws std::invalid_argument for a direction or rotation that is zero, intrinsics out of range,
+///   and for --pixel of a saved map without --pose
 SegmentQuery make_query(const QueryOptions& options);
 
 }  // namespace kintsugi::segmenter

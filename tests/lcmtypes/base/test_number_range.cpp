@@ -28,5 +28,16 @@ TEST(NumberRange, TakesOnlyNumbersWithinItsBounds) {
   EXPECT_THAT(app.help(), HasSubstr("in [0.001 - 1]"));
 }
 
+TEST(FiniteNumber, IsNeitherInfiniteNorNaN) {
+  double angle = 0.0;
+  CLI::App app;
+  app.add_option("--angle", angle)->check(finite_number());
+  EXPECT_NO_THROW(app.parse("--angle -1e300"));
+  EXPECT_EQ(angle, -1e300);
+  for (const char* const text : {"nan", "inf", "-inf", "much"}) {
+    EXPECT_THROW(app.parse(std::string("--angle ") + text), CLI::ParseError) << text;
+  }
+}
+
 }  // namespace
 }  // namespace kintsugi
