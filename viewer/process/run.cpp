@@ -154,6 +154,11 @@ int run_on_log(const Options& options) {
   if (status.chunks_missing > 0) spdlog::warn("{} chunks missing", status.chunks_missing);
   if (!status.problem.empty()) spdlog::warn("{}", status.problem);
   if (log.damage()) spdlog::error("{}", *log.damage());
+  if (process.current() == nullptr && !stop_requested()) {
+    spdlog::error("{}: holds no slice of {}", options.log->string(),
+                  options.map_name.empty() ? "a map" : "the map '" + options.map_name + "'");
+    return 1;
+  }
   if (web) serve_until_stopped(*web, process);
   return process.failures() > 0 || log.damage() ? 1 : 0;
 }

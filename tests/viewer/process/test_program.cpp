@@ -54,6 +54,13 @@ TEST(ViewerProcess, DrawsALogAtIntervalsOfMapTimeAndTheFinalMap) {
   }
 }
 
+TEST(ViewerProcess, FailsWhenALogHasNothingOfTheMap) {
+  const TemporaryFolder folder;
+  write_log(folder / "room.log", make_room(kLength_m, kResolution_m));
+  EXPECT_EQ(1, run({"--log", folder / "room.log", "--out", folder / "out", "--map-name", "hall"}));
+  EXPECT_TRUE(names_in(folder / "out").empty());
+}
+
 TEST(ViewerProcess, DrawsAMapThatNobodySegments) {
   const TemporaryFolder folder;
   write_log(folder / "room.log", make_room(kLength_m, kResolution_m), {.updates = false});
