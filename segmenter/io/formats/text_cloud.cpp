@@ -18,22 +18,43 @@ namespace {
 
 using Words = std::vector<std::string_view>;
 
-/// The places between commas or semicolons, if there are any, else words between blanks.
-Words split_places(std::string_view line) {
+/// Without the quotes that some programs put around every value.
+std::string_view unquoted(std::string_view place) {
+  const bool is_quoted = place.size() > 1 && place.front() == '"' && place.back() == '"';
+  return is_quoted ? trimmed(place.substr(1, place.size() - 2)) : place;
+}
+
+/// Without a comment at its end, behind a blank.
+std::string_view without_comment(std::string_view line) {
+  for (std::size_t i = 1; i < line.size(); ++i) {
+    const bool begins = line[i] == '#' || line.substr(i).starts_with("//");
+    if (begins && (line[i - 1] == ' ' || line[i - 1] == '\t')) return trimmed(line.substr(0, i));
+  }
+  return line;
+}
+
+/// The places between commas or semicolons, if there are any, else words between blanks. A
+/// separator at the end of the line has an empty place behind it only if there are `expected`
+/// places then.
+Words split_places(std::string_view line, std::size_t expected) {
   char separator = ' ';
   if (line.find(';') != std::string_view::npos) {
     separator = ';';
   } else if (line.find(',') != std::string_view::npos) {
     separator = ',';
   }
-  if (separator == ' ') return split_words(line);
+  if (separator == ' ') {
+    Words words = split_words(line);
+    std::ranges::transform(words, words.begin(), unquoted);
+    return words;
+  }
   Words places;
   for (std::size_t begin = 0; begin <= line.size();) {
     const std::size_t end = std::min(line.find(separator, begin), line.size());
-    places.push_back(trimmed(line.substr(begin, end - begin)));
+    places.push_back(unquoted(trimmed(line.substr(begin, end - begin))));
     begin = end + 1;
   }
-  if (places.back().empty()) places.pop_back();  // a separator at the end of the line
+  if (places.back().empty() && places.size() != expected) places.pop_back();
   return places;
 }
 
@@ -72,18 +93,23 @@ class TextReader {
     if (line.empty()) return;
     const bool is_comment = line[0] == '#' || line.starts_with("//");
     if (is_comment) line.remove_prefix(std::min(line.find_first_not_of("#/ \t"), line.size()));
-    const Words places = split_places(line);
-    if (is_comment) {
-      if (matrix_.num_columns == 0 && names_xyz(places)) take_names(places);
-    } else if (places.size() == 1) {
+    if (matrix_.num_columns == 0 && (is_comment || names_.empty())) {
+      const Words words = split_places(line, 0);
+      const bool is_row = !is_comment && !words.empty() && parse_number(words[0]);
+      if (!is_row && names_xyz(words)) return take_names(words);
+    }
+    if (!is_comment) read_numbers(without_comment(line));
+  }
+
+  void read_numbers(std::string_view line) {
+    const Words places =
+        split_places(line, matrix_.num_columns > 0 ? matrix_.num_columns : names_.size());
+    if (places.size() == 1) {
       begin_block(places[0]);
     } else if (matrix_.num_columns == 0 && names_.empty() && !places[0].empty() &&
                !parse_number(places[0])) {
-      if (!names_xyz(places)) {
-        fail("begins with " + in_quotes(places[0]) +
-             ", expected numbers, or names of columns with x, y and z");
-      }
-      take_names(places);
+      fail("begins with " + in_quotes(places[0]) +
+           ", expected numbers, or names of columns with x, y and z");
     } else {
       read_row(places);
     }

@@ -8,8 +8,9 @@
 
 namespace kintsugi::segmenter {
 
-/// Reads a line of numbers for each point, between blanks, tabs, commas or semicolons; an empty
-/// place between commas is NaN. Lines that begin with # or // are comments. Columns have the names
+/// Reads a line of numbers for each point, between blanks, tabs, commas or semicolons, with quotes
+/// around them or without; an empty place between commas is NaN. Lines that begin with # or // are
+/// comments, and so is what follows either behind a blank. Columns have the names
 /// of a line of words before the first point, which may be the last comment; without one they are
 /// guessed (guess_column_names()). Columns are double; colours are integers where they are whole.
 /// A line with one number tells how many points follow, as in PTS files, where scans are one behind

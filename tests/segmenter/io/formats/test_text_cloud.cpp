@@ -82,6 +82,32 @@ TEST(TextCloud, ReadsNamesOfColumns) {
   EXPECT_THAT(names_of(parse("x y z a a\n1 2 3 4 5\n")), ElementsAre("x", "y", "z", "a", "a_2"));
 }
 
+TEST(TextCloud, ReadsAnEmptyLastPlaceWhereAColumnIs) {
+  const PointTable csv = parse("x,y,z,label\n1,2,3,4\n5,6,7,\n8,9,10,11,\n");
+  EXPECT_TRUE(std::isnan(value(csv, 1, "label")));
+  EXPECT_EQ(value(csv, 2, "label"), 11);
+  EXPECT_TRUE(std::isnan(value(parse("x;y;z;label;\n1;2;3;;\n"), 0, "label")));
+  EXPECT_TRUE(std::isnan(value(parse("1,2,3\n4,5,\n"), 1, "z")));
+  EXPECT_THAT(names_of(parse("1,2,3,\n4,5,6,\n")), ElementsAre("x", "y", "z"));
+  EXPECT_THAT(error_in("1,2,3,4\n5,6,\n"), HasSubstr("line 2: 2 numbers, expected 4"));
+}
+
+TEST(TextCloud, LeavesCommentsBehindNumbersOut) {
+  EXPECT_EQ(value(parse("2 # points\n1 2 3 # first\n4 5 6\t// x, y; z\n"), 1, "z"), 6);
+  EXPECT_EQ(value(parse("1,2,3 # x,y,z\n4,5,6,  // last\n"), 1, "z"), 6);
+  EXPECT_THAT(names_of(parse("Point #,x,y,z\n1,2,3,4\n")), ElementsAre("Point_", "x", "y", "z"));
+  EXPECT_THAT(error_in("1 2 3#4\n"), HasSubstr("'3#4' is not a number"));
+}
+
+TEST(TextCloud, ReadsNumbersInQuotes) {
+  const PointTable csv = parse("\"x\",\"y\",\"z\"\n\"1\",\"2.5\", \" 3 \"\n4,\"\",5\n");
+  EXPECT_EQ(value(csv, 0, "y"), 2.5);
+  EXPECT_EQ(value(csv, 0, "z"), 3);
+  EXPECT_TRUE(std::isnan(value(csv, 1, "y")));
+  EXPECT_EQ(value(parse("\"1\" \"2\" \"3\"\n"), 0, "x"), 1);
+  EXPECT_THAT(error_in("1,2,3\n4,5,\"tree\"\n"), HasSubstr("'tree' is not a number"));
+}
+
 TEST(TextCloud, NamesLineAndExpectation) {
   EXPECT_THAT(error_in(""), HasSubstr("a.txt: line 0: no line of numbers"));
   EXPECT_THAT(error_in("1 2\n"), HasSubstr("line 1: 2 numbers, expected x y z"));
