@@ -33,8 +33,15 @@ void require_same(const std::filesystem::path& file, const SegmentMapConfig& sav
 }  // namespace
 
 std::unique_ptr<SegmentMap> resume_map(const std::filesystem::path& file,
-                                       const SegmentMapConfig& config, std::int64_t session) {
+                                       const SegmentMapConfig& config, const std::string& map_name,
+                                       std::int64_t session) {
   SegmentMapState state = read_map_state(file);
+  if (!map_name.empty() && state.map_name != map_name) {
+    throw std::runtime_error(
+        fmt::format("'{}' has the map '{}', and --map-name is '{}': resume it without --map-name, "
+                    "or the file of that map",
+                    file.string(), state.map_name, map_name));
+  }
   require_same(file, state.config, config);
   state.config.engine.neighbour_search = config.engine.neighbour_search;
   state.config.engine.audit = config.engine.audit;

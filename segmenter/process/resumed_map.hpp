@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <string>
 
 #include "segmenter/map/segment_map.hpp"
 #include "segmenter/process/view_recorder.hpp"
@@ -11,10 +12,12 @@
 namespace kintsugi::segmenter {
 
 /// The map in `file`, to be continued under `config` as segmenter session `session`.
-/// @throws std::runtime_error naming the file when it is no saved map, or was saved with another
-///   mode or another of kMapParameters
+/// @param map_name that it must have; empty: any
+/// @throws std::runtime_error naming the file when it is no saved map, has another name, or was
+///   saved with another mode or another of kMapParameters
 std::unique_ptr<SegmentMap> resume_map(const std::filesystem::path& file,
-                                       const SegmentMapConfig& config, std::int64_t session);
+                                       const SegmentMapConfig& config, const std::string& map_name,
+                                       std::int64_t session);
 
 /// Goes on with the views beside the saved map `file`, of which `map` was made. Without them, or
 /// where they are of another session, which a kill between two files can leave, new ones are kept;

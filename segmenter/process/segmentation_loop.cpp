@@ -63,7 +63,7 @@ void SegmentationLoop::run() {
 // Slices that are received while the map is loaded wait in the queue.
 void SegmentationLoop::resume() {
   if (!config_.resume_file.empty()) {
-    auto map = resume_map(config_.resume_file, config_.maps.map, session_);
+    auto map = resume_map(config_.resume_file, config_.maps.map, config_.maps.map_name, session_);
     if (with_.views != nullptr) resume_views(config_.resume_file, *map, *with_.views);
     with_.receiver.restore(*map);
     maps_.resume(std::move(map));

@@ -34,7 +34,7 @@ TEST_F(ResumedMap, HasTheParametersItWasSavedWith) {
   for (const auto& [parameter, engine] : testing::changed_parameters()) {
     SegmentMapConfig config;
     config.engine = engine;
-    const auto resume = [&] { resume_map(file_, config, 2); };
+    const auto resume = [&] { resume_map(file_, config, "", 2); };
     if (parameter.comes_with_slices) {
       EXPECT_NO_THROW(resume()) << parameter.name;
     } else {
@@ -47,7 +47,7 @@ TEST_F(ResumedMap, HasTheParametersItWasSavedWith) {
 TEST_F(ResumedMap, HasTheModeItWasSavedWith) {
   SegmentMapConfig config;
   config.mode = "batch";
-  EXPECT_THAT([&] { resume_map(file_, config, 2); },
+  EXPECT_THAT([&] { resume_map(file_, config, "", 2); },
               ThrowsMessage<std::runtime_error>(HasSubstr("was saved with --mode exact")));
 }
 
@@ -55,8 +55,16 @@ TEST_F(ResumedMap, MayDifferInWhatDecidesOnTimeAlone) {
   SegmentMapConfig config;
   config.engine.neighbour_search = NeighbourSearch::kFlann;
   config.engine.rebuild_share = 0.0;
-  EXPECT_EQ(resume_map(file_, config, 2)->config().engine.neighbour_search,
+  EXPECT_EQ(resume_map(file_, config, "", 2)->config().engine.neighbour_search,
             NeighbourSearch::kFlann);
+}
+
+// Else all slices would be those of another map, and the file would stay as it is without a word.
+TEST_F(ResumedMap, HasTheNameThatIsWanted) {
+  const std::string name = read_map_state(file_).map_name;
+  EXPECT_EQ(resume_map(file_, {}, name, 2)->map_name(), name);
+  EXPECT_THAT([&] { resume_map(file_, {}, "hall", 2); },
+              ThrowsMessage<std::runtime_error>(HasSubstr("and --map-name is 'hall'")));
 }
 
 }  // namespace
