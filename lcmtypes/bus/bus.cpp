@@ -110,6 +110,15 @@ std::string default_bus_url() {
   return std::string("udpm://").append(kGroup).append(":7667?ttl=0");
 }
 
+void check_bus_url(const std::string& url) {
+  constexpr std::array kTransports = {"udpm://", "mpudpm://", "tcpq://", "memq://", "file://"};
+  const std::string asked = url.empty() ? default_bus_url() : url;
+  const auto begins = [&](const char* transport) { return asked.starts_with(transport); };
+  if (std::ranges::any_of(kTransports, begins)) return;
+  throw std::runtime_error("cannot open the bus " + asked +
+                           ": expected an LCM URL such as udpm://" + kGroup + ":7667?ttl=0");
+}
+
 std::optional<std::string> receive_buffer_advice() {
   std::int64_t limit = 0;
   if (!(std::ifstream(kReceiveBufferLimit) >> limit) || limit >= kReceiveBufferBytes) return {};

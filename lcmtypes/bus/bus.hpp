@@ -30,6 +30,10 @@ std::int64_t new_session();
 /// The URL that Bus("") opens: LCM_DEFAULT_URL, or LCM's default multicast group on this host.
 std::string default_bus_url();
 
+/// @throws std::runtime_error when LCM has no transport of the name with which `url` begins; empty:
+///   default_bus_url()
+void check_bus_url(const std::string& url);
+
 /// When the kernel's limit of receive buffers is below what Bus asks for: a text for a person, with
 /// the command that raises it. Nothing when the limit is high enough.
 std::optional<std::string> receive_buffer_advice();

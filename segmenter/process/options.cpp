@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <iostream>
 #include <map>
 #include <stdexcept>
@@ -16,6 +17,8 @@
 #include "lcmtypes/base/command_line.hpp"
 #include "lcmtypes/base/number_range.hpp"
 #include "lcmtypes/base/output_files.hpp"
+#include "lcmtypes/bus/bus.hpp"
+#include "lcmtypes/log/log_reader.hpp"
 #include "lcmtypes/signing/process_key.hpp"
 #include "segmenter/core/parameters/presets.hpp"
 
@@ -158,6 +161,16 @@ void add_bus_flags(CLI::App& app, Options& options) {
 }
 
 }  // namespace
+/// What a run would refuse at its beginning.
+void check_inputs(const SegmenterProcess::Config& config) {
+  check_bus_url(config.lcm_url);
+  if (!config.log.empty()) const LogReader readable(config.log);
+  const std::filesystem::path& resumed = config.segmentation.resume_file;
+  if (!resumed.empty() && !std::ifstream(resumed).is_open()) {
+    throw std::invalid_argument("--resume " + resumed.string() + ": cannot be read");
+  }
+}
+
 
 SegmenterProcess::Config Options::config() const {
   SegmenterProcess::Config config = process;
@@ -222,7 +235,9 @@ std::variant<Options, int> parse_options(int argc, const char* const* argv) {
     return 0;
   }
   if (check_only) {
-    options.config().validate();
+    const SegmenterProcess::Config config = options.config();
+    config.validate();
+    check_inputs(config);
     return 0;
   }
   return options;

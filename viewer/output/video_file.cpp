@@ -8,19 +8,18 @@
 namespace kintsugi::viewer {
 namespace {
 
-const std::filesystem::path& require_mp4(const std::filesystem::path& path) {
-  require(path.extension() == ".mp4", "video file", path, "a name that ends in .mp4");
-  return path;
-}
-
 std::string text_of(cv::Size size) {
   return std::to_string(size.width) + "x" + std::to_string(size.height);
 }
 
 }  // namespace
 
+void check_video_name(const std::filesystem::path& path) {
+  require(path.extension() == ".mp4", "video file", path, "a name that ends in .mp4");
+}
+
 VideoFile::VideoFile(const std::filesystem::path& path, cv::Size size, double pictures_per_s)
-    : path_(require_mp4(path)),
+    : path_((check_video_name(path), path)),
       size_(size),
       file_(path),
       encoder_(file_.partial_path(), size, pictures_per_s) {}

@@ -10,12 +10,16 @@
 
 namespace kintsugi::viewer {
 
+/// @throws std::invalid_argument when the name does not end in .mp4
+void check_video_name(const std::filesystem::path& path);
+
 /// An H.264 video in an MP4 file that is complete or absent, also after an error.
 class VideoFile {
  public:
   /// Opens a temporary file beside `path`.
-  /// @throws std::invalid_argument when `path` does not end in .mp4, std::runtime_error naming the
-  ///   file when it cannot be written, or when there is no H.264 encoder
+  /// @throws std::invalid_argument as check_video_name(), std::runtime_error naming the file when
+  /// it
+  ///   cannot be written, or when there is no H.264 encoder
   VideoFile(const std::filesystem::path& path, cv::Size size, double pictures_per_s);
 
   /// Appends a picture.

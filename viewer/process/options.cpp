@@ -12,6 +12,8 @@
 #include "lcmtypes/base/argument_check.hpp"
 #include "lcmtypes/base/command_line.hpp"
 #include "lcmtypes/base/number_range.hpp"
+#include "lcmtypes/bus/bus.hpp"
+#include "lcmtypes/log/log_reader.hpp"
 #include "lcmtypes/signing/process_key.hpp"
 
 namespace kintsugi::viewer {
@@ -143,6 +145,12 @@ void add_config_flags(CLI::App& app, Flags& flags) {
 /// "1280x720".
 void parse_size(const std::string& text, int& width_px, int& height_px) {
   const char* const end = text.data() + text.size();
+/// What a run would refuse at its beginning.
+void check_inputs(const Options& options) {
+  check_bus_url(options.lcm_url);
+  if (options.log) const LogReader readable(*options.log);
+}
+
   const auto [x, width_error] = std::from_chars(text.data(), end, width_px);
   if (width_error == std::errc() && x != end && *x == 'x') {
     const auto [rest, height_error] = std::from_chars(x + 1, end, height_px);
@@ -198,7 +206,10 @@ std::variant<Options, int> parse_options(int argc, const char* const* argv) {
     std::cout << app.config_to_str(true, true);
     return 0;
   }
-  if (flags.check_only) return 0;
+  if (flags.check_only) {
+    check_inputs(options);
+    return 0;
+  }
   return options;
 }
 

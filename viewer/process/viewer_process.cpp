@@ -18,6 +18,7 @@ void ViewerProcess::Config::validate() const {
   painter.validate();
   require(every_s > 0.0, "ViewerProcess::Config::every_s", every_s, "> 0 s");
   check_range("ViewerProcess::Config::video_rate_hz", video_rate_hz, 0.1, 120.0);
+  if (video) check_video_name(*video);
 }
 
 ViewerProcess::ViewerProcess(const Config& config, Outputs outputs)

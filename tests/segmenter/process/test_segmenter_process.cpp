@@ -155,6 +155,19 @@ TEST_F(SegmenterProgram, RefusesALimitOfMemoryThatItCannotKeep) {
   EXPECT_NE(run(log + " --swap-folder " + path("")).exit_code, 0);
 }
 
+TEST_F(SegmenterProgram, ChecksTheFilesAndTheBusThatARunOpens) {
+  write_log(path("slices.lcm"), messages_of(wavy_session(2, 100)));
+  EXPECT_EQ(run("--check --log " + path("slices.lcm")).exit_code, 0);
+  const auto expect_error = [&](const std::string& arguments, const std::string& reason) {
+    const auto result = run("--check " + arguments);
+    EXPECT_NE(result.exit_code, 0) << arguments;
+    EXPECT_THAT(result.output, HasSubstr(reason));
+  };
+  expect_error("--log " + path("nowhere.lcm"), path("nowhere.lcm"));
+  expect_error("--resume " + path("nowhere.map"), path("nowhere.map"));
+  expect_error("--lcm-url foo://", "cannot open the bus foo://");
+}
+
 TEST_F(SegmenterProgram, WritesTheMapOfEachSessionInALog) {
   auto messages = messages_of(wavy_session(2, 100, 5));
   const auto more = messages_of(wavy_session(2, 150, 6));

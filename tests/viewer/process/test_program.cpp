@@ -61,6 +61,15 @@ TEST(ViewerProcess, FailsWhenALogHasNothingOfTheMap) {
   EXPECT_TRUE(names_in(folder / "out").empty());
 }
 
+TEST(ViewerProcess, ChecksTheFilesAndTheBusThatARunOpens) {
+  const TemporaryFolder folder;
+  write_log(folder / "room.log", make_room(kLength_m, kResolution_m));
+  EXPECT_EQ(0, run({"--check", "--log", folder / "room.log", "--video", "room.mp4"}));
+  EXPECT_EQ(1, run({"--check", "--log", folder / "nowhere.log"}));
+  EXPECT_EQ(1, run({"--check", "--video", "room.avi"}));
+  EXPECT_EQ(1, run({"--check", "--lcm-url", "foo://"}));
+}
+
 TEST(ViewerProcess, DrawsAMapThatNobodySegments) {
   const TemporaryFolder folder;
   write_log(folder / "room.log", make_room(kLength_m, kResolution_m), {.updates = false});
