@@ -168,26 +168,43 @@ int main(int argc, char** argv) {
   app.add_option("--map-name", options.map_name,
                  "Watch the map with this name (default: the first that is received)");
   auto* once = app.add_flag("--once", options.once, "Print one line and exit");
-  app.add_flag("--until-finished", options.until_finished,
-               "Exit 0 when mapper and segmenter have finished, 2 without progress")
-      ->excludes(once);
-  app.add_flag("--viewer", options.waited.viewer, "Wait for the viewer too");
-  app.add_flag("--detector", options.waited.detector, "Wait for the detector of objects too");
-  app.add_option("--until-ready", options.until_ready,
-                 "Exit 0 when each of these has sent a status: mapper, segmenter, viewer, detector")
-      ->delimiter(',')
-      ->check(CLI::IsMember({"mapper", "segmenter", "viewer", "detector"}));
-  app.add_option("--log", options.log_file, "Append every field of every status to this CSV file");
+  auto* until_finished =
+      app.add_flag("--until-finished", options.until_finished,
+                   "Exit 0 when mapper and segmenter have finished, 2 without progress")
+          ->excludes(once);
+  app.add_flag("--viewer", options.waited.viewer, "Wait for the viewer too")->needs(until_finished);
+  app.add_flag("--detector", options.waited.detector, "Wait for the detector of objects too")
+      ->needs(until_finished);
+  auto* until_ready =
+      app.add_option(
+             "--until-ready", options.until_ready,
+             "Exit 0 when each of these has sent a status: mapper, segmenter, viewer, detector")
+          ->delimiter(',')
+          ->check(CLI::IsMember({"mapper", "segmenter", "viewer", "detector"}))
+          ->excludes(once)
+          ->excludes(until_finished);
+  auto* log = app.add_option("--log", options.log_file,
+                             "Append every field of every status to this CSV file")
+                  ->excludes(until_ready);
   app.add_option("--log-every", options.log_period_s,
                  "With --log: of each process one status in so many seconds, and the last; 0: all")
       ->check(CLI::NonNegativeNumber)
+      ->needs(log)
       ->capture_default_str();
-  app.add_flag("--lingering", options.lingering,
-               "With --until-ready: and has published everything");
-  app.add_option("--timeout", options.timeout_s,
-                 "Seconds without progress until giving up; 0: never")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
+  app.add_flag("--lingering", options.lingering, "With --until-ready: and has published everything")
+      ->needs(until_ready);
+  auto* timeout =
+      app.add_option(
+             "--timeout", options.timeout_s,
+             "With --once, --until-finished or --until-ready: seconds without progress until "
+             "giving up; 0: never")
+          ->check(CLI::NonNegativeNumber)
+          ->capture_default_str();
+  app.callback([=] {
+    if (timeout->count() == 0 || once->count() + until_finished->count() + until_ready->count() > 0)
+      return;
+    throw CLI::RequiresError("--timeout", "--once, --until-finished or --until-ready");
+  });
   kintsugi::add_version_flag(app);
   CLI11_PARSE(app, argc, argv);
   try {

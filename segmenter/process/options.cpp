@@ -157,10 +157,10 @@ void add_bus_flags(CLI::App& app, Options& options) {
   app.add_option("--linger", options.process.linger_s,
                  "at the end, stay until nobody has requested a resend for so many seconds; "
                  "negative: until a stop signal")
+      ->check(finite_number())
       ->capture_default_str();
 }
 
-}  // namespace
 /// What a run would refuse at its beginning.
 void check_inputs(const SegmenterProcess::Config& config) {
   check_bus_url(config.lcm_url);
@@ -171,6 +171,7 @@ void check_inputs(const SegmenterProcess::Config& config) {
   }
 }
 
+}  // namespace
 
 SegmenterProcess::Config Options::config() const {
   SegmenterProcess::Config config = process;
@@ -195,10 +196,13 @@ SegmenterProcess::Config Options::config() const {
   } else if (!swap_folder.empty()) {
     throw std::invalid_argument("--swap-folder needs --max-memory MB");
   }
-  check_different({{"--log", config.log}}, {{"--save", config.segmentation.files.save_file}});
+  const std::filesystem::path& saved = config.segmentation.files.save_file;
+  if (saved.empty() && maps.each_map.save_every > 0) {
+    throw std::invalid_argument("--save-every needs --save FILE, the file to save the map in");
+  }
+  check_different({{"--log", config.log}}, {{"--save", saved}});
   config.publish = config.log.empty() || !config.lcm_url.empty();
   if (resume_if_saved) {
-    const std::filesystem::path& saved = config.segmentation.files.save_file;
     if (saved.empty()) {
       throw std::invalid_argument("--resume-if-saved needs --save FILE, the file to resume from");
     }

@@ -61,7 +61,10 @@ void require_task(const EvaluateOptions& options) {
     throw CLI::ExcludesError("--changes, --objects or --detection-times",
                              "IN, --live or --trajectory");
   }
-  if (has_path || has_live || !options.objects.times_log.empty()) return;
+  if (has_path || has_live || !options.objects.times_log.empty()) {
+    if (options.folder.empty()) return;
+    throw CLI::ExcludesError("--out", "--trajectory, --live and --detection-times");
+  }
   if (!options.trajectory.json_file.empty()) {
     throw CLI::RequiresError("--json", "--trajectory, --live or --detection-times");
   }

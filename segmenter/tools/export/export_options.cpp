@@ -18,11 +18,13 @@ void add_options(CLI::App& app, ExportOptions& options) {
   app.add_option("--html", options.html,
                  "write a page that shows the map in a browser, as one file that loads nothing");
   app.add_option("--ply", options.ply, "write all points with their segment_id");
-  app.add_option("--segs", options.segs,
-                 "write ScanNet's segs.json: the segment of each vertex of --mesh, otherwise of "
-                 "--ply, otherwise of MAP if that is a PLY file");
+  auto* const segs = app.add_option(
+      "--segs", options.segs,
+      "write ScanNet's segs.json: the segment of each vertex of --mesh, otherwise of "
+      "--ply, otherwise of MAP if that is a PLY file");
   app.add_option("--scene-id", options.scene_id,
-                 "sceneId in it (default: its name without .segs.json)");
+                 "sceneId in it (default: its name without .segs.json)")
+      ->needs(segs);
   app.add_option(
       "--mesh", options.mesh,
       "a PLY file whose vertices get the segment of the nearest point within two voxels");

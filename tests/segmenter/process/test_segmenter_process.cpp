@@ -155,6 +155,14 @@ TEST_F(SegmenterProgram, RefusesALimitOfMemoryThatItCannotKeep) {
   EXPECT_NE(run(log + " --swap-folder " + path("")).exit_code, 0);
 }
 
+TEST_F(SegmenterProgram, RefusesOptionsThatDoNothing) {
+  const auto unsaved = run("--check --save-every 5");
+  EXPECT_NE(unsaved.exit_code, 0);
+  EXPECT_THAT(unsaved.output, HasSubstr("--save-every needs --save FILE"));
+  EXPECT_EQ(run("--check --save-every 5 --save " + path("a.map")).exit_code, 0);
+  EXPECT_THAT(run("--check --linger nan").output, HasSubstr("'nan' is no finite number"));
+}
+
 TEST_F(SegmenterProgram, ChecksTheFilesAndTheBusThatARunOpens) {
   write_log(path("slices.lcm"), messages_of(wavy_session(2, 100)));
   EXPECT_EQ(run("--check --log " + path("slices.lcm")).exit_code, 0);

@@ -92,6 +92,7 @@ TEST_F(EvaluateLive, SaysWhatTheLogLacks) {
 TEST_F(EvaluateLive, IsOneTaskAmongSeveral) {
   EXPECT_THAT(run("--live a.lcm b.lcm --out out").output, HasSubstr("--live excludes IN"));
   EXPECT_THAT(run("--json a.json b.lcm --out out").output, HasSubstr("--json requires"));
+  EXPECT_THAT(run("--live a.lcm --out out").output, HasSubstr("--out excludes"));
 }
 
 }  // namespace

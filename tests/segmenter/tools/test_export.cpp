@@ -201,6 +201,8 @@ TEST_F(Export, SaysWhatIsWrongAndWritesNothing) {
   expect_error("FOLDER/log.txt --csv FOLDER/a.csv", "is no saved segment map");
   expect_error("FOLDER/map.kseg --csv FOLDER/a.csv --mesh FOLDER/segments.ply",
                "of no use without --segs");
+  EXPECT_THAT(run("FOLDER/map.kseg --csv FOLDER/a.csv --scene-id x").output,
+              HasSubstr("--scene-id requires --segs"));
   std::ofstream(folder_ / "plain.ply") << "ply\nformat ascii 1.0\nelement vertex 1\n"
                                        << "property float x\nproperty float y\n"
                                        << "property float z\nend_header\n0 0 0\n";
