@@ -2,12 +2,14 @@
 
 #include <CLI/CLI.hpp>
 
+#include "lcmtypes/base/number_range.hpp"
+
 namespace kintsugi::segmenter {
 
 void add_cloud_options(CLI::App& app, CloudInputConfig& config) {
   app.add_option("--resolution", config.resolution_m,
-                 "voxel size in metres, > 0 (default: the median spacing of the points)")
-      ->check(CLI::PositiveNumber);
+                 "voxel size in metres (default: the median spacing of the points)")
+      ->check(number_range(1e-6, 1e3));
   app.add_option("--normals-k", config.normals.num_neighbours,
                  "number of neighbours to compute missing normals from, >= 3")
       ->capture_default_str();

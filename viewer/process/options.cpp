@@ -20,6 +20,7 @@ namespace kintsugi::viewer {
 namespace {
 
 constexpr double kDegreesPerRadian = 180.0 / std::numbers::pi;
+constexpr double kMaxPitch_deg = 85.0;  // from straight above the picture has no upright
 
 /// The options, and the values of flags that are converted after parsing.
 struct Flags {
@@ -110,9 +111,11 @@ void add_drawing_flags(CLI::App& app, Flags& flags) {
       ->capture_default_str();
   app.add_option("--overview-yaw", flags.overview_yaw_deg,
                  "Angle of the overview to the left of the first viewing direction, degrees")
+      ->check(finite_number())
       ->capture_default_str();
   app.add_option("--overview-pitch", flags.overview_pitch_deg,
                  "Angle of the overview below the horizon, degrees")
+      ->check(number_range(-kMaxPitch_deg, kMaxPitch_deg))
       ->capture_default_str();
   app.add_option("--splat-radius", renderer.splat.radius_vox,
                  "Radius of the disc drawn for a point, voxels")
@@ -142,15 +145,15 @@ void add_config_flags(CLI::App& app, Flags& flags) {
       ->configurable(false);
 }
 
-/// "1280x720".
-void parse_size(const std::string& text, int& width_px, int& height_px) {
-  const char* const end = text.data() + text.size();
 /// What a run would refuse at its beginning.
 void check_inputs(const Options& options) {
   check_bus_url(options.lcm_url);
   if (options.log) const LogReader readable(*options.log);
 }
 
+/// "1280x720".
+void parse_size(const std::string& text, int& width_px, int& height_px) {
+  const char* const end = text.data() + text.size();
   const auto [x, width_error] = std::from_chars(text.data(), end, width_px);
   if (width_error == std::errc() && x != end && *x == 'x') {
     const auto [rest, height_error] = std::from_chars(x + 1, end, height_px);

@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "lcmtypes/base/number_range.hpp"
 #include "lcmtypes/base/output_files.hpp"
 
 namespace kintsugi::segmenter {
@@ -38,10 +39,9 @@ void add_options(CLI::App& app, ExportOptions& options) {
   app.add_option("--min-points", options.min_points,
                  "of --segment-plys only segments with at least this many points")
       ->needs(folder);
-  app.add_option(
-         "--resolution", options.resolution_m,
-         "voxel size of a PLY file in metres, > 0 (default: the median spacing of the points)")
-      ->check(CLI::PositiveNumber);
+  app.add_option("--resolution", options.resolution_m,
+                 "voxel size of a PLY file in metres (default: the median spacing of the points)")
+      ->check(number_range(1e-6, 1e3));
 }
 
 void validate(const ExportOptions& options) {

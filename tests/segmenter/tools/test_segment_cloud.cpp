@@ -230,7 +230,8 @@ TEST_F(SegmentCloud, RefusesParametersOutOfRange) {
   expect_error("--threshold 0", "threshold");
   expect_error("--scale -1", "scale");
   expect_error("--beta 1.5", "beta");
-  expect_error("--resolution -0.01", "--resolution");
+  expect_error("--resolution -0.01", "--resolution: Value -0.01 not in range");
+  expect_error("--resolution nan", "--resolution: 'nan' is no number");
   expect_error("--radius-factor nan", "radius_factor");
   expect_error("--color-weight -1", "color_weight");
   expect_error("--min-points -1", "min_points");

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
@@ -18,6 +20,7 @@ namespace kintsugi::viewer {
 namespace {
 
 namespace fs = std::filesystem;
+using ::testing::HasSubstr;
 using testing::TemporaryFolder;
 
 constexpr double kLength_m = 5.0;  // 20 slices
@@ -59,6 +62,19 @@ TEST(ViewerProcess, FailsWhenALogHasNothingOfTheMap) {
   write_log(folder / "room.log", make_room(kLength_m, kResolution_m));
   EXPECT_EQ(1, run({"--log", folder / "room.log", "--out", folder / "out", "--map-name", "hall"}));
   EXPECT_TRUE(names_in(folder / "out").empty());
+}
+
+TEST(ViewerProcess, NamesFlagsAndDegreesOfWrongAngles) {
+  const TemporaryFolder folder;
+  const auto output_of = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), "--check");
+    EXPECT_NE(0, Program(std::move(arguments), 0, folder / "output.txt").wait());
+    return std::string(std::istreambuf_iterator<char>(std::ifstream(folder / "output.txt").rdbuf()),
+                       {});
+  };
+  EXPECT_THAT(output_of({"--overview-pitch", "200"}),
+              HasSubstr("--overview-pitch: Value 200 not in range -85"));
+  EXPECT_THAT(output_of({"--overview-yaw", "inf"}), HasSubstr("--overview-yaw: 'inf'"));
 }
 
 TEST(ViewerProcess, ChecksTheFilesAndTheBusThatARunOpens) {
