@@ -55,6 +55,12 @@ SegmentTimeline timeline_of(std::uint32_t id, const std::vector<SegmentUpdate>& 
   return viewer::timeline_of(id, log);
 }
 
+TEST(Timeline, IsEmptyForPointsInNoSegment) {
+  const SegmentTimeline timeline = timeline_of(kNoSegment, life_of_two());
+  EXPECT_THAT(timeline.events, IsEmpty());
+  EXPECT_FALSE(timeline.is_known());
+}
+
 TEST(Timeline, TellsALifeFromBeginningToEnd) {
   const SegmentTimeline timeline = timeline_of(2, life_of_two());
   EXPECT_THAT(timeline.events, ElementsAre(Event{2, kCreated}, Event{4, kAbsorbed, 3, 20},

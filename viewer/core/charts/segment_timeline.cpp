@@ -66,6 +66,7 @@ bool SegmentTimeline::has_beginning() const {
 SegmentTimeline timeline_of(std::uint32_t segment_id, const UpdateLog& log) {
   SegmentTimeline timeline;
   timeline.segment_id = segment_id;
+  if (segment_id == kNoSegment) return timeline;  // events without another segment name it
   PointCounts before;
   for (const UpdateLog::Entry* entry : log.entries()) {
     timeline.num_slices = std::max(timeline.num_slices, entry->num_slices);

@@ -43,6 +43,7 @@ struct SegmentTimeline {
   bool has_beginning() const;
 };
 
+/// Empty for kNoSegment, which is no segment.
 SegmentTimeline timeline_of(std::uint32_t segment_id, const UpdateLog& log);
 
 }  // namespace kintsugi::viewer
