@@ -117,20 +117,6 @@ void draw_ids(cv::Mat3b& image, const SegmentImage& segments, const Highlight& h
   draw_labels(image, place_labels(ids, highlight, reserved));
 }
 
-/// The camera of the view, with an image of this size.
-VirtualCamera camera_of(const CameraView& view, cv::Size size) {
-  Intrinsics k = view.intrinsics;
-  const double scale_u = static_cast<double>(size.width) / k.width;
-  const double scale_v = static_cast<double>(size.height) / k.height;
-  k.fx *= scale_u;
-  k.fy *= scale_v;
-  k.cx = scale_u * (k.cx + 0.5) - 0.5;
-  k.cy = scale_v * (k.cy + 0.5) - 0.5;
-  k.width = size.width;
-  k.height = size.height;
-  return {k, view.X_WC};
-}
-
 std::string title_of(const CameraView& view) {
   return is_located(view.state) ? "camera" : "camera: " + std::string(to_string(view.state));
 }

@@ -75,6 +75,20 @@ cv::Mat3b depth_in_grey(const MeasuredDepth& measured) {
 
 }  // namespace
 
+VirtualCamera camera_of(const CameraView& view, cv::Size size) {
+  VirtualCamera camera{view.intrinsics, view.X_WC};
+  Intrinsics& k = camera.intrinsics;
+  const double along_u = static_cast<double>(size.width) / k.width;
+  const double along_v = static_cast<double>(size.height) / k.height;
+  k.fx *= along_u;
+  k.fy *= along_v;
+  k.cx = along_u * (k.cx + 0.5) - 0.5;
+  k.cy = along_v * (k.cy + 0.5) - 0.5;
+  k.width = size.width;
+  k.height = size.height;
+  return camera;
+}
+
 cv::Mat3b camera_image(const CameraView& view, cv::Size size) {
   const cv::Mat3b color = decode_color(view);
   if (color.empty()) return depth_in_grey(measured_depth(view, size));

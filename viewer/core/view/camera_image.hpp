@@ -3,9 +3,13 @@
 #include <opencv2/core.hpp>
 
 #include "lcmtypes/messages.hpp"
+#include "viewer/core/camera/virtual_camera.hpp"
 #include "viewer/core/rendering/measured_depth.hpp"
 
 namespace kintsugi::viewer {
+
+/// The depth camera of a view, with pictures of this size.
+VirtualCamera camera_of(const CameraView& view, cv::Size size);
 
 /// The colour image of a view in this size; without one that can be decoded its depth in shades of
 /// grey, near surfaces bright, black where nothing is measured.
