@@ -19,9 +19,6 @@
 namespace kintsugi::segmenter {
 namespace {
 
-// The same as in the mapper.
-constexpr float kAveragingRadius_vox = 2.0F;
-
 NormalsConfig normals_of(const CloudInputConfig& config, const Eigen::Vector3d& origin_W) {
   NormalsConfig normals = config.normals;
   if (!config.viewpoint_W.empty()) {

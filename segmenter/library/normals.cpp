@@ -6,13 +6,13 @@ namespace kintsugi {
 
 void estimate_normals(std::span<CloudPoint> points_W, double resolution_m,
                       const std::optional<Eigen::Vector3d>& viewpoint_W) {
-  constexpr float kAveragingRadius_vox = 2.0F;  // the same as in the mapper
   require(resolution_m > 0.0, "resolution_m", resolution_m, "> 0");
   segmenter::NormalsConfig config;
   config.viewpoint_W = viewpoint_W;
   config.validate();
   segmenter::compute_normals(points_W, config, [](double /*share*/) {});
-  segmenter::average_normals(points_W, kAveragingRadius_vox * static_cast<float>(resolution_m));
+  segmenter::average_normals(points_W,
+                             segmenter::kAveragingRadius_vox * static_cast<float>(resolution_m));
 }
 
 void normalize_normals(std::span<CloudPoint> points_W) { segmenter::normalize_normals(points_W); }

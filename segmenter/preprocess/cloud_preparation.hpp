@@ -30,6 +30,9 @@ struct NormalCount {
 };
 NormalCount count_missing_normals(std::span<const CloudPoint> points_W);
 
+/// Within which computed normals are averaged, the same as in the mapper.
+inline constexpr float kAveragingRadius_vox = 2.0F;
+
 /// Replaces each normal by the mean of its own and those of the points closer than `radius_m` (> 0)
 /// that do not face away from it (n . n' > 0), scaled to length 1. This reduces noise and keeps the
 /// two sides of a thin board apart. Points that cannot be segmented, for instance those without a
