@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -212,6 +213,25 @@ std::vector<std::uint8_t> QueryResponder::recorded_views(const SegmentQuery& que
   return view_bytes({all->map_session, all->map_name, {first, first + count}});
 }
 
+// Without the memory, the query that it is for is refused: segmentation continues.
+void QueryResponder::take_room(std::size_t num_points) {
+  try {
+    touch_memory(copy_->map.state, num_points);
+  } catch (const std::exception& error) {
+    copy_.reset();
+    std::optional<SegmentQuery> query;
+    {
+      const std::lock_guard lock(mutex_);
+      if (!waiting_.empty()) query = waiting_.front();
+    }
+    if (!query) return;
+    drop(*query);
+    publish([&] {
+      return refusal(*query, std::string("no memory for a copy of the map: ") + error.what());
+    });
+  }
+}
+
 void QueryResponder::run() {
   setpriority(PRIO_PROCESS, 0, kNiceness);  // applies to this thread only
   oneapi::tbb::task_arena one_core(1);
@@ -225,7 +245,7 @@ void QueryResponder::run() {
     if (query) {
       one_core.execute([&] { publish([&] { return current_answer(*query); }); });
     } else {
-      touch_memory(copy_->map.state, room_points);
+      take_room(room_points);
     }
     lock.lock();
     current_.reset();

@@ -79,6 +79,7 @@ class QueryResponder {
   bool has_work() const;  // with the lock held
   bool has_room_for(const SegmentMap& map) const;
   void make_room(std::size_t num_points);
+  void take_room(std::size_t num_points);
   void update_copy(const SegmentMap& map);
   void prepare(const SegmentMap& map, const SegmentQuery& query);
   void begin(const SegmentQuery& query);
