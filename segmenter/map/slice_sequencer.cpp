@@ -220,6 +220,10 @@ const CloudSlice* SliceSequencer::upcoming() const {
   return &ready_.front().slices.begin()->second;
 }
 
+bool SliceSequencer::is_in_batch() const {
+  return ready_.size() == 1 && ready_.front().kind == Kind::kPatches && !ready_.front().is_closed;
+}
+
 std::optional<SliceGap> SliceSequencer::give_up_gap(Clock::time_point now, Outlook outlook) {
   if (waiting_.empty() || !ready_.empty() || outlook == Outlook::kLive) {
     return std::nullopt;

@@ -121,6 +121,9 @@ class SliceSequencer {
   /// Gives up the first gap, if it is time to, and returns it. Then pop() may return more.
   std::optional<SliceGap> give_up_gap(Clock::time_point now, Outlook outlook);
 
+  /// The next group is a batch of patches whose end has not come.
+  [[nodiscard]] bool is_in_batch() const;
+
   /// Slices and corrections that came and were not popped.
   [[nodiscard]] std::int64_t num_waiting() const;
 

@@ -123,9 +123,11 @@ void add_slice_flags(CLI::App& app, Options& options) {
                  "continues without it, > 0")
       ->check(number_range(0.001, 1e6))
       ->capture_default_str();
-  app.add_option("--max-queue", options.max_queue_mb,
-                 "MB of slices that are received but not yet segmented; further slices are "
-                 "refused and requested again when there is room, > 0")
+  app.add_option(
+         "--max-queue", options.max_queue_mb,
+         "MB of slices that are received but not yet segmented; further slices are "
+         "refused and requested again when there is room, > 0; of a log at least a batch of "
+         "patches is read")
       ->check(number_range(1e-6, 1e6))
       ->capture_default_str();
   app.add_option("--max-memory", options.max_memory_mb,

@@ -77,7 +77,7 @@ void SegmentationLoop::segment_until_end() {
   while (!is_ending_ && (is_behind || !with_.queue.is_exhausted())) {
     add(with_.queue.take(is_behind ? milliseconds(0) : kPollPeriod));
     is_behind = step();
-    with_.queue.set_waiting(counts_.waiting_bytes, !is_behind);
+    with_.queue.set_waiting(counts_.waiting_bytes, !is_behind, !is_behind && counts_.in_batch);
     serve();
   }
 }

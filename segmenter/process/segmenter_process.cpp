@@ -15,6 +15,17 @@ namespace {
 constexpr std::chrono::milliseconds kPollPeriod{50};
 constexpr double kLingerAfterStop_s = 2.0;
 
+/// The limit of a log's incomplete slices is not that of its queue: nobody sends again what is
+/// dropped.
+SliceReceiver::Config receiver_config(const SegmenterProcess::Config& config,
+                                      std::int64_t session) {
+  SliceReceiver::Config receiver;
+  receiver.session = session;
+  receiver.map_name = config.segmentation.maps.map_name;
+  if (config.log.empty()) receiver.max_pending_bytes = config.max_queue_bytes;
+  return receiver;
+}
+
 }  // namespace
 
 void SegmenterProcess::Config::validate() const {
@@ -36,8 +47,7 @@ SegmenterProcess::SegmenterProcess(const Config& config)
       queries_(
           config.publish ? bus_.get() : nullptr, session_, [this] { queue_.wake(); },
           [this](const CameraView& view) { keep(view); }, views_.get()),
-      receiver_({session_, config.segmentation.maps.map_name, config.max_queue_bytes}, queue_,
-                views_.get()),
+      receiver_(receiver_config(config, session_), queue_, views_.get()),
       loop_(config.segmentation, session_,
             {queue_, receiver_, updates_, queries_, clock_, views_.get()}) {}
 

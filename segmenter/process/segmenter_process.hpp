@@ -39,7 +39,7 @@ class SegmenterProcess {
     std::string lcm_url;        ///< empty: the default bus
     std::filesystem::path log;  ///< read slices from this log; empty: from the bus
     bool publish = true;        ///< updates and status on the bus
-    /// Slices received and not segmented, and as much again of incomplete ones; > 0.
+    /// Slices received and not segmented, and on the bus as much again of incomplete ones; > 0.
     std::size_t max_queue_bytes = std::size_t{1} << 30U;
     UpdatePublisher::Config updates;
     bool exit_on_final = false;  ///< end when the final slice is segmented and published

@@ -60,13 +60,14 @@ class SliceQueue {
     return std::exchange(slices_, {});
   }
 
-  /// Sets how much of what was taken still waits to be segmented, and whether it waits for a
-  /// missing slice.
-  void set_waiting(std::size_t bytes, bool is_for_missing) {
+  /// Sets how much of what was taken still waits to be segmented, whether it waits for a missing
+  /// slice, and whether it waits for the end of a batch.
+  void set_waiting(std::size_t bytes, bool is_for_missing, bool is_for_batch = false) {
     {
       const std::lock_guard lock(mutex_);
       waiting_bytes_ = bytes;
       waits_for_missing_ = is_for_missing;
+      waits_for_batch_ = is_for_batch;
     }
     changed_.notify_all();
   }
@@ -81,10 +82,13 @@ class SliceQueue {
     return waits_for_missing_ && slices_.empty() ? StreamRoom::kOnlyNext : StreamRoom::kNone;
   }
 
-  /// Waits up to `timeout` for room; returns whether there is plenty.
+  /// For the reader of a log: waits up to `timeout` until the next slice is to be read. That is so
+  /// also when the queue is full of a batch whose end is still to be read: the memory is bounded by
+  /// a batch then.
   bool wait_for_room(std::chrono::milliseconds timeout) {
     std::unique_lock lock(mutex_);
-    return changed_.wait_for(lock, timeout, [this] { return !is_full(); });
+    return changed_.wait_for(
+        lock, timeout, [this] { return !is_full() || (waits_for_batch_ && slices_.empty()); });
   }
 
   std::int64_t size() const {
@@ -114,6 +118,7 @@ class SliceQueue {
   std::size_t queued_bytes_ = 0;   // in slices_
   std::size_t waiting_bytes_ = 0;  // taken, and not segmented
   bool waits_for_missing_ = false;
+  bool waits_for_batch_ = false;
   bool closed_ = false;
   bool is_woken_ = false;
 };

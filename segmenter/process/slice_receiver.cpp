@@ -27,7 +27,7 @@ SliceReceiver::SliceReceiver(const Config& config, SliceQueue& queue, ViewRecord
             StreamSubscriber<CloudSlice>::Config stream;
             stream.receiver = config.session;
             stream.max_pending_bytes = config.max_pending_bytes;
-            stream.room = [this] { return stopping_ ? StreamRoom::kNone : queue_.room(); };
+            stream.room = [this] { return room(); };
             stream.wanted_map_name = config.map_name;
             if (!config.map_name.empty()) {
               stream.wanted = [name = config.map_name](const CloudSlice& header) {
@@ -65,6 +65,12 @@ void SliceReceiver::read(const std::filesystem::path& log) {
 void SliceReceiver::stop() {
   stopping_ = true;
   if (reader_.joinable()) reader_.join();
+}
+
+// What is read from a log is kept, because nobody sends it again; the reader waits for room.
+StreamRoom SliceReceiver::room() const {
+  if (stopping_) return StreamRoom::kNone;
+  return reads_log_ ? StreamRoom::kPlenty : queue_.room();
 }
 
 bool SliceReceiver::is_coming(std::int64_t map_session) const {

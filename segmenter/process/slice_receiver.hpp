@@ -25,7 +25,8 @@ class SliceReceiver {
   struct Config {
     std::int64_t session = 0;  ///< of this segmenter, for its resend requests
     std::string map_name;      ///< only slices of this map; empty: all
-    std::size_t max_pending_bytes = std::size_t{1} << 30U;  ///< of incomplete slices
+    /// Of incomplete slices. Beyond it chunks are dropped, which in a log nobody sends again.
+    std::size_t max_pending_bytes = std::size_t{1} << 30U;
   };
 
   /// `queue` must outlive this, and so must `views`, which gets every slice, and the views of a
@@ -64,6 +65,7 @@ class SliceReceiver {
   const std::optional<std::string>& problem() const { return problem_; }
 
  private:
+  StreamRoom room() const;
   void count_bad(const DecodeError& reason);
 
   SliceQueue& queue_;

@@ -101,6 +101,8 @@ class SessionMap {
   std::shared_ptr<const SegmentMap> shared_segment_map() const { return map_; }
   /// True when no slice that arrived waits to be segmented.
   bool is_idle() const { return sequencer_.num_waiting() == 0; }
+  /// True when a batch of patches waits for its end.
+  bool is_in_batch() const { return sequencer_.is_in_batch(); }
   /// Memory of the slices that arrived and are not segmented.
   std::size_t waiting_bytes() const { return sequencer_.waiting_bytes(); }
 

@@ -206,6 +206,7 @@ SessionMaps::Counts SessionMaps::counts() const {
     counts.lag += of_map.lag;
     counts.missing += of_map.missing;
     counts.waiting_bytes += session.map.waiting_bytes();
+    counts.in_batch = counts.in_batch || session.map.is_in_batch();
     counts.complete = counts.complete && of_map.complete && is_newest;
     counts.ended = counts.ended && of_map.ended && is_newest;
   }

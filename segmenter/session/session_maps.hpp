@@ -54,6 +54,7 @@ class SessionMaps {
     std::int64_t missing = 0;       ///< slices, of all maps, also of forgotten ones
     std::int64_t dropped = 0;       ///< slices
     std::size_t waiting_bytes = 0;  ///< of slices that wait to be segmented
+    bool in_batch = false;          ///< in some map a batch of patches waits for its end
     bool complete = false;          ///< every map is complete, and none is superseded
     bool ended = false;             ///< every map has ended, and none is superseded
   };

@@ -142,6 +142,28 @@ TEST_F(SegmenterProgram, HasTheSameMapWithLessMemoryThanItNeeds) {
   EXPECT_EQ(less.points_W, all.points_W);
 }
 
+// The timeout for what nobody sends is far longer than a test may take.
+TEST_F(SegmenterProgram, HasTheSameMapOfALogWithAQueueThatHoldsNoBatch) {
+  auto slices = wavy_session(12, 300);
+  for (std::size_t i = 0; i + 1 < slices.size(); ++i) {
+    slices[i].kind = SliceKind::kPatch;
+    slices[i].ends_batch = i % 4 == 3;
+  }
+  slices.back().revision_sum = 0;
+  auto messages = messages_of(slices);
+  std::swap(messages[1], messages[6]);  // chunks out of order
+  write_log(path("patches.lcm"), messages);
+  const std::string log = "--log " + path("patches.lcm") + " --gap-timeout 10000 --out ";
+  EXPECT_EQ(run(log + path("all")).exit_code, 0);
+  const auto result = run(log + path("little") + " --max-queue 0.000001");
+  EXPECT_EQ(result.exit_code, 0) << result.output;
+  const PlyCloud all = read_ply(path("all") + "/segments.ply");
+  const PlyCloud little = read_ply(path("little") + "/segments.ply");
+  EXPECT_EQ(all.points_W.size(), 3600U);
+  EXPECT_EQ(little.points_W, all.points_W);
+  EXPECT_EQ(little.segment_ids, all.segment_ids);
+}
+
 TEST_F(SegmenterProgram, RefusesALimitOfMemoryThatItCannotKeep) {
   write_log(path("slices.lcm"), messages_of(wavy_session(2, 100)));
   const std::string log = "--log " + path("slices.lcm") + " --out " + path("out");

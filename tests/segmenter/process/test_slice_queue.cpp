@@ -56,6 +56,22 @@ TEST(SliceQueue, AReaderWaitsForRoom) {
   worker.join();
 }
 
+// Else it would wait for what only it can bring.
+TEST(SliceQueue, AReaderGoesOnWhenTheEndOfABatchIsStillToBeRead) {
+  SliceQueue queue(1);
+  queue.push(slice_of(1));
+  queue.set_waiting(0, true, true);
+  EXPECT_FALSE(queue.wait_for_room(milliseconds(1)));  // what is queued may be the end
+  const auto taken = queue.take(milliseconds(0));
+  queue.set_waiting(bytes_of(taken[0]), true, true);
+  EXPECT_TRUE(queue.wait_for_room(milliseconds(0)));
+  queue.push(slice_of(1));
+  EXPECT_FALSE(queue.wait_for_room(milliseconds(1)));
+  queue.take(milliseconds(0));
+  queue.set_waiting(2 * bytes_of(taken[0]), true, false);
+  EXPECT_FALSE(queue.wait_for_room(milliseconds(1)));
+}
+
 TEST(SliceQueue, IsExhaustedWhenClosedAndEmpty) {
   SliceQueue queue(1);
   queue.push(slice_of(1));
