@@ -32,7 +32,8 @@ void Resumption::begin_run(std::int64_t session) {
 
 void Resumption::continue_last_run() {
   const StoredSession& last = store_.sessions().back();
-  expect_same_options(config_.options, last.options);
+  const StoredSession now = decode_options(encode_options(last.session, config_.options));
+  expect_same_options(now.options, last.options);  // as a log has them
   session_ = last.session;
   if (config_.session != 0 && config_.session != session_) {
     throw std::runtime_error("--session is " + std::to_string(config_.session) +

@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "lcmtypes/base/json_text.hpp"
 #include "lcmtypes/channels.hpp"
 #include "lcmtypes/log/session_log.hpp"
 #include "mapper/session/chunk_fates.hpp"
@@ -13,7 +14,7 @@
 
 namespace kintsugi::mapper {
 Bytes encode_options(std::int64_t session, const MappingOptions& options) {
-  const std::string text = nlohmann::json{{"session", session}, {"options", options}}.dump();
+  const std::string text = json_text(nlohmann::json{{"session", session}, {"options", options}});
   return {text.begin(), text.end()};
 }
 

@@ -13,7 +13,7 @@
 
 namespace kintsugi::mapper {
 
-/// The data of the event on kOptionsChannel.
+/// The data of the event on kOptionsChannel. Bytes of options that are no UTF-8 are replaced.
 Bytes encode_options(std::int64_t session, const MappingOptions& options);
 
 /// One session of a log.

@@ -47,6 +47,21 @@ TEST_F(ResumptionTest, ContinuesTheLastRunOfTheLog) {
               ThrowsMessage<std::runtime_error>(HasSubstr("the session to resume is 7")));
 }
 
+TEST_F(ResumptionTest, ContinuesARunWithOptionsThatAreNoUtf8) {
+  const MappingOptions options{{"--map-name", "r\xe9"}};
+  {
+    SessionStore store(log(false));
+    const Resumption run(store, {.options = options, .session = 7});
+  }
+  SessionStore store(log(true));
+  EXPECT_EQ(Resumption(store, {.options = options}).session(), 7);
+  EXPECT_THAT(
+      [&] {
+        Resumption(store, {.options = {{"--map-name", "s\xe9"}}});
+      },
+      ThrowsMessage<std::runtime_error>(HasSubstr("--map-name is")));
+}
+
 TEST_F(ResumptionTest, KnowsWhichFramesWereFusedAndWhichOnlyTracked) {
   {
     SessionStore store(log(false));
