@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <spdlog/fmt/fmt.h>
 
+#include "lcmtypes/base/json_text.hpp"
 #include "segmenter/evaluation/report/figure.hpp"
 #include "segmenter/evaluation/report/plot.hpp"
 #include "segmenter/evaluation/report/text_file.hpp"
@@ -193,13 +194,13 @@ std::string to_json(const ObjectScores& scores) {
     }
   }
   const MovedShare moved = moved_share(scores);
-  return Json{{"summary", summary},
-              {"moved_within_2cm_5deg", {{"right", moved.num_right}, {"true", moved.num_true}}},
-              {"false_of_200_points", num_large_false_claims(scores)},
-              {"objects", list_of(truth_table(scores))},
-              {"claims", list_of(claims_table(scores))}}
-             .dump(1, ' ', false, Json::error_handler_t::replace) +
-         "\n";
+  const Json report{
+      {"summary", summary},
+      {"moved_within_2cm_5deg", {{"right", moved.num_right}, {"true", moved.num_true}}},
+      {"false_of_200_points", num_large_false_claims(scores)},
+      {"objects", list_of(truth_table(scores))},
+      {"claims", list_of(claims_table(scores))}};
+  return json_text(report, 1) + "\n";
 }
 
 void write_objects_report(const ObjectScores& scores, const std::filesystem::path& folder) {
