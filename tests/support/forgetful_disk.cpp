@@ -60,9 +60,11 @@ struct Place {
 
 class Watch {
  public:
-  static Watch* instance() {
-    static Watch* watch = environment("FORGETFUL_DISK").empty() ? nullptr : new Watch;
-    return watch;
+  /// nullptr: no folder is watched, or the program has not begun: a sanitizer that makes the folder
+  /// of its log (log_path) can take neither a static variable nor instrumented code then.
+  static Watch* instance() { return instance_; }
+  static void begin() {
+    if (!environment("FORGETFUL_DISK").empty()) instance_ = new Watch;
   }
 
   std::unique_lock<std::mutex> lock() { return std::unique_lock(mutex_); }
@@ -159,6 +161,8 @@ class Watch {
     return node;
   }
 
+  static inline Watch* instance_ = nullptr;
+
   std::mutex mutex_;
   const std::string root_;
   int journal_ = -1;
@@ -170,6 +174,8 @@ class Watch {
   int first_failure_ = 0;
   int last_failure_ = -1;
 };
+
+[[gnu::constructor]] void begin_to_watch() { Watch::begin(); }
 
 int open_watched(int directory, const char* path, int flags, mode_t mode) {
   Watch* const watch = Watch::instance();
