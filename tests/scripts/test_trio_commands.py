@@ -2,6 +2,7 @@
 of the processes, and what happens when the supervisor is stopped or killed."""
 
 import os
+import re
 import shlex
 import signal
 import subprocess
@@ -12,6 +13,8 @@ from unittest import mock
 
 from trio_fakes import ROOT, UNTIL_TERM, environment, process_is_gone, wait_until, write_program
 
+from trio import commands, options
+from trio.programs import command_of
 from trio.recording import HEADER, SYNC_WORD
 
 # Each program accepts all options, and notes how it was called. The display of the progress lasts until it is ended;
@@ -76,6 +79,15 @@ class CommandTest(unittest.TestCase):
 
     def pids(self, out):
         return [int((self.work / out / f"{name}.pid").read_text()) for name in ("mapper", "segmenter", "viewer")]
+
+
+class Demo(unittest.TestCase):
+    def test_builds_all_programs_that_its_run_starts(self):
+        script = Path(ROOT, "scripts", "demo").read_text()
+        built = set(re.search(r"^programs=\((.*)\)$", script, re.MULTILINE)[1].split())
+        options_of_run = shlex.split(re.search(r"^exec \S+ (.*) \"\$@\"$", script, re.MULTILINE)[1])
+        started = commands.needed_programs(options.parse_trio(options_of_run))
+        self.assertEqual(built, {os.path.basename(command_of(name)[0]) for name in started})
 
 
 class Trio(CommandTest):

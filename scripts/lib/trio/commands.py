@@ -51,8 +51,7 @@ def trio(arguments):
     if choice.resume:
         choice = recalled(choice.out, arguments)
     network.use_bus_key(choice.bus_key, choice.started_in)
-    check_programs([*choice.only, "status", *([] if choice.no_log else ["complete-log"])],
-                   ["setpriv"] if choice.no_log else ["setpriv", "lcm-logger"])
+    check_programs(needed_programs(choice), ["setpriv"] if choice.no_log else ["setpriv", "lcm-logger"])
     network.choose_network(choice.private, this_command())
     if "mapper" in choice.only and not choice.private:  # nobody else is in a private network
         refuse_second_mapper(choice)
@@ -67,6 +66,11 @@ def trio(arguments):
         folder.begin_run([*network.bus_key_option(), *arguments], choice.durable)
     network.tell_how_to_ask()
     return run_trio(choice, folder)
+
+
+def needed_programs(choice):
+    """The names of the programs that a run with these options starts, as check_programs() takes them."""
+    return [*choice.only, "status", *([] if choice.no_log else ["complete-log"])]
 
 
 def words_to_check(name, choice, folder):
