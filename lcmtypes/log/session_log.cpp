@@ -26,14 +26,10 @@ int last_number(const fs::path& path) {
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(folder, error)) {
     const std::string name = entry.path().filename().string();
-    if (!name.starts_with(begin) || !name.ends_with(end) ||
-        name.size() <= begin.size() + end.size()) {
-      continue;
-    }
-    const char* const digits_end = name.data() + (name.size() - end.size());
+    if (!name.starts_with(begin)) continue;
     int number = 0;
-    const auto parsed = std::from_chars(name.data() + begin.size(), digits_end, number);
-    if (parsed.ec == std::errc() && parsed.ptr == digits_end) last = std::max(last, number);
+    std::from_chars(name.data() + begin.size(), name.data() + name.size(), number);
+    if (name == numbered(path, number).filename()) last = std::max(last, number);
   }
   return last;
 }

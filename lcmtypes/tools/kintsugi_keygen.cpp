@@ -23,7 +23,7 @@ int main(int argc, char** argv) {
     kintsugi::add_version_flag(app);
     CLI11_PARSE(app, argc, argv);
     kintsugi::write_new_bus_key(file);
-    std::cout << "wrote " << file << '\n';
+    std::cerr << "wrote " << file << '\n';
     return 0;
   });
 }

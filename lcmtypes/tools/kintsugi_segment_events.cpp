@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cstddef>
-#include <exception>
 #include <iostream>
 #include <string>
 
@@ -12,7 +11,9 @@
 
 #include "lcmtypes/base/atomic_file.hpp"
 #include "lcmtypes/base/command_line.hpp"
+#include "lcmtypes/base/output_files.hpp"
 #include "lcmtypes/base/patient_clock.hpp"
+#include "lcmtypes/base/run_main.hpp"
 #include "lcmtypes/base/stop_signal.hpp"
 #include "lcmtypes/bus/bus.hpp"
 #include "lcmtypes/client/object_listener.hpp"
@@ -60,12 +61,16 @@ void listen(SegmentListener& listener, ObjectListener& objects, const Options& o
   }
 }
 
-/// Reads the log up to its end or first damage, which it reports. False: it is damaged.
+/// Reads the log up to its end or first damage, which it reports. False: it was not read to its
+/// end.
 bool read_log(SegmentListener& listener, ObjectListener& objects, const std::string& path) {
   WholeLogReader log(path);
   double now_s = 0.0;  // may not go back, as the clock of a computer may
   while (const auto event = log.next()) {
-    if (stop_requested()) return true;
+    if (stop_requested()) {
+      say("interrupted: the rest of the log was not read");
+      return false;
+    }
     listener.handle(event->channel, event->data);
     now_s = std::max(now_s, 1e-6 * static_cast<double>(event->utime));
     objects.handle(event->channel, event->data, now_s);
@@ -85,6 +90,8 @@ ObjectListener::Handlers printers(const Options& options) {
 }
 
 int run(const Options& options) {
+  check_folder_of(options.json_file);
+  check_different({{"--log", options.log}}, {{"--json", options.json_file}});
   SegmentListener listener(options.map_name, [&options](const SegmentUpdate& update) {
     if (!options.quiet) std::cout << update_text(update, options.grown) << std::flush;
   });
@@ -98,7 +105,7 @@ int run(const Options& options) {
   std::cout << table_text(listener.table(), options.num_listed) << std::flush;
   if (!options.json_file.empty()) {
     AtomicFile file(options.json_file);
-    write_table_json(listener.table(), listener.is_whole(), file.stream());
+    write_table_json(listener.table(), is_read && listener.is_whole(), file.stream());
     file.commit();
   }
   say(listener.dropped());
@@ -112,31 +119,33 @@ int run(const Options& options) {
 }  // namespace kintsugi
 
 int main(int argc, char** argv) {
-  kintsugi::Options options;
-  CLI::App app(
-      "Prints which segments of a map are created, merged, split and retired, which known objects "
-      "are found, confirmed, moved and gone, what kintsugi-diff reports, and at the end the table "
-      "of all segments. Exit status 1: updates are missing, or the log is damaged.");
-  auto* url = app.add_option("--lcm-url", options.url,
-                             "URL of the bus; default: LCM_DEFAULT_URL, or multicast on this host");
-  app.add_option("--log", options.log, "Read this LCM log instead of the bus")->excludes(url);
-  kintsugi::add_log_trust_flags(app);
-  app.add_option("--map-name", options.map_name,
-                 "Follow the map with this name (default: the first that is received)");
-  app.add_flag("--exit-on-final", options.exit_on_final,
-               "Exit when the map is complete, not only on Ctrl-C");
-  app.add_flag("--grown", options.grown, "Print a line for each segment that grew, too");
-  app.add_flag("--quiet", options.quiet, "Print only the table at the end");
-  app.add_option("--top", options.num_listed, "Number of segments in the printed table")
-      ->capture_default_str();
-  app.add_option("--json", options.json_file, "Write the whole table to this file, as JSON");
-  kintsugi::add_version_flag(app);
-  CLI11_PARSE(app, argc, argv);
-  try {
+  return kintsugi::run_main(argv, [&] {
+    kintsugi::Options options;
+    CLI::App app(
+        "Prints which segments of a map are created, merged, split and retired, which known "
+        "objects are found, confirmed, moved and gone, what kintsugi-diff reports, and at the end "
+        "the table of all segments. Exit status 1: updates are missing, or the log is damaged or "
+        "was not read to its end.");
+    auto* url =
+        app.add_option("--lcm-url", options.url,
+                       "URL of the bus; default: LCM_DEFAULT_URL, or multicast on this host");
+    auto* log =
+        app.add_option("--log", options.log, "Read this LCM log instead of the bus")->excludes(url);
+    kintsugi::add_log_trust_flags(app);
+    app.add_option("--map-name", options.map_name,
+                   "Follow the map with this name (default: the first that is received)");
+    app.add_flag("--exit-on-final", options.exit_on_final,
+                 "Exit when the map is complete, not only on Ctrl-C")
+        ->excludes(log);
+    app.add_flag("--grown", options.grown, "Print a line for each segment that grew, too");
+    app.add_flag("--quiet", options.quiet, "Print only the table at the end");
+    app.add_option("--top", options.num_listed, "Number of segments in the printed table")
+        ->check(CLI::NonNegativeNumber)
+        ->capture_default_str();
+    app.add_option("--json", options.json_file, "Write the whole table to this file, as JSON");
+    kintsugi::add_version_flag(app);
+    CLI11_PARSE(app, argc, argv);
     kintsugi::install_stop_signals();
     return kintsugi::run(options);
-  } catch (const std::exception& error) {
-    kintsugi::say(error.what());
-    return 1;
-  }
+  });
 }

@@ -1,7 +1,6 @@
 // kintsugi-status: shows the progress of a run, and tells a script when the run has finished.
 
 #include <cstdio>
-#include <exception>
 #include <iostream>
 #include <optional>
 #include <string>
@@ -12,7 +11,9 @@
 #include <unistd.h>
 
 #include "lcmtypes/base/command_line.hpp"
+#include "lcmtypes/base/number_range.hpp"
 #include "lcmtypes/base/patient_clock.hpp"
+#include "lcmtypes/base/run_main.hpp"
 #include "lcmtypes/base/stop_signal.hpp"
 #include "lcmtypes/bus/bus.hpp"
 #include "lcmtypes/bus/message_subscriber.hpp"
@@ -160,59 +161,61 @@ int wait_until_ready(const Options& options) {
 }  // namespace kintsugi
 
 int main(int argc, char** argv) {
-  kintsugi::Options options;
-  CLI::App app("Shows the progress of mapper, segmenter, viewer and detector, one line a second.");
-  app.add_option("--lcm-url", options.url,
-                 "URL of the bus; default: LCM_DEFAULT_URL, or multicast on this host");
-  kintsugi::add_bus_key_flag(app);
-  app.add_option("--map-name", options.map_name,
-                 "Watch the map with this name (default: the first that is received)");
-  auto* once = app.add_flag("--once", options.once, "Print one line and exit");
-  auto* until_finished =
-      app.add_flag("--until-finished", options.until_finished,
-                   "Exit 0 when mapper and segmenter have finished, 2 without progress")
-          ->excludes(once);
-  app.add_flag("--viewer", options.waited.viewer, "Wait for the viewer too")->needs(until_finished);
-  app.add_flag("--detector", options.waited.detector, "Wait for the detector of objects too")
-      ->needs(until_finished);
-  auto* until_ready =
-      app.add_option(
-             "--until-ready", options.until_ready,
-             "Exit 0 when each of these has sent a status: mapper, segmenter, viewer, detector")
-          ->delimiter(',')
-          ->check(CLI::IsMember({"mapper", "segmenter", "viewer", "detector"}))
-          ->excludes(once)
-          ->excludes(until_finished);
-  auto* log = app.add_option("--log", options.log_file,
-                             "Append every field of every status to this CSV file")
-                  ->excludes(until_ready);
-  app.add_option("--log-every", options.log_period_s,
-                 "With --log: of each process one status in so many seconds, and the last; 0: all")
-      ->check(CLI::NonNegativeNumber)
-      ->needs(log)
-      ->capture_default_str();
-  app.add_flag("--lingering", options.lingering, "With --until-ready: and has published everything")
-      ->needs(until_ready);
-  auto* timeout =
-      app.add_option(
-             "--timeout", options.timeout_s,
-             "With --once, --until-finished or --until-ready: seconds without progress until "
-             "giving up; 0: never")
-          ->check(CLI::NonNegativeNumber)
-          ->capture_default_str();
-  app.callback([=] {
-    if (timeout->count() == 0 || once->count() + until_finished->count() + until_ready->count() > 0)
-      return;
-    throw CLI::RequiresError("--timeout", "--once, --until-finished or --until-ready");
-  });
-  kintsugi::add_version_flag(app);
-  CLI11_PARSE(app, argc, argv);
-  try {
+  return kintsugi::run_main(argv, [&] {
+    kintsugi::Options options;
+    CLI::App app(
+        "Shows the progress of mapper, segmenter, viewer and detector, one line a second.");
+    app.add_option("--lcm-url", options.url,
+                   "URL of the bus; default: LCM_DEFAULT_URL, or multicast on this host");
+    kintsugi::add_bus_key_flag(app);
+    app.add_option("--map-name", options.map_name,
+                   "Watch the map with this name (default: the first that is received)");
+    auto* once = app.add_flag("--once", options.once, "Print one line and exit");
+    auto* until_finished =
+        app.add_flag("--until-finished", options.until_finished,
+                     "Exit 0 when mapper and segmenter have finished, 2 without progress")
+            ->excludes(once);
+    app.add_flag("--viewer", options.waited.viewer, "Wait for the viewer too")
+        ->needs(until_finished);
+    app.add_flag("--detector", options.waited.detector, "Wait for the detector of objects too")
+        ->needs(until_finished);
+    auto* until_ready =
+        app.add_option(
+               "--until-ready", options.until_ready,
+               "Exit 0 when each of these has sent a status: mapper, segmenter, viewer, detector")
+            ->delimiter(',')
+            ->check(CLI::IsMember({"mapper", "segmenter", "viewer", "detector"}))
+            ->excludes(once)
+            ->excludes(until_finished);
+    auto* log = app.add_option("--log", options.log_file,
+                               "Append every field of every status to this CSV file")
+                    ->excludes(until_ready);
+    app.add_option(
+           "--log-every", options.log_period_s,
+           "With --log: of each process one status in so many seconds, and the last; 0: all")
+        ->check(kintsugi::number_range(0, 1e9))
+        ->needs(log)
+        ->capture_default_str();
+    app.add_flag("--lingering", options.lingering,
+                 "With --until-ready: and has published everything")
+        ->needs(until_ready);
+    auto* timeout =
+        app.add_option(
+               "--timeout", options.timeout_s,
+               "With --once, --until-finished or --until-ready: seconds without progress until "
+               "giving up; 0: never")
+            ->check(kintsugi::number_range(0, 1e9))
+            ->capture_default_str();
+    app.callback([=] {
+      if (timeout->count() == 0 ||
+          once->count() + until_finished->count() + until_ready->count() > 0)
+        return;
+      throw CLI::RequiresError("--timeout", "--once, --until-finished or --until-ready");
+    });
+    kintsugi::add_version_flag(app);
+    CLI11_PARSE(app, argc, argv);
     kintsugi::install_stop_signals();
     return options.until_ready.empty() ? kintsugi::watch(options)
                                        : kintsugi::wait_until_ready(options);
-  } catch (const std::exception& error) {
-    std::cerr << "kintsugi-status: " << error.what() << std::endl;
-    return 1;
-  }
+  });
 }

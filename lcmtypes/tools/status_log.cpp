@@ -13,6 +13,8 @@
 namespace kintsugi {
 namespace {
 
+constexpr const char* kHeader = "utime_us,process,field,value";
+
 /// Between double quotes, as CSV requires it; each double quote inside is doubled.
 std::string csv_text(std::string_view value) {
   std::string result = "\"";
@@ -30,9 +32,13 @@ std::string csv_text(std::int64_t value) { return std::to_string(value); }
 
 StatusLog::StatusLog(const std::filesystem::path& path, double period_s)
     : path_(path), period_us_(1e6 * period_s) {
-  std::error_code ignored;
-  const bool is_new = std::filesystem::file_size(path, ignored) == 0 || ignored;
-  if (!write(is_new ? "utime_us,process,field,value\n" : "")) {
+  std::string begin;
+  const bool is_new = !std::getline(std::ifstream(path), begin);
+  if (!is_new && begin != kHeader) {
+    throw std::runtime_error(path.string() + ": is no log of statuses, which begins with " +
+                             kHeader);
+  }
+  if (!write(is_new ? std::string(kHeader) + '\n' : "")) {
     throw std::runtime_error(path.string() + ": cannot be written: " + std::strerror(errno));
   }
 }

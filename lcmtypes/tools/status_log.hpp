@@ -16,7 +16,8 @@ namespace kintsugi {
 /// file has of each process the first status, then one of each period, and the last one.
 class StatusLog {
  public:
-  /// Appends to the file if it exists. @throws std::runtime_error when it cannot be written
+  /// Appends to the file if it exists. @throws std::runtime_error when it cannot be written, or is
+  ///   another kind of file
   explicit StatusLog(const std::filesystem::path& path, double period_s = 0.0);
   ~StatusLog();
   StatusLog(const StatusLog&) = delete;

@@ -111,3 +111,11 @@ open("spoilt.lcm", "wb").write(data)
 END
 expect_lacking spoilt.lcm 'checksum'
 grep -q 'missing' python.err || fail "${python_events[0]} does not say that updates are missing: $(cat python.err)"
+
+# A log is not replaced by what is written of it, and a table that cannot be printed is an error.
+cp run.lcm same.lcm
+! "$events" --log same.lcm --json ./same.lcm >same.txt 2>same.err || fail "the log was replaced by its table"
+cmp run.lcm same.lcm
+grep -q 'the same file as that of' same.err || fail "not told why: $(cat same.err)"
+! "$events" --log run.lcm --quiet >/dev/full 2>full.err || fail "a table that was not printed is no error"
+grep -q 'standard output cannot be written' full.err || fail "not told: $(cat full.err)"

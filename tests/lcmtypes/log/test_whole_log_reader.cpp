@@ -76,6 +76,14 @@ TEST_F(WholeLog, LacksNoFile) {
                                    "run.1.lcm' is missing, '" + numbered(path_, 2).string())));
 }
 
+TEST_F(WholeLog, TakesNoOtherNamesForNumbers) {
+  write(0, {kOptionsChannel});
+  for (const char* name : {"run.01.lcm", "run.1x.lcm", "run..lcm", "run.-1.lcm", "run.1"}) {
+    std::ofstream(folder_ / name) << "other";
+  }
+  EXPECT_THAT(read(), ElementsAre(kOptionsChannel));
+}
+
 TEST_F(WholeLog, EndsWithItsFirstDamage) {
   write(0, {kOptionsChannel});
   write(1, {"B", "B"});

@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <fstream>
 #include <set>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -16,14 +17,26 @@ namespace kintsugi {
 namespace {
 
 using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::SizeIs;
+using ::testing::ThrowsMessage;
 
 std::vector<std::string> lines_of(const std::filesystem::path& file) {
   std::vector<std::string> lines;
   std::ifstream in(file);
   for (std::string line; std::getline(in, line);) lines.push_back(line);
   return lines;
+}
+
+TEST(StatusLog, RefusesAnotherKindOfFileAndLeavesItAsItIs) {
+  const testing::TemporaryFolder folder;
+  const auto file = folder.path() / "run.lcm";
+  std::ofstream(file) << "no statuses";
+  EXPECT_THAT([&] { StatusLog log(file); },
+              ThrowsMessage<std::runtime_error>(HasSubstr("run.lcm: is no log of statuses")));
+  EXPECT_THAT(lines_of(file), ElementsAre("no statuses"));
 }
 
 TEST(StatusLog, HasALineForEachField) {
