@@ -11,6 +11,7 @@
 #include <arpa/inet.h>
 #include <lcm/lcm.h>
 #include <netinet/in.h>
+#include <sys/select.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -27,15 +28,22 @@ constexpr char kReceiveBufferLimit[] = "/proc/sys/net/core/rmem_max";
 bool is_datagrams(const std::string& url) { return url.starts_with("udpm://"); }
 bool is_log(const std::string& url) { return url.starts_with("file://"); }
 
+/// The multicast group of a URL: what stands between udpm:// and the port or the options.
+std::string group_of(const std::string& url) {
+  const std::size_t begin = url.find("://") + 3;
+  const std::string group = url.substr(begin, url.find_first_of(":?", begin) - begin);
+  return group.empty() ? kGroup : group;
+}
+
 /// Checked before LCM is opened, which without a route prints pages of text and fails without a
 /// reason. Connecting a datagram socket sends nothing, and fails exactly when there is no route.
-bool has_multicast_route() {
-  const int socket = ::socket(AF_INET, SOCK_DGRAM, 0);
-  if (socket < 0) return true;  // LCM will report the error
+bool has_route_to(const std::string& group) {
   sockaddr_in address{};
   address.sin_family = AF_INET;
   address.sin_port = htons(7667);
-  inet_pton(AF_INET, kGroup, &address.sin_addr);
+  const bool is_address = inet_pton(AF_INET, group.c_str(), &address.sin_addr) == 1;
+  const int socket = ::socket(AF_INET, SOCK_DGRAM, 0);
+  if (!is_address || socket < 0) return true;  // LCM will report the error
   const int result = connect(socket, reinterpret_cast<sockaddr*>(&address), sizeof(address));
   const bool unreachable = result != 0 && errno == ENETUNREACH;
   close(socket);
@@ -135,15 +143,28 @@ Bus::Bus(const std::string& url, const MessageTrust& trust)
       guard_(trust, is_log(url_) ? MessageGuard::Source::kLog : MessageGuard::Source::kBus, url_),
       lcm_(nullptr, lcm_destroy) {
   if (trust.key) signer_.emplace(trust.key);
-  if (is_datagrams(url_) && !has_multicast_route()) {
-    throw std::runtime_error("cannot open the bus " + url_ +
-                             ": no route for 224.0.0.0/4. Add one: "
-                             "ip route add 224.0.0.0/4 dev lo");
+  if (is_datagrams(url_) && !has_route_to(group_of(url_))) {
+    throw std::runtime_error("cannot open the bus " + url_ + ": no route to " + group_of(url_) +
+                             ". Add one for 224.0.0.0/4: ip route add 224.0.0.0/4 dev lo");
   }
   lcm_.reset(lcm_create(url_.c_str()));
   if (!lcm_) {
     throw std::runtime_error("cannot open the bus " + url_ +
                              ": expected an LCM URL such as udpm://" + kGroup + ":7667?ttl=0");
+  }
+  check_descriptor();
+}
+
+/// LCM waits for it with select(), which ends the process where it is out of range.
+void Bus::check_descriptor() const {
+  const int descriptor = lcm_get_fileno(lcm_.get());
+  if (descriptor < 0 && url_.starts_with("tcpq://")) {
+    throw std::runtime_error("cannot open the bus " + url_ + ": nobody answers there");
+  }
+  if (descriptor >= FD_SETSIZE) {
+    throw std::runtime_error("cannot open the bus " + url_ + ": this process has " +
+                             std::to_string(descriptor) + " files open, LCM works with up to " +
+                             std::to_string(FD_SETSIZE));
   }
 }
 

@@ -51,8 +51,7 @@ class Bus {
   /// @param trust with a key every message is signed, and only messages that are signed with it are
   ///   received, once each; without one messages are sent and received as they are
   /// @throws std::runtime_error when there is no multicast route, with the command that adds one,
-  /// or
-  ///   when LCM cannot open the URL
+  ///   or when LCM cannot open the URL
   Bus(const std::string& url, const MessageTrust& trust);
   ~Bus();
   Bus(const Bus&) = delete;
@@ -90,6 +89,7 @@ class Bus {
  private:
   struct Channel;
 
+  void check_descriptor() const;
   void keep_failure();
 
   std::string url_;

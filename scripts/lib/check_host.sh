@@ -2,7 +2,9 @@
 
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
-group=239.255.76.67 port=7667
+# Where the bus is: of LCM_DEFAULT_URL, or LCM's own.
+[[ "${LCM_DEFAULT_URL:-}" =~ ^udpm://([0-9.]+):([0-9]+) ]] && group="${BASH_REMATCH[1]}" port="${BASH_REMATCH[2]}" ||
+  group=239.255.76.67 port=7667
 # Ethernet's MTU, into which every datagram fits that leaves the host.
 ethernet_mtu=1500
 receive_buffer=4194304
@@ -109,12 +111,12 @@ check_peer() {
 
 # firewall_faults: the rules on standard input (nft list ruleset) that keep messages of the bus out, a line each.
 firewall_faults() {
-  awk -v port="$port" -v mode="$mode" -v interface="$interface" '
+  awk -v port="$port" -v group="${group//./\\\\.}" -v mode="$mode" -v interface="$interface" '
     /^table /   { table = $2 " " $3 }
     /^\tchain / { chain = $2; hooked = 0 }
     /hook (input|prerouting|ingress)/ { hooked = 1; if (/policy drop/) closed[table " " chain] = 1 }
     function on_bus() {
-      return $0 ~ "dport [^}]*" port || /daddr (\{ )?(239\.255\.76\.67|224\.0\.0\.0\/4)/ || /pkttype multicast/
+      return $0 ~ "dport [^}]*" port || $0 ~ "daddr (\\{ )?(" group "|224\\.0\\.0\\.0/4)" || /pkttype multicast/
     }
     function on_interface() {
       return mode == "alone" ? /iif(name)? "?lo"? / : interface != "" && $0 ~ "iif(name)? \"?" interface "\"? accept"

@@ -74,6 +74,14 @@ check "${several[@]}"
 expect_unfit 'firewall: ip guard in: udp dport .* drop'
 on_host desk nft flush ruleset
 
+# A bus elsewhere, which is closed while LCM's own is open.
+on_host desk nft -f - <<'NFT'
+table inet filter { chain input { type filter hook input priority 0; policy drop; udp dport 7667 accept; }; }
+NFT
+two_hosts_url="udpm://239.255.1.2:7700?ttl=1" check "${several[@]}"
+expect_unfit 'firewall: inet filter input: drops what no rule accepts'
+on_host desk nft flush ruleset
+
 # A single machine whose loopback interface is down.
 on_host mapper ip link set cable down
 on_host mapper ip link set lo down
@@ -90,3 +98,5 @@ said '^This machine is not fit yet'
 
 check mapper --nonsense
 ((code == 2)) || fail "an unknown option was accepted"
+check mapper --alone --peer 10.77.0.1
+((code == 2)) || fail "--peer was accepted without --several"

@@ -2,6 +2,7 @@
 // they run in one process, they enter the namespace once.
 
 #include <atomic>
+#include <cstdlib>
 #include <thread>
 
 #include <gmock/gmock.h>
@@ -23,6 +24,7 @@ namespace {
 using namespace testing;  // NOLINT: the examples
 using ::testing::HasSubstr;
 using ::testing::SizeIs;
+using ::testing::ThrowsMessage;
 
 class PrivateBus : public ::testing::Test {
  protected:
@@ -166,9 +168,23 @@ TEST_F(PrivateBus, ZReportsAMissingRoute) {
     Bus bus(kPrivateBusUrl);
     FAIL() << "opened";
   } catch (const std::runtime_error& error) {
-    EXPECT_THAT(error.what(), HasSubstr("no route for 224.0.0.0/4"));
+    EXPECT_THAT(error.what(), HasSubstr("no route to 239.255.76.67. Add one for 224.0.0.0/4: ip "));
     EXPECT_THAT(error.what(), HasSubstr("ip route add 224.0.0.0/4 dev lo"));
   }
+}
+
+TEST_F(PrivateBus, ZLooksForTheRouteToTheGroupOfTheUrl) {
+  // In an inner namespace, which has a route to one group only.
+  if (unshare(CLONE_NEWNET) != 0) GTEST_SKIP() << "no further network namespace here";
+  ASSERT_EQ(std::system("ip link set lo up && ip route add 239.1.2.3/32 dev lo"), 0);
+  EXPECT_NO_THROW(Bus("udpm://239.1.2.3:7667?ttl=0"));
+  EXPECT_THROW(Bus("udpm://239.255.76.67:7667?ttl=0"), std::runtime_error);
+}
+
+/// LCM would end the process when it waits.
+TEST(Bus, RefusesAServerThatDoesNotAnswer) {
+  EXPECT_THAT([] { Bus("tcpq://127.0.0.1:1"); },
+              ThrowsMessage<std::runtime_error>(HasSubstr("nobody answers there")));
 }
 
 TEST(Bus, RefusesAnInvalidUrl) {
