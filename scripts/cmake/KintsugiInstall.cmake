@@ -33,11 +33,10 @@ install(DIRECTORY scripts/lib DESTINATION ${KINTSUGI_SHARE}/scripts USE_SOURCE_P
         PATTERN bench EXCLUDE PATTERN __pycache__ EXCLUDE)
 install(PROGRAMS scripts/trio scripts/replay scripts/fleet scripts/check_host scripts/private_bus scripts/lcm-spy
         DESTINATION ${KINTSUGI_SHARE}/scripts)
+file(RELATIVE_PATH SHARE_FROM_BIN /${CMAKE_INSTALL_BINDIR} /${KINTSUGI_SHARE})
 foreach(script trio replay fleet check_host lcm-spy)
   string(REPLACE _ - name kintsugi-${script})
   set(SCRIPT ${script})
-  set(BIN ${CMAKE_INSTALL_FULL_BINDIR})
-  set(SHARE ${CMAKE_INSTALL_FULL_DATADIR}/kintsugi)
   configure_file(${packaging}/wrapper.sh ${packaged}/${name} @ONLY FILE_PERMISSIONS
                  OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
   install(PROGRAMS ${packaged}/${name} TYPE BIN)

@@ -1,5 +1,7 @@
 #!/bin/sh
-# Runs @SCRIPT@ with the installed programs.
-KINTSUGI_BIN="${KINTSUGI_BIN:-@BIN@}" KINTSUGI_TYPES_JAR="${KINTSUGI_TYPES_JAR:-@SHARE@/kintsugi_types.jar}"
+# Runs @SCRIPT@ with the installed programs, wherever they have been installed.
+bin="$(dirname "$(readlink -f "$0")")"
+share="$bin/@SHARE_FROM_BIN@"
+KINTSUGI_BIN="${KINTSUGI_BIN:-$bin}" KINTSUGI_TYPES_JAR="${KINTSUGI_TYPES_JAR:-$share/kintsugi_types.jar}"
 export KINTSUGI_BIN KINTSUGI_TYPES_JAR
-exec "@SHARE@/scripts/@SCRIPT@" "$@"
+exec "$share/scripts/@SCRIPT@" "$@"
