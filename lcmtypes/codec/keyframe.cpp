@@ -1,3 +1,4 @@
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -65,7 +66,7 @@ struct Bulk<KeyframeMessage> : PlacedByByte<keyframe_t> {
     check.not_negative("number", keyframe.number);
     check.range("previous", keyframe.previous, -1, keyframe.number - 1);
     check.range("tracked_from", keyframe.tracked_from, -1, keyframe.previous);
-    check.not_negative("part", keyframe.part);
+    check.range("part", keyframe.part, 0, kMaxPart);
     check.range("way_m", keyframe.way_m, 0.0, kMaxPath_m);
     check.range("unseen_m", keyframe.unseen_m, 0.0, kMaxPath_m);
     check.range("resolution_m", keyframe.resolution_m, kMinResolution_m, kMaxResolution_m);
@@ -108,6 +109,7 @@ struct Bulk<KeyframeMessage> : PlacedByByte<keyframe_t> {
   }
 
  private:
+  static constexpr std::int32_t kMaxPart = 1'000'000;  ///< one each second for 11 days
   static constexpr double kMaxPath_m = 1e9;
   static constexpr double kMaxNoise = 1e3;
   static constexpr double kMaxInformation = 1e18;  ///< of a motion of a nanometre
@@ -118,7 +120,8 @@ struct Bulk<KeyframeMessage> : PlacedByByte<keyframe_t> {
     check.range<std::size_t>(field, name.size(), 0, kMaxJoinNameBytes);
   }
 
-  /// A sum of squares: no entry is larger than those on the diagonal in its row and column.
+  /// A sum of squares: no entry is larger than those on the diagonal in its row and column, and no
+  /// eigenvalue is below 0.
   static void check_information(const Check& check, const Eigen::Matrix<double, 6, 6>& A) {
     for (int i = 0; i < 6; ++i) check.range("information", A(i, i), 0.0, kMaxInformation);
     for (int i = 0; i < 36; ++i) {
@@ -127,6 +130,13 @@ struct Bulk<KeyframeMessage> : PlacedByByte<keyframe_t> {
       if (A(i / 6, i % 6) != A(i % 6, i / 6)) {
         check.fail("information", A(i / 6, i % 6), "a symmetric matrix");
       }
+    }
+    const double least =
+        Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>>(A, Eigen::EigenvaluesOnly)
+            .eigenvalues()
+            .minCoeff();
+    if (least < -kTolerance * A.cwiseAbs().maxCoeff()) {
+      check.fail("information", least, "no eigenvalue below 0");
     }
   }
 };

@@ -16,8 +16,11 @@ namespace kintsugi::mapper {
 /// fine as a tenth of a millimetre in the first 27 parts, as half a millimetre in the first 1,331.
 inline Pose origin_of_part(int part) {
   constexpr double kDistance_m = 1'000.0;
-  int count = 0;
-  for (int shell = 0;; ++shell) {  // the surface of a cube
+  const auto cube = [](int shell) { return (2 * shell + 1) * (2 * shell + 1) * (2 * shell + 1); };
+  int first = 0;
+  while (cube(first) <= part) ++first;
+  int count = first == 0 ? 0 : cube(first - 1);
+  for (int shell = first;; ++shell) {  // the surface of a cube
     for (int x = shell; x >= -shell; --x) {
       for (int y = shell; y >= -shell; --y) {
         for (int z = shell; z >= -shell; --z) {

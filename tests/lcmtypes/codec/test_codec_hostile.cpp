@@ -216,6 +216,16 @@ TEST(CodecBounds, AKeyframeIsOneOfAChain) {
               HasSubstr("a symmetric matrix"));
   EXPECT_THAT(why([](KeyframeMessage& k) { k.information_K(0, 0) = 0.0; }),
               HasSubstr("information is"));
+  // Each entry is within those on the diagonal, and yet it is no sum of squares.
+  EXPECT_THAT(why([](KeyframeMessage& k) {
+                k.information_K.setIdentity();
+                for (int i = 0; i + 1 < 6; ++i) {
+                  k.information_K(i, i + 1) = k.information_K(i + 1, i) = -0.99;
+                }
+              }),
+              HasSubstr("no eigenvalue below 0"));
+  EXPECT_THAT(why([](KeyframeMessage& k) { k.part = 2'000'000'000; }),
+              HasSubstr("part is 2000000000, expected 0 .. 1000000"));
   EXPECT_THAT(why([](KeyframeMessage& k) { k.features[0].ray_x = std::nanf(""); }),
               HasSubstr("ray_x"));
   EXPECT_THAT(why([](KeyframeMessage& k) { k.join = std::string(257, 'x'); }),
