@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <exception>
 #include <map>
 #include <stdexcept>
@@ -10,6 +12,7 @@
 
 #include "mapper/openni2_driver/formats/binary_file.hpp"
 #include "mapper/openni2_driver/formats/file_formats.hpp"
+#include "mapper/openni2_driver/formats/ros_bag_index.hpp"
 #include "mapper/openni2_driver/formats/ros_images.hpp"
 #include "mapper/openni2_driver/formats/ros_topics.hpp"
 #include "mapper/openni2_driver/formats/ros_transforms.hpp"
@@ -32,6 +35,7 @@ class ImageTopic {
  public:
   struct Info {
     std::int64_t utime = 0;
+    std::int64_t recorded_utime = 0;
     std::string frame;  ///< of coordinates
     cv::Size size;      ///< 0x0 of a compressed image
     bool is_metric = false;
@@ -40,19 +44,33 @@ class ImageTopic {
   ImageTopic(const rosbag::Bag& bag, std::string name) : name_(std::move(name)) {
     if (name_.empty()) return;
     view_ = std::make_unique<rosbag::View>(bag, rosbag::TopicQuery(name_));
+    std::vector<Info> infos;
     for (const rosbag::MessageInstance& message : *view_) {
-      const Info info = info_of(message);
-      // Drivers repeat an image, and clocks that are set step back: only what is later counts.
-      if (!utimes_.empty() && info.utime <= utimes_.back()) continue;
-      if (utimes_.empty()) first_ = info;
-      utimes_.push_back(info.utime);
+      infos.push_back(info_of(message));
+      infos.back().recorded_utime = utime_of(message.getTime());
       messages_.push_back(message);
     }
+    if (infos.empty()) return;
+    first_ = infos.front();
+    // Not all drivers fill in the times of headers.
+    takes_recorded_times_ = 2 * num_ascending(infos, &Info::utime) < infos.size();
+    keep_ascending(infos, takes_recorded_times_ ? &Info::recorded_utime : &Info::utime);
   }
 
   [[nodiscard]] const std::string& name() const { return name_; }
   [[nodiscard]] const std::vector<std::int64_t>& utimes() const { return utimes_; }
   [[nodiscard]] const Info& first() const { return first_; }
+
+  void tell_what_is_left_out(std::vector<std::string>& remarks) const {
+    if (takes_recorded_times_) {
+      remarks.push_back("the headers of " + name_ +
+                        " have no times: those at which the bag has recorded it are taken");
+    }
+    if (num_left_out_ == 0) return;
+    remarks.push_back(std::to_string(num_left_out_) + " of " +
+                      std::to_string(num_left_out_ + std::ssize(utimes_)) + " images of " + name_ +
+                      " are left out, because their times are not after those before");
+  }
 
   /// Calls `use` with the message, whichever of the two types it has, and with what to call it.
   template <typename Use>
@@ -65,15 +83,41 @@ class ImageTopic {
   }
 
  private:
+  using Time = std::int64_t Info::*;
+
+  static std::size_t num_ascending(const std::vector<Info>& infos, Time time) {
+    std::size_t count = 0;
+    std::int64_t last = -1;
+    for (const Info& info : infos) {
+      if (info.*time <= last) continue;
+      last = info.*time;
+      ++count;
+    }
+    return count;
+  }
+
+  /// Drivers repeat an image, and clocks that are set step back: only what is later counts.
+  void keep_ascending(const std::vector<Info>& infos, Time time) {
+    std::vector<rosbag::MessageInstance> all = std::exchange(messages_, {});
+    for (std::size_t i = 0; i < infos.size(); ++i) {
+      if (!utimes_.empty() && infos[i].*time <= utimes_.back()) continue;
+      utimes_.push_back(infos[i].*time);
+      messages_.push_back(all[i]);
+    }
+    num_left_out_ = std::ssize(infos) - std::ssize(utimes_);
+  }
+
   static Info info_of(const rosbag::MessageInstance& message) {
     if (const auto image = message.instantiate<ros1::Image>()) {
       return {.utime = utime_of(image->header.stamp),
+              .recorded_utime = 0,
               .frame = ros1::plain(image->header.frame_id),
               .size = {static_cast<int>(image->width), static_cast<int>(image->height)},
               .is_metric = image->encoding == "32FC1"};
     }
     if (const auto packed = message.instantiate<ros1::CompressedImage>()) {
       return {.utime = utime_of(packed->header.stamp),
+              .recorded_utime = 0,
               .frame = ros1::plain(packed->header.frame_id),
               .size = {},
               .is_metric = packed->format.starts_with("32FC1")};
@@ -86,6 +130,8 @@ class ImageTopic {
   std::unique_ptr<rosbag::View> view_;  // the messages refer to it
   std::vector<rosbag::MessageInstance> messages_;
   std::vector<std::int64_t> utimes_;
+  bool takes_recorded_times_ = false;
+  std::int64_t num_left_out_ = 0;
   Info first_;
 };
 
@@ -147,8 +193,34 @@ std::vector<ros1::Topic> topics_of(const rosbag::Bag& bag) {
   return topics;
 }
 
+/// The coefficients of a lens, of which only one model is known.
+std::array<double, 5> distortion_of(const ros1::CameraInfo& info, const std::string& topic,
+                                    std::vector<std::string>& remarks) {
+  std::array<double, 5> distortion{};
+  if (info.distortion_model == "plumb_bob") {
+    std::copy_n(info.D.begin(), std::min(distortion.size(), info.D.size()), distortion.begin());
+  } else if (std::ranges::any_of(info.D, [](double k) { return k != 0.0; })) {
+    remarks.push_back("the lens model '" + ros1::plain(info.distortion_model) + "' of " + topic +
+                      " is not known: its images are taken as free of distortion; --calibration "
+                      "gives another camera");
+  }
+  return distortion;
+}
+
+/// @throws std::runtime_error when no camera has these numbers
+void check_numbers(const Intrinsics& camera, const std::string& topic) {
+  constexpr double kMax_px = 1e6;
+  const auto is_length = [](double px) { return px > 1e-3 && px <= kMax_px; };
+  const auto is_place = [](double px) { return std::abs(px) <= kMax_px; };
+  const bool is_camera =
+      is_length(camera.fx) && is_length(camera.fy) && is_place(camera.cx) && is_place(camera.cy) &&
+      std::ranges::all_of(camera.distortion, [](double k) { return std::abs(k) <= 1e3; });
+  if (!is_camera) throw std::runtime_error(topic + ": K or D is not a camera's");
+}
+
 /// The first camera of the topic that is one.
-Intrinsics camera_of(const rosbag::Bag& bag, const std::string& topic, const char* what) {
+Intrinsics camera_of(const rosbag::Bag& bag, const std::string& topic, const char* what,
+                     std::vector<std::string>& remarks) {
   if (!topic.empty()) {
     for (const rosbag::MessageInstance& message : rosbag::View(bag, rosbag::TopicQuery(topic))) {
       const auto info = message.instantiate<ros1::CameraInfo>();
@@ -159,11 +231,8 @@ Intrinsics camera_of(const rosbag::Bag& bag, const std::string& topic, const cha
                         .cy = info->K[5],
                         .width = static_cast<int>(info->width),
                         .height = static_cast<int>(info->height),
-                        .distortion = {}};
-      const bool known = info->distortion_model == "plumb_bob";
-      for (std::size_t i = 0; known && i < std::min<std::size_t>(5, info->D.size()); ++i) {
-        camera.distortion.at(i) = info->D[i];
-      }
+                        .distortion = distortion_of(*info, topic, remarks)};
+      check_numbers(camera, topic);
       return camera;
     }
   }
@@ -187,7 +256,9 @@ std::optional<ColorCamera> color_camera_of(const rosbag::Bag& bag, const CameraT
                                            const ImageTopic& depth, const ImageTopic& color,
                                            const Intrinsics& depth_camera,
                                            std::vector<std::string>& remarks) {
-  const Intrinsics camera = camera_of(bag, topics.color_camera, "colour");
+  const Intrinsics camera = topics.color_camera == topics.depth_camera
+                                ? depth_camera
+                                : camera_of(bag, topics.color_camera, "colour", remarks);
   check_size(camera, color.first().size, color.name());
   if (ros1::is_registered(topics.depth) && camera == depth_camera) return std::nullopt;
   ColorCamera result{.intrinsics = camera};
@@ -207,6 +278,7 @@ std::optional<ColorCamera> color_camera_of(const rosbag::Bag& bag, const CameraT
 
 RecordingContents read(const fs::path& path, const BagTopics& wanted) {
   auto bag = std::make_unique<rosbag::Bag>(path.string(), rosbag::bagmode::Read);
+  check_bag_index(path);
   const CameraTopics topics = ros1::choose_topics(topics_of(*bag), wanted.depth, wanted.color);
   ImageTopic depth(*bag, topics.depth);
   ImageTopic color(*bag, topics.color);
@@ -214,9 +286,10 @@ RecordingContents read(const fs::path& path, const BagTopics& wanted) {
   contents.format = "bag of ROS 1";
   contents.name = path.filename().string();
   contents.remarks.push_back(
-      "depth is " + topics.depth +
+      "depth is " + topics.depth + " with the camera of " + topics.depth_camera +
       (topics.color.empty() ? ", there is no colour" : ", colour is " + topics.color));
-  const Intrinsics camera = camera_of(*bag, topics.depth_camera, "depth");
+  for (const ImageTopic* images : {&depth, &color}) images->tell_what_is_left_out(contents.remarks);
+  const Intrinsics camera = camera_of(*bag, topics.depth_camera, "depth", contents.remarks);
   check_size(camera, depth.first().size, depth.name());
   contents.calibration = {
       .intrinsics = camera,

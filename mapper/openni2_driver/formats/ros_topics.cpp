@@ -80,6 +80,11 @@ std::size_t common_parts(const std::string& a, const std::string& b) {
   return parts;
 }
 
+/// Whether the folder of a CameraInfo has the images in it.
+bool is_of_folder(const std::string& info, const std::string& images) {
+  return images.starts_with(info.substr(0, info.rfind('/') + 1));
+}
+
 /// The camera of a topic of images is the CameraInfo nearest to it in the tree of names.
 std::string camera_of(const std::vector<Topic>& topics, const std::string& images) {
   std::string best;
@@ -108,6 +113,10 @@ CameraTopics choose_topics(const std::vector<Topic>& topics, const std::string& 
   chosen.color = choose(topics, color, is_color);
   chosen.depth_camera = camera_of(topics, chosen.depth);
   if (!chosen.color.empty()) chosen.color_camera = camera_of(topics, chosen.color);
+  // What is registered to colour and has no CameraInfo of its own is seen as by the colour camera.
+  const bool is_as_color = !chosen.color_camera.empty() && is_registered(chosen.depth) &&
+                           !is_of_folder(chosen.depth_camera, chosen.depth);
+  if (is_as_color) chosen.depth_camera = chosen.color_camera;
   return chosen;
 }
 

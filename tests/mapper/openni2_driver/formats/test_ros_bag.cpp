@@ -1,3 +1,9 @@
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <string>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <rosbag/bag.h>
@@ -230,6 +236,80 @@ TEST_F(RosBag, ABagThatWasCutOffIsNamed) {
   fs::resize_file(file_, fs::file_size(file_) / 2);
   EXPECT_THAT(error_of<std::runtime_error>([&] { (void)open_recording_at(file_); }),
               AllOf(HasSubstr("walk.bag"), HasSubstr("cut off"), HasSubstr("rosbag reindex")));
+}
+
+/// Of an entry, the offset in its chunk.
+TEST_F(RosBag, ABagWithADamagedIndexIsRefusedForEveryWrongOffset) {
+  write_registered(1);
+  bag_.close();
+  std::ifstream in(file_, std::ios::binary);
+  std::string bytes{std::istreambuf_iterator<char>(in), {}};
+  const std::string index = std::string("op=") + char{4};  // the header field of index data
+  std::size_t at = bytes.find(index);
+  ASSERT_NE(at, std::string::npos);
+  at = bytes.find("ver=", at);
+  const std::size_t entry = at + 8 + 4;  // behind the version and the length of the data
+  for (const std::uint32_t offset : {0x40000000U, 0xffffffffU, 77U}) {
+    std::memcpy(bytes.data() + entry + 8, &offset, sizeof offset);
+    test::write_text(file_, bytes);
+    EXPECT_THAT(error_of<std::runtime_error>([&] { (void)open_recording_at(file_); }),
+                AllOf(HasSubstr("walk.bag"), HasSubstr("index is damaged")))
+        << offset;
+  }
+}
+
+TEST_F(RosBag, RegisteredDepthWithoutItsOwnInfoIsSeenAsByTheColourCamera) {
+  write("/camera/depth_registered/image_raw", 0,
+        image_of(test::raw_depth_image(0), "16UC1", 0, "color_optical"));
+  write("/camera/depth/camera_info", 0, camera(57.5, test::kWidth, test::kHeight));
+  write("/camera/rgb/image_raw", 0, image_of(test::color_image(0), "rgb8", 0, "color_optical"));
+  write("/camera/rgb/camera_info", 0, camera(52.5, test::kWidth, test::kHeight));
+  FileRecording recording = open();
+  EXPECT_EQ(recording.intrinsics().fx, 52.5);
+  EXPECT_TRUE(same(recording.color(0), test::color_image(0)));
+  EXPECT_THAT(recording.remark(), HasSubstr("with the camera of /camera/rgb/camera_info"));
+}
+
+TEST_F(RosBag, AnUnknownLensModelIsTold) {
+  write("/depth/image", 0, image_of(test::raw_depth_image(0), "16UC1", 0, "depth"));
+  CameraInfo info = camera(50.0, test::kWidth, test::kHeight);
+  info.distortion_model = "rational_polynomial";
+  info.D.assign(8, 0.1);
+  write("/depth/camera_info", 0, info);
+  EXPECT_THAT(open().remark(), HasSubstr("the lens model 'rational_polynomial'"));
+}
+
+TEST_F(RosBag, NumbersThatAreNoCamerasAreRefused) {
+  write("/depth/image", 0, image_of(test::raw_depth_image(0), "16UC1", 0, "depth"));
+  CameraInfo info = camera(50.0, test::kWidth, test::kHeight);
+  info.D[0] = std::numeric_limits<double>::quiet_NaN();
+  write("/depth/camera_info", 0, info);
+  EXPECT_THAT(error_of<std::runtime_error>([&] { (void)open(); }),
+              AllOf(HasSubstr("/depth/camera_info"), HasSubstr("is not a camera's")));
+}
+
+TEST_F(RosBag, ImagesWithoutTimesHaveThoseAtWhichTheyWereRecorded) {
+  write("/depth/camera_info", 0, camera(50.0, test::kWidth, test::kHeight));
+  for (int frame = 0; frame < 4; ++frame) {
+    Image image = image_of(test::raw_depth_image(frame), "16UC1", frame, "depth");
+    image.header.stamp = ros::Time();
+    write("/depth/image", frame, image);
+  }
+  const FileRecording recording = open();
+  EXPECT_EQ(recording.num_depth_frames(), 4);
+  EXPECT_THAT(recording.remark(), HasSubstr("the headers of /depth/image have no times"));
+}
+
+TEST_F(RosBag, ImagesOfAClockThatWasSetBackAreCounted) {
+  write("/depth/camera_info", 0, camera(50.0, test::kWidth, test::kHeight));
+  for (int frame = 0; frame < 4; ++frame) {
+    Image image = image_of(test::raw_depth_image(frame), "16UC1", frame, "depth");
+    if (frame == 3) image.header.stamp = time_of(1);
+    write("/depth/image", frame, image);
+  }
+  const FileRecording recording = open();
+  EXPECT_EQ(recording.num_depth_frames(), 3);
+  EXPECT_THAT(recording.remark(), HasSubstr("1 of 4 images of /depth/image are left out"));
 }
 
 TEST(RosTopics, RegisteredRawDepthIsPreferred) {
