@@ -47,7 +47,7 @@ std::unique_ptr<FrameSource> session_source(std::unique_ptr<FrameSource> source,
   source = resumption.attach(std::move(source));
   if (!is_recording || options.source.replay) return source;
   return std::make_unique<PacedSource>(std::move(source), resumption.last_mapped_utime(),
-                                       stop_requested);
+                                       stop_requested, log_notice);
 }
 
 MapperPipeline::Config pipeline_config(const Options& options, MapFiles& map_files) {

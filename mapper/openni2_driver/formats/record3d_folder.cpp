@@ -19,6 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
+constexpr double kMaxTime_s = 1e12;             // in microseconds far below the end of 64 bits
 constexpr double kFinestUnits_per_m = 10000.0;  // of metres in floating point, on the driver's side
 constexpr double kUsualRate_hz = 60.0;
 
@@ -69,7 +70,8 @@ std::optional<Pose> pose_of(const std::array<double, 7>& values) {
   return X_WA;
 }
 
-/// Microseconds of a frame; those that the file does not have, or not ascending, at its rate.
+/// Microseconds of each frame; where the file has no time, at its rate.
+/// @throws std::runtime_error naming a frame when they do not ascend or are out of range
 std::vector<std::int64_t> times_of(const std::vector<NumberedImage>& images,
                                    const Metadata& metadata) {
   std::vector<std::int64_t> utimes;
@@ -78,6 +80,11 @@ std::vector<std::int64_t> times_of(const std::vector<NumberedImage>& images,
     const double time_s = number < metadata.times_s.size()
                               ? metadata.times_s[number]
                               : static_cast<double>(image.number) / metadata.rate_hz;
+    if (!(time_s >= 0.0 && time_s <= kMaxTime_s)) {
+      throw std::runtime_error("frameTimestamps of metadata.json: " + std::to_string(time_s) +
+                               " s at frame " + std::to_string(image.number) +
+                               ", expected 0 to 1e12 s");
+    }
     const std::int64_t utime = std::llround(1e6 * time_s);
     if (!utimes.empty() && utime <= utimes.back()) {
       throw std::runtime_error("frameTimestamps of metadata.json do not ascend at frame " +

@@ -18,6 +18,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr double kMaxFrame = 1e9;  // 100 days at 100 Hz
+
 constexpr double kUnits_per_m = 1000.0;
 const cv::Size kPhoneVideo(1920, 1440);  // of camera_matrix.csv, when there is no video
 
@@ -61,7 +63,9 @@ std::map<std::int64_t, OdometryLine> read_odometry(const fs::path& file) {
     const std::vector<std::string> fields = split_at_commas(lines[i]);
     const auto number = fields.size() < 9 ? std::nullopt : parse_number(fields[1]);
     const auto utime = fields.size() < 9 ? std::nullopt : parse_seconds(fields[0]);
-    if (!number || !utime) {
+    const bool is_frame =
+        number && *number >= 0.0 && *number <= kMaxFrame && *number == std::floor(*number);
+    if (!is_frame || !utime) {
       throw std::runtime_error(place(file, lines[i].number) +
                                "expected timestamp, frame, x, y, z, qx, qy, qz, qw");
     }
@@ -114,9 +118,13 @@ RecordingContents read_stray_scanner_folder(const fs::path& folder) {
   const auto odometry = read_odometry(folder / "odometry.csv");
   ImageFiles::Files files;
   std::vector<int> pictures;
+  int num_without_line = 0;
   for (const NumberedImage& image : numbered_images(folder / "depth", "", ".png")) {
     const auto frame = odometry.find(image.number);
-    if (frame == odometry.end()) continue;
+    if (frame == odometry.end()) {
+      ++num_without_line;
+      continue;
+    }
     const std::int64_t utime = frame->second.utime;
     if (!contents.depth_utimes.empty() && utime <= contents.depth_utimes.back()) {
       throw std::runtime_error((folder / "odometry.csv").string() + ": the time of frame " +
@@ -128,6 +136,11 @@ RecordingContents read_stray_scanner_folder(const fs::path& folder) {
     pictures.push_back(static_cast<int>(image.number));
     const fs::path confidence = folder / "confidence" / image.file.filename();
     if (fs::exists(confidence)) files.confidence.push_back(confidence);
+  }
+  if (num_without_line > 0) {
+    contents.remarks.push_back(std::to_string(num_without_line) +
+                               " depth images are left out, because odometry.csv has no line of "
+                               "them");
   }
   if (files.depth.empty()) {
     throw std::runtime_error((folder / "depth").string() +

@@ -184,6 +184,9 @@ void OpenNi2Source::check_for_end(DeviceState state_before) {
       return;
     case DeviceState::kEnded:
       if (!damage_.empty()) return end(false, "ended after " + damage_);
+      if (!device_index_ && !last_refusal_.empty()) {
+        return end(false, "no depth image can be used, the last was refused: " + last_refusal_);
+      }
       return end(true, "end of the recording");
     case DeviceState::kFailed:
       if (device_->is_recording()) return end(false, device_->failure());

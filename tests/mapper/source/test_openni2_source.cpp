@@ -146,6 +146,13 @@ TEST(OpenNi2Source, WarnsWhenNoImageHasDepthWithinRange) {
                                                " depth images have no depth within 0 to 6.5 m"));
 }
 
+TEST(OpenNi2Source, FailsWhenNoImageCanBeUsed) {
+  const Heard heard(config_of("synthetic://office?frames=3&misfit_every=1"));
+  EXPECT_TRUE(heard.frames.empty());
+  EXPECT_FALSE(heard.source->status().ended_well);
+  EXPECT_THAT(heard.source->status().end_reason, HasSubstr("no depth image can be used"));
+}
+
 TEST(OpenNi2Source, FailsWhenNoImageCanBeRead) {
   const RecordingFolder folder;
   fs::remove_all(folder.path() / "depth");

@@ -1,5 +1,7 @@
 #include <chrono>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -54,6 +56,35 @@ TEST(PacedSource, HurriesThroughWhatWasMappedBeforeAndGivesAllOfIt) {
   PacedSource source(std::make_unique<EmptyRecording>(500), 497 * kPeriod_us, never);
   for (int i = 0; i < 498; ++i) EXPECT_EQ(source.next()->utime, i * kPeriod_us);
   EXPECT_EQ(source.status().counts.frames_dropped, 0);
+}
+
+/// The clock was set between them.
+class TwoFramesYearsApart : public FrameSource {
+ public:
+  static constexpr std::int64_t kGap_us = 50LL * 365 * 86'400 * 1'000'000;
+
+  std::optional<RgbdFrame> next() override {
+    if (count_ == 2) return std::nullopt;
+    RgbdFrame frame;
+    frame.utime = kGap_us * count_;
+    frame.frame_index = ++count_;
+    return frame;
+  }
+  [[nodiscard]] SourceStatus status() const override { return {}; }
+
+ private:
+  int count_ = 0;
+};
+
+TEST(PacedSource, DoesNotWaitForAGapInTheRecordingAndSaysSo) {
+  std::vector<std::string> said;
+  PacedSource source(std::make_unique<TwoFramesYearsApart>(), -1, never,
+                     [&](const SourceNotice& notice) { said.push_back(notice.text); });
+  EXPECT_TRUE(source.next());
+  EXPECT_TRUE(source.next());
+  EXPECT_FALSE(source.next());
+  ASSERT_EQ(said.size(), 1U);
+  EXPECT_NE(said[0].find(" s before frame 2: not waited for"), std::string::npos) << said[0];
 }
 
 TEST(PacedSource, DoesNotWaitAnyMoreWhenItIsStopped) {
