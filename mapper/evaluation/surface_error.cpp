@@ -18,7 +18,7 @@ constexpr std::size_t kDensitySamples = 2000;
 
 Eigen::Vector3d position_W(const CloudPoint& p) { return {p.x, p.y, p.z}; }
 
-/// The value that `share` of them are not above.
+/// The value that about `share` of them are not above, rounded down to one of them.
 double percentile(std::vector<double> values, double share) {
   const auto index = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
   std::nth_element(values.begin(), values.begin() + index, values.end());

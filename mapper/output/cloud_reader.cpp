@@ -2,6 +2,7 @@
 
 #include <cerrno>
 #include <charconv>
+#include <cmath>
 #include <cstring>
 #include <fstream>
 #include <map>
@@ -109,7 +110,17 @@ std::vector<CloudPoint> read_log(const std::filesystem::path& path) {
 }  // namespace
 
 std::vector<CloudPoint> read_cloud(const std::filesystem::path& path) {
-  return path.extension() == ".ply" ? read_ply(path) : read_log(path);
+  constexpr float kMax_m = 1e5F;  // as far as a volume goes (TsdfVolume)
+  std::vector<CloudPoint> points = path.extension() == ".ply" ? read_ply(path) : read_log(path);
+  for (const CloudPoint& p : points) {
+    const bool is_place =
+        std::abs(p.x) <= kMax_m && std::abs(p.y) <= kMax_m && std::abs(p.z) <= kMax_m;
+    if (!is_place) {
+      fail(path, "point " + std::to_string(&p - points.data()) +
+                     " has coordinates that are not finite, or beyond 100 km");
+    }
+  }
+  return points;
 }
 
 }  // namespace kintsugi::mapper

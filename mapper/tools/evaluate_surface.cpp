@@ -1,6 +1,7 @@
 // kintsugi-evaluate-surface: how far a map's points are from the true surface of a synthetic scene.
 
 #include <iostream>
+#include <stdexcept>
 
 #include <CLI/CLI.hpp>
 
@@ -15,6 +16,7 @@ using namespace kintsugi::mapper;
 
 void evaluate(const MapOfSceneOptions& options) {
   const MapOfScene map = read_map_of_scene(options);
+  if (map.points_W.empty()) throw std::runtime_error("the map has no points, nothing is evaluated");
   const SurfaceError error = surface_error(map.points_W, map.scene, map.X_SW);
   std::cout << "points " << error.num_points << "  per_m2 " << error.points_per_m2 << "  mean_m "
             << error.mean_m << "  median_m " << error.median_m << "  p95_m "

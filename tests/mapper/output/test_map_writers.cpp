@@ -1,5 +1,6 @@
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstring>
 #include <fstream>
 #include <iterator>
@@ -163,6 +164,20 @@ TEST(CloudReader, SaysWhatIsWrongWithAFile) {
   for (std::size_t size = 0; size < whole.size(); ++size) {
     std::ofstream(path, std::ios::binary) << whole.substr(0, size);
     EXPECT_THROW(read_cloud(path), std::runtime_error) << size;
+  }
+}
+
+TEST(CloudReader, RefusesPointsThatAreNowhere) {
+  const kintsugi::testing::TemporaryFolder folder;
+  const auto path = folder.path() / "map.ply";
+  for (const float x : {NAN, INFINITY, 1e30F}) {
+    CloudPoint nowhere = example_point(2);
+    nowhere.x = x;
+    CloudWriter writer(path);
+    writer.append({example_point(1), nowhere});
+    writer.commit();
+    EXPECT_THAT([&] { read_cloud(path); },
+                ThrowsMessage<std::runtime_error>(HasSubstr("map.ply: point 1 has coordinates")));
   }
 }
 
