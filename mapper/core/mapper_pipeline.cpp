@@ -5,8 +5,10 @@
 #include <cstdint>
 #include <iterator>
 #include <limits>
+#include <string>
 #include <utility>
 
+#include "lcmtypes/base/argument_check.hpp"
 #include "lcmtypes/trajectory.hpp"
 #include "mapper/core/frame/camera.hpp"
 #include "mapper/core/frame/covered_share.hpp"
@@ -149,10 +151,15 @@ RgbdFrame MapperPipeline::cleaned(const RgbdFrame& frame) {
 
 TrackingInput MapperPipeline::prepare(const RgbdFrame& frame) const {
   if (!config_.given_path.empty()) return {frame.utime, {}, frame.color_rgb};
+  const auto num_levels = static_cast<int>(config_.tracker.registration.iterations.size());
+  const int least_px = 1 << (halvings(frame.intrinsics) + num_levels - 1);
+  require(frame.intrinsics.width >= least_px && frame.intrinsics.height >= least_px,
+          "images of " + std::to_string(frame.intrinsics.width) + "x" +
+              std::to_string(frame.intrinsics.height) + " pixels are too small: tracking needs " +
+              std::to_string(least_px) + " along each side");
   return {frame.utime,
           pyramid_from_depth(frame.depth_m, frame.intrinsics, halvings(frame.intrinsics),
-                             static_cast<int>(config_.tracker.registration.iterations.size()),
-                             static_cast<float>(config_.integrator.max_depth_m),
+                             num_levels, static_cast<float>(config_.integrator.max_depth_m),
                              {noise_.noise(), local_noise_.noise()}),
           frame.color_rgb};
 }

@@ -16,10 +16,11 @@ namespace {
 /// Cube coordinates of blocks, packed as FindMissingBlocks says.
 using PackedBlocks = std::vector<std::uint32_t>;
 
-/// A block covers many pixels, so that every second one suffices to find all blocks.
+/// At the usual size of voxels a block covers several pixels up to the longest range, so that every
+/// second one suffices to find all blocks.
 constexpr int kPixelStride = 2;
 
-/// Rays are sampled in steps of at most half a block.
+/// Rays are sampled in steps of half a block along z, and of less than a block along themselves.
 AllocationArguments make_arguments(const cv::Mat_<float>& depth_m, const PinholeCamera& camera,
                                    const Pose& X_WC, const TsdfVolume& volume) {
   const double block_m = volume.config().resolution_m * kBlockSide;

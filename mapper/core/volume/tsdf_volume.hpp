@@ -33,7 +33,8 @@ class TsdfVolume {
  public:
   struct Config {
     RegionShape region = RegionShape::kBall;
-    /// Surface within this distance of the camera is inside the ball, with its truncation distance.
+    /// Surface within this distance of the camera is inside the ball, with truncation_vox behind
+    /// it.
     double max_range_m = 5.0;
     double volume_size_m = 4.5;       ///< side of the cube, rounded up to whole blocks
     double resolution_m = 4.5 / 512;  ///< side of a voxel

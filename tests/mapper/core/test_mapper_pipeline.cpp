@@ -220,6 +220,24 @@ TEST(MapperPipeline, StartsWithTheFirstFrameThatShowsSomething) {
   EXPECT_TRUE(output.path[2].X_WC.isApprox(Pose::Identity()));
 }
 
+TEST(MapperPipeline, RefusesImagesThatAreTooSmallToTrack) {
+  for (const auto& [width, height] : {std::pair(1, 1), std::pair(320, 2), std::pair(2, 240)}) {
+    RgbdFrame frame;
+    frame.intrinsics = {.fx = 100.0,
+                        .fy = 100.0,
+                        .cx = 0.0,
+                        .cy = 0.0,
+                        .width = width,
+                        .height = height,
+                        .distortion = {}};
+    frame.depth_m = cv::Mat_<float>(height, width, 1.0F);
+    MapperPipeline pipeline(small_config());
+    EXPECT_THAT([&] { (void)pipeline.process(frame); },
+                ::testing::ThrowsMessage<std::invalid_argument>(
+                    ::testing::HasSubstr("pixels are too small")));
+  }
+}
+
 TEST(MapperPipeline, ARunWithoutFramesIsOneEmptyFinalSlice) {
   const Output output = run(small_config(), {});
   ASSERT_EQ(output.slices.size(), 1U);
