@@ -48,6 +48,12 @@ class ImageTopic {
     for (const rosbag::MessageInstance& message : *view_) {
       infos.push_back(info_of(message));
       infos.back().recorded_utime = utime_of(message.getTime());
+      if (infos.back().is_metric != infos.front().is_metric) {
+        throw std::runtime_error(
+            name_ + ": image " + std::to_string(infos.size() - 1) +
+            " is in metres and others are not, or the other way round; expected one "
+            "encoding");
+      }
       messages_.push_back(message);
     }
     if (infos.empty()) return;
@@ -64,7 +70,8 @@ class ImageTopic {
   void tell_what_is_left_out(std::vector<std::string>& remarks) const {
     if (takes_recorded_times_) {
       remarks.push_back("the headers of " + name_ +
-                        " have no times: those at which the bag has recorded it are taken");
+                        " have no times that ascend: those at which the bag has recorded it are "
+                        "taken");
     }
     if (num_left_out_ == 0) return;
     remarks.push_back(std::to_string(num_left_out_) + " of " +

@@ -300,6 +300,16 @@ TEST_F(RosBag, ImagesWithoutTimesHaveThoseAtWhichTheyWereRecorded) {
   EXPECT_THAT(recording.remark(), HasSubstr("the headers of /depth/image have no times"));
 }
 
+TEST_F(RosBag, DepthInTwoUnitsIsRefused) {
+  write("/depth/camera_info", 0, camera(50.0, test::kWidth, test::kHeight));
+  write("/depth/image", 0, image_of(test::raw_depth_image(0), "16UC1", 0, "depth"));
+  cv::Mat_<float> metres;
+  test::raw_depth_image(1).convertTo(metres, CV_32F, 1e-3);
+  write("/depth/image", 1, image_of(metres, "32FC1", 1, "depth"));
+  EXPECT_THAT(error_of<std::runtime_error>([&] { (void)open(); }),
+              HasSubstr("/depth/image: image 1 is in metres and others are not"));
+}
+
 TEST_F(RosBag, ImagesOfAClockThatWasSetBackAreCounted) {
   write("/depth/camera_info", 0, camera(50.0, test::kWidth, test::kHeight));
   for (int frame = 0; frame < 4; ++frame) {
