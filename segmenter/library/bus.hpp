@@ -27,9 +27,11 @@ struct MapClientOptions {
 /// What one MapClient::wait() has received.
 struct MapChanges {
   std::vector<SegmentUpdate>
-      updates;                       ///< of the segmenter, in the order in which they are complete
-  std::vector<std::int32_t> pieces;  ///< that came, changed, moved or have other labels; ascending
-  std::vector<CameraPose> poses;     ///< of the mapper
+      updates;  ///< of the segmenter, in the order in which they are complete
+  /// That came, changed, moved or have other labels; ascending. After a newer session of the mapper
+  /// has come: all pieces of that.
+  std::vector<std::int32_t> pieces;
+  std::vector<CameraPose> poses;  ///< of the mapper
 
   [[nodiscard]] bool is_empty() const { return updates.empty() && pieces.empty() && poses.empty(); }
 };

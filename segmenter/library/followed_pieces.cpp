@@ -48,14 +48,14 @@ void FollowedPieces::move(const CloudSlice& correction, std::set<std::int32_t>& 
 
 void FollowedPieces::apply(const SegmentUpdate& update, std::set<std::int32_t>& changed) {
   if (update.session < segmenter_session_) return;
-  if (update.session > segmenter_session_) {
-    for (const auto& [id, labels] : labels_) changed.insert(id);
-    labels_.clear();
-    segmenter_session_ = update.session;
-  }
   const auto note = [&](std::int32_t id) {
     if (pieces_.contains(id)) changed.insert(id);
   };
+  if (update.session > segmenter_session_) {
+    for (const auto& [id, labels] : labels_) note(id);
+    labels_.clear();
+    segmenter_session_ = update.session;
+  }
   PieceLabels* const own = labels_of(update.slice_id, update.slice_revision);
   if (own != nullptr && own->apply(update.labels, update.sequence)) note(update.slice_id);
   for (const LabelRun& run : update.runs) {

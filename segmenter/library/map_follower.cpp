@@ -68,15 +68,25 @@ void MapFollower::use(CloudSlice slice) {
   session.resolution_m = slice.resolution_m;
   std::set<std::int32_t> changed;
   session.pieces.add(std::move(slice), changed);
-  if (id == current_session()) changed_pieces_.merge(changed);
+  follow_current();
+  if (id == followed_session_) changed_pieces_.merge(changed);
 }
 
 void MapFollower::use(const SegmentUpdate& update) {
   changes_.updates.push_back(update);
   Session& session = sessions_[update.map_session];
   session.map_name = update.map_name;
+  follow_current();
   if (options_.with_points) session.pieces.apply(update, changed_pieces_);
   if (sessions_.size() > 1) forget_others();
+}
+
+/// Of a session that is followed from now on, pieces may have come before that was known.
+void MapFollower::follow_current() {
+  if (followed_session_ == current_session()) return;
+  followed_session_ = current_session();
+  const std::vector<std::int32_t> ids = pieces().ids();
+  changed_pieces_ = {ids.begin(), ids.end()};
 }
 
 void MapFollower::use(const CameraPose& pose) {

@@ -58,6 +58,7 @@ class MapFollower {
   void use(const SegmentUpdate& update);
   void use(const CameraPose& pose);
   void use(const ObjectDetection& detection);
+  void follow_current();
   void forget_others();
 
   const MapClientOptions options_;
@@ -65,6 +66,7 @@ class MapFollower {
   StreamSubscriber<CloudSlice> slices_;
   /// Of the mapper. As long as no update has told which map it is: of every map.
   std::map<std::int64_t, Session> sessions_;
+  std::int64_t followed_session_ = 0;
   std::optional<CameraPose> camera_;
   ObjectTable objects_;
   double now_s_ = 0.0;

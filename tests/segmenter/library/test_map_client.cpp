@@ -17,6 +17,7 @@
 #include "lcmtypes/log/log_writer.hpp"
 #include "segmenter/library/bus.hpp"
 #include "segmenter/library/followed_pieces.hpp"
+#include "segmenter/library/map_follower.hpp"
 #include "segmenter/map/segment_map.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -139,6 +140,19 @@ TEST(FollowedPieces, HaveNoSegmentsUntilThoseOfANewSegmenterArrive) {
   EXPECT_THAT(pieces.labels(0), Each(kNoSegment));
 }
 
+TEST(FollowedPieces, ChangeOnlyIfTheyHaveComeWhenANewSegmenterBegins) {
+  const Played played;
+  segmenter::FollowedPieces pieces;
+  std::set<std::int32_t> changed;
+  for (const SegmentUpdate& update : played.updates) pieces.apply(update, changed);
+  pieces.add(played.slices.front(), changed);
+  changed.clear();
+  SegmentUpdate restarted = played.updates.back();
+  restarted.session += 1;
+  pieces.apply(restarted, changed);
+  EXPECT_THAT(changed, ElementsAre(0));
+}
+
 TEST(FollowedPieces, KnowThatPointsAreMissing) {
   const Played played;
   segmenter::FollowedPieces pieces;
@@ -172,6 +186,48 @@ void append(LogWriter& log, const std::string& channel, const Message& message,
   const std::int32_t count = num_chunks(message, kDefaultMaxChunkBytes);
   ASSERT_EQ(count, 1);
   log.append(1, channel, encode_chunk(message, sequence, 0, kDefaultMaxChunkBytes));
+}
+
+/// Handles messages as they come, without a bus.
+class Follower {
+ public:
+  template <class Message>
+  void take(const std::string& channel, const Message& message, std::int64_t sequence) {
+    follower_.handle(channel, encode_chunk(message, sequence, 0, kDefaultMaxChunkBytes), now_s_);
+  }
+  void take(const std::string& channel, const Bytes& message) {
+    follower_.handle(channel, message, now_s_);
+  }
+
+  segmenter::MapFollower* operator->() { return &follower_; }
+
+ private:
+  segmenter::MapFollower follower_{MapClientOptions{.map_name = "map"}};
+  double now_s_ = 0.0;
+};
+
+TEST(MapFollower, TellsOfThePiecesOfTheNewestSessionOnly) {
+  const Played played;
+  Follower follower;
+  for (std::int64_t i = 0; i < 3; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    follower.take(channels::kCloudSlice, played.slices[k], i);
+    follower.take(channels::kSegmentUpdate, played.updates[k], i);
+  }
+  // The mapper is started again. Its first pieces come before the first update, which tells that
+  // they are of the map.
+  for (const std::int32_t id : {0, 5}) {
+    CloudSlice piece = patch(id, 0, 0.0F);
+    piece.session = kMapSession + 10;
+    follower.take(channels::kCloudSlice, piece, id);
+  }
+  EXPECT_THAT(follower->pieces().ids(), ElementsAre(0, 1, 2));
+  SegmentUpdate update = played.updates.front();
+  update.map_session = kMapSession + 10;
+  update.session = kMapSession + 11;
+  follower.take(channels::kSegmentUpdate, update, 0);
+  EXPECT_THAT(follower->pieces().ids(), ElementsAre(0, 5));
+  EXPECT_THAT(follower->take_changes().pieces, ElementsAre(0, 5));
 }
 
 class MapClientOfALog : public ::testing::Test {
