@@ -74,7 +74,7 @@ class [[gnu::visibility("default")]] MapClient {
   [[nodiscard]] bool has_ended() const;
   /// Of a log: where and how it is damaged; empty: it is not.
   [[nodiscard]] std::string damage() const;
-  /// What is missing in the table of segments, as text for a person; empty: nothing.
+  /// What is missing: segments, points or corrections, as text for a person; empty: nothing.
   [[nodiscard]] std::string problem() const;
   /// How many messages were refused as invalid, and why the last was; empty: none.
   [[nodiscard]] std::string dropped() const;

@@ -102,8 +102,8 @@ FollowedPieces::Points FollowedPieces::points_W(std::int32_t id) const {
   return piece.points_W;
 }
 
-bool FollowedPieces::lacks_points() const {
-  return std::ranges::any_of(labels_, [this](const auto& entry) {
+std::ptrdiff_t FollowedPieces::num_without_points() const {
+  return std::ranges::count_if(labels_, [this](const auto& entry) {
     const auto& [id, revisions] = entry;
     if (revisions.empty() || revisions.rbegin()->second.labels().empty()) return false;
     const auto piece = pieces_.find(id);

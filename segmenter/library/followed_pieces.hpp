@@ -1,6 +1,7 @@
 #pragma once
 // The points and labels of one map, as a client receives them.
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -30,8 +31,8 @@ class FollowedPieces {
   [[nodiscard]] Points points_W(std::int32_t id) const;
   /// The final slice has come: what is still to come is on its way, or was lost.
   [[nodiscard]] bool has_final() const { return has_final_; }
-  /// There are labels of points that have not come.
-  [[nodiscard]] bool lacks_points() const;
+  /// Pieces with labels of points that have not come.
+  [[nodiscard]] std::ptrdiff_t num_without_points() const;
   /// Of each of these points.
   /// @throws std::invalid_argument when there is no such piece
   [[nodiscard]] std::vector<std::uint32_t> labels(std::int32_t id) const;

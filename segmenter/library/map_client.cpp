@@ -49,7 +49,7 @@ class MapClient::Implementation {
   bool has_ended() const {
     if (log_) return log_ended_;
     return follower_.segments().has_ended() && follower_.has_slices() &&
-           (!follower_.pieces().lacks_points() || patient_until_s_ < clock_.now_s());
+           (follower_.pieces().num_without_points() == 0 || patient_until_s_ < clock_.now_s());
   }
   std::string damage() const { return log_ ? log_->damage().value_or("") : ""; }
 
@@ -131,7 +131,7 @@ MapClient MapClient::open_log(const std::filesystem::path& path, const MapClient
 MapChanges MapClient::wait(Seconds timeout) { return implementation_->wait(timeout); }
 bool MapClient::has_ended() const { return implementation_->has_ended(); }
 std::string MapClient::damage() const { return implementation_->damage(); }
-std::string MapClient::problem() const { return implementation_->follower().segments().problem(); }
+std::string MapClient::problem() const { return implementation_->follower().problem(); }
 std::string MapClient::dropped() const { return implementation_->follower().dropped(); }
 
 bool MapClient::is_mapped() const { return implementation_->follower().pieces().has_final(); }

@@ -139,11 +139,24 @@ float MapFollower::resolution_m() const {
   return found != sessions_.end() ? found->second.resolution_m : 0.0F;
 }
 
+bool MapFollower::lacks_slices() const {
+  return options_.with_points &&
+         std::ranges::any_of(slices_.gaps(), [session = current_session()](const StreamGap& gap) {
+           return gap.session == session;
+         });
+}
+
 bool MapFollower::has_slices() const {
-  const std::int64_t session = current_session();
-  return !options_.with_points || slices_.has_given_up(session) ||
-         std::ranges::none_of(slices_.gaps(),
-                              [&](const StreamGap& gap) { return gap.session == session; });
+  return !lacks_slices() || slices_.has_given_up(current_session());
+}
+
+std::string MapFollower::problem() const {
+  if (const std::string problem = listener_.problem(); !problem.empty()) return problem;
+  if (const std::ptrdiff_t count = pieces().num_without_points(); count > 0) {
+    return "the points of " + std::to_string(count) + " pieces are missing";
+  }
+  if (!lacks_slices()) return "";
+  return "slices are missing: points may be missing, or be where they were before a correction";
 }
 
 std::string MapFollower::dropped() const {

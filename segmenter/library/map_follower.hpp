@@ -43,6 +43,8 @@ class MapFollower {
   [[nodiscard]] std::vector<ObjectDetection> objects() const;
   /// No slice that is known of is missing, or it is not sent any more.
   [[nodiscard]] bool has_slices() const;
+  /// What is missing, as text for a person; empty: nothing.
+  [[nodiscard]] std::string problem() const;
   [[nodiscard]] std::string dropped() const;
 
  private:
@@ -58,6 +60,7 @@ class MapFollower {
   void use(const SegmentUpdate& update);
   void use(const CameraPose& pose);
   void use(const ObjectDetection& detection);
+  [[nodiscard]] bool lacks_slices() const;
   void follow_current();
   void forget_others();
 

@@ -106,7 +106,7 @@ void add_state(py::class_<Self>& type) {
                              getter([](MapClient& client) { return client.is_complete(); }),
                              "The final piece and all others are segmented.");
   type.def_property_readonly("problem", getter([](MapClient& client) { return client.problem(); }),
-                             "What is missing in the table of segments; empty: nothing.");
+                             "What is missing: segments, points or corrections; empty: nothing.");
   type.def_property_readonly("damage", getter([](MapClient& client) { return client.damage(); }),
                              "Of a log: where and how it is damaged; empty: it is not.");
   type.def_property_readonly("dropped", getter([](MapClient& client) { return client.dropped(); }),

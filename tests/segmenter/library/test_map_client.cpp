@@ -159,11 +159,11 @@ TEST(FollowedPieces, KnowThatPointsAreMissing) {
   std::set<std::int32_t> changed;
   for (const SegmentUpdate& update : played.updates) pieces.apply(update, changed);
   for (const CloudSlice& slice : played.slices) {
-    EXPECT_EQ(pieces.lacks_points(), slice.id < 6);  // the last but one is a patch
+    EXPECT_EQ(pieces.num_without_points() > 0, slice.id < 6);  // the last but one is a patch
     EXPECT_FALSE(pieces.has_final());
     pieces.add(slice, changed);
   }
-  EXPECT_FALSE(pieces.lacks_points());
+  EXPECT_EQ(pieces.num_without_points(), 0);
   EXPECT_TRUE(pieces.has_final());
 }
 
@@ -232,12 +232,15 @@ TEST(MapFollower, TellsOfThePiecesOfTheNewestSessionOnly) {
 
 class MapClientOfALog : public ::testing::Test {
  protected:
-  /// Each slice, the camera at it, and its update; then messages about objects.
-  void write(const Played& played, const std::vector<Bytes>& objects = {}) {
+  /// Each slice but `lost`, the camera at it, and its update; then messages about objects.
+  void write(const Played& played, const std::vector<Bytes>& objects = {},
+             const std::set<std::int64_t>& lost = {}) {
     LogWriter log = LogWriter::create(path_);
     for (std::size_t i = 0; i < played.slices.size(); ++i) {
       const auto sequence = static_cast<std::int64_t>(i);
-      append(log, channels::kCloudSlice, played.slices[i], sequence);
+      if (!lost.contains(sequence)) {
+        append(log, channels::kCloudSlice, played.slices[i], sequence);
+      }
       CameraPose pose;
       pose.session = kMapSession;
       pose.frame_index = sequence;
@@ -331,6 +334,17 @@ TEST_F(MapClientOfALog, FollowsTheMapWithTheNameThatIsGiven) {
   const MapClient client = read_log(path_, {.map_name = "another"});
   EXPECT_THAT(client.pieces(), IsEmpty());
   EXPECT_THAT(client.problem(), HasSubstr("no segment update was received"));
+}
+
+TEST_F(MapClientOfALog, SaysThatPointsAreMissing) {
+  write(Played(), {}, {0, 5});
+  EXPECT_THAT(read_log(path_).problem(), HasSubstr("the points of 2 pieces are missing"));
+  EXPECT_THAT(read_log(path_, {.with_points = false}).problem(), IsEmpty());
+}
+
+TEST_F(MapClientOfALog, SaysThatACorrectionIsMissing) {
+  write(Played(), {}, {7});
+  EXPECT_THAT(read_log(path_).problem(), HasSubstr("slices are missing"));
 }
 
 TEST_F(MapClientOfALog, SaysWhatIsWrong) {
