@@ -29,6 +29,8 @@ void MapFollower::subscribe(Bus& bus) {
   kintsugi::subscribe<ObjectDetection>(
       bus, channels::kObjectDetection,
       [this](const ObjectDetection& detection) { use(detection); });
+  kintsugi::subscribe<DetectorStatus>(bus, channels::kDetectorStatus,
+                                      [this](const DetectorStatus& status) { use(status); });
 }
 
 void MapFollower::ask(Bus& bus, double now_s) {
@@ -44,6 +46,7 @@ void MapFollower::handle(const std::string& channel, ByteView message, double no
   try {
     if (channel == channels::kCameraPose) use(decode<CameraPose>(message));
     if (channel == channels::kObjectDetection) use(decode<ObjectDetection>(message));
+    if (channel == channels::kDetectorStatus) use(decode<DetectorStatus>(message));
   } catch (const DecodeError&) {  // as one that was lost
   }
 }
@@ -100,6 +103,12 @@ void MapFollower::use(const ObjectDetection& detection) {
   const SegmentUpdate* const newest = listener_.table().newest();
   if (newest == nullptr || detection.map_name != newest->map_name) return;
   objects_.apply(detection, now_s_);
+}
+
+void MapFollower::use(const DetectorStatus& status) {
+  const SegmentUpdate* const newest = listener_.table().newest();
+  if (newest == nullptr || status.map_name != newest->map_name) return;
+  objects_.hear_sender(status.map_session, status.session, now_s_);
 }
 
 std::vector<ObjectDetection> MapFollower::objects() const {

@@ -60,6 +60,7 @@ class MapFollower {
   void use(const SegmentUpdate& update);
   void use(const CameraPose& pose);
   void use(const ObjectDetection& detection);
+  void use(const DetectorStatus& status);
   [[nodiscard]] bool lacks_slices() const;
   void follow_current();
   void forget_others();

@@ -28,6 +28,7 @@ using ::testing::Each;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::SizeIs;
 
 constexpr std::int64_t kMapSession = 7;
 constexpr std::int64_t kSegmenterSession = 8;
@@ -199,6 +200,8 @@ class Follower {
     follower_.handle(channel, message, now_s_);
   }
 
+  void pass(double seconds) { now_s_ += seconds; }
+
   segmenter::MapFollower* operator->() { return &follower_; }
 
  private:
@@ -319,6 +322,37 @@ TEST_F(MapClientOfALog, HasTheObjectsThatAreInTheMap) {
   EXPECT_EQ(objects[0].detection, 1);
   EXPECT_EQ(objects[1].detection, 3);
   EXPECT_EQ(objects[1].name, "mug");
+}
+
+TEST(MapFollower, ForgetsTheObjectsOfADetectorThatBeganAnew) {
+  Follower follower;
+  follower.take(channels::kSegmentUpdate, Played().updates.front(), 0);
+  const ObjectDetection mug = detected(1, "mug", DetectionEvent::kFound);
+  follower.take(channels::kObjectDetection, encode(mug));
+  DetectorStatus status;
+  status.session = mug.session + 1;
+  status.map_session = kMapSession;
+  status.map_name = "cellar";
+  follower.take(channels::kDetectorStatus, encode(status));
+  EXPECT_THAT(follower->objects(), SizeIs(1));
+  status.map_name = "map";
+  follower.take(channels::kDetectorStatus, encode(status));
+  EXPECT_THAT(follower->objects(), IsEmpty());
+}
+
+TEST(MapFollower, ForgetsAnObjectThatIsNotRepeatedWhileTheDetectorIsHeard) {
+  Follower follower;
+  follower.take(channels::kSegmentUpdate, Played().updates.front(), 0);
+  const ObjectDetection mug = detected(1, "mug", DetectionEvent::kFound);
+  follower.take(channels::kObjectDetection, encode(mug));
+  DetectorStatus status;
+  status.session = mug.session;
+  status.map_session = kMapSession;
+  status.map_name = "map";
+  follower.pass(ObjectTable::kSilence_s + 1.0);
+  EXPECT_THAT(follower->objects(), SizeIs(1));
+  follower.take(channels::kDetectorStatus, encode(status));
+  EXPECT_THAT(follower->objects(), IsEmpty());
 }
 
 TEST_F(MapClientOfALog, CanLeaveThePointsAway) {
