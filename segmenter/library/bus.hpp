@@ -31,7 +31,7 @@ struct MapChanges {
   /// That came, changed, moved or have other labels; ascending. After a newer session of the mapper
   /// has come: all pieces of that.
   std::vector<std::int32_t> pieces;
-  std::vector<CameraPose> poses;  ///< of the mapper
+  std::vector<CameraPose> poses;  ///< of the mapper of the map
 
   [[nodiscard]] bool is_empty() const { return updates.empty() && pieces.empty() && poses.empty(); }
 };
@@ -103,7 +103,8 @@ class [[gnu::visibility("default")]] MapClient {
   /// @throws std::invalid_argument when there is no such piece
   [[nodiscard]] std::vector<std::uint32_t> labels(std::int32_t piece) const;
 
-  /// The newest pose of the camera; nothing: none was received.
+  /// The newest pose of the camera of the map; nothing: none was received, or no slice or update
+  /// has told yet which map it is.
   [[nodiscard]] const std::optional<CameraPose>& camera() const;
   /// The known objects that `kintsugi-objects detect` has found and that are not gone, by ascending
   /// number. It repeats each about once a second: who has just connected may not know all.

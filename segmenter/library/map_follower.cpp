@@ -84,16 +84,22 @@ void MapFollower::use(const SegmentUpdate& update) {
   if (sessions_.size() > 1) forget_others();
 }
 
-/// Of a session that is followed from now on, pieces may have come before that was known.
+/// Of a session that is followed from now on, pieces and poses may have come before that was known.
 void MapFollower::follow_current() {
   if (followed_session_ == current_session()) return;
   followed_session_ = current_session();
   const std::vector<std::int32_t> ids = pieces().ids();
   changed_pieces_ = {ids.begin(), ids.end()};
+  camera_.reset();
+  for (const CameraPose& pose : std::exchange(early_poses_, {})) use(pose);
 }
 
 void MapFollower::use(const CameraPose& pose) {
-  if (pose.session != current_session() && current_session() != 0) return;
+  if (pose.session > followed_session_) {
+    if (early_poses_.size() == kMaxEarlyPoses) early_poses_.pop_front();
+    early_poses_.push_back(pose);
+  }
+  if (pose.session != followed_session_) return;
   camera_ = pose;
   changes_.poses.push_back(pose);
 }

@@ -1,7 +1,9 @@
 #pragma once
 // Receives one map from any source of messages.
 
+#include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <map>
 #include <optional>
 #include <set>
@@ -48,6 +50,9 @@ class MapFollower {
   [[nodiscard]] std::string dropped() const;
 
  private:
+  /// Of some minutes; other maps may have a camera, too.
+  static constexpr std::size_t kMaxEarlyPoses = 10'000;
+
   struct Session {
     std::string map_name;
     float resolution_m = 0.0F;
@@ -72,6 +77,8 @@ class MapFollower {
   std::map<std::int64_t, Session> sessions_;
   std::int64_t followed_session_ = 0;
   std::optional<CameraPose> camera_;
+  /// Of sessions of which it is not known whether they are of the map: a pose does not name it.
+  std::deque<CameraPose> early_poses_;
   ObjectTable objects_;
   double now_s_ = 0.0;
   MapChanges changes_;

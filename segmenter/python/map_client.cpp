@@ -117,8 +117,10 @@ void add_state(py::class_<Self>& type) {
                              }),
                              "Names, sessions and counts of the map, an Update without arrays; "
                              "None: nothing was received.");
-  type.def_property_readonly("camera", getter([](MapClient& client) { return client.camera(); }),
-                             "The newest CameraPose; None: none was received.");
+  type.def_property_readonly(
+      "camera", getter([](MapClient& client) { return client.camera(); }),
+      "The newest CameraPose of the map; None: none was received, or the map is not "
+      "known yet.");
 }
 
 void add_map(py::class_<Self>& type) {

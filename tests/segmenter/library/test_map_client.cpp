@@ -209,6 +209,46 @@ class Follower {
   double now_s_ = 0.0;
 };
 
+CameraPose camera_pose(std::int64_t session, std::int64_t frame) {
+  CameraPose pose;
+  pose.session = session;
+  pose.frame_index = frame;
+  return pose;
+}
+
+MATCHER_P2(IsPose, session, frame, "") {
+  return arg.session == session && arg.frame_index == frame;
+}
+
+TEST(MapFollower, HasTheCameraOfItsMap) {
+  const Played played;
+  Follower follower;
+  const auto take = [&](std::int64_t session, std::int64_t frame) {
+    follower.take(channels::kCameraPose, encode(camera_pose(session, frame)));
+  };
+  take(kMapSession + 20, 8);  // of another map
+  take(kMapSession, 0);       // which map it is of is not known yet
+  EXPECT_FALSE(follower->camera());
+  EXPECT_FALSE(follower->has_changes());
+  follower.take(channels::kSegmentUpdate, played.updates.front(), 0);
+  ASSERT_TRUE(follower->camera());
+  EXPECT_THAT(*follower->camera(), IsPose(kMapSession, 0));
+  take(kMapSession - 1, 9);
+  take(kMapSession, 1);
+  take(kMapSession + 10, 0);  // the mapper is started again
+  EXPECT_THAT(follower->take_changes().poses,
+              ElementsAre(IsPose(kMapSession, 0), IsPose(kMapSession, 1)));
+  SegmentUpdate update = played.updates.front();
+  update.map_session = kMapSession + 10;
+  update.session += 10;
+  follower.take(channels::kSegmentUpdate, update, 0);
+  EXPECT_THAT(*follower->camera(), IsPose(kMapSession + 10, 0));
+  update.map_session = kMapSession + 11;
+  update.session += 1;
+  follower.take(channels::kSegmentUpdate, update, 0);
+  EXPECT_FALSE(follower->camera());
+}
+
 TEST(MapFollower, TellsOfThePiecesOfTheNewestSessionOnly) {
   const Played played;
   Follower follower;
