@@ -67,7 +67,8 @@ class [[gnu::visibility("default")]] MapClient {
 
   /// Returns as soon as something has changed, or after `timeout` with nothing; with a timeout of 0
   /// it takes what has arrived. From a log it reads up to the next change, and ignores `timeout`.
-  /// @throws std::runtime_error when the connection is lost
+  /// @throws std::runtime_error when the connection is lost, std::invalid_argument when the timeout
+  ///   is negative or no number
   MapChanges wait(Seconds timeout);
   /// Of a log: it is read to its end or first damage. On the bus: the map is complete, and nothing
   /// is missing or what is missing is not sent any more.
@@ -112,7 +113,7 @@ class [[gnu::visibility("default")]] MapClient {
 
   /// Asks the segmenters on the bus. An empty map_name asks for the map that is followed.
   /// @throws std::runtime_error when nobody answers within `timeout` or the map is from a log,
-  ///   std::invalid_argument for a query that is out of bounds
+  ///   std::invalid_argument for a query that is out of bounds and as wait()
   SegmentAnswer ask(SegmentQuery query, Seconds timeout = Seconds(5.0));
 
  private:

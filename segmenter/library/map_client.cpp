@@ -2,6 +2,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "lcmtypes/base/deadline.hpp"
 #include "lcmtypes/base/patient_clock.hpp"
 #include "lcmtypes/log/whole_log_reader.hpp"
 #include "lcmtypes/signing/process_key.hpp"
@@ -81,7 +82,7 @@ class MapClient::Implementation {
   }
 
   void receive(Seconds timeout) {
-    const auto end = Clock::now() + std::chrono::duration_cast<Clock::duration>(timeout);
+    const auto end = deadline_after(timeout);
     do {
       const auto left = std::chrono::ceil<milliseconds>(end - Clock::now());
       bus_->handle(std::clamp(left, milliseconds(0), kTickPeriod));

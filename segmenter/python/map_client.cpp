@@ -4,13 +4,13 @@
 #include <chrono>
 #include <memory>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <utility>
 
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include "lcmtypes/base/deadline.hpp"
 #include "segmenter/library/bus.hpp"
 #include "segmenter/python/arrays.hpp"
 #include "segmenter/python/bind.hpp"
@@ -30,13 +30,9 @@ void raise_signals() {
 }
 
 MapChanges wait(Self& self, double timeout_s) {
-  if (!(timeout_s >= 0.0)) {
-    throw std::invalid_argument("timeout is " + std::to_string(timeout_s) +
-                                ", must be >= 0 seconds");
-  }
-  const auto start = std::chrono::steady_clock::now();
+  const auto end = deadline_after(Seconds(timeout_s));
   while (true) {
-    const Seconds left = Seconds(timeout_s) - (std::chrono::steady_clock::now() - start);
+    const Seconds left = end - std::chrono::steady_clock::now();
     bool has_ended = false;
     MapChanges changes = self.with([&](MapClient& client) {
       MapChanges received = client.wait(std::clamp(left, Seconds(0.0), kSignalPeriod));

@@ -97,7 +97,8 @@ try:
     raise SystemExit("somebody answered")
 except RuntimeError as error:
     assert "nobody answered within 0.5 s" in str(error), error
-for call, error in ((lambda: client.wait(timeout=-1), ValueError), (lambda: client.points(3), ValueError),
+for call, error in ((lambda: client.wait(timeout=-1), ValueError), (lambda: client.query(timeout=float("nan")), ValueError),
+                    (lambda: client.points(3), ValueError),
                     (lambda: kintsugi.connect("nonsense"), RuntimeError)):
     try:
         call()

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "lcmtypes/base/deadline.hpp"
 #include "lcmtypes/bus/message_subscriber.hpp"
 #include "lcmtypes/channels.hpp"
 
@@ -53,11 +54,11 @@ bool QueryClient::handle_until(Clock::time_point deadline, const IsDone& is_done
 }
 
 SegmentAnswer QueryClient::ask(SegmentQuery query, Seconds timeout) {
+  const auto deadline = deadline_after(timeout);
   query.client = client_;
   query.number = ++number_;
   answer_.reset();
   refusal_.reset();
-  const auto deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(timeout);
   int times_asked = 0;
   for (milliseconds wait = kFirstWait; Clock::now() < deadline;
        wait = std::min(2 * wait, kLongestWait)) {

@@ -26,7 +26,7 @@ class QueryClient {
   /// lost. Of several segmenters the first useful answer is returned; when there is none,
   /// SegmentAnswer::problem says why. Sets client, number and utime of the query.
   /// @throws std::runtime_error when nobody answers within `timeout`, with what was heard instead
-  /// @throws std::invalid_argument for a query that is out of bounds
+  /// @throws std::invalid_argument for a query that is out of bounds, or a timeout that is negative
   SegmentAnswer ask(SegmentQuery query, Seconds timeout);
 
  private:
