@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -66,7 +67,7 @@ class [[gnu::visibility("default")]] MapClient {
   MapClient& operator=(MapClient&& other) noexcept;
 
   /// Returns as soon as something has changed, or after `timeout` with nothing; with a timeout of 0
-  /// it takes what has arrived. From a log it reads up to the next change, and ignores `timeout`.
+  /// it takes what has arrived, from a log the next message.
   /// @throws std::runtime_error when the connection is lost, std::invalid_argument when the timeout
   ///   is negative or no number
   MapChanges wait(Seconds timeout);
@@ -112,9 +113,11 @@ class [[gnu::visibility("default")]] MapClient {
   [[nodiscard]] std::vector<ObjectDetection> objects() const;
 
   /// Asks the segmenters on the bus. An empty map_name asks for the map that is followed.
+  /// `meanwhile` is called every 0.1 s or more often while it waits; what it throws ends the wait.
   /// @throws std::runtime_error when nobody answers within `timeout` or the map is from a log,
   ///   std::invalid_argument for a query that is out of bounds and as wait()
-  SegmentAnswer ask(SegmentQuery query, Seconds timeout = Seconds(5.0));
+  SegmentAnswer ask(SegmentQuery query, Seconds timeout = Seconds(5.0),
+                    const std::function<void()>& meanwhile = {});
 
  private:
   class Implementation;

@@ -40,7 +40,7 @@ class MapClient::Implementation {
 
   MapChanges wait(Seconds timeout) {
     if (log_) {
-      read_on();
+      read_on(timeout);
     } else {
       receive(timeout);
     }
@@ -54,7 +54,7 @@ class MapClient::Implementation {
   }
   std::string damage() const { return log_ ? log_->damage().value_or("") : ""; }
 
-  SegmentAnswer ask(SegmentQuery query, Seconds timeout) {
+  SegmentAnswer ask(SegmentQuery query, Seconds timeout, const std::function<void()>& meanwhile) {
     if (log_) throw std::runtime_error("a log cannot answer queries");
     const SegmentUpdate* const newest = follower_.segments().table().newest();
     if (query.map_name.empty()) {
@@ -63,14 +63,15 @@ class MapClient::Implementation {
     if (!queries_) {
       queries_ = std::make_unique<segmenter::QueryClient>(options_.url, bus_key(options_.bus_key));
     }
-    return queries_->ask(std::move(query), timeout);
+    return queries_->ask(std::move(query), timeout, meanwhile);
   }
 
   const segmenter::MapFollower& follower() const { return follower_; }
 
  private:
-  void read_on() {
-    while (!follower_.has_changes()) {
+  void read_on(Seconds timeout) {
+    const auto end = deadline_after(timeout);
+    do {
       const auto event = log_->next();
       if (!event) {
         log_ended_ = true;
@@ -78,7 +79,7 @@ class MapClient::Implementation {
       }
       log_time_s_ = std::max(log_time_s_, 1e-6 * static_cast<double>(event->utime));
       follower_.handle(event->channel, event->data, log_time_s_);
-    }
+    } while (!follower_.has_changes() && Clock::now() < end);
   }
 
   void receive(Seconds timeout) {
@@ -173,13 +174,14 @@ const std::optional<CameraPose>& MapClient::camera() const {
 std::vector<ObjectDetection> MapClient::objects() const {
   return implementation_->follower().objects();
 }
-SegmentAnswer MapClient::ask(SegmentQuery query, Seconds timeout) {
-  return implementation_->ask(std::move(query), timeout);
+SegmentAnswer MapClient::ask(SegmentQuery query, Seconds timeout,
+                             const std::function<void()>& meanwhile) {
+  return implementation_->ask(std::move(query), timeout, meanwhile);
 }
 
 MapClient read_log(const std::filesystem::path& path, const MapClientOptions& options) {
   MapClient client = MapClient::open_log(path, options);
-  while (!client.has_ended()) client.wait(MapClient::Seconds(0.0));
+  while (!client.has_ended()) client.wait(MapClient::Seconds(1.0));
   return client;
 }
 

@@ -24,7 +24,7 @@ using Seconds = MapClient::Seconds;
 
 constexpr Seconds kSignalPeriod(0.1);
 
-/// A log is read in steps, so that Ctrl-C is heard.
+/// What takes long is done in steps, so that Ctrl-C is heard.
 void raise_signals() {
   if (PyErr_CheckSignals() != 0) throw py::error_already_set();
 }
@@ -58,7 +58,10 @@ std::unique_ptr<Self> read_log_of(const std::filesystem::path& file, const std::
                                   bool trust_log) {
   auto self = open_log_of(file, map_name, with_points, bus_key, trust_log);
   while (!self->with([](MapClient& client) {
-    for (int i = 0; i < 1000 && !client.has_ended(); ++i) client.wait(Seconds(0.0));
+    const auto end = deadline_after(kSignalPeriod);
+    while (!client.has_ended() && std::chrono::steady_clock::now() < end) {
+      client.wait(kSignalPeriod);
+    }
     return client.has_ended();
   })) {
     raise_signals();
@@ -68,7 +71,12 @@ std::unique_ptr<Self> read_log_of(const std::filesystem::path& file, const std::
 
 SegmentAnswer query(Self& self, double timeout_s, const py::kwargs& keywords) {
   const SegmentQuery asked = query_of(keywords);
-  return self.with([&](MapClient& client) { return client.ask(asked, Seconds(timeout_s)); });
+  return self.with([&](MapClient& client) {
+    return client.ask(asked, Seconds(timeout_s), [] {
+      const py::gil_scoped_acquire acquired;
+      raise_signals();
+    });
+  });
 }
 
 /// A getter without arguments that may have to wait for another thread.
@@ -90,7 +98,7 @@ Long calls release the interpreter's lock; threads may share an object.)";
 constexpr char kWaitHelp[] =
     R"(Receive until something has changed, or for `timeout` seconds; return Changes.
 
-With timeout=0 it takes what has arrived. From a log it reads up to the next change.
+With timeout=0 it takes what has arrived, from a log the next message.
 Raises RuntimeError when the connection is lost, KeyboardInterrupt on Ctrl-C.)";
 
 void add_state(py::class_<Self>& type) {
@@ -159,10 +167,11 @@ void add_map(py::class_<Self>& type) {
       "(piece, parent) of a segment: with which piece it came, and from which segment it was "
       "split\n"
       "off (0: none). None: unknown.");
-  type.def("query", &query, py::arg("timeout") = 5.0,
-           (std::string("Ask the segmenter; wait for `timeout` seconds at most.") + kQueryHelp +
-            "\nRaises RuntimeError when nobody answers, and for a log.")
-               .c_str());
+  type.def(
+      "query", &query, py::arg("timeout") = 5.0,
+      (std::string("Ask the segmenter; wait for `timeout` seconds at most.") + kQueryHelp +
+       "\nRaises RuntimeError when nobody answers, and for a log, KeyboardInterrupt on Ctrl-C.")
+          .c_str());
 }
 
 }  // namespace

@@ -86,7 +86,7 @@ grep -q "of them in $(grep -oP '\d+ segments' log.txt | tail -n 1)" read.txt || 
 /usr/bin/python3 "$examples/saved_map.py" saved.map >list.txt || fail "saved_map.py"
 grep -q 'normal' list.txt || fail "saved_map.py: $(cat list.txt)"
 
-# Without anybody on the bus, errors are sentences, and Ctrl-C ends a wait.
+# Without anybody on the bus, errors are sentences, and Ctrl-C ends a wait and a query.
 /usr/bin/python3 - <<'PYTHON' || fail "errors on the bus"
 import os, signal, threading, time
 import kintsugi
@@ -105,11 +105,12 @@ for call, error in ((lambda: client.wait(timeout=-1), ValueError), (lambda: clie
         raise SystemExit("was accepted")
     except error:
         pass
-threading.Timer(0.3, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
-start = time.monotonic()
-try:
-    client.wait(timeout=30)
-    raise SystemExit("Ctrl-C was not heard")
-except KeyboardInterrupt:
-    assert time.monotonic() - start < 5
+for call in (client.wait, client.query):
+    threading.Timer(0.3, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
+    start = time.monotonic()
+    try:
+        call(timeout=float("inf"))
+        raise SystemExit("Ctrl-C was not heard")
+    except KeyboardInterrupt:
+        assert time.monotonic() - start < 5
 PYTHON

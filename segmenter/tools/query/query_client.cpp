@@ -18,6 +18,7 @@ using std::chrono::milliseconds;
 
 constexpr milliseconds kFirstWait{500};  // before asking again; doubled each time up to
 constexpr milliseconds kLongestWait{4'000};
+constexpr milliseconds kMeanwhile{100};
 constexpr milliseconds kOthersWait{500};  // for another segmenter when one has no answer
 
 std::int64_t random_client() {
@@ -44,16 +45,19 @@ void QueryClient::take(SegmentAnswer answer) {
 }
 
 template <class IsDone>
-bool QueryClient::handle_until(Clock::time_point deadline, const IsDone& is_done) {
+bool QueryClient::handle_until(Clock::time_point deadline, const std::function<void()>& meanwhile,
+                               const IsDone& is_done) {
   while (!is_done()) {
     const auto left = std::chrono::ceil<milliseconds>(deadline - Clock::now());
     if (left <= milliseconds(0)) return false;
-    bus_.handle(left);
+    bus_.handle(std::min(left, kMeanwhile));
+    if (meanwhile) meanwhile();
   }
   return true;
 }
 
-SegmentAnswer QueryClient::ask(SegmentQuery query, Seconds timeout) {
+SegmentAnswer QueryClient::ask(SegmentQuery query, Seconds timeout,
+                               const std::function<void()>& meanwhile) {
   const auto deadline = deadline_after(timeout);
   query.client = client_;
   query.number = ++number_;
@@ -65,9 +69,10 @@ SegmentAnswer QueryClient::ask(SegmentQuery query, Seconds timeout) {
     query.utime = wall_clock_us();
     bus_.publish(channels::kSegmentQuery, query);
     ++times_asked;
-    handle_until(std::min(deadline, Clock::now() + wait), [&] { return answer_ || refusal_; });
+    handle_until(std::min(deadline, Clock::now() + wait), meanwhile,
+                 [&] { return answer_ || refusal_; });
     if (!answer_ && refusal_) {
-      handle_until(Clock::now() + kOthersWait, [&] { return answer_.has_value(); });
+      handle_until(Clock::now() + kOthersWait, meanwhile, [&] { return answer_.has_value(); });
     }
     if (answer_) return *std::move(answer_);
     if (refusal_) return *std::move(refusal_);

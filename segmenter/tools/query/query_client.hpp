@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -25,9 +26,11 @@ class QueryClient {
   /// Sends the query, and repeats it until an answer arrives, because queries and answers may be
   /// lost. Of several segmenters the first useful answer is returned; when there is none,
   /// SegmentAnswer::problem says why. Sets client, number and utime of the query.
+  /// `meanwhile` is called every 0.1 s or more often while it waits; what it throws ends the wait.
   /// @throws std::runtime_error when nobody answers within `timeout`, with what was heard instead
   /// @throws std::invalid_argument for a query that is out of bounds, or a timeout that is negative
-  SegmentAnswer ask(SegmentQuery query, Seconds timeout);
+  SegmentAnswer ask(SegmentQuery query, Seconds timeout,
+                    const std::function<void()>& meanwhile = {});
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -36,7 +39,8 @@ class QueryClient {
   std::string silence(Seconds timeout, int times_asked) const;
   /// Handles messages until `is_done` or `deadline`; true when it is done.
   template <class IsDone>
-  bool handle_until(Clock::time_point deadline, const IsDone& is_done);
+  bool handle_until(Clock::time_point deadline, const std::function<void()>& meanwhile,
+                    const IsDone& is_done);
 
   Bus bus_;
   const std::int64_t client_;

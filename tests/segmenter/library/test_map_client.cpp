@@ -410,6 +410,15 @@ TEST_F(MapClientOfALog, FollowsTheMapWithTheNameThatIsGiven) {
   EXPECT_THAT(client.problem(), HasSubstr("no segment update was received"));
 }
 
+TEST_F(MapClientOfALog, IsReadInStepsWhereNothingChanges) {
+  write(Played());
+  MapClient client = MapClient::open_log(path_, {.map_name = "another"});
+  EXPECT_TRUE(client.wait(MapClient::Seconds(0.0)).is_empty());
+  EXPECT_FALSE(client.has_ended());
+  EXPECT_TRUE(client.wait(MapClient::Seconds(1'000.0)).is_empty());
+  EXPECT_TRUE(client.has_ended());
+}
+
 TEST_F(MapClientOfALog, SaysThatPointsAreMissing) {
   write(Played(), {}, {0, 5});
   EXPECT_THAT(read_log(path_).problem(), HasSubstr("the points of 2 pieces are missing"));
