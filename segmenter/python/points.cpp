@@ -53,7 +53,24 @@ bool is_points(const py::array& array) {
          array.dtype().attr("names").equal(dtype_of<CloudPoint>().attr("names"));
 }
 
+/// Byte order and gaps may differ.
+void require_fields(const py::array& array) {
+  const auto format = [](const py::dtype& record, const py::handle& name) {
+    return record[name].attr("newbyteorder")("=");
+  };
+  const py::dtype wanted = dtype_of<CloudPoint>();
+  for (const py::handle name : wanted.attr("names")) {
+    const py::object given_format = format(array.dtype(), name);
+    const py::object wanted_format = format(wanted, name);
+    if (given_format.equal(wanted_format)) continue;
+    throw py::type_error("field '" + std::string(py::str(name)) + "' of points must be of dtype " +
+                         std::string(py::str(wanted_format)) + ", not " +
+                         std::string(py::str(given_format)));
+  }
+}
+
 std::vector<CloudPoint> records(const py::array& array) {
+  require_fields(array);
   if (array.ndim() != 1) {
     throw std::invalid_argument("points of dtype POINT must have the shape (N,), not " +
                                 shape_text(array));

@@ -131,6 +131,21 @@ class SegmenterTest(unittest.TestCase):
                 self.segmenter.add(*arguments)
         self.assertEqual(self.segmenter.pieces, [])
 
+    def test_refuses_records_whose_fields_are_of_other_dtypes(self):
+        fields = {"position": "3f4", "normal": "3f4", "color": "3u1", "weight": "f4"}
+        for field, dtype in (("color", "3f4"), ("color", "3i4"), ("position", "2f4"), ("position", "f4"),
+                             ("position", "3i4"), ("weight", "c8")):
+            points = np.zeros(400, list({**fields, field: dtype}.items()))
+            with self.subTest(field, dtype=dtype), self.assertRaisesRegex(TypeError, "field '%s' of points" % field):
+                self.segmenter.add(points)
+
+    def test_takes_records_with_other_gaps_and_byte_orders(self):
+        points = np.zeros(400, [("position", ">f4", 3), ("normal", ">f4", 3), ("color", "u1", 3), ("weight", ">f4")])
+        points["position"] = square()
+        points["normal"] = FACING
+        piece = self.segmenter.add(points)
+        np.testing.assert_allclose(self.segmenter.points(piece)["position"], square(), atol=1e-6)
+
     def test_refuses_bad_poses_options_and_pieces(self):
         piece = self.segmenter.add(square(), FACING)
         with self.assertRaisesRegex(ValueError, r"X_WP must have the shape \(4, 4\)"):
