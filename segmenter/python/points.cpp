@@ -10,14 +10,22 @@ namespace {
 std::string shape_text(const py::array& array) { return py::str(py::tuple(array.attr("shape"))); }
 std::string dtype_text(const py::array& array) { return py::str(array.dtype()); }
 
-/// An array, of which nothing is known yet.
-py::array any_array(const py::handle& object, const std::string& name) {
-  const py::array array = py::array::ensure(object);
-  if (!array) {
-    PyErr_Clear();
-    throw py::type_error(name + " must be a numpy array");
+/// As an `Array`; its constructor, unlike ensure(), throws what numpy raises.
+template <class Array>
+Array converted(const py::handle& object) {
+  return Array(py::reinterpret_borrow<py::object>(object));
+}
+
+/// An array where numpy can make one; `what` says what was wanted.
+/// @throws py::type_error, and what else is raised meanwhile: there is no memory, or Ctrl-C
+template <class Array>
+Array any_array(const py::handle& object, const std::string& what) {
+  try {
+    return converted<Array>(object);
+  } catch (const py::error_already_set& error) {
+    if (!error.matches(PyExc_TypeError) && !error.matches(PyExc_ValueError)) throw;
+    throw py::type_error(what);
   }
-  return array;
 }
 
 void require_shape(const py::array& array, const std::string& name, py::ssize_t rows,
@@ -35,7 +43,7 @@ void require_shape(const py::array& array, const std::string& name, py::ssize_t 
 template <class Number>
 py::array_t<Number, py::array::c_style> floats(const py::handle& object, const std::string& name,
                                                py::ssize_t rows, py::ssize_t columns) {
-  const py::array array = any_array(object, name);
+  const auto array = any_array<py::array>(object, name + " must be a numpy array");
   const char kind = array.dtype().kind();
   const bool is_whole = kind == 'i' || kind == 'u';
   if (kind != 'f' && !(is_whole && std::is_same_v<Number, double>)) {
@@ -43,7 +51,7 @@ py::array_t<Number, py::array::c_style> floats(const py::handle& object, const s
                          dtype_text(array));
   }
   require_shape(array, name, rows, columns);
-  return py::array_t<Number, py::array::c_style | py::array::forcecast>::ensure(array);
+  return converted<py::array_t<Number, py::array::c_style | py::array::forcecast>>(array);
 }
 
 /// True for records with the fields of POINT; numpy leaves out the gaps between them where it makes
@@ -76,18 +84,18 @@ std::vector<CloudPoint> records(const py::array& array) {
                                 shape_text(array));
   }
   const py::array packed =
-      py::array::ensure(array.attr("astype")(dtype_of<CloudPoint>(), "C", py::arg("copy") = false));
+      array.attr("astype")(dtype_of<CloudPoint>(), "C", py::arg("copy") = false);
   const auto* const first = static_cast<const CloudPoint*>(packed.data());
   return {first, first + packed.size()};
 }
 
 void set_colors(const py::handle& colors, std::vector<CloudPoint>& points) {
-  const py::array array = any_array(colors, "colors");
+  const auto array = any_array<py::array>(colors, "colors must be a numpy array");
   if (!array.dtype().equal(py::dtype::of<std::uint8_t>())) {
     throw py::type_error("colors must be of dtype uint8, from 0 to 255, not " + dtype_text(array));
   }
   require_shape(array, "colors", static_cast<py::ssize_t>(points.size()), 3);
-  const auto packed = py::array_t<std::uint8_t, py::array::c_style>::ensure(array);
+  const auto packed = converted<py::array_t<std::uint8_t, py::array::c_style>>(array);
   const auto rgb = packed.unchecked<2>();
   for (std::size_t i = 0; i < points.size(); ++i) {
     const auto row = static_cast<py::ssize_t>(i);
@@ -101,7 +109,7 @@ void set_colors(const py::handle& colors, std::vector<CloudPoint>& points) {
 
 PointsArgument points_argument(const py::handle& points, const py::handle& normals,
                                const py::handle& colors) {
-  const py::array given = any_array(points, "points");
+  const auto given = any_array<py::array>(points, "points must be a numpy array");
   if (is_points(given)) {
     if (!normals.is_none() || !colors.is_none()) {
       throw std::invalid_argument("points of dtype POINT have normals and colours already");
@@ -157,12 +165,8 @@ py::array pose_array(const Pose& pose) {
 }
 
 Eigen::Vector3d vector_argument(const py::handle& numbers, const char* name) {
-  const auto array =
-      py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(numbers);
-  if (!array) {
-    PyErr_Clear();
-    throw py::type_error(std::string(name) + " must be three numbers");
-  }
+  const auto array = any_array<py::array_t<double, py::array::c_style | py::array::forcecast>>(
+      numbers, std::string(name) + " must be three numbers");
   if (array.ndim() != 1 || array.shape(0) != 3) {
     throw std::invalid_argument(
         std::string(name) + " must be three numbers, not an array of shape " + shape_text(array));

@@ -1,6 +1,8 @@
 """kintsugi.Segmenter, saved maps and queries, from Python."""
 
 import os
+import subprocess
+import sys
 import tempfile
 import threading
 import unittest
@@ -145,6 +147,41 @@ class SegmenterTest(unittest.TestCase):
         points["normal"] = FACING
         piece = self.segmenter.add(points)
         np.testing.assert_allclose(self.segmenter.points(piece)["position"], square(), atol=1e-6)
+
+    def test_errors_of_numpy_are_told_as_they_are(self):
+        with self.assertRaises(MemoryError):
+            self.segmenter.add(np.broadcast_to(np.zeros(3), (10**13, 3)))
+        with np.errstate(over="raise"), self.assertRaises(FloatingPointError):
+            self.segmenter.add(np.full((3, 3), 1e300))
+
+        class Interrupted:
+            def __array__(self, *_, **__):
+                raise KeyboardInterrupt
+
+        for arguments in ((Interrupted(),), (square(), Interrupted()), (square(), FACING, Interrupted())):
+            with self.assertRaises(KeyboardInterrupt):
+                self.segmenter.add(*arguments)
+        with self.assertRaises(KeyboardInterrupt):
+            self.segmenter.query(at=Interrupted())
+
+    def test_colors_that_cannot_be_copied_are_an_error(self):
+        script = """
+import resource
+import kintsugi, numpy as np
+N = 5_000_000
+points, normals = np.zeros((N, 3), np.float32), np.ones((N, 3), np.float32)
+colors = np.zeros((N, 6), np.uint8)[:, ::2]
+segmenter = kintsugi.Segmenter()
+with open("/proc/self/statm") as file:
+    used = int(file.read().split()[0]) * resource.getpagesize()
+resource.setrlimit(resource.RLIMIT_AS, (used + 32 * N + (2 << 20),) * 2)
+try:
+    segmenter.add(points, normals, colors)
+except MemoryError:
+    print("MemoryError")
+"""
+        done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
+        self.assertEqual(done.stdout, "MemoryError\n", done.stderr)
 
     def test_refuses_bad_poses_options_and_pieces(self):
         piece = self.segmenter.add(square(), FACING)
