@@ -86,7 +86,9 @@ std::vector<CloudPoint> records(const py::array& array) {
   const py::array packed =
       array.attr("astype")(dtype_of<CloudPoint>(), "C", py::arg("copy") = false);
   const auto* const first = static_cast<const CloudPoint*>(packed.data());
-  return {first, first + packed.size()};
+  std::vector<CloudPoint> points(first, first + packed.size());
+  for (CloudPoint& point : points) point.reserved = 0;  // a gap, in which anything may be
+  return points;
 }
 
 void set_colors(const py::handle& colors, std::vector<CloudPoint>& points) {

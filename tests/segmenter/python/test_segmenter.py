@@ -100,6 +100,14 @@ class SegmenterTest(unittest.TestCase):
         self.assertIsNotNone(given["position"].base)  # a view, no copy
         self.assertEqual(kintsugi.POINT.itemsize, 32)
 
+    def test_the_gap_of_a_record_is_zero_in_the_map(self):
+        points = np.frombuffer(bytearray(b"\xab" * 32 * 400), kintsugi.POINT)
+        for field, value in (("position", square()), ("normal", FACING), ("color", 1), ("weight", 1.0)):
+            points[field] = value
+        given = self.segmenter.points(self.segmenter.add(points))
+        gap = given.view(np.uint8).reshape(400, 32)[:, 27]
+        np.testing.assert_array_equal(gap, 0)
+
     def test_takes_strided_arrays(self):
         piece = self.segmenter.add(np.asfortranarray(square()), np.repeat(FACING, 2, axis=0)[::2])
         np.testing.assert_allclose(self.segmenter.points(piece)["position"], square(), atol=1e-6)
