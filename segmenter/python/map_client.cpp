@@ -85,6 +85,13 @@ auto getter(Function function) {
   return [function](Self& self) { return self.with(function); };
 }
 
+/// Of a text, which may name a file or a map.
+auto text_getter(std::string (MapClient::*function)() const) {
+  return [function](Self& self) {
+    return text_of(self.with([&](MapClient& client) { return (client.*function)(); }));
+  };
+}
+
 constexpr char kClassHelp[] =
     R"(One map as its mapper and segmenter publish it, from the bus or a log.
 
@@ -109,11 +116,11 @@ void add_state(py::class_<Self>& type) {
   type.def_property_readonly("is_complete",
                              getter([](MapClient& client) { return client.is_complete(); }),
                              "The final piece and all others are segmented.");
-  type.def_property_readonly("problem", getter([](MapClient& client) { return client.problem(); }),
+  type.def_property_readonly("problem", text_getter(&MapClient::problem),
                              "What is missing: segments, points or corrections; empty: nothing.");
-  type.def_property_readonly("damage", getter([](MapClient& client) { return client.damage(); }),
+  type.def_property_readonly("damage", text_getter(&MapClient::damage),
                              "Of a log: where and how it is damaged; empty: it is not.");
-  type.def_property_readonly("dropped", getter([](MapClient& client) { return client.dropped(); }),
+  type.def_property_readonly("dropped", text_getter(&MapClient::dropped),
                              "How many messages were refused, and why the last was; empty: none.");
   type.def_property_readonly("newest_update", getter([](MapClient& client) {
                                const SegmentUpdate* const newest = client.newest_update();

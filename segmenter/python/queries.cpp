@@ -7,6 +7,7 @@
 
 #include <pybind11/stl.h>
 
+#include "segmenter/python/bind.hpp"
 #include "segmenter/python/points.hpp"
 
 namespace kintsugi::python {
@@ -132,9 +133,9 @@ void add_answer(py::module_& module) {
           "pixel: metres from the camera to what it measures; None: it measures nothing there.")
       .def_readonly("view_utime", &SegmentAnswer::view_utime,
                     "pixel: device time of the camera's image, microseconds; 0: there was none.")
-      .def_readonly("problem", &SegmentAnswer::problem,
-                    "Why the query cannot be answered; empty: it is answered.")
-      .def_readonly("map_name", &SegmentAnswer::map_name)
+      .def_property_readonly("problem", text(&SegmentAnswer::problem),
+                             "Why the query cannot be answered; empty: it is answered.")
+      .def_property_readonly("map_name", text(&SegmentAnswer::map_name))
       .def_readonly("map_session", &SegmentAnswer::map_session, "Of the mapper; 0: no such map.")
       .def_readonly("map_points", &SegmentAnswer::map_points)
       .def_readonly("map_segments", &SegmentAnswer::map_segments)

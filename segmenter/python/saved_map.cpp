@@ -25,7 +25,7 @@ void add_saved_map(py::module_& module) {
     return view(std::span<const SegmentStatistics>(self.cast<const SavedMap&>().segments()), self);
   };
   py::class_<SavedMap>(module, "SavedMap", "A saved map; load_map() reads one. It does not change.")
-      .def_property_readonly("name", &SavedMap::name)
+      .def_property_readonly("name", [](const SavedMap& map) { return text_of(map.name()); })
       .def_property_readonly("resolution", &SavedMap::resolution_m, "Metres.")
       .def_property_readonly("is_complete", &SavedMap::is_complete,
                              "The final slice and all others are in it.")
@@ -43,8 +43,9 @@ void add_saved_map(py::module_& module) {
           },
           (std::string("Find and describe segments.") + kQueryHelp).c_str())
       .def("__repr__", [](const SavedMap& map) {
-        return "<kintsugi.SavedMap '" + map.name() + "': " + std::to_string(map.points_W().size()) +
-               " points, " + std::to_string(map.segments().size()) + " segments>";
+        return text_of("<kintsugi.SavedMap '" + map.name() +
+                       "': " + std::to_string(map.points_W().size()) + " points, " +
+                       std::to_string(map.segments().size()) + " segments>");
       });
   module.def(
       "load_map",

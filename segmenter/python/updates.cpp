@@ -29,7 +29,7 @@ void add_update(py::module_& module) {
       .def_readonly("session", &SegmentUpdate::session, "Of the segmenter.")
       .def_readonly("sequence", &SegmentUpdate::sequence, "Ascending in the session.")
       .def_readonly("map_session", &SegmentUpdate::map_session, "Of the mapper.")
-      .def_readonly("map_name", &SegmentUpdate::map_name)
+      .def_property_readonly("map_name", text(&SegmentUpdate::map_name))
       .def_readonly("piece", &SegmentUpdate::slice_id, "Number of the piece (slice).")
       .def_readonly("revision", &SegmentUpdate::slice_revision, "Of the piece.")
       .def_readonly("is_final", &SegmentUpdate::is_final,
@@ -68,7 +68,7 @@ void add_updates(py::module_& module) {
           "X_WC", [](const CameraPose& pose) { return pose_array(pose.X_WC); },
           "(4, 4) float64: p_W = X_WC p_C; C: x right, y down, z forward; metres.");
   py::class_<ObjectDetection>(module, "Object", "A known object that was found in the map.")
-      .def_readonly("name", &ObjectDetection::name, "In the library.")
+      .def_property_readonly("name", text(&ObjectDetection::name), "In the library.")
       .def_readonly("detection", &ObjectDetection::detection, "Its number; from 1.")
       .def_readonly("utime", &ObjectDetection::utime,
                     "Device time of the newest piece looked at, microseconds.")
@@ -97,7 +97,8 @@ void add_updates(py::module_& module) {
           },
           "(2, 3) float32: smallest and largest coordinates of the model; metres, O.")
       .def("__repr__", [](const ObjectDetection& object) {
-        return "<kintsugi.Object: " + object.name + " (" + std::to_string(object.detection) + ")>";
+        return text_of("<kintsugi.Object: " + object.name + " (" +
+                       std::to_string(object.detection) + ")>");
       });
   py::class_<MapChanges>(module, "Changes", "What one wait() has received.")
       .def_readonly("updates", &MapChanges::updates, "List of Update.")

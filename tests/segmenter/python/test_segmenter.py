@@ -267,6 +267,12 @@ class SavedMapTest(unittest.TestCase):
         del saved
         np.testing.assert_allclose(points["position"], square(), atol=1e-6)
 
+    def test_errors_tell_names_that_are_no_utf_8(self):
+        for call in (kintsugi.load_map, kintsugi.read_log, kintsugi.Segmenter().save,
+                     lambda name: kintsugi.connect(bus_key=name)):
+            with self.assertRaisesRegex(RuntimeError, "none\ufffd"):
+                call("/none\udcff/file")
+
     def test_refuses_another_file(self):
         with self.assertRaisesRegex(RuntimeError, "none.map"):
             kintsugi.load_map("none.map")
