@@ -47,6 +47,7 @@ MapChanges wait(Self& self, double timeout_s) {
 std::unique_ptr<Self> open_log_of(const std::filesystem::path& file, const std::string& map_name,
                                   bool with_points, const std::filesystem::path& bus_key,
                                   bool trust_log) {
+  const py::gil_scoped_release released;  // with a key, all of the log is verified
   return std::make_unique<Self>(MapClient::open_log(file, {.map_name = map_name,
                                                            .with_points = with_points,
                                                            .bus_key = bus_key.string(),
@@ -193,6 +194,7 @@ void add_map_client(py::module_& module) {
       "connect",
       [](const std::string& url, const std::string& map_name, bool with_points,
          const std::filesystem::path& bus_key) {
+        const py::gil_scoped_release released;
         return std::make_unique<Self>(MapClient::connect({.url = url,
                                                           .map_name = map_name,
                                                           .with_points = with_points,

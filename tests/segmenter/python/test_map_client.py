@@ -42,6 +42,29 @@ class MapClientTest(unittest.TestCase):
         self.assertEqual(client.newest_update.map_name, "map\ufffd")
         self.assertEqual(client.problem, "")
 
+    def test_other_threads_go_on_while_a_log_is_verified(self):
+        key = self.file + ".key"
+        with open(key, "wb") as file:
+            file.write(bytes(32))
+        os.chmod(key, 0o600)
+        num_bytes = 1 << 24
+        with open(self.file, "wb") as file:  # 512 MB of zeros, which take no room
+            for number in range(32):
+                file.write(struct.pack(">IqqII", 0xEDA1DA01, number, number, 1, num_bytes) + b"X")
+                file.seek(num_bytes, os.SEEK_CUR)
+            file.truncate()
+        ticks = []
+        stop = threading.Event()
+        ticking = threading.Thread(target=lambda: [ticks.append(1) for _ in iter(lambda: stop.wait(0.001), True)])
+        ticking.start()
+        num_before = len(ticks)
+        with self.assertRaisesRegex(RuntimeError, "32 are not signed"):
+            kintsugi.open_log(self.file, bus_key=key)
+        num_after = len(ticks)
+        stop.set()
+        ticking.join()
+        self.assertGreater(num_after - num_before, 10)
+
 
 if __name__ == "__main__":
     unittest.main()
