@@ -6,7 +6,9 @@ namespace kintsugi {
 
 void estimate_normals(std::span<CloudPoint> points_W, double resolution_m,
                       const std::optional<Eigen::Vector3d>& viewpoint_W) {
-  require(resolution_m > 0.0, "resolution_m", resolution_m, "> 0");
+  // Points within the bounds of a map are all neighbours at a larger one, which takes for ever.
+  require(resolution_m > 0.0 && resolution_m <= kMaxPosition_m, "resolution_m", resolution_m,
+          "> 0 and at most 1e6 m");
   segmenter::NormalsConfig config;
   config.viewpoint_W = viewpoint_W;
   config.validate();

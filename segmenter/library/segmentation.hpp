@@ -130,10 +130,10 @@ class [[gnu::visibility("default")]] SavedMap {
 /// Sets the normal of every point with a finite position: principal components of the 20 nearest
 /// neighbours, then the mean over neighbours closer than two voxels, as for the clouds of
 /// kintsugi-segment-cloud. A point whose neighbours lie on a line gets the normal zero.
-/// @param resolution_m spacing of the points, > 0
+/// @param resolution_m spacing of the points, > 0 and at most 1e6
 /// @param viewpoint_W where the sensor was: normals point towards it; nothing: the mean of all
 ///   points, which suits a room seen from inside
-/// @throws std::invalid_argument for a resolution that is not > 0 or a viewpoint that is not finite
+/// @throws std::invalid_argument for another resolution, or a viewpoint that is not finite
 [[gnu::visibility("default")]] void estimate_normals(
     std::span<CloudPoint> points_W, double resolution_m,
     const std::optional<Eigen::Vector3d>& viewpoint_W = std::nullopt);

@@ -88,6 +88,9 @@ class SegmenterTest(unittest.TestCase):
         np.testing.assert_allclose(self.segmenter.points(piece)["normal"], -FACING, atol=1e-5)
         normals = kintsugi.estimate_normals(square(), 0.01)
         self.assertEqual(normals.shape, (400, 3))
+        for resolution in (0.0, np.inf, np.nan, 1e30):
+            with self.subTest(resolution), self.assertRaisesRegex(ValueError, "resolution_m is .*, must be > 0"):
+                kintsugi.estimate_normals(square(), resolution)
 
     def test_takes_records_and_gives_views(self):
         points = np.zeros(400, kintsugi.POINT)
