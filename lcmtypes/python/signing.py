@@ -46,10 +46,14 @@ class BusKey:
 
     @classmethod
     def read(cls, path):
-        """Raises OSError when the file cannot be read, ValueError when others than its owner may use it (expected:
-        mode 0600) or it has another size."""
-        with open(path, "rb") as file:
-            mode = stat.S_IMODE(os.fstat(file.fileno()).st_mode)
+        """Raises OSError when the file cannot be read, ValueError when it is no file, others than its owner may
+        use it (expected: mode 0600) or it has another size."""
+        # Not blocking: a pipe would wait for a writer.
+        with open(path, "rb", opener=lambda name, flags: os.open(name, flags | os.O_NONBLOCK)) as file:
+            status = os.fstat(file.fileno())
+            if not stat.S_ISREG(status.st_mode):
+                raise ValueError(f"bus key '{path}' is no file")
+            mode = stat.S_IMODE(status.st_mode)
             if mode & 0o077:
                 raise ValueError(f"bus key '{path}' has mode {mode:04o}, so others than its owner may use it; expected "
                                  f"0600: chmod 600 {path}")

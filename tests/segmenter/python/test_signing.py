@@ -132,6 +132,9 @@ class KeyFileTest(unittest.TestCase):
                     read(self.file)
         with self.assertRaises(OSError):
             BusKey.read(self.file + ".none")
+        os.mkfifo(self.file + ".pipe", 0o600)
+        with self.assertRaisesRegex(ValueError, "is no file"):
+            BusKey.read(self.file + ".pipe")
 
     def test_a_log_that_python_signed_is_read_with_its_key(self):
         with open(self.file, "wb") as file:
