@@ -16,10 +16,12 @@ def main():
     if len(sys.argv) == 3:
         segmenter = kintsugi.Segmenter(resolution=float(sys.argv[2]))
         piece = segmenter.add(np.load(sys.argv[1]))  # normals are estimated
-    else:
+    elif len(sys.argv) == 1:
         segmenter = kintsugi.Segmenter(resolution=room.SPACING)
         points, normals, colors = room.joined(room.walls(), room.box(-0.2, 1.8))
         piece = segmenter.add(points, normals, colors)
+    else:
+        sys.exit(__doc__)
 
     labels = segmenter.labels(piece)
     print("%d points, %d segments" % (len(labels), segmenter.num_segments))

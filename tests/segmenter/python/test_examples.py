@@ -45,6 +45,11 @@ class ExamplesTest(unittest.TestCase):
         self.assertIn("5 segments", self.run_example("segment_cloud.py"))
         np.save(self.path("cloud.npy"), room.joined(room.walls(), room.box(-0.2, 1.8))[0])
         self.assertIn("31485 points", self.run_example("segment_cloud.py", self.path("cloud.npy"), "0.02"))
+        for arguments in ([self.path("cloud.npy")], ["--help"]):
+            done = subprocess.run([sys.executable, os.path.join(EXAMPLES, "segment_cloud.py"), *arguments],
+                                  capture_output=True, text=True)
+            self.assertEqual(done.returncode, 1)
+            self.assertIn("segment_cloud.py CLOUD.npy 0.01", done.stderr)
 
     def test_incremental(self):
         text = self.run_example("incremental.py")
