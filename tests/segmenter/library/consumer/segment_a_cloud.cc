@@ -24,7 +24,9 @@ int main() {
   const kintsugi::PieceId piece = segmenter.add(square(2.0F));
   std::cout << "Kintsugi " << kintsugi::kVersion << '\n';
   std::cout << segmenter.num_segments() << " segments\n";
-  segmenter.move(piece, kintsugi::Pose(Eigen::Translation3d(-1.8, 0.0, 0.0)));
+  // As on the bus, whose records may be used in full.
+  const kintsugi::PatchPose X_WP(kintsugi::Pose(Eigen::Translation3d(-1.8, 0.0, 0.0)));
+  segmenter.move(piece, X_WP.pose());
   for (const kintsugi::SegmentStatistics& segment : segmenter.segments()) {
     std::cout << "segment " << segment.segment_id << ": " << segment.num_points << " points\n";
   }
