@@ -35,6 +35,15 @@ std::size_t reservable(std::size_t bytes) {
   return bytes < kLarge ? bytes : round_up(bytes / kScarcity);
 }
 
+/// Whoever sees "out of memory" would look at memory, of which there may be plenty.
+class OutOfAddresses : public std::bad_alloc {
+ public:
+  const char* what() const noexcept override {
+    return "the process has no addresses left for another map: too many maps, or a limit (ulimit "
+           "-v)";
+  }
+};
+
 }  // namespace
 
 ReservedMemory::ReservedMemory(std::size_t reserved_bytes, HugePages huge_pages)
@@ -42,7 +51,7 @@ ReservedMemory::ReservedMemory(std::size_t reserved_bytes, HugePages huge_pages)
       reserved_bytes_(reservable(reserved_bytes)) {
   range_ =
       ::mmap(nullptr, range_bytes_, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-  if (range_ == MAP_FAILED) throw std::bad_alloc();
+  if (range_ == MAP_FAILED) throw OutOfAddresses();
   std::size_t space = range_bytes_;
   void* start = range_;
   data_ = static_cast<std::byte*>(std::align(kHugePageBytes, reserved_bytes_, start, space));

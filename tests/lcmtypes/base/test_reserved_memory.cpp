@@ -54,6 +54,17 @@ TEST(ReservedMemory, ThrowsBeyondTheReservedRange) {
   EXPECT_THROW(memory.commit(5001), std::bad_alloc);
 }
 
+TEST(ReservedMemory, SaysThatAddressesAreLacking) {
+  try {
+    const ReservedMemory memory(std::size_t{1} << 60);
+    FAIL() << "more than a process has";
+  } catch (const std::bad_alloc& error) {
+    EXPECT_STREQ(error.what(),
+                 "the process has no addresses left for another map: too many maps, or a limit "
+                 "(ulimit -v)");
+  }
+}
+
 TEST(ReservedMemory, CanBeMoved) {
   ReservedMemory memory(5000);
   memory.commit(10);
