@@ -343,9 +343,12 @@ class Replay(CommandTest):
 
     def test_what_an_earlier_replay_wrote_does_not_count_as_written(self):
         (self.work / "again").mkdir()
-        for name in ("segments.ply", "map_final.png", "run.lcm"):
+        for name in ("segments.ply", "map_final.png", "run.lcm", "trajectory.txt"):
             (self.work / "again" / name).write_bytes(A_LOG)
+            os.utime(self.work / "again" / name, (1e9, 1e9))
         said = self.expect(0, "replay", "again/run.lcm", "--out", "again")
+        self.assertNotIn("trajectory.txt", said)
+        self.assertNotIn("everything that was on the bus", said)
         self.assertNotIn("segments.ply", said)
         self.assertNotIn("map_final.png", said)
         self.assertTrue((self.work / "again/run.lcm").exists())

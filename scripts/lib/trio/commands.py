@@ -4,6 +4,7 @@ import contextlib
 import os
 import signal
 import sys
+import time
 
 from . import network, options
 from .check import check_options
@@ -211,6 +212,7 @@ def replay(arguments):
 
 
 def run_replay(choice, folder):
+    since = time.time() - 0.1  # the clock of a file system may be a little behind
     url = os.environ.get("LCM_DEFAULT_URL")
     player = Process("player", ["lcm-logplayer", *(["-l", url] if url else []), "-s", choice.speed,
                                 "-e", REPLAYED_CHANNELS, choice.log], folder)
@@ -226,7 +228,7 @@ def run_replay(choice, folder):
         wait_until_ready(supervisor, listeners)
         player.start()
         good = supervisor.watch()
-        show_summary(folder, listeners)
+        show_summary(folder, listeners, since)
         supervisor.tell_failures()
     return 0 if good else 1
 

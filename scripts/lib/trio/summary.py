@@ -22,8 +22,9 @@ WRITTEN_FILES = (
 )
 
 
-def show_summary(folder, processes):
-    """CPU time and peak memory of the processes, and the files of the run that exist."""
+def show_summary(folder, processes, since=0.0):
+    """CPU time and peak memory of the processes, and the files of the run that exist and were written since then (seconds
+    of the system's clock)."""
     cpu = ", ".join(f"{p.name} {p.cpu_s:.2f} s" for p in processes if p.cpu_s is not None)
     memory = ", ".join(f"{p.name} {p.peak_memory_MB} MB" for p in processes if p.peak_memory_MB is not None)
     write(STDOUT, f"  CPU: {cpu}\n  memory at most: {memory}\n")
@@ -33,16 +34,17 @@ def show_summary(folder, processes):
             "to each other; final.png shows the last")
     say("written:")
     for name, text in WRITTEN_FILES:
-        show_file(folder, name, text)
+        show_file(folder, name, text, since)
         for part in parts:
-            show_file(folder, name_in_part(name, part), f"the same of part {part}")
+            show_file(folder, name_in_part(name, part), f"the same of part {part}", since)
     num_snapshots = len(list(folder.path.glob("snapshot_*.png")))
     write(STDOUT, f"  {folder.file('snapshot_*.png'):<28} {num_snapshots} pictures of the run\n")
 
 
-def show_file(folder, name, text):
+def show_file(folder, name, text, since):
     """If there is one."""
-    if (folder.path / name).exists():
+    path = folder.path / name
+    if path.exists() and path.stat().st_mtime >= since:
         write(STDOUT, f"  {folder.file(name):<28} {text}\n")
 
 
