@@ -20,7 +20,6 @@ fs::path numbered(const fs::path& path, int number) {
 
 int last_number(const fs::path& path) {
   const std::string begin = path.stem().string() + ".";
-  const std::string end = path.extension().string();
   const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
   int last = 0;
   std::error_code error;
