@@ -2,6 +2,7 @@
 
 #include <exception>
 #include <stdexcept>
+#include <utility>
 
 #include "segmenter/python/arrays.hpp"
 #include "segmenter/python/bind.hpp"
@@ -19,7 +20,7 @@ void raise(PyObject* type, const std::exception& error) {
 void translate(std::exception_ptr error) {
   if (!error) return;
   try {
-    std::rethrow_exception(error);
+    std::rethrow_exception(std::move(error));
   } catch (const py::builtin_exception&) {
     throw;
   } catch (const std::invalid_argument& wrong) {

@@ -103,7 +103,7 @@ Seeds stored_session_seeds() {
   MapperStatus status = testing::example_mapper_status();
   status.session = slice.session;
   std::vector<LoggedMessage> events = {
-      {mapper::kOptionsChannel, mapper::encode_options(slice.session, {{"resolution", "0.01"}})},
+      {kOptionsChannel, mapper::encode_options(slice.session, {{"resolution", "0.01"}})},
       {channels::kMapperStatus, encode(status)},
       {channels::kCameraPose, encode(testing::example_camera_pose())}};
   append_chunks(channels::kCloudSlice, slice, 0, events);
