@@ -9,8 +9,8 @@
 
 namespace kintsugi {
 
-// Channels of events that are in the log only. Each file of a log that is not empty, and each
-// session in it, begins with one of them.
+// Channels of events that are in the log only. A log that is not empty, and each session in it,
+// begins with one of them.
 
 /// The first event of a session: its number and its options as JSON.
 inline constexpr char kOptionsChannel[] = "MAPPER_OPTIONS";

@@ -18,7 +18,7 @@
 #include "lcmtypes/base/number_range.hpp"
 #include "lcmtypes/base/output_files.hpp"
 #include "lcmtypes/bus/bus.hpp"
-#include "lcmtypes/log/log_reader.hpp"
+#include "lcmtypes/log/whole_log_reader.hpp"
 #include "lcmtypes/signing/process_key.hpp"
 #include "segmenter/core/parameters/presets.hpp"
 
@@ -166,7 +166,7 @@ void add_bus_flags(CLI::App& app, Options& options) {
 /// What a run would refuse at its beginning.
 void check_inputs(const SegmenterProcess::Config& config) {
   check_bus_url(config.lcm_url);
-  if (!config.log.empty()) const LogReader readable(config.log);
+  if (!config.log.empty()) const WholeLogReader readable(config.log);
   const std::filesystem::path& resumed = config.segmentation.resume_file;
   if (!resumed.empty() && !std::ifstream(resumed).is_open()) {
     throw std::invalid_argument("--resume " + resumed.string() + ": cannot be read");

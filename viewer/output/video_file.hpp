@@ -17,9 +17,10 @@ void check_video_name(const std::filesystem::path& path);
 class VideoFile {
  public:
   /// Opens a temporary file beside `path`.
-  /// @throws std::invalid_argument as check_video_name(), std::runtime_error naming the file when
-  /// it
-  ///   cannot be written, or when there is no H.264 encoder
+  /// @throws std::invalid_argument as check_video_name()
+  /// @throws std::runtime_error naming the file when it cannot be written, or when there is no
+  /// H.264
+  ///   encoder
   VideoFile(const std::filesystem::path& path, cv::Size size, double pictures_per_s);
 
   /// Appends a picture.

@@ -13,7 +13,7 @@
 #include "lcmtypes/base/command_line.hpp"
 #include "lcmtypes/base/number_range.hpp"
 #include "lcmtypes/bus/bus.hpp"
-#include "lcmtypes/log/log_reader.hpp"
+#include "lcmtypes/log/whole_log_reader.hpp"
 #include "lcmtypes/signing/process_key.hpp"
 
 namespace kintsugi::viewer {
@@ -148,7 +148,7 @@ void add_config_flags(CLI::App& app, Flags& flags) {
 /// What a run would refuse at its beginning.
 void check_inputs(const Options& options) {
   check_bus_url(options.lcm_url);
-  if (options.log) const LogReader readable(*options.log);
+  if (options.log) const WholeLogReader readable(*options.log);
 }
 
 /// "1280x720".

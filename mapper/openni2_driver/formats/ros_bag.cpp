@@ -58,8 +58,8 @@ class ImageTopic {
     }
     if (infos.empty()) return;
     first_ = infos.front();
-    // Not all drivers fill in the times of headers.
-    takes_recorded_times_ = 2 * num_ascending(infos, &Info::utime) < infos.size();
+    // Not all drivers fill in the times of headers, and a clock may be set back for good.
+    takes_recorded_times_ = 2 * num_without_time(infos) > infos.size();
     keep_ascending(infos, takes_recorded_times_ ? &Info::recorded_utime : &Info::utime);
   }
 
@@ -92,13 +92,14 @@ class ImageTopic {
  private:
   using Time = std::int64_t Info::*;
 
-  static std::size_t num_ascending(const std::vector<Info>& infos, Time time) {
+  /// Those with no time in their header, or one before that of an earlier image. What is repeated
+  /// has the same.
+  static std::size_t num_without_time(const std::vector<Info>& infos) {
     std::size_t count = 0;
-    std::int64_t last = -1;
+    std::int64_t latest = 0;
     for (const Info& info : infos) {
-      if (info.*time <= last) continue;
-      last = info.*time;
-      ++count;
+      if (info.utime == 0 || info.utime < latest) ++count;
+      latest = std::max(latest, info.utime);
     }
     return count;
   }

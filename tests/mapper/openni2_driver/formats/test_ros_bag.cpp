@@ -300,6 +300,17 @@ TEST_F(RosBag, ImagesWithoutTimesHaveThoseAtWhichTheyWereRecorded) {
   EXPECT_THAT(recording.remark(), HasSubstr("the headers of /depth/image have no times"));
 }
 
+TEST_F(RosBag, ImagesThatAreRepeatedCountOnceHoweverOften) {
+  write("/depth/camera_info", 0, camera(50.0, test::kWidth, test::kHeight));
+  for (int frame = 0; frame < 9; ++frame) {
+    Image image = image_of(test::raw_depth_image(frame / 3), "16UC1", frame / 3, "depth");
+    write("/depth/image", frame, image);
+  }
+  const FileRecording recording = open();
+  EXPECT_EQ(recording.num_depth_frames(), 3);
+  EXPECT_THAT(recording.remark(), HasSubstr("6 of 9 images of /depth/image are left out"));
+}
+
 TEST_F(RosBag, DepthInTwoUnitsIsRefused) {
   write("/depth/camera_info", 0, camera(50.0, test::kWidth, test::kHeight));
   write("/depth/image", 0, image_of(test::raw_depth_image(0), "16UC1", 0, "depth"));
